@@ -1,0 +1,62 @@
+# Needs Python 3.11 or newer and make; uses uv where it is installed, else pip. Everything lands in .venv.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+READY  := $(VENV)/.ready
+TOOLS  := $(VENV)/.ready-tools
+
+# One BLAS thread for each test worker: two workers with two threads each slow each other down several times.
+ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
+
+# $(call install,EXTRA): the package with an extra, bytecode compiled. uv takes the locked versions; where it is
+# missing or cannot reach the index of the lock file, pip takes the newest ones.
+define install
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+		|| { echo "stribeck needs Python 3.11 or newer; say which with make PYTHON=/path/to/python3"; exit 1; }
+	@if command -v uv >/dev/null && UV_PROJECT_ENVIRONMENT=$(VENV) \
+		uv sync --quiet --frozen --inexact --compile-bytecode --python "$(PYTHON)" --extra $(1); then :; else \
+		$(PYTHON) -m venv $(VENV) && $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[$(1)]'; fi
+	@touch $@
+endef
+
+.PHONY: help demo test slow lint format types benchmark clean
+
+help:
+	@echo "make demo       the Stribeck curve of a PDMS cylinder: curve.png, curve.nc"
+	@echo "make test       the tests      make slow   those that take minutes"
+	@echo "make lint       style          make format apply it"
+	@echo "make types      static types   make benchmark  the tables of the documentation"
+	@echo "make clean      remove what make made"
+
+$(READY): pyproject.toml uv.lock
+	$(call install,test)
+
+$(TOOLS): pyproject.toml uv.lock | $(READY)
+	$(call install,dev)
+
+demo: $(READY)
+	$(BIN)/stribeck curve examples/pdms_cylinder.toml -o curve.nc --plot curve.png --force
+
+test: $(READY)
+	$(ONE_THREAD) $(BIN)/python -m pytest -n auto
+
+slow: $(READY)
+	$(ONE_THREAD) $(BIN)/python -m pytest -n auto -m slow
+
+lint: $(TOOLS)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+format: $(TOOLS)
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+types: $(TOOLS)
+	$(BIN)/mypy
+
+benchmark: $(READY)
+	@for script in benchmarks/*.py; do echo "# $$script"; $(ONE_THREAD) $(BIN)/python "$$script" || exit 1; done
+
+clean:
+	rm -rf $(VENV) build dist curve.nc curve.png curve.csv .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find src tests benchmarks examples -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true

@@ -1,0 +1,293 @@
+"""Case files: a TOML file of quantities with units becomes a checked :class:`Case`.
+
+Everything that is wrong with a file is told in one go, a sentence for each problem, with the path, the table
+and the key. What a quantity may be is not written here but in :mod:`stribeck.parameters`.
+"""
+
+import difflib
+import functools
+import os
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from .parameters import QUANTITIES, InputError, LineContact, check_modulus_choice, quantity
+from .units import DIMENSIONS, show
+
+__all__ = ["Case", "CurveSettings", "load_case"]
+
+Axis = Literal["speed", "load", "roughness"]
+Law = Literal["exponential"]
+Definition = Literal["paper", "balanced"]
+
+_LARGEST_FILE = 1_000_000  # [byte]
+
+# The symbols of the paper, which its readers may type.
+_SYMBOLS = {
+    "R": "radius",
+    "F_N": "load",
+    "eta": "viscosity",
+    "U": "speed",
+    "h_rms": "roughness",
+    "mu0": "friction_coefficient",
+    "mu_0": "friction_coefficient",
+    "E_star": "modulus",
+    "E": "youngs_modulus",
+    "nu": "poisson_ratio",
+}
+
+
+@dataclass(frozen=True)
+class CurveSettings:
+    """What the ``[curve]`` table of a case asks for.
+
+    Parameters
+    ----------
+    over : {"speed", "load", "roughness"}
+        The quantity that varies along the curve.
+    range : tuple of float, optional
+        Its lowest and highest value in SI units; None is the automatic range.
+    points : int
+        Number of states on the curve.
+    """
+
+    over: Axis = "speed"
+    range: tuple[float, float] | None = None
+    points: int = 101
+
+
+@dataclass(frozen=True)
+class Case:
+    """One case file, checked, with its quantities in SI units.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    contact : LineContact
+        The quantities of the ``[contact]`` table.
+    law : {"exponential"}
+        The contact law of the ``[contact]`` table.
+    curve : CurveSettings
+        The ``[curve]`` table.
+    rtol : float
+        Relative tolerance asked of the solver, from the ``[solver]`` table.
+    definition : {"paper", "balanced"}
+        Which friction force the outputs show, from the ``[solver]`` table.
+    title : str
+        Headline for outputs; empty where the file has none.
+    notes : str
+        Free text; empty where the file has none.
+    """
+
+    path: Path
+    contact: LineContact
+    law: Law = "exponential"
+    curve: CurveSettings = field(default_factory=CurveSettings)
+    rtol: float = 1e-6
+    definition: Definition = "paper"
+    title: str = ""
+    notes: str = ""
+
+
+def load_case(path: str | os.PathLike[str]) -> Case:
+    """Read and check a case file.
+
+    Parameters
+    ----------
+    path : str or path-like
+        A TOML file: a table ``[contact]`` (the arguments of :class:`LineContact`, and ``law``), and where
+        wanted ``[curve]`` (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``),
+        ``title`` and ``notes``.
+
+    Returns
+    -------
+    Case
+        The checked case.
+
+    Raises
+    ------
+    InputError
+        Where the file cannot be read, is no TOML, or has unknown, missing or impossible entries: a sentence
+        on each line, for all of its problems.
+    """
+    import pydantic
+
+    path = Path(path)
+    table = _read(path)
+    model = _model()
+    problems = []
+    try:
+        checked = model(**table).model_dump()
+    except pydantic.ValidationError as failure:
+        problems = [_sentence(model, error) for error in failure.errors(include_url=False)]
+    problems += _elasticity_problem(table.get("contact"))
+    if not problems:
+        inputs = checked["contact"]
+        law = inputs.pop("law")
+        try:
+            contact = LineContact(**inputs)
+        except InputError as problem:
+            problems = [f"[contact] {problem}"]
+    if problems:
+        raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
+    return Case(
+        path=path,
+        contact=contact,
+        law=law,
+        curve=CurveSettings(**checked["curve"]),
+        title=checked["title"],
+        notes=checked["notes"],
+        **checked["solver"],
+    )
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        with path.open("rb") as file:
+            content = file.read(_LARGEST_FILE + 1)
+    except (OSError, ValueError) as problem:
+        reason = (
+            "is a directory" if path.is_dir() else f"cannot be read ({getattr(problem, 'strerror', problem)})"
+        )
+        raise InputError(f"{path} {reason}; give the path of a TOML case file.") from None
+    if len(content) > _LARGEST_FILE:
+        raise InputError(f"{path} has more than {_LARGEST_FILE} bytes; a case file is a page of TOML.")
+    try:
+        table = tomllib.loads(
+            content.decode("utf-8-sig")
+        )  # TOML knows no byte-order mark, some editors write one
+    except UnicodeDecodeError as problem:
+        raise InputError(
+            f"{path} is not text (byte {problem.start} is not UTF-8); a case file is a page of TOML."
+        ) from None
+    except (ValueError, RecursionError) as problem:
+        raise InputError(f"{path} is not valid TOML: {' '.join(str(problem).split())}.") from None
+    if not table:
+        raise InputError(f"{path} is empty; a case file needs at least the table [contact].")
+    return table
+
+
+@functools.cache
+def _model() -> Any:
+    """Return the pydantic model of a case file, made on first use because pydantic is slow to import."""
+    from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
+
+    def check_quantity(value: Any, info: ValidationInfo) -> float:
+        return quantity(str(info.field_name), value)
+
+    def check_range(value: Any, info: ValidationInfo) -> tuple[float, float] | None:
+        return _curve_range(value, info.data["over"]) if "over" in info.data else None
+
+    # A description completes the sentence "... must be ..." for what pydantic refuses by itself.
+    number = Annotated[float, BeforeValidator(check_quantity)]
+    text = Annotated[str, Field(strict=True, description="text in quotes")]
+
+    class Table(BaseModel):
+        model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    class Contact(Table):
+        radius: number
+        load: number
+        viscosity: number
+        speed: number
+        roughness: number
+        alpha: number
+        beta: number
+        friction_coefficient: number
+        modulus: number | None = None
+        youngs_modulus: number | None = None
+        poisson_ratio: number | None = None
+        law: Annotated[Law, Field(description="'exponential', the only contact law so far")] = Case.law
+
+    class Curve(Table):
+        over: Annotated[Axis, Field(description="'speed', 'load' or 'roughness'")] = CurveSettings.over
+        range: Annotated[Any, BeforeValidator(check_range)] = None
+        points: Annotated[
+            int, Field(strict=True, ge=2, le=100_000, description="a whole number from 2 to 100000")
+        ] = CurveSettings.points
+
+    class Solver(Table):
+        rtol: Annotated[
+            float,
+            Field(strict=True, ge=1e-11, le=1e-2, description="a number from 1e-11 to 1e-2, without quotes"),
+        ] = Case.rtol
+        definition: Annotated[Definition, Field(description="'paper' or 'balanced'")] = Case.definition
+
+    class File(Table):
+        contact: Annotated[Contact, Field(description="a table, [contact]")]
+        curve: Annotated[Curve, Field(description="a table, [curve]", default_factory=Curve)]
+        solver: Annotated[Solver, Field(description="a table, [solver]", default_factory=Solver)]
+        title: text = Case.title
+        notes: text = Case.notes
+
+    return File
+
+
+def _curve_range(value: Any, over: str) -> tuple[float, float]:
+    if not isinstance(value, list) or len(value) != 2:
+        raise InputError(
+            f"range = {show(value)} must be a list of two values, the lowest and the highest {over}."
+        )
+    low, high = (_range_end(end, over) for end in value)
+    if not low < high:
+        raise InputError(f"range = {show(value)} must increase; write the lowest {over} first.")
+    return low, high
+
+
+def _range_end(value: Any, over: str) -> float:
+    try:
+        result = quantity(over, value)
+    except InputError as problem:
+        raise InputError(f"in range, {problem}") from None
+    if result == 0:
+        raise InputError(
+            f"in range, {over} = {show(value)} must be positive, because the curve is logarithmic."
+        )
+    return result
+
+
+def _elasticity_problem(contact: Any) -> list[str]:
+    if not isinstance(contact, dict):
+        return []
+    try:
+        check_modulus_choice(*(contact.get(key) for key in ("modulus", "youngs_modulus", "poisson_ratio")))
+    except InputError as problem:
+        return [f"[contact] {problem}"]
+    return []
+
+
+def _sentence(file: Any, error: Any) -> str:
+    """Return the sentence for one of pydantic's errors."""
+    *tables, key = [str(part) for part in error["loc"][:2]]
+    model = file.model_fields[tables[0]].annotation if tables else file
+    where = f"[{tables[0]}] " if tables else ""
+    shown = key if key.isprintable() else repr(key)
+    if error["type"] == "missing":
+        return f"{where}{key} is missing; {_example(key)}." if tables else f"the table [{key}] is missing."
+    if error["type"] == "extra_forbidden":
+        return f"{where}{shown} = {show(error['input'])} is not a known key; {_nearest(file, model, key)}."
+    if error["type"] == "value_error":
+        return f"{where}{error['ctx']['error']}"
+    return f"{where}{key} = {show(error['input'])} must be {model.model_fields[key].description}."
+
+
+def _example(key: str) -> str:
+    dimension = DIMENSIONS[QUANTITIES[key].dimension]
+    value = f'"{dimension.example}"' if dimension.unit else dimension.example
+    return f"add {dimension.noun}, for example {key} = {value}"
+
+
+def _nearest(file: Any, model: Any, key: str) -> str:
+    known = list(model.model_fields)
+    meant = _SYMBOLS.get(key, key)
+    if meant in known:
+        return f"write {meant}"
+    for name, info in file.model_fields.items():
+        if model is not info.annotation and meant in getattr(info.annotation, "model_fields", {}):
+            return f"it belongs in the table [{name}]"
+    if meant in file.model_fields:
+        return "it belongs at the top of the file, before the first table"
+    near = difflib.get_close_matches(key.lower(), known, n=1)
+    return f"did you mean {near[0]}" if near else f"known are {', '.join(known)}"

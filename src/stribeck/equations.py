@@ -1,0 +1,149 @@
+r"""The coupled mean-field equations on a mesh: residual, Jacobian and parameter derivatives.
+
+The unknowns are the gap at the nodes, the offset and the flux gap, ``y = (h_1 ... h_N, z0, h*)``; pressures follow from
+them.  With D the deflection operator, A the running integral and w the quadrature weights:
+
+.. math::
+
+    R_i &= h_i - z_0 - x_i^2/2 - \sum_j D_{ij} (p_c + p_f)_j, \qquad p_f = \lambda A g, \quad g = (h - h^*)/h^3 \\
+    R_{N+1} &= \textstyle\sum_j w_j (p_c + p_f)_j - \pi/2 \\
+    R_{N+2} &= \textstyle\sum_j w_j g_j \; s^2
+
+s is a fixed length that makes the last row of order one.  Source: [BP] Appendix A; theory.md Eqs. (1)-(5).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from . import reynolds
+from ._types import Array
+from .contact_laws import ContactLaw
+from .elasticity import deflection_operator
+from .mesh import Mesh
+
+LOAD = 0.5 * np.pi
+"""Load in Hertz units: the integral of the pressure."""
+
+
+@dataclass(frozen=True, eq=False)
+class Operators:
+    """What the equations need of a mesh; made once and kept for all states that share it."""
+
+    mesh: Mesh
+
+    @cached_property
+    def deflection(self) -> Array:
+        """D: nodal pressures -> deflection."""
+        return np.asfortranarray(deflection_operator(self.mesh))
+
+    @cached_property
+    def deflection_of_gradient(self) -> Array:
+        """D A: nodal pressure gradients -> deflection."""
+        return np.asfortranarray(self.mesh.after_integral(self.deflection))
+
+    @cached_property
+    def load_of_gradient(self) -> Array:
+        """w A: nodal pressure gradients -> load."""
+        return self.mesh.after_integral(self.mesh.weights[None, :])[0]
+
+    @cached_property
+    def parabola(self) -> Array:
+        """The undeformed gap x**2/2 at the nodes."""
+        return 0.5 * self.mesh.nodes**2
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """The discretised problem for one speed and one contact law.
+
+    Parameters
+    ----------
+    operators : Operators
+        Of the mesh.
+    speed : float
+        Speed group lambda [-].
+    law : ContactLaw
+        Contact pressure from the gap.
+    """
+
+    operators: Operators
+    speed: float
+    law: ContactLaw
+    flux_scale: float = 1.0
+
+    def pressures(self, y: Array) -> tuple[Array, Array]:
+        """Return the contact and the fluid pressure at the nodes [p_Hz]."""
+        h, h_star = y[:-2], y[-1]
+        fluid = self.speed * (self.operators.mesh.integral_from_infinity(reynolds.gradient(h, h_star)))
+        return self.law.pressure(h), fluid
+
+    def residual(self, y: Array) -> Array:
+        """Return the residual at ``y``, shape (N + 2,)."""
+        op = self.operators
+        h, z0, h_star = y[:-2], y[-2], y[-1]
+        g = reynolds.gradient(h, h_star)
+        p_c = self.law.pressure(h)
+        r = np.empty_like(y)
+        r[:-2] = h - z0 - op.parabola - op.deflection @ p_c
+        r[-2] = op.mesh.weights @ p_c - LOAD
+        if self.speed > 0:
+            r[:-2] -= op.deflection_of_gradient @ (self.speed * g)
+            r[-2] += self.speed * (op.load_of_gradient @ g)
+        r[-1] = self.flux_scale * (op.mesh.weights @ g)
+        return r
+
+    def jacobian(self, y: Array) -> Array:
+        """Return the derivative of the residual, shape (N + 2, N + 2), in Fortran order.
+
+        ::
+
+            [ I - D diag(p_c') - lambda D A diag(dg/dh)    -1    -lambda D A dg/dh* ]
+            [   w diag(p_c') + lambda w A diag(dg/dh)       0     lambda w A dg/dh* ]
+            [   s**2 w diag(dg/dh)                          0     s**2 w dg/dh*     ]
+        """
+        op = self.operators
+        n = len(y) - 2
+        h, h_star = y[:-2], y[-1]
+        p_slope = self.law.slope(h, self.law.pressure(h))
+        g_h = reynolds.gap_derivative(h, h_star)
+        g_flux = reynolds.flux_derivative(h)
+        matrix = np.zeros((n + 2, n + 2), order="F")
+        block = matrix[:n, :n]
+        np.multiply(op.deflection, -p_slope, out=block)
+        matrix[n, :n] = op.mesh.weights * p_slope
+        if self.speed > 0:
+            block -= op.deflection_of_gradient * (self.speed * g_h)
+            matrix[:n, n + 1] = op.deflection_of_gradient @ (-self.speed * g_flux)
+            matrix[n, :n] += op.load_of_gradient * (self.speed * g_h)
+            matrix[n, n + 1] = self.speed * (op.load_of_gradient @ g_flux)
+        block[np.diag_indices(n)] += 1.0
+        matrix[:n, n] = -1.0
+        matrix[n + 1, :n] = op.mesh.weights * g_h * self.flux_scale
+        matrix[n + 1, n + 1] = self.flux_scale * (op.mesh.weights @ g_flux)
+        return matrix
+
+    def admissible(self, y: Array, dy: Array) -> float:
+        """Return the longest part of a Newton step that keeps the gap positive and the contact pressure sane.
+
+        The gap may lose 70 % at most; where contact matters, its pressure may grow or fall by e**3 at most.
+        """
+        ratio = dy[:-2] / y[:-2]
+        part = 0.7 / max(0.7, -float(ratio.min()))
+        flux = dy[-1] / y[-1]
+        part = min(part, 0.7 / max(0.7, abs(flux)))
+        if self.law.decay > 0:
+            log_p = self.law.log_pressure(y[:-2])
+            decays = dy[:-2] / self.law.decay
+            closing = float((-decays / (3.0 + np.maximum(0.0, -1.0 - log_p))).max())
+            opening = float((decays * (log_p > -7.0)).max()) / 3.0
+            part = min(part, 1.0 / max(1.0, closing, opening))
+        return part
+
+    @staticmethod
+    def size(y: Array, dy: Array) -> float:
+        """Return the relative size of a step: the largest relative change of the gap and of the flux gap."""
+        return float(max(np.abs(dy[:-2] / y[:-2]).max(), abs(dy[-1] / y[-1])))

@@ -1,0 +1,231 @@
+"""Discrete states: the unknowns on one mesh, how they are predicted on another, and how that mesh is chosen.
+
+A state knows its groups, its equations and the Newton iteration that made it.  Between meshes travel the logarithm of the
+gap over ``1 + x**2``, which is smooth and bounded on the whole line, and the fluid pressure.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from ._types import Array
+from .contact_laws import ContactLaw, contact_law
+from .continuation import extrapolation_weights
+from .equations import Equations, Operators
+from .mesh import Mesh, adapt
+from .newton import Outcome, Root, root_find
+from .parameters import Groups
+
+CHORD = 0.1
+"""Contraction above which a kept factorisation is given up."""
+
+LARGEST_AMPLIFICATION = 40.0
+"""Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
+
+PREDICTION_GOAL = 0.5
+"""Relative error of the predicted gap at which the step of a path is kept."""
+
+
+class Guess(Protocol):
+    """A guessed state, on the whole line."""
+
+    @property
+    def flux_gap(self) -> float:
+        """Guess of the flux gap."""
+
+    @property
+    def offset(self) -> float:
+        """Guess of the offset."""
+
+    def shape(self, mesh: Mesh) -> Array:
+        """Return ln(gap/(1 + x**2)) at the nodes of ``mesh``."""
+
+    def fields(self, x: Array) -> Array:
+        """Return ln(gap/(1 + x**2)) and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A solution of the discrete equations, or the last iterate towards one.
+
+    Attributes
+    ----------
+    groups : Groups
+        Scalar groups.
+    equations : Equations
+        The discrete problem.
+    y : ndarray
+        Gap at the nodes, offset, flux gap.
+    root : Root
+        The Newton iteration that ended here.
+    prediction_error : float
+        Largest relative change of the gap from its guess.
+    """
+
+    groups: Groups
+    equations: Equations
+    y: Array
+    root: Root
+    prediction_error: float
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh of the state."""
+        return self.equations.operators.mesh
+
+    @property
+    def gap(self) -> Array:
+        """Gap at the nodes [u_Hz]."""
+        return self.y[:-2]
+
+    @property
+    def offset(self) -> float:
+        """Offset z0 [u_Hz]."""
+        return float(self.y[-2])
+
+    @property
+    def flux_gap(self) -> float:
+        """Flux gap h* [u_Hz]."""
+        return float(self.y[-1])
+
+    @property
+    def outcome(self) -> Outcome:
+        """Outcome of the Newton iteration; one stopped by rounding counts as converged, its error is estimated."""
+        return Outcome.CONVERGED if self.root.outcome is Outcome.ROUNDING else self.root.outcome
+
+    @property
+    def effort(self) -> float:
+        """What :func:`continuation.march` steers by: 4 where the cubic prediction was as good as wanted."""
+        return 4.0 + 0.5 * math.log2(max(self.prediction_error, 1e-9) / PREDICTION_GOAL)
+
+    @cached_property
+    def _nodal(self) -> Array:
+        """Nodal fields of the guess that this state is for others."""
+        x = self.mesh.nodes
+        return np.stack([np.log(self.gap / (1 + x * x)), self.equations.pressures(self.y)[1]])
+
+    def shape(self, mesh: Mesh) -> Array:
+        """Return ln(gap/(1 + x**2)) at the nodes of ``mesh``."""
+        return self._nodal[0] if mesh is self.mesh else self.mesh.interpolate(self._nodal[0], mesh.nodes)
+
+    def fields(self, x: Array) -> Array:
+        """Return ln(gap/(1 + x**2)) and the fluid pressure at ``x``."""
+        return self.mesh.interpolate(self._nodal, x)
+
+
+@dataclass(frozen=True, eq=False)
+class Extrapolation:
+    """A guess from the states before it along a path."""
+
+    weights: Array
+    states: Sequence[State]
+
+    @property
+    def flux_gap(self) -> float:
+        """Extrapolated in its logarithm."""
+        return math.exp(sum(w * math.log(s.flux_gap) for w, s in zip(self.weights, self.states, strict=True)))
+
+    @property
+    def offset(self) -> float:
+        """That of the last state; Newton's first step corrects it exactly."""
+        return self.states[-1].offset
+
+    def shape(self, mesh: Mesh) -> Array:
+        """Return ln(gap/(1 + x**2)) at the nodes of ``mesh``."""
+        shape = np.zeros(mesh.size)
+        for w, s in zip(self.weights, self.states, strict=True):
+            shape += w * s.shape(mesh)
+        return shape
+
+    def fields(self, x: Array) -> Array:
+        """Return ln(gap/(1 + x**2)) and the fluid pressure at ``x``."""
+        fields = np.zeros((2, x.size))
+        for w, s in zip(self.weights, self.states, strict=True):
+            fields += w * s.fields(x)
+        return fields
+
+
+def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
+    """Return the guess at coordinate ``s`` by the highest polynomial through ``history`` that does not amplify errors."""
+    for first in range(len(history) - 1):
+        points = history[first:]
+        weights = extrapolation_weights([c for c, _ in points], s)
+        if np.abs(weights).sum() <= LARGEST_AMPLIFICATION:
+            return Extrapolation(weights, [state for _, state in points])
+    return history[-1][1]
+
+
+def mesh_for(guess: Guess, groups: Groups, law: ContactLaw, order: int, tolerance: float) -> Mesh:
+    """Return the coarsest mesh that resolves a guess.
+
+    Parameters
+    ----------
+    guess : Guess
+        The fields to resolve: contact and fluid pressure, relative to their mean over the contact, to ``tolerance``, and
+        the logarithm of the gap to ten times that.
+    groups : Groups
+        Scalar groups.
+    law : ContactLaw
+        Contact pressure from the gap.
+    order : int
+        Nodes a panel.
+    tolerance : float
+        Legendre tail allowed on each panel.
+
+    Raises
+    ------
+    MeshTooLarge
+        If more panels are needed than :data:`mesh.MAX_PANELS`.
+    """
+    width = math.sqrt(1.0 + float(np.exp(guess.fields(np.zeros(1))[0, 0])))
+    scale = 2.0 ** round(math.log2(width))
+
+    def fields(x: Array, half_widths: Array) -> Array:
+        flat = x.ravel()
+        found = guess.fields(flat)
+        gap = np.exp(found[0]) * (1 + flat * flat)
+        if len(found) == 2:
+            fluid = found[1]
+        else:
+            slopes = float(groups.speed) * (gap - guess.flux_gap) / gap**3
+            fluid = slopes * np.repeat(half_widths, x.shape[1])
+        pressures = width * np.stack([law.pressure(gap), fluid])
+        return np.concatenate([pressures, 0.1 * found[:1]]).reshape(3, *x.shape)
+
+    return adapt(fields, scale, 16 * scale, order, tolerance)
+
+
+def solve_state(groups: Groups, operators: Operators, guess: Guess, tolerance: float, max_steps: int = 40) -> State:
+    """Return the state of the discrete equations on the mesh of ``operators`` nearest to ``guess``."""
+    x = operators.mesh.nodes
+    flux_gap = guess.flux_gap
+    equations = Equations(operators, float(groups.speed), contact_law(groups), flux_gap**2)
+    y = np.empty(len(x) + 2)
+    y[:-2] = np.exp(guess.shape(operators.mesh)) * (1 + x * x)
+    y[-2:] = guess.offset, flux_gap
+    root = root_find(
+        equations.residual,
+        equations.jacobian,
+        y,
+        fraction=equations.admissible,
+        size=equations.size,
+        tolerance=tolerance,
+        max_steps=max_steps,
+        chord=CHORD,
+        overwrite_jacobian=True,
+        singular_below=0.0,
+    )
+    error = float(np.abs(y[:-2] / root.x[:-2] - 1).max())
+    return State(groups, equations, root.x, root, error)
+
+
+def remeshed(state: State, order: int, tolerance: float) -> Callable[[], Operators]:
+    """Return the maker of the operators on the mesh that resolves ``state`` to ``tolerance``."""
+    mesh = mesh_for(state, state.groups, state.equations.law, order, tolerance)
+    return lambda: Operators(mesh)

@@ -1,0 +1,255 @@
+"""Text with units to SI numbers, and SI numbers to short text, at the border of the package.
+
+Inside the package everything is dimensionless; this module is the only one that knows what a unit is. Numbers
+are read here and only the unit itself is handed to pint, because pint reads "1,5 MPa" as 15 MPa and
+"10 mPas" as ten millipascals.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import numbers
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+__all__ = ["DIMENSIONS", "Dimension", "InputError", "format_si", "to_si"]
+
+
+class InputError(ValueError):
+    """A value given by the user cannot be used; the message is made of sentences for that user."""
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A kind of quantity: what it is called, its SI unit, an example, and the units that display it.
+
+    Attributes
+    ----------
+    noun : str
+        The kind of quantity with its article, for sentences.
+    unit : str
+        SI unit, empty for a bare number.
+    example : str
+        Text that :func:`to_si` accepts.
+    steps : dict of int to str
+        Power of ten -> unit, for :func:`format_si`.
+    """
+
+    noun: str
+    unit: str
+    example: str
+    steps: dict[int, str]
+
+
+def _prefixed(unit: str, powers: tuple[int, ...]) -> dict[int, str]:
+    prefix = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+    return {power: prefix[power] + unit for power in powers}
+
+
+DIMENSIONS = {
+    "length": Dimension("a length", "m", "10 mm", _prefixed("m", (-12, -9, -6, -3, 0, 3))),
+    "speed": Dimension("a speed", "m/s", "0.1 m/s", _prefixed("m/s", (-12, -9, -6, -3, 0, 3))),
+    "pressure": Dimension("a pressure", "Pa", "2.1 MPa", _prefixed("Pa", (-3, 0, 3, 6, 9))),
+    "viscosity": Dimension("a viscosity", "Pa*s", "10 mPa*s", _prefixed("Pa*s", (-6, -3, 0, 3, 6))),
+    "load": Dimension("a load per unit length", "N/m", "50 N/m", _prefixed("N/m", (-6, -3, 0, 3, 6))),
+    "number": Dimension("a bare number", "", "0.5", {0: ""}),
+}
+
+# What pint may find in the text, so that a sentence can name it; wider than what the package accepts.
+_NOUNS = {
+    "m": "a length",
+    "m^2": "an area",
+    "m/s": "a speed",
+    "s": "a time",
+    "1/s": "a rate",
+    "Pa": "a pressure",
+    "Pa*s": "a dynamic viscosity",
+    "m^2/s": "a kinematic viscosity (multiply it by the density)",
+    "N/m": "a load per unit length",
+    "N": "a force (divide it by the length of the contact)",
+    "kg": "a mass",
+    "K": "a temperature",
+    "dimensionless": "a bare number",
+}
+
+# Bounded, because the number becomes an exact fraction and 1e999999999 would fill the memory.
+_NUMBER = re.compile(
+    r"\s*([+-]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][+-]?[0-9]{1,3})?)\s*(.*?)\s*", re.DOTALL
+)
+_EXPONENT = re.compile(r"(?:\^|\*\*)\s*(?:[+-]?[0-9]|\(\s*[+-]?[0-9]\s*\))")
+_UNIT = re.compile(r"[A-Za-zµμÅ_#()*/ ]*", re.ASCII)
+_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+_LONGEST_UNIT = 40
+
+
+def to_si(value: Any, dimension: str, name: str) -> float:
+    """Return ``value`` as a float in SI units.
+
+    Parameters
+    ----------
+    value : str or number
+        Text with a unit, such as ``"10 mPa*s"``, or a real number that is already in SI units.
+    dimension : str
+        One of the keys of :data:`DIMENSIONS`; ``"number"`` accepts bare numbers only.
+    name : str
+        What the value is called, for the error sentence.
+
+    Returns
+    -------
+    float
+        The value in the SI unit of its dimension.
+
+    Raises
+    ------
+    InputError
+        Where the value is no finite real number, or its unit is missing, unknown or of another dimension.
+
+    Examples
+    --------
+    >>> to_si("2.5 um", "length", "roughness")
+    2.5e-06
+    """
+    kind = DIMENSIONS[dimension]
+    exact = _from_text(value, kind, name) if isinstance(value, str) else value
+    if isinstance(exact, bool) or not isinstance(exact, numbers.Real):
+        raise InputError(f"{name} = {show(value)} is not a single real number; {_advice(kind)}.")
+    try:
+        result = float(exact)
+    except OverflowError:
+        result = math.inf
+    if not math.isfinite(result):
+        raise InputError(
+            f"{name} = {show(value)} is not a finite number in double precision; {_advice(kind)}."
+        )
+    return result
+
+
+def format_si(value: float, dimension: str, digits: int = 3) -> str:
+    """Return an SI number as short text with a fitting prefix, for people.
+
+    Parameters
+    ----------
+    value : float
+        The number, in the SI unit of its dimension.
+    dimension : str
+        One of the keys of :data:`DIMENSIONS`.
+    digits : int
+        Significant digits.
+
+    Returns
+    -------
+    str
+        Text that :func:`to_si` reads back (where the value is finite and has a unit).
+
+    Examples
+    --------
+    >>> format_si(3.1e-4, "speed")
+    '310 µm/s'
+    """
+    value = float(value)
+    steps = DIMENSIONS[dimension].steps
+    power = 0
+    if value != 0 and math.isfinite(value):
+        # Rounding first: 999.9e-6 with three digits is 1 mm, not 1000 µm.
+        exponent = int(f"{value:.{digits - 1}e}".partition("e")[2])
+        power = max((step for step in steps if step <= exponent), default=min(steps))
+    number = f"{value / 10.0**power:.{digits}g}"
+    return f"{number} {steps[power]}".rstrip()
+
+
+def show(value: Any) -> str:
+    """Return ``repr(value)`` on one line and short enough for a sentence."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _advice(kind: Dimension) -> str:
+    if not kind.unit:
+        return f"write a bare number without quotes, such as {kind.example}"
+    return f"write {kind.noun} with its unit, such as '{kind.example}', or a bare number in {kind.unit}"
+
+
+def _from_text(text: str, kind: Dimension, name: str) -> Fraction:
+    received = f"{name} = {show(text)}"
+    if not kind.unit:
+        raise InputError(f"{received} is text where a number belongs; {_advice(kind)}.")
+    if "," in text:
+        raise InputError(
+            f"{received} has a comma; write a decimal point and no thousands separator, "
+            f"as in '{kind.example}'."
+        )
+    parts = _NUMBER.fullmatch(text.replace("\N{MINUS SIGN}", "-"))
+    if parts is None:
+        raise InputError(f"{received} does not begin with a number; {_advice(kind)}.")
+    number, unit = parts.groups()
+    if not unit:
+        raise InputError(
+            f"{received} has no unit; add one, as in '{number} {kind.unit}', "
+            f"or drop the quotes: a bare number is in {kind.unit}."
+        )
+    return Fraction(number) * _factor(unit, kind, received)
+
+
+def _factor(unit: str, kind: Dimension, received: str) -> Fraction:
+    """Return the exact SI value of one ``unit``, or raise the sentence that begins with ``received``."""
+    import pint
+
+    unit = re.sub(r"(⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)", lambda found: "^" + found[1].translate(_SUPERSCRIPTS), unit)
+    unit = re.sub(r"(?<=[A-Za-z])\s*[.·⋅]\s*(?=[A-Za-z])", "*", unit)
+    # pint evaluates what it is given and m^9^9^9^9 would never end: units, products, one-digit powers pass.
+    shape = _EXPONENT.sub("#", unit)
+    if len(unit) > _LONGEST_UNIT or not _UNIT.fullmatch(shape) or re.search(r"\*\*|#[\s()]*#", shape):
+        raise InputError(f"{received} is not a number with a unit; {_advice(kind)}.")
+
+    registry = _registry()
+    for symbol in re.findall(r"\w+", shape):
+        _refuse_plural_symbol(symbol, registry, received)
+    try:
+        parsed = registry.parse_units(unit)
+        factor, base = registry.get_base_units(parsed)
+    except pint.UndefinedUnitError as problem:
+        unknown: Any = problem.unit_names  # declared a tuple, at times a str
+        unknown = unknown if isinstance(unknown, str) else unknown[0]
+        raise InputError(
+            f"{received} has the unknown unit '{unknown}' (upper and lower case differ); {_advice(kind)}."
+        ) from None
+    except Exception:  # pint's parser leaks errors of many kinds, and each means the same to the user
+        raise InputError(f"{received} has a unit that cannot be read; {_advice(kind)}.") from None
+    if base.dimensionality != registry.parse_units(kind.unit).dimensionality:
+        raise InputError(
+            f"{received} is {_noun(base, registry)}; {kind.noun} such as '{kind.example}' is wanted."
+        )
+    return Fraction(factor)
+
+
+def _refuse_plural_symbol(symbol: str, registry: Any, received: str) -> None:
+    # pint strips a plural s from symbols too, and "mPas" (meant: mPa*s) would silently become a pressure.
+    singular = symbol[:-1]
+    candidates = registry.parse_unit_name(symbol)
+    if not symbol.endswith("s") or not candidates:
+        return
+    prefix, unit, _ = candidates[0]
+    if singular == registry.get_symbol(prefix + unit) and singular != unit:
+        raise InputError(
+            f"{received} has the unclear unit '{symbol}'; "
+            f"write '{singular}*s' for the product with seconds, or '{singular}'."
+        )
+
+
+def _noun(unit: Any, registry: Any) -> str:
+    for text, noun in _NOUNS.items():
+        if unit.dimensionality == registry.parse_units(text).dimensionality:
+            return noun
+    powers = (f"{name.strip('[]')}^{float(power):g}" for name, power in unit.dimensionality.items())
+    return f"of dimension {' '.join(powers)}"
+
+
+@functools.cache
+def _registry() -> Any:
+    import pint
+
+    # Fractions, because with floats "2.5 um" is 2.4999999999999998e-06.
+    return pint.UnitRegistry(cache_folder=None, non_int_type=Fraction)

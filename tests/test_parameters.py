@@ -1,0 +1,329 @@
+"""Groups, Hertz scales and the line contact in SI units."""
+
+import copy
+import dataclasses
+import inspect
+import math
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from stribeck.parameters import QUANTITIES, Groups, InputError, LineContact
+
+INPUTS = {
+    "radius": "10 mm",
+    "modulus": "2.1 MPa",
+    "load": "50 N/m",
+    "viscosity": "1 mPa*s",
+    "speed": "0.1 m/s",
+    "roughness": "1 um",
+    "alpha": 2.0,
+    "beta": 0.05,
+    "friction_coefficient": 0.8,
+}
+reproducible = settings(derandomize=True, deadline=None, max_examples=150)
+factor = st.floats(1e-6, 1e6)
+contacts = st.builds(
+    LineContact,
+    radius=st.floats(1e-6, 1.0),
+    modulus=st.floats(1e3, 1e12),
+    load=st.floats(1e-3, 1e7),
+    viscosity=st.floats(1e-6, 1e3),
+    speed=st.floats(1e-9, 1e2),
+    roughness=st.floats(1e-10, 1e-3),
+    alpha=st.floats(0.5, 5.0),
+    beta=st.floats(1e-4, 10.0),
+    friction_coefficient=st.floats(0.0, 2.0),
+)
+
+
+def contact(**changes):
+    return LineContact(**(INPUTS | changes))
+
+
+def assert_same_groups(one, other, rel=1e-13):
+    for name in ("speed", "load", "roughness"):
+        assert getattr(one, name) == pytest.approx(getattr(other, name), rel=rel)
+
+
+# --- the formulas, each by a second route ---
+
+
+@reproducible
+@given(contacts)
+def test_hertz_scales_satisfy_the_elliptic_load_and_the_parabola(c):
+    hertz = c.hertz
+    assert math.pi / 2 * hertz.pressure * hertz.half_width == pytest.approx(c.load, rel=1e-13)
+    assert hertz.half_width**2 / c.radius == pytest.approx(hertz.indentation, rel=1e-13)
+    assert hertz.pressure == pytest.approx(c.modulus * hertz.half_width / (2 * c.radius), rel=1e-13)
+
+
+@reproducible
+@given(contacts)
+def test_groups_follow_from_the_hertz_scales(c):
+    groups, hertz = c.groups, c.hertz
+    wedge = 6 * c.viscosity * c.speed * hertz.half_width / (hertz.indentation**2 * hertz.pressure)
+    assert groups.speed == pytest.approx(wedge, rel=1e-12)
+    assert groups.load == pytest.approx((hertz.pressure / (c.beta * c.modulus)) ** 2, rel=1e-12)
+    assert groups.relative_roughness == pytest.approx(c.roughness / (c.alpha * hertz.indentation), rel=1e-12)
+    assert groups.slope(c.beta) == pytest.approx(hertz.half_width / c.radius, rel=1e-12)
+    assert groups.hersey_number(c.beta) == pytest.approx(c.hersey_number, rel=1e-12)
+
+
+def test_groups_of_a_worked_example():
+    # By hand: 3 pi^2/4 = 7.4022, R E* = 21000 N/m; 50/(pi 0.0025 21000); 1e-6/(4 2 0.0025 0.01).
+    groups = contact().groups
+    assert groups.speed == pytest.approx(7.402203300817 * 2e-6 * 420, rel=1e-12)
+    assert groups.load == pytest.approx(0.303152272556, rel=1e-11)
+    assert groups.roughness == pytest.approx(0.005, rel=1e-13)
+    assert contact().hersey_number == pytest.approx(2e-6, rel=1e-13)
+
+
+def test_zero_speed_and_zero_roughness_are_ordinary():
+    groups = contact(speed=0, roughness="0 um").groups
+    assert (groups.speed, groups.roughness) == (0.0, 0.0)
+    assert groups.relative_roughness == 0.0
+
+
+# --- both ways ---
+
+
+@reproducible
+@given(
+    speed=st.just(0.0) | st.floats(1e-12, 1e6),
+    load=st.floats(1e-8, 10.0),
+    roughness=st.just(0.0) | st.floats(1e-12, 1e3),
+    radius=factor,
+    modulus=factor,
+    viscosity=factor,
+    alpha=st.floats(0.1, 10.0),
+    beta=st.floats(1e-4, 10.0),
+)
+def test_groups_survive_the_way_through_si(speed, load, roughness, **kept):
+    groups = Groups(speed, load, roughness)
+    back = LineContact.from_groups(groups, friction_coefficient=0.3, **kept)
+    assert_same_groups(back.groups, groups)
+    assert {name: getattr(back, name) for name in kept} == kept
+
+
+@reproducible
+@given(contacts)
+def test_a_contact_survives_the_way_through_groups(c):
+    names = ("radius", "modulus", "viscosity", "alpha", "beta", "friction_coefficient")
+    back = LineContact.from_groups(c.groups, **{name: getattr(c, name) for name in names})
+    assert dataclasses.astuple(back) == pytest.approx(dataclasses.astuple(c), rel=1e-13)
+
+
+def test_from_groups_takes_units_and_refuses_many_states():
+    kept = {"radius": "10 mm", "modulus": "2.1 MPa", "viscosity": "1 mPa*s", "alpha": 2.0, "beta": 0.05}
+    kept["friction_coefficient"] = 0.8
+    assert LineContact.from_groups(contact().groups, **kept).load == pytest.approx(50.0, rel=1e-13)
+    with pytest.raises(InputError, match=r"shape \(2,\)"):
+        LineContact.from_groups(Groups([1.0, 2.0], 0.1, 0.0), **kept)
+
+
+# --- unit neutrality ---
+
+
+@reproducible
+@given(contacts, factor, factor, factor)
+def test_other_base_units_leave_the_groups_unchanged(c, length, mass, time):
+    rescaled = c.replace(
+        radius=c.radius * length,
+        roughness=c.roughness * length,
+        speed=c.speed * length / time,
+        load=c.load * mass / time**2,
+        viscosity=c.viscosity * mass / (length * time),
+        modulus=c.modulus * mass / (length * time**2),
+    )
+    assert_same_groups(rescaled.groups, c.groups)
+    assert rescaled.hersey_number == pytest.approx(c.hersey_number, rel=1e-13)
+    assert rescaled.hertz.half_width == pytest.approx(c.hertz.half_width * length, rel=1e-12)
+
+
+@reproducible
+@given(contacts)
+def test_the_same_contact_in_other_units_has_the_same_groups(c):
+    in_text = c.replace(
+        radius=f"{c.radius * 1e3!r} mm",
+        modulus=f"{c.modulus * 1e-9!r} GPa",
+        load=f"{c.load * 1e-3!r} N/mm",
+        viscosity=f"{c.viscosity * 1e3!r} cP",
+        speed=f"{c.speed * 3.6!r} km/h",
+        roughness=f"{c.roughness * 1e6!r} µm",
+    )
+    assert_same_groups(in_text.groups, c.groups)
+
+
+# --- elasticity ---
+
+
+def test_modulus_follows_from_youngs_modulus_and_poisson_ratio():
+    given_pair = contact(modulus=None, youngs_modulus="1.5 MPa", poisson_ratio=0.5)
+    assert given_pair.modulus == pytest.approx(2e6, rel=1e-15)
+    assert contact(modulus=None, youngs_modulus=3e6, poisson_ratio=0).modulus == 3e6
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"youngs_modulus": 1e6, "poisson_ratio": 0.5}, "give either modulus, or"),
+        ({"poisson_ratio": 0.5}, "give either modulus, or"),
+        ({"modulus": None}, "modulus (which is E*) is missing"),
+        ({"modulus": None, "youngs_modulus": 1e6}, "poisson_ratio is missing beside youngs_modulus"),
+        ({"modulus": None, "poisson_ratio": 0.5}, "youngs_modulus is missing beside poisson_ratio"),
+        (
+            {"modulus": None, "youngs_modulus": 1e6, "poisson_ratio": 0.51},
+            "poisson_ratio = 0.51 must be between",
+        ),
+        (
+            {"modulus": None, "youngs_modulus": 1e6, "poisson_ratio": -0.1},
+            "poisson_ratio = -0.1 must be between",
+        ),
+        (
+            {"modulus": None, "youngs_modulus": 0.0, "poisson_ratio": 0.5},
+            "youngs_modulus = 0.0 must be positive",
+        ),
+    ],
+)
+def test_elasticity_is_given_once_and_possible(changes, words):
+    with pytest.raises(InputError) as caught:
+        contact(**changes)
+    assert words in str(caught.value)
+
+
+# --- impossible values ---
+
+
+@pytest.mark.parametrize("value", [-1.0, math.nan, math.inf, "lots", True, None, [1.0], "1 kg"])
+@pytest.mark.parametrize("name", [name for name in INPUTS if name != "modulus"])
+def test_an_impossible_value_is_refused_by_name(name, value):
+    with pytest.raises(InputError) as caught:
+        contact(**{name: value})
+    assert str(caught.value).startswith(f"{name} = {value!r} ")
+
+
+@pytest.mark.parametrize("name", INPUTS)
+def test_zero_is_refused_where_it_is_impossible(name):
+    if name in ("speed", "roughness", "friction_coefficient"):
+        assert getattr(contact(**{name: 0}), name) == 0.0
+    else:
+        with pytest.raises(InputError, match=f"^{name} = 0 must be positive"):
+            contact(**{name: 0})
+
+
+@pytest.mark.parametrize("changes", [{"beta": 1e-200}, {"load": 1e-300, "radius": 1e300}, {"radius": 1e-320}])
+def test_values_whose_groups_overflow_are_refused(changes):
+    with pytest.raises(InputError, match="leave the range of double precision"):
+        contact(**changes)
+
+
+# --- the objects ---
+
+
+def test_every_quantity_is_an_argument_of_the_contact_and_back():
+    assert set(inspect.signature(LineContact).parameters) == set(QUANTITIES)
+
+
+def test_replace_checks_and_keeps_the_rest():
+    c = contact()
+    assert c.replace(speed="2 m/s").speed == 2.0
+    assert c.replace(speed="2 m/s").replace(speed=c.speed) == c
+    assert c.replace(youngs_modulus="3 MPa", poisson_ratio=0.0).modulus == 3e6
+    with pytest.raises(InputError, match="^speed = '2 m' is a length"):
+        c.replace(speed="2 m")
+
+
+@pytest.mark.parametrize("frozen", [contact(), contact().groups, contact().hertz])
+def test_parameters_are_frozen_and_survive_copies(frozen):
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        setattr(frozen, dataclasses.fields(frozen)[0].name, 1.0)
+    for twin in (copy.deepcopy(frozen), pickle.loads(pickle.dumps(frozen))):
+        assert twin == frozen
+        assert hash(twin) == hash(frozen)
+
+
+# --- groups ---
+
+
+def test_groups_keep_read_only_copies_of_arrays():
+    speeds = np.array([1e-3, 1.0])
+    groups = Groups(speeds, 0.1, [[0.0], [1e-4]])
+    speeds[0] = 7.0
+    assert groups.speed[0] == 1e-3
+    assert groups.speed.dtype == groups.roughness.dtype == np.float64
+    assert groups.shape == (2, 2)
+    with pytest.raises(ValueError, match="read-only"):
+        groups.speed[0] = 7.0
+
+
+@pytest.mark.parametrize("value", [1, np.float32(0.5), np.array(0.5), np.int64(2)])
+def test_scalar_groups_are_plain_floats(value):
+    groups = Groups(value, value, value)
+    assert [type(groups.speed), type(groups.load), type(groups.roughness)] == [float] * 3
+    assert groups.shape == ()
+
+
+@pytest.mark.parametrize("name", ["speed", "load", "roughness"])
+@pytest.mark.parametrize(
+    "value",
+    [
+        -1e-300,
+        math.nan,
+        math.inf,
+        "1",
+        "1 m/s",
+        True,
+        None,
+        1j,
+        [1.0, -1.0],
+        [1.0, math.nan],
+        [[1.0], [1.0, 2.0]],
+        10**400,
+    ],
+)
+def test_impossible_groups_are_refused_by_name(name, value):
+    with pytest.raises(InputError) as caught:
+        Groups(**({"speed": 1.0, "load": 1.0, "roughness": 1.0} | {name: value}))
+    sentence = str(caught.value)
+    assert sentence.startswith(f"{name} ") and sentence.endswith(".") and "\n" not in sentence
+
+
+def test_only_the_load_must_not_be_zero():
+    assert Groups(0, 1e-8, 0) == Groups(-0.0, 1e-8, 0.0)
+    assert hash(Groups(0, 1e-8, 0)) == hash(Groups(-0.0, 1e-8, 0.0))
+    with pytest.raises(InputError, match="^load = 0 must be finite and positive"):
+        Groups(1.0, 0, 1.0)
+    with pytest.raises(InputError, match="^load has the value 0 and must be finite and positive"):
+        Groups(1.0, [1.0, 0], 1.0)
+
+
+def test_groups_whose_shapes_do_not_broadcast_are_refused():
+    with pytest.raises(InputError, match=r"speed \(2,\), load \(3,\)"):
+        Groups([1.0, 2.0], [1.0, 2.0, 3.0], 0.0)
+
+
+def test_groups_are_equal_by_value_and_shape():
+    assert Groups([1.0, 2.0], 0.1, 0.0) == Groups(np.array([1.0, 2.0]), 0.1, 0.0)
+    assert Groups([1.0, 2.0], 0.1, 0.0) != Groups([1.0, 3.0], 0.1, 0.0)
+    assert Groups([1.0], 0.1, 0.0) != Groups(1.0, 0.1, 0.0)
+    assert Groups(1.0, 0.1, 0.0) != "groups"
+
+
+def test_derived_quantities_of_groups_broadcast_without_warnings():
+    groups = Groups([0.0, 1e300], [[1e-300], [4.0]], 1e300)
+    assert groups.hersey_number(0.5).shape == (2, 2)
+    assert groups.slope(0.5)[1, 0] == 2.0
+    assert groups.relative_roughness[1, 0] == 2.5e299
+    assert groups.hersey_number(1e200)[1, 1] == math.inf
+
+
+@pytest.mark.parametrize("beta", [0.0, -1.0, math.nan, "1", None])
+def test_friction_scales_refuse_an_impossible_beta(beta):
+    groups = Groups(1.0, 1.0, 1.0)
+    for method in (groups.hersey_number, groups.slope):
+        with pytest.raises(InputError, match="^beta = "):
+            method(beta)

@@ -1,0 +1,211 @@
+"""What holds for the package as a whole: the direction of imports, silence at import, complete docstrings."""
+
+import ast
+import doctest
+import importlib
+import inspect
+import json
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+from numpydoc.docscrape import get_doc_object
+from numpydoc.validate import validate
+
+import stribeck
+
+PACKAGE = Path(stribeck.__file__).parent
+
+SOLVED = {"newton", "parameters", "solution", "solve"}
+
+# Who may import whom; `_types` is open to all, and a module that is not named here is refused.
+#
+# The solver never sees an asymptotic formula: one that fed the solver could no longer judge it. `newton` and
+# `continuation` know no physics, so that problems with known answers can test them.
+MAY_IMPORT = {
+    "_types": set(),
+    "units": set(),
+    "parameters": {"units"},
+    "case": {"parameters", "units"},
+    "mesh": set(),
+    "newton": set(),
+    "contact_laws": {"parameters"},
+    "asymptotics": {"parameters"},
+    "elasticity": {"mesh", "parameters"},
+    "reynolds": {"mesh", "parameters"},
+    "equations": {"contact_laws", "elasticity", "mesh", "parameters", "reynolds"},
+    "continuation": {"newton"},
+    "solution": {
+        "contact_laws",
+        "elasticity",
+        "equations",
+        "mesh",
+        "newton",
+        "parameters",
+        "reynolds",
+        "units",
+    },
+    "solve": {"contact_laws", "continuation", "elasticity", "equations", "mesh", "newton", "parameters"}
+    | {"reynolds", "solution"},
+    "regimes": SOLVED | {"asymptotics", "units"},
+    "curve": SOLVED | {"continuation", "plotting", "regimes", "store", "units"},
+    "store": SOLVED | {"curve", "regimes", "units"},
+    "plotting": SOLVED | {"curve", "regimes", "units"},
+}
+OPEN = {"__init__", "__main__", "app", "cli"}
+
+FILES = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts)
+HEAVY = {"cyclopts", "matplotlib", "netCDF4", "pandas", "pint", "pydantic", "rich", "xarray"}
+
+
+def top_of(path):
+    """Return the module or subpackage of stribeck that a file belongs to."""
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def imported_tops(path):
+    """Return the modules or subpackages of stribeck that a file imports, lazily or not."""
+    here = ["stribeck", *path.relative_to(PACKAGE).parent.parts]
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            targets = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = here[: len(here) - node.level + 1] if node.level else []
+            module = ".".join([*base, *([node.module] if node.module else [])])
+            targets = [f"{module}.{alias.name}" for alias in node.names]
+        else:
+            continue
+        for target in targets:
+            package, _, rest = target.partition(".")
+            if package == "stribeck":
+                top = rest.partition(".")[0]
+                is_module = (PACKAGE / f"{top}.py").exists() or (PACKAGE / top).is_dir()
+                yield top if top and is_module else "__init__"
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_a_module_imports_only_what_stands_before_it(path):
+    top = top_of(path)
+    if top in OPEN:
+        return
+    assert top in MAY_IMPORT, f"say in MAY_IMPORT what {top} may import"
+    assert set(imported_tops(path)) <= MAY_IMPORT[top] | {"_types", top}
+
+
+def test_the_walk_over_imports_sees_every_form(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys.modules[__name__], "PACKAGE", tmp_path)
+    (tmp_path / "sub").mkdir()
+    for name in ("a.py", "b.py", "c.py", "d.py", "e.py", "sub/f.py"):
+        (tmp_path / name).touch()
+    probe = tmp_path / "probe.py"
+    probe.write_text(
+        "import os, stribeck.a\nfrom . import b, NAME\nfrom .c import x\ndef f():\n from stribeck.d import y"
+    )
+    assert set(imported_tops(probe)) == {"a", "b", "c", "d", "__init__"}
+    inner = tmp_path / "sub" / "probe.py"
+    inner.write_text("from . import f\nfrom .f import x\nfrom ..e import y\nfrom .. import a")
+    assert set(imported_tops(inner)) == {"sub", "e", "a"}
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_a_module_runs_nothing_at_import(path):
+    allowed = (ast.Import, ast.ImportFrom, ast.Assign, ast.AnnAssign, ast.FunctionDef, ast.ClassDef)
+    for node in ast.parse(path.read_text()).body:
+        if isinstance(node, ast.If):
+            assert ast.unparse(node.test) in {"TYPE_CHECKING", "__name__ == '__main__'"}
+        elif isinstance(node, ast.Expr):
+            assert isinstance(node.value, ast.Constant), "only docstrings stand free in a module"
+        else:
+            assert isinstance(node, allowed)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_a_module_says_what_it_is_for(path):
+    assert ast.get_docstring(ast.parse(path.read_text()))
+
+
+def test_importing_the_package_is_silent_and_leaves_heavy_libraries_alone():
+    code = """
+        import json, sys, numpy
+        before = numpy.geterr()
+        import stribeck
+        assert numpy.geterr() == before
+        print(json.dumps(sorted({name.partition(".")[0] for name in sys.modules})))
+    """
+    run = subprocess.run(
+        [sys.executable, "-W", "error", "-c", textwrap.dedent(code)],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert run.stderr == ""
+    [line] = run.stdout.splitlines()
+    loaded = set(json.loads(line))
+    assert "stribeck" in loaded
+    assert loaded & HEAVY == set()
+
+
+# --- docstrings ---
+
+# Of numpydoc's checks: missing or mismatched parts, not matters of taste.
+DOCSTRING_FAULTS = {"GL08", "SS01", "SS03", "PR01", "PR02", "PR03", "PR04", "PR07", "RT01", "RT03", "YD01"}
+
+
+def public_objects():
+    """Yield the dotted names of the public functions and classes, and of what public classes define."""
+    for name in stribeck.__all__:
+        thing = getattr(stribeck, name)
+        if not (inspect.isclass(thing) or inspect.isfunction(thing)):
+            continue
+        home = f"{thing.__module__}.{thing.__qualname__}"
+        yield home
+        if inspect.isclass(thing):
+            for member, value in vars(thing).items():
+                described = inspect.isfunction(value) or isinstance(
+                    value, (classmethod, staticmethod, property)
+                )
+                if described and not member.startswith("_"):
+                    yield f"{home}.{member}"
+
+
+@pytest.mark.parametrize("name", list(public_objects()))
+def test_a_public_docstring_is_complete(name):
+    faults = [fault for fault in validate(name)["errors"] if fault[0] in DOCSTRING_FAULTS]
+    assert faults == []
+
+
+def public_raisers():
+    """Yield public functions, and classes, whose own body raises."""
+    for name in stribeck.__all__:
+        thing = getattr(stribeck, name)
+        if inspect.isclass(thing) and not issubclass(thing, BaseException):
+            bodies = [vars(thing)[part] for part in ("__init__", "__post_init__") if part in vars(thing)]
+        else:
+            bodies = [thing] if inspect.isfunction(thing) else []
+        bodies = [body for body in bodies if body.__code__.co_filename.startswith(str(PACKAGE))]
+        trees = [ast.parse(textwrap.dedent(inspect.getsource(body))) for body in bodies]
+        if any(isinstance(node, ast.Raise) for tree in trees for node in ast.walk(tree)):
+            yield name
+
+
+@pytest.mark.parametrize("name", list(public_raisers()))
+def test_what_raises_says_so(name):
+    assert get_doc_object(getattr(stribeck, name))["Raises"]
+
+
+def test_the_examples_in_docstrings_are_right():
+    names = [".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts) for path in FILES]
+    modules = [
+        importlib.import_module(name.removesuffix(".__init__")) for name in names if "__main__" not in name
+    ]
+    results = [doctest.testmod(module) for module in modules]
+    assert sum(result.failed for result in results) == 0
+    assert sum(result.attempted for result in results) > 0
+
+
+def test_the_public_names_exist_once_and_in_a_list():
+    assert isinstance(stribeck.__all__, list)
+    assert len(set(stribeck.__all__)) == len(stribeck.__all__)
+    assert all(hasattr(stribeck, name) for name in stribeck.__all__)

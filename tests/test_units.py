@@ -1,0 +1,142 @@
+"""Text with units becomes SI numbers, and everything else becomes a sentence."""
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from stribeck.units import DIMENSIONS, InputError, format_si, to_si
+
+ACCEPTED = [
+    ("0.1 m/s", "speed", 0.1),
+    ("360 km/h", "speed", 100.0),
+    ("10 mm.s^-1", "speed", 0.01),
+    ("1 m·s⁻¹", "speed", 1.0),
+    ("2.5e-3 m / s", "speed", 2.5e-3),
+    ("\N{MINUS SIGN}1 m/s", "speed", -1.0),
+    ("0.5 µm", "length", 0.5e-6),
+    ("0.5 μm", "length", 0.5e-6),
+    ("1um", "length", 1e-6),
+    (".5 in", "length", 0.0127),
+    ("3 micrometers", "length", 3e-6),
+    ("2.5 um", "length", 2.5e-6),
+    ("2.1 MPa", "pressure", 2.1e6),
+    ("3 N/mm²", "pressure", 3e6),
+    ("300 mbar", "pressure", 3e4),
+    ("10 mPa*s", "viscosity", 0.01),
+    ("10 mPa s", "viscosity", 0.01),
+    ("10 mPa·s", "viscosity", 0.01),
+    ("1 cP", "viscosity", 1e-3),
+    ("1 kg/(m*s)", "viscosity", 1.0),
+    ("50 N/m", "load", 50.0),
+    ("0.5 N/mm", "load", 500.0),
+    ("5 kg/s**2", "load", 5.0),
+]
+
+
+@pytest.mark.parametrize(("text", "dimension", "expected"), ACCEPTED)
+def test_text_with_a_unit_becomes_its_si_value(text, dimension, expected):
+    assert to_si(text, dimension, "x") == expected
+
+
+@pytest.mark.parametrize("value", [3, 3.0, np.float64(3), np.float32(3), np.int32(3), Fraction(3)])
+def test_a_bare_number_is_taken_as_si(value):
+    result = to_si(value, "load", "load")
+    assert result == 3.0
+    assert type(result) is float
+
+
+# What is refused, and the words that tell why or what to try.
+REFUSED = [
+    ("3 m", "speed", "is a length; a speed such as '0.1 m/s'"),
+    ("3 s", "speed", "is a time"),
+    ("1 cSt", "viscosity", "kinematic viscosity (multiply it by the density)"),
+    ("50 N", "load", "is a force (divide it by the length of the contact)"),
+    ("2 MPa", "viscosity", "is a pressure"),
+    ("20 degC", "length", "is a temperature"),
+    ("2 m**3", "length", "is of dimension length^3; a length"),
+    ("10 mPas", "viscosity", "'mPa*s'"),
+    ("10 MPas", "pressure", "'MPa*s'"),
+    ("1,5 MPa", "pressure", "decimal point"),
+    ("1,000 m", "length", "decimal point"),
+    ("0.1", "speed", "has no unit; add one, as in '0.1 m/s'"),
+    ("", "speed", "does not begin with a number"),
+    ("fast", "speed", "does not begin with a number"),
+    ("nan m/s", "speed", "does not begin with a number"),
+    ("1e999 m/s", "speed", "not a finite number"),
+    ("1e999999999 m/s", "speed", "not a number with a unit"),
+    ("9" * 5000 + " m/s", "speed", "not a number with a unit"),
+    ("2.1 Mpa", "pressure", "unknown unit 'Mpa' (upper and lower case differ)"),
+    ("1 lightyears_per_hour", "speed", "unknown unit"),
+    ("1 m)/s", "speed", "cannot be read"),
+    ("1 2 m", "length", "not a number with a unit"),
+    ("1_000 m", "length", "not a number with a unit"),
+    ("1 m + 1 m", "length", "not a number with a unit"),
+    ("1 m^9^9^9^9", "length", "not a number with a unit"),
+    ("1 m**(9**9)", "length", "not a number with a unit"),
+    ("1 " + "m*" * 1000 + "m", "length", "not a number with a unit"),
+    ("2.0", "number", "text where a number belongs"),
+    (True, "speed", "not a single real number"),
+    (np.True_, "speed", "not a single real number"),
+    (None, "speed", "not a single real number"),
+    ([1.0], "speed", "not a single real number"),
+    (np.array(1.0), "speed", "not a single real number"),
+    (1 + 1j, "speed", "not a single real number"),
+    (Decimal("1"), "speed", "not a single real number"),
+    (b"1 m/s", "speed", "not a single real number"),
+    (math.nan, "speed", "not a finite number"),
+    (-math.inf, "number", "not a finite number"),
+    (10**400, "speed", "not a finite number"),
+]
+
+
+@pytest.mark.parametrize(("value", "dimension", "reason"), REFUSED)
+def test_what_is_no_quantity_is_refused_in_one_sentence_with_name_value_and_reason(value, dimension, reason):
+    with pytest.raises(InputError) as caught:
+        to_si(value, dimension, "quantity")
+    sentence = str(caught.value)
+    assert sentence.startswith(f"quantity = {repr(value)[:50]}")
+    assert reason in sentence
+    assert sentence.endswith(".") and "\n" not in sentence and len(sentence) < 250
+
+
+@settings(derandomize=True, deadline=None, max_examples=300)
+@given(st.from_regex(r"[0-9]{1,2} ?[mPaNskgC*/^().0-9µ ]{0,12}", fullmatch=True))
+def test_no_text_whatever_gets_past_the_sentences(text):
+    try:
+        assert math.isfinite(to_si(text, "pressure", "x"))
+    except InputError as refusal:
+        assert "\n" not in str(refusal)
+
+
+@settings(derandomize=True, deadline=None, max_examples=200)
+@given(
+    value=st.floats(1e-11, 1e11),
+    sign=st.sampled_from([-1, 1]),
+    dimension=st.sampled_from([name for name, kind in DIMENSIONS.items() if kind.unit]),
+    digits=st.integers(2, 9),
+)
+def test_short_text_reads_back_within_its_digits(value, sign, dimension, digits):
+    text = format_si(sign * value, dimension, digits)
+    assert to_si(text, dimension, "x") == pytest.approx(sign * value, rel=0.501 * 10.0 ** (1 - digits))
+
+
+@pytest.mark.parametrize(
+    ("value", "dimension", "text"),
+    [
+        (3.1e-4, "speed", "310 µm/s"),
+        (9.996e-4, "length", "1 mm"),
+        (2.7e6, "pressure", "2.7 MPa"),
+        (0.05, "viscosity", "50 mPa*s"),
+        (30.0, "load", "30 N/m"),
+        (0.0, "speed", "0 m/s"),
+        (math.inf, "speed", "inf m/s"),
+        (0.12345, "number", "0.123"),
+    ],
+)
+def test_short_text_has_a_fitting_prefix(value, dimension, text):
+    assert format_si(value, dimension) == text
