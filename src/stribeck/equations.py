@@ -51,6 +51,13 @@ class Operators:
         return self.mesh.after_integral(self.mesh.weights[None, :])[0]
 
     @cached_property
+    def moment_of_gradient(self) -> Array:
+        """w x A on the panels in x: nodal pressure gradients -> first moment of the pressure."""
+        row = self.mesh.weights * self.mesh.nodes
+        row[-self.mesh.order :] = 0.0
+        return self.mesh.after_integral(row[None, :])[0]
+
+    @cached_property
     def parabola(self) -> Array:
         """The undeformed gap x**2/2 at the nodes."""
         return 0.5 * self.mesh.nodes**2

@@ -30,7 +30,11 @@ RIGID_SPEED = 1e3
 RIGID_ROUGHNESS = 30.0
 """Relative roughness above which the rigid contact does."""
 
-ORDER = 8
+SATURATED_LOAD = 0.5
+"""Load group above which the contact pressure nears its largest value: the path then comes down in speed, as loading
+at low speed would cross the sudden hand-over from asperities to film."""
+
+ORDER = 10
 MESH_TOLERANCE = 1e-3
 NEWTON_TOLERANCE = 1e-8
 
@@ -69,6 +73,11 @@ def unloaded(groups: Groups, log_factor: float) -> Groups:
     return Groups(groups.speed * factor**2, groups.load / factor, groups.roughness)
 
 
+def faster(groups: Groups, log_factor: float) -> Groups:
+    """Return the groups at the speed times ``exp(2 log_factor)``, all else being held."""
+    return Groups(groups.speed * math.exp(2 * log_factor), groups.load, groups.roughness)
+
+
 def rigid_guess(groups: Groups) -> RigidGuess:
     r"""Return the rigid parabola whose film and contact carry the load.
 
@@ -102,15 +111,17 @@ def cold_start(groups: Groups) -> Path[State]:
         Of states on meshes that resolve them to about 1e-3; its outcome tells whether the end was reached.
     """
     kappa = float(groups.relative_roughness)
-    factors = [0.0]
+    by_speed = groups.speed > 0 and groups.load > SATURATED_LOAD and kappa < RIGID_ROUGHNESS
+    along = faster if by_speed else unloaded
+    factors = []
     if groups.speed > 0:
         factors.append(0.5 * math.log(RIGID_SPEED / groups.speed))
-    if kappa > 0:
+    if kappa > 0 and not by_speed:
         factors.append(math.log(RIGID_ROUGHNESS / kappa))
-    top = max(0.0, min(factors[1:]))
+    top = max(0.0, min(factors))
 
     def correct(log_factor: float, history: Sequence[tuple[float, State]]) -> State | None:
-        here = unloaded(groups, log_factor)
+        here = along(groups, log_factor)
         guess: Guess = rigid_guess(here) if top - log_factor < 0.7 and len(history) < 3 else extrapolate(history, log_factor)
         try:
             mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)

@@ -167,8 +167,8 @@ def mesh_for(guess: Guess, groups: Groups, law: ContactLaw, order: int, toleranc
     Parameters
     ----------
     guess : Guess
-        The fields to resolve: contact and fluid pressure, relative to their mean over the contact, to ``tolerance``, and
-        the logarithm of the gap to ten times that.
+        The fields to resolve: contact and fluid pressure to ``tolerance``, relative to what a Hertz pressure has at that
+        distance from its edge, the square root of the half-width of the panel; the logarithm of the gap to ten times that.
     groups : Groups
         Scalar groups.
     law : ContactLaw
@@ -195,7 +195,8 @@ def mesh_for(guess: Guess, groups: Groups, law: ContactLaw, order: int, toleranc
         else:
             slopes = float(groups.speed) * (gap - guess.flux_gap) / gap**3
             fluid = slopes * np.repeat(half_widths, x.shape[1])
-        pressures = width * np.stack([law.pressure(gap), fluid])
+        edge_scale = np.sqrt(np.minimum(1.0, half_widths / width))
+        pressures = width / np.repeat(edge_scale, x.shape[1]) * np.stack([law.pressure(gap), fluid])
         return np.concatenate([pressures, 0.1 * found[:1]]).reshape(3, *x.shape)
 
     return adapt(fields, scale, 16 * scale, order, tolerance)

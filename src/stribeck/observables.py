@@ -1,0 +1,187 @@
+r"""What a user reads off a state: load shares, films, friction, and their derivatives with respect to the unknowns.
+
+Friction is kept for beta = 1 and in the two definitions of :data:`DEFINITIONS`; it is proportional to beta.  With
+:math:`C = 2 \bar F_N^{1/2} \lambda / (3\pi)`, lengths in Hertz units,
+
+.. math::
+
+    \mu_f^\mathrm{paper} &= C \int \frac1h \left[1 - 3\frac{h-h^*}{h} + 6\frac{h-h^*}{h^2}\frac{x^2}{2}\right] dx \\
+    \mu_f^\mathrm{balanced} &= C \int \frac1h \left[1 + 3\frac{h-h^*}{h}\right] dx
+
+The first is Eq. (friction) of [BP], the force on the cylinder with the contact pressure left unprojected.  The second is the
+force on the substrate, equal and opposite to the whole force on the cylinder; see theory.md, section 6.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ._types import Array
+from .equations import LOAD, Equations
+from .mesh import Mesh, reference
+from . import reynolds
+
+NAMES = (
+    "contact_load_share",
+    "fluid_load_share",
+    "central_gap",
+    "minimum_gap",
+    "flux_gap",
+    "offset",
+    "viscous_paper",
+    "viscous_balanced",
+)
+"""The observables, in the order of every array of them here."""
+
+TAIL_HALVINGS = 12
+"""Panels on each side of infinity on which the friction integrands, which hold a logarithm there, are summed."""
+
+
+@dataclass(frozen=True)
+class Observables:
+    """The observables of one state; gaps in u_Hz, friction for beta = 1."""
+
+    contact_load_share: float
+    fluid_load_share: float
+    central_gap: float
+    minimum_gap: float
+    minimum_position: float
+    flux_gap: float
+    offset: float
+    viscous_paper: float
+    viscous_balanced: float
+
+    def values(self) -> Array:
+        """Return the observables in the order of :data:`NAMES`."""
+        return np.array([getattr(self, name) for name in NAMES])
+
+
+def friction_scale(load: float, speed: float) -> float:
+    """Return C = 2 F**(1/2) lambda/(3 pi), the factor of both friction integrals for beta = 1."""
+    return 2 * math.sqrt(load) * speed / (3 * math.pi)
+
+
+def friction_integrands(x: Array, h: Array, h_star: float) -> Array:
+    """Return the integrands of the two definitions of friction, shape (2, len(x))."""
+    u = 1 / h
+    paper = u * (3 * h_star * u - 2 + 3 * x * x * u * (1 - h_star * u))
+    balanced = u * (4 - 3 * h_star * u)
+    return np.stack([paper, balanced])
+
+
+def observables(equations: Equations, y: Array, load: float) -> Observables:
+    """Return the observables of the unknowns ``y`` of ``equations`` at the load group ``load``."""
+    mesh = equations.operators.mesh
+    h, z0, h_star = y[:-2], float(y[-2]), float(y[-1])
+    p_c, p_f = equations.pressures(y)
+    position, minimum = least_gap(mesh, h)
+    paper = balanced = 0.0
+    if equations.speed > 0:
+        paper, balanced = friction_scale(load, equations.speed) * friction_integrals(mesh, h, h_star)
+    return Observables(
+        contact_load_share=float(mesh.weights @ p_c / LOAD),
+        fluid_load_share=float(mesh.weights @ p_f / LOAD),
+        central_gap=float(gap_at(mesh, h, np.zeros(1))[0]),
+        minimum_gap=minimum,
+        minimum_position=position,
+        flux_gap=h_star,
+        offset=z0,
+        viscous_paper=float(paper),
+        viscous_balanced=float(balanced),
+    )
+
+
+def gap_at(mesh: Mesh, h: Array, x: Array) -> Array:
+    """Return the gap at ``x`` from the panels' polynomials: of its logarithm where it is positive, else of itself."""
+    far = 1 + mesh.nodes**2
+    if h.min() > 0:
+        return np.asarray(np.exp(mesh.interpolate(np.log(h / far), x)) * (1 + x * x))
+    return mesh.interpolate(h / far, x) * (1 + x * x)
+
+
+def least_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
+    """Return position and value of the least gap, that of the panels' polynomials around the least node."""
+    order, edges = mesh.order, mesh.edges
+    panel = min(int(np.argmin(h)) // order, mesh.panels - 2)
+    first, last = max(0, panel - 1), min(mesh.panels - 2, panel + 1)
+    low, high = edges[first], edges[last + 1]
+    for _ in range(5):
+        x = np.linspace(low, high, 33)
+        gap = gap_at(mesh, h, x)
+        i = int(np.clip(np.argmin(gap), 1, 31))
+        low, high = x[i - 1], x[i + 1]
+    return float(x[np.argmin(gap)]), float(gap.min())
+
+
+def friction_integrals(mesh: Mesh, h: Array, h_star: float) -> Array:
+    """Return the integrals of :func:`friction_integrands` over the whole line.
+
+    Beyond the panels in ``x`` the gap is ``x**2/2 - ln|x|/2`` plus a smooth function of ``1/x``: that is interpolated, and
+    the integrand summed on panels that halve towards infinity.
+    """
+    order = mesh.order
+    inner = friction_integrands(mesh.nodes[:-order], h[:-order], h_star) @ mesh.weights[:-order]
+    t, weights = _towards_infinity(order)
+    t = t * mesh.half_widths[-1]
+    x_tail = mesh.nodes[-order:]
+    smooth = h[-order:] - 0.5 * x_tail**2 + 0.5 * np.log(np.abs(x_tail))
+    x = 1 / t
+    h_tail = reference(order).interpolation(t / mesh.half_widths[-1]) @ smooth + 0.5 * x**2 - 0.5 * np.log(np.abs(x))
+    tail = friction_integrands(x, h_tail, h_star) @ (weights * mesh.half_widths[-1] * x**2)
+    return np.asarray(inner + tail)
+
+
+def _towards_infinity(order: int) -> tuple[Array, Array]:
+    """Nodes and weights on [-1, 1] on panels that halve towards zero."""
+    edges = np.append(0.0, 2.0 ** -np.arange(TAIL_HALVINGS, -1, -1.0))
+    half = 0.5 * np.diff(edges)
+    rule = reference(order)
+    t = (0.5 * (edges[1:] + edges[:-1])[:, None] + half[:, None] * rule.nodes).ravel()
+    weights = np.outer(half, rule.weights).ravel()
+    return np.concatenate([-t, t]), np.concatenate([weights, weights])
+
+
+def gradients(equations: Equations, y: Array, load: float) -> Array:
+    """Return the derivatives of the observables with respect to the unknowns, shape (len(NAMES), len(y)).
+
+    The position of the least gap is held, to first order without effect.  The projected pressure enters as its moment,
+    ``3 int x**2 g dx = -6 int x A g dx`` without the panel through infinity: the two forms respond alike to true changes of
+    the gap, but this one is insensitive to what the quadrature of g leaves.
+    """
+    op, mesh, speed = equations.operators, equations.operators.mesh, equations.speed
+    n = mesh.size
+    h, h_star = y[:-2], y[-1]
+    rows = np.zeros((len(NAMES), n + 2))
+    rows[0, :n] = mesh.weights * equations.law.slope(h, equations.law.pressure(h)) / LOAD
+    if speed > 0:
+        rows[1, :n] = speed * op.load_of_gradient * reynolds.gap_derivative(h, h_star) / LOAD
+        rows[1, -1] = speed * (op.load_of_gradient @ reynolds.flux_derivative(h)) / LOAD
+        u = 1 / h
+        weights = friction_scale(load, speed) * mesh.weights * u * u
+        moment = -6 * friction_scale(load, speed) * op.moment_of_gradient
+        rows[6, :n] = weights * (2 - 6 * h_star * u) + moment * reynolds.gap_derivative(h, h_star)
+        rows[6, -1] = 3 * weights.sum() + moment @ reynolds.flux_derivative(h)
+        rows[7, :n] = weights * (6 * h_star * u - 4)
+        rows[7, -1] = -3 * weights.sum()
+    rows[2] = _at_zero(mesh, h)
+    rows[3, int(np.argmin(h))] = 1.0
+    rows[4, -1] = 1.0
+    rows[5, -2] = 1.0
+    return rows
+
+
+def _at_zero(mesh: Mesh, h: Array) -> Array:
+    """Derivative of the central gap with respect to the unknowns."""
+    panel, s = mesh.locate(np.zeros(1))
+    nodes = slice(int(panel[0]) * mesh.order, (int(panel[0]) + 1) * mesh.order)
+    row = np.zeros(mesh.size + 2)
+    basis = reference(mesh.order).interpolation(s)[0]
+    if h.min() > 0:
+        central = gap_at(mesh, h, np.zeros(1))[0]
+        row[nodes] = central * basis / h[nodes]
+    else:
+        row[nodes] = basis / (1 + mesh.nodes[nodes] ** 2)
+    return row
