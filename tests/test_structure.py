@@ -18,7 +18,9 @@ import stribeck
 
 PACKAGE = Path(stribeck.__file__).parent
 
-SOLVED = {"newton", "parameters", "solution", "solve"}
+EQUATIONS = {"contact_laws", "elasticity", "equations", "mesh", "parameters", "reynolds"}
+ALGORITHMS = {"continuation", "newton"}
+RESULTS = {"newton", "parameters", "solution", "solve", "units"}
 
 # Who may import whom; `_types` is open to all, and a module that is not named here is refused.
 #
@@ -31,28 +33,22 @@ MAY_IMPORT = {
     "case": {"parameters", "units"},
     "mesh": set(),
     "newton": set(),
+    "continuation": {"newton"},
     "contact_laws": {"parameters"},
     "asymptotics": {"parameters"},
     "elasticity": {"mesh", "parameters"},
     "reynolds": {"mesh", "parameters"},
     "equations": {"contact_laws", "elasticity", "mesh", "parameters", "reynolds"},
-    "continuation": {"newton"},
-    "solution": {
-        "contact_laws",
-        "elasticity",
-        "equations",
-        "mesh",
-        "newton",
-        "parameters",
-        "reynolds",
-        "units",
-    },
-    "solve": {"contact_laws", "continuation", "elasticity", "equations", "mesh", "newton", "parameters"}
-    | {"reynolds", "solution"},
-    "regimes": SOLVED | {"asymptotics", "units"},
-    "curve": SOLVED | {"continuation", "plotting", "regimes", "store", "units"},
-    "store": SOLVED | {"curve", "regimes", "units"},
-    "plotting": SOLVED | {"curve", "regimes", "units"},
+    "states": EQUATIONS | ALGORITHMS,
+    "start": EQUATIONS | ALGORITHMS | {"states"},
+    "observables": EQUATIONS | {"states"},
+    "estimate": EQUATIONS | {"observables", "states"},
+    "solution": {"mesh", "newton", "observables", "parameters", "units"},
+    "solve": EQUATIONS | ALGORITHMS | {"estimate", "observables", "solution", "start", "states", "units"},
+    "regimes": RESULTS | {"asymptotics"},
+    "curve": RESULTS | {"continuation", "plotting", "regimes", "store"},
+    "store": RESULTS | {"curve", "regimes"},
+    "plotting": RESULTS | {"curve", "regimes"},
 }
 OPEN = {"__init__", "__main__", "app", "cli"}
 

@@ -31,6 +31,8 @@ FORWARD = 1.1
 def log_moments(points: Array, order: int) -> Array:
     r"""Return :math:`\int_{-1}^{1} P_n(t) \ln|s - t| dt` for ``n < order`` at ``points`` s, shape (len(points), order)."""
     s = np.asarray(points, dtype=float)
+    # At the ends the singularities of the Q_n cancel; one unit in the last place away they do so in floating point.
+    s = np.where(np.abs(s) == 1.0, s * (1 - 2.0**-53), s)
     q = np.empty((order + 1, len(s)))
     q[0] = 0.5 * np.log(np.abs((s + 1) / (s - 1)))
     q[1] = s * q[0] - 1

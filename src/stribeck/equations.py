@@ -133,6 +133,25 @@ class Equations:
         matrix[n + 1, n + 1] = self.flux_scale * (op.mesh.weights @ g_flux)
         return matrix
 
+    def parameter_derivative(self, y: Array, name: str) -> Array:
+        """Return the derivative of the residual with respect to the logarithm of one group, shape (N + 2,).
+
+        Parameters
+        ----------
+        y : ndarray, shape (N + 2,)
+            Unknowns.
+        name : {"speed", "load", "roughness"}
+            The group; the other two are held.
+        """
+        op = self.operators
+        h = y[:-2]
+        if name == "speed":
+            g = self.speed * reynolds.gradient(h, y[-1])
+            return np.concatenate([-(op.deflection_of_gradient @ g), [op.load_of_gradient @ g, 0.0]])
+        derivative = self.law.load_derivative if name == "load" else self.law.roughness_derivative
+        change = derivative(h, self.law.pressure(h))
+        return np.concatenate([-(op.deflection @ change), [op.mesh.weights @ change, 0.0]])
+
     def admissible(self, y: Array, dy: Array) -> float:
         """Return the longest part of a Newton step that keeps the gap positive and the contact pressure sane.
 

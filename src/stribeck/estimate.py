@@ -8,6 +8,7 @@ change of the unknowns that removing the defect would bring, to first order:
 
 Rounding is treated alike: the residual is known to a few units in the last place of its largest term, with signs that
 nobody knows.  Both changes become errors of the observables by their gradients.
+To them comes what the polynomials on the panels miss between the nodes.
 """
 
 from __future__ import annotations
@@ -21,9 +22,9 @@ from scipy.linalg import lu_solve
 from . import reynolds
 from ._types import Array
 from .elasticity import deflection_operator
-from .equations import LOAD
-from .mesh import Mesh
-from .observables import NAMES, Observables, gradients
+from .equations import LOAD, Equations
+from .mesh import Mesh, legendre_tail
+from .observables import NAMES, Observables, gap_at, gradients
 from .states import State
 
 EXTRA_NODES = 4
@@ -32,11 +33,17 @@ EXTRA_NODES = 4
 SAFETY = 2.0
 """Factor from the estimated to the stated error."""
 
+TAIL_PART = 0.3
+"""Part of a panel's last Legendre coefficients by which its polynomial misses the function, at the rates met here."""
+
 ROUNDING_UNITS = 4.0
 """Units in the last place by which the residual may be wrong; checked against meshes that should agree."""
 
 OFFSET_FLOOR = 1e-3
 """The error of the offset is relative to it where it exceeds this; it crosses zero."""
+
+GAP_FLOOR = 1e-3
+"""At speed zero the gap crosses zero too: its error is relative to it where it exceeds this part of kappa."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,8 +95,20 @@ class ErrorEstimate:
         return float((self.rounding / self.scales).max())
 
 
-def changes(state: State, fine: FineOperators) -> Array:
-    """Return the changes of the unknowns that defect and rounding may cause, shape (1 + 2, len(y)), the defect first."""
+@dataclass(frozen=True)
+class Changes:
+    """What may be wrong: with the unknowns, by defect and by rounding, and with the gap between the nodes.
+
+    ``unknowns`` has shape (1 + 2, len(y)), the defect first; ``interpolation`` holds the absolute errors of the
+    interpolated central and least gap.
+    """
+
+    unknowns: Array = field(repr=False)
+    interpolation: tuple[float, float]
+
+
+def changes(state: State, fine: FineOperators) -> Changes:
+    """Return what defect and rounding may change in a state."""
     equations, op, y = state.equations, state.equations.operators, state.y
     mesh = fine.mesh
     h_star = y[-1]
@@ -99,6 +118,7 @@ def changes(state: State, fine: FineOperators) -> Array:
     pressure = equations.law.pressure(gap) + equations.speed * mesh.integral_from_infinity(slopes)
     deflection = fine.deflection @ pressure
     residual = np.empty((3, len(y)))
+    deflection, at_zero = deflection[:-1], deflection[-1]
     residual[0, :-2] = y[:-2] - y[-2] - op.parabola - deflection
     residual[0, -2] = mesh.weights @ pressure - LOAD
     residual[0, -1] = equations.flux_scale * (mesh.weights @ slopes)
@@ -107,7 +127,12 @@ def changes(state: State, fine: FineOperators) -> Array:
     noise[-1] = size * equations.flux_scale * (mesh.weights @ np.abs(slopes))
     residual[1:] = _signs(len(y)) * noise
     assert state.root.factors is not None
-    return np.asarray(-lu_solve(state.root.factors, residual.T, check_finite=False).T)
+    unknowns = -lu_solve(state.root.factors, residual.T, check_finite=False).T
+    central = float(gap_at(state.mesh, state.gap, np.zeros(1))[0])
+    missing = abs(y[-2] + at_zero - central) - float(noise[:-2].min())
+    least = int(np.argmin(state.gap)) // state.mesh.order
+    tail = float(legendre_tail(state.shape(state.mesh), state.mesh.order)[least])
+    return Changes(unknowns, (max(0.0, missing), TAIL_PART * tail * float(state.gap.min())))
 
 
 def _signs(size: int) -> Array:
@@ -116,12 +141,19 @@ def _signs(size: int) -> Array:
     return np.sign(np.stack([np.sin(2.399963 * k * k), np.cos(1.7 * k * k)]))
 
 
-def error_estimate(state: State, values: Observables, changes: Array, load: float, y: Array | None = None) -> ErrorEstimate:
-    """Return the estimated errors of the observables ``values`` of a state from the possible ``changes`` of its unknowns."""
-    y = state.y if y is None else y
-    effects = np.abs(gradients(state.equations, y, load) @ changes.T)
+def error_estimate(
+    state: State, values: Observables, changes: Changes, load: float, equations: Equations, y: Array
+) -> ErrorEstimate:
+    """Return the estimated errors of the observables ``values`` from the possible ``changes`` of the unknowns.
+
+    ``equations`` and ``y`` are those of the state, or of the same state at another load.
+    """
+    effects = np.abs(gradients(equations, y, load) @ changes.unknowns.T)
+    effects[[2, 3], 0] += changes.interpolation
     scales = np.abs(values.values())
     scales[:2] = 1.0
     scales[NAMES.index("offset")] = max(scales[NAMES.index("offset")], OFFSET_FLOOR)
+    decay = equations.law.decay if equations.speed == 0 else 0.0
+    scales[2:4] = np.maximum(scales[2:4], GAP_FLOOR * decay)
     scales[scales == 0] = 1.0
     return ErrorEstimate(SAFETY * effects[:, 0], effects[:, 1:].max(axis=1), scales)

@@ -497,7 +497,9 @@ def _group(name: str, value: Any, positive: bool) -> float | Array:
     if raw.dtype.kind not in "iuf":
         raise InputError(f"{name} = {show(value)} is not a real number; {advice}.")
     with np.errstate(over="ignore"):
-        array = np.array(raw, dtype=np.float64)
+        array = (
+            np.asarray(raw, dtype=np.float64) + 0.0
+        )  # a copy, and no negative zero, which would hash apart
     allowed: Callable[[Array], Any] = (lambda x: x > 0) if positive else (lambda x: x >= 0)
     wrong = ~(np.isfinite(array) & allowed(array))
     if np.any(wrong):
@@ -507,7 +509,6 @@ def _group(name: str, value: Any, positive: bool) -> float | Array:
             else f"{name} has the value {array[wrong].flat[0]:g} and"
         )
         raise InputError(f"{first} must be finite and {'positive' if positive else 'zero or positive'}.")
-    array = array + 0.0  # a negative zero would make equal groups hash differently
     if array.ndim == 0:
         return float(array)
     array.setflags(write=False)

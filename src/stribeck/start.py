@@ -20,7 +20,6 @@ from .contact_laws import contact_law
 from .continuation import Path, march
 from .equations import LOAD, Operators
 from .mesh import Mesh, MeshTooLarge
-from .newton import Outcome
 from .parameters import Groups
 from .states import Guess, State, extrapolate, mesh_for, solve_state
 
@@ -131,8 +130,3 @@ def cold_start(groups: Groups) -> Path[State]:
 
     path = march(correct, top, 0.0, first_step=0.3, max_step=2.5, min_step=1e-3, order=3)
     return path
-
-
-def last_state(path: Path[State]) -> State | None:
-    """Return the last state of a path, or None where it has none."""
-    return path.states[-1] if path.states and path.outcome is Outcome.CONVERGED else None

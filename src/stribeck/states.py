@@ -7,7 +7,7 @@ gap over ``1 + x**2``, which is smooth and bounded on the whole line, and the fl
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -224,9 +224,3 @@ def solve_state(groups: Groups, operators: Operators, guess: Guess, tolerance: f
     )
     error = float(np.abs(y[:-2] / root.x[:-2] - 1).max())
     return State(groups, equations, root.x, root, error)
-
-
-def remeshed(state: State, order: int, tolerance: float) -> Callable[[], Operators]:
-    """Return the maker of the operators on the mesh that resolves ``state`` to ``tolerance``."""
-    mesh = mesh_for(state, state.groups, state.equations.law, order, tolerance)
-    return lambda: Operators(mesh)

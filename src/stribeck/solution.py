@@ -1,0 +1,341 @@
+"""What a solve returns: fields and observables of one state, with outcome, error estimate and what to know about them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from ._types import Array
+from .mesh import Mesh
+from .newton import Outcome
+from .observables import NAMES, Observables, gap_at
+from .parameters import Groups, LineContact, quantity
+from .units import InputError, show
+
+Definition = Literal["paper", "balanced"]
+
+DEFINITIONS: tuple[Definition, ...] = ("paper", "balanced")
+"""Definitions of the viscous friction: Eq. (friction) of [BP], and the force on the substrate (theory.md, section 6)."""
+
+LAW_LEAST_GAP = 0.4
+"""Gap over h_rms down to which the exponential law follows Persson's full relation; facts in theory.md, section 8."""
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Friction coefficient and its two parts [-]; ``error`` is the estimated absolute error of the total."""
+
+    contact: float
+    viscous: float
+    total: float
+    error: float
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Fields along the contact: position, gap, contact, fluid and total pressure, in the units that ``unit`` names."""
+
+    x: Array
+    gap: Array
+    contact_pressure: Array
+    fluid_pressure: Array
+    unit: Literal["Hertz", "SI"] = "Hertz"
+
+    @property
+    def pressure(self) -> Array:
+        """Total pressure, contact and fluid."""
+        return self.contact_pressure + self.fluid_pressure
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    r"""One state of the contact.
+
+    Lengths along the contact are in Hertz half-widths a, gaps in indentations u_Hz, pressures in p_Hz.
+
+    Attributes
+    ----------
+    groups : Groups
+        The state that was solved.
+    contact : LineContact or None
+        The contact in SI units it came from.
+    outcome : Outcome
+        How the solve ended; its value is a sentence.
+    notes : tuple of str
+        What to know before using the numbers, one sentence each: where the contact law leaves its range, where rounding
+        bounds the error.
+    rtol : float
+        The relative tolerance asked for.
+    nodes : int
+        Unknown gaps in the final discretisation.
+    newton_steps : int
+        Steps of its Newton iteration.
+
+    Notes
+    -----
+    Observables (``contact_load_share`` ... ``offset``) are attributes too, see the table of symbols in theory.md.
+    """
+
+    groups: Groups
+    contact: LineContact | None
+    outcome: Outcome
+    notes: tuple[str, ...]
+    rtol: float
+    law: str
+    observables: Observables
+    relative_errors: Array = field(repr=False)
+    rounding_floor: float
+    mesh: Mesh = field(repr=False)
+    nodal_gap: Array = field(repr=False)
+    nodal_contact_pressure: Array = field(repr=False)
+    nodal_fluid_pressure: Array = field(repr=False)
+    newton_steps: int = 0
+    load_residual: float = 0.0
+
+    @property
+    def nodes(self) -> int:
+        """Unknown gaps in the final discretisation."""
+        return self.mesh.size
+
+    @cached_property
+    def error_estimate(self) -> float:
+        """Largest estimated relative error of the observables; load shares count absolutely."""
+        return float(np.nanmax(self.relative_errors))
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """Estimated relative error of each observable; absolute for the load shares."""
+        return dict(zip(NAMES, map(float, self.relative_errors), strict=True))
+
+    @cached_property
+    def _ordered(self) -> Array:
+        return np.argsort(self.mesh.nodes)
+
+    @property
+    def x(self) -> Array:
+        """Positions of the nodes, ascending [a]; the outermost lie thousands of half-widths away."""
+        return np.asarray(self.mesh.nodes[self._ordered])
+
+    @property
+    def gap(self) -> Array:
+        """Gap at :attr:`x` [u_Hz]."""
+        return np.asarray(self.nodal_gap[self._ordered])
+
+    @property
+    def contact_pressure(self) -> Array:
+        """Contact pressure at :attr:`x` [p_Hz]."""
+        return np.asarray(self.nodal_contact_pressure[self._ordered])
+
+    @property
+    def fluid_pressure(self) -> Array:
+        """Fluid pressure at :attr:`x` [p_Hz]; negative behind the contact, as the fluid does not cavitate."""
+        return np.asarray(self.nodal_fluid_pressure[self._ordered])
+
+    @property
+    def pressure(self) -> Array:
+        """Total pressure at :attr:`x` [p_Hz]."""
+        return self.contact_pressure + self.fluid_pressure
+
+    @property
+    def contact_load_share(self) -> float:
+        """Part of the load that asperities carry [-]."""
+        return self.observables.contact_load_share
+
+    @property
+    def fluid_load_share(self) -> float:
+        """Part of the load that the fluid carries [-]."""
+        return self.observables.fluid_load_share
+
+    @property
+    def central_gap(self) -> float:
+        """Gap at x = 0 [u_Hz]."""
+        return self.observables.central_gap
+
+    @property
+    def minimum_gap(self) -> float:
+        """Least gap [u_Hz]."""
+        return self.observables.minimum_gap
+
+    @property
+    def minimum_position(self) -> float:
+        """Where the gap is least [a]."""
+        return self.observables.minimum_position
+
+    @property
+    def flux_gap(self) -> float:
+        """Flux gap h*: the fluid flux over U/2 [u_Hz]; nan where the gap is negative (see :attr:`notes`)."""
+        return self.observables.flux_gap
+
+    @property
+    def offset(self) -> float:
+        """Height z0 of the apex of the undeformed cylinder over the undeformed surface, in the gauge ln(abs(x-y)/a) [u_Hz]."""
+        return self.observables.offset
+
+    @property
+    def lambda_ratio(self) -> float:
+        """Central gap over h_rms/alpha [-], the paper's Lambda; infinite for smooth surfaces."""
+        kappa = float(self.groups.relative_roughness)
+        return self.central_gap / kappa if kappa > 0 else float("inf")
+
+    @property
+    def hersey_number(self) -> float:
+        """Hersey number eta U/F_N [-]: of the contact, or for beta = 1 where only groups are known."""
+        return float(self.groups.hersey_number() if self.contact is None else self.contact.hersey_number)
+
+    def friction(
+        self, mu0: float | None = None, beta: float | None = None, definition: Definition = "paper"
+    ) -> Friction:
+        r"""Return the friction coefficient.
+
+        .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
+
+        Parameters
+        ----------
+        mu0 : float, optional
+            Friction coefficient of the dry contact [-], >= 0; that of the contact, or 1, if omitted.
+        beta : float, optional
+            Coefficient of the contact law [-], > 0; that of the contact, or 1, if omitted.
+        definition : {"paper", "balanced"}
+            Viscous part as the paper prints it, or as the force on the substrate, which balances all forces on the
+            cylinder.  They agree where asperities carry nothing; in boundary lubrication the printed one is larger.
+
+        Returns
+        -------
+        Friction
+            Contact, viscous and total friction [-].
+
+        Raises
+        ------
+        InputError
+            If an argument is outside its range.
+
+        Notes
+        -----
+        Source: [BP] Eq. (friction); theory.md, section 6, for the balanced form.
+        """
+        mu0, beta = coefficients(self.contact, mu0, beta)
+        name = f"viscous_{check_definition(definition)}"
+        contact = mu0 * self.contact_load_share
+        viscous = beta * float(getattr(self.observables, name))
+        share, relative = self.relative_errors[0], self.relative_errors[NAMES.index(name)]
+        return Friction(contact, viscous, contact + viscous, float(mu0 * share + abs(viscous) * relative))
+
+    def profile(self, x: Array) -> Profile:
+        """Return the fields at any positions from the polynomial on each panel.
+
+        Parameters
+        ----------
+        x : array_like, shape (n,)
+            Finite positions along the contact [a].
+
+        Returns
+        -------
+        Profile
+            In Hertz units.
+
+        Raises
+        ------
+        InputError
+            If a position is not finite.
+        """
+        points = np.atleast_1d(np.asarray(x, dtype=float))
+        if points.ndim != 1 or not np.isfinite(points).all():
+            raise InputError(f"x = {show(x)}; positions must be finite numbers in one dimension.")
+        pressures = np.stack([self.nodal_contact_pressure, self.nodal_fluid_pressure])
+        contact, fluid = self.mesh.interpolate(pressures, points)
+        return Profile(points, gap_at(self.mesh, self.nodal_gap, points), contact, fluid)
+
+    def to_si(self, x: Array | None = None) -> Profile:
+        """Return the fields in SI units: positions and gaps in m, pressures in Pa.
+
+        Parameters
+        ----------
+        x : array_like, shape (n,), optional
+            Positions along the contact [m]; the nodes by default.
+
+        Raises
+        ------
+        InputError
+            If the solution comes from groups alone, which do not fix the scales.
+        """
+        if self.contact is None:
+            raise InputError("to_si needs the Hertz scales of a contact; solve a LineContact instead of Groups.")
+        scales = self.contact.hertz
+        if x is None:
+            p = Profile(self.x, self.gap, self.contact_pressure, self.fluid_pressure)
+        else:
+            p = self.profile(np.asarray(x, dtype=float) / scales.half_width)
+        return Profile(
+            p.x * scales.half_width,
+            p.gap * scales.indentation,
+            p.contact_pressure * scales.pressure,
+            p.fluid_pressure * scales.pressure,
+            "SI",
+        )
+
+    def to_dict(self, mu0: float | None = None, beta: float | None = None) -> dict[str, object]:
+        """Return inputs, observables, both frictions, errors and outcome under their names, ready for JSON."""
+        names = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "minimum_position", "flux_gap")
+        result: dict[str, object] = {
+            "speed": float(self.groups.speed),
+            "load": float(self.groups.load),
+            "roughness": float(self.groups.roughness),
+            "contact_law": self.law,
+        }
+        result |= {name: getattr(self, name) for name in (*names, "offset", "hersey_number", "lambda_ratio")}
+        for definition in DEFINITIONS:
+            f = self.friction(mu0, beta, definition)
+            parts = {"contact": f.contact, "viscous": f.viscous, "total": f.total, "error": f.error}
+            result[f"friction_{definition}"] = parts
+        result["errors"] = self.errors
+        result |= {"error_estimate": self.error_estimate, "rtol": self.rtol, "nodes": self.nodes}
+        result |= {"outcome": self.outcome.name, "message": self.outcome.value, "notes": list(self.notes)}
+        return result
+
+
+def coefficients(contact: LineContact | None, mu0: float | None, beta: float | None) -> tuple[float, float]:
+    """Return mu0 and beta as given, else those of the contact, else 1."""
+    if mu0 is None:
+        mu0 = 1.0 if contact is None else contact.friction_coefficient
+    if beta is None:
+        beta = 1.0 if contact is None else contact.beta
+    return quantity("friction_coefficient", mu0), quantity("beta", beta)
+
+
+def check_definition(definition: str) -> Definition:
+    """Return ``definition`` if it names one of :data:`DEFINITIONS`."""
+    for known in DEFINITIONS:
+        if definition == known:
+            return known
+    raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.")
+
+
+def law_notes(groups: Groups, contact: LineContact | None, values: Observables) -> tuple[str, ...]:
+    """Return the sentences that say where the exponential contact law leaves its range."""
+    if groups.roughness == 0:
+        return ()
+    notes = []
+    if groups.load >= 1:
+        notes.append(
+            f"The load group is {float(groups.load):.3g}, not below 1: the exponential contact law is outside its range, "
+            "as asperities cannot carry this load at a positive gap."
+        )
+    alpha = 1.0 if contact is None else contact.alpha
+    ratio = values.central_gap / float(groups.relative_roughness) / alpha
+    measured = "h_rms" if contact is not None else "h_rms/alpha"
+    if ratio < 0:
+        notes.append("The gap is negative: the exponential contact law is outside its range.")
+    elif ratio < LAW_LEAST_GAP:
+        notes.append(
+            f"The central gap is {ratio:.2g} {measured}: the exponential contact law is outside its range, "
+            f"which ends at about {LAW_LEAST_GAP} h_rms; the true law stiffens."
+        )
+    elif ratio < 1:
+        notes.append(
+            f"The central gap is {ratio:.2g} {measured}: the exponential contact law is at the end of its range "
+            f"({LAW_LEAST_GAP} to 2 h_rms)."
+        )
+    return tuple(notes)

@@ -1,0 +1,281 @@
+"""From groups to a converged solution: start, refinement until the tolerance holds, and what to say where it does not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from . import hertz, reynolds
+from ._types import Array
+from .contact_laws import ExponentialLaw
+from .equations import Equations, Operators
+from .estimate import ErrorEstimate, FineOperators, changes, error_estimate
+from .mesh import Mesh, MeshTooLarge
+from .newton import Outcome
+from .observables import NAMES, Observables, observables
+from .parameters import Groups, LineContact
+from .solution import Solution, law_notes
+from .start import cold_start
+from .states import Guess, State, mesh_for, solve_state
+from .threads import one_blas_thread
+from .units import InputError, show
+
+RTOL_RANGE = (1e-11, 1e-2)
+"""Tolerances that may be asked for; below, double precision reaches no state."""
+
+QUASISTATIC_LOAD = 0.01
+"""At speed zero the load only shifts the gap: heavier contacts are solved at this load, where all gaps are positive."""
+
+MAX_REFINEMENTS = 8
+
+
+class SolveError(RuntimeError):
+    """A solve that did not reach its tolerance; ``solution`` is what it reached, or None, ``outcome`` says why."""
+
+    def __init__(self, outcome: Outcome, solution: Solution | None, message: str) -> None:
+        super().__init__(message)
+        self.outcome = outcome
+        self.solution = solution
+
+
+def order_for(rtol: float) -> int:
+    """Return the nodes per panel that reach ``rtol`` with the fewest unknowns."""
+    return 10 if rtol >= 1e-7 else 14
+
+
+def mesh_tolerance_for(rtol: float) -> float:
+    """Return the Legendre tail to start refinement with; it reaches ``rtol`` at once in most states."""
+    return min(1e-3, 30.0 * rtol**0.8)
+
+
+@one_blas_thread
+def solve(
+    problem: Groups | LineContact, *, rtol: float = 1e-6, on_failure: Literal["raise", "return"] = "raise"
+) -> Solution:
+    r"""Solve one state of the lubricated rough contact, from cold.
+
+    The coupled equations are [BP] Appendix A: contact pressure exponential in the gap, Reynolds' equation, plane-strain
+    elasticity, fixed load.
+
+    Parameters
+    ----------
+    problem : Groups or LineContact
+        The state.  Speed zero (quasistatic), roughness zero (smooth) and both (Hertz, closed form) are ordinary inputs.
+    rtol : float
+        Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2.
+    on_failure : {"raise", "return"}
+        What to do where the tolerance was not reached: raise :class:`SolveError` or return what there is, with its outcome.
+
+    Returns
+    -------
+    Solution
+        Fields, observables, outcome and error estimate.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range.
+    SolveError
+        If the solve failed, unless ``on_failure="return"`` and there is a state to return.
+
+    Notes
+    -----
+    Tested cold over speed 1e-12 to 1e6 and 0, load 1e-8 to 10, relative roughness 1e-6 to 1e3 and 0
+    (``tests/test_solve_random.py``).  The error estimate covers the true error in at least 95 % of random states.
+
+    Source: [BP] Appendix A; theory.md Eqs. (1)-(5); numerics.md for the scheme.
+    """
+    groups, contact = as_groups(problem)
+    check_rtol(rtol)
+    if on_failure not in ("raise", "return"):
+        raise InputError(f"on_failure = {show(on_failure)}; it must be 'raise' or 'return'.")
+    if groups.speed == 0 and groups.roughness == 0:
+        return hertz_solution(groups, contact, rtol)
+    path = cold_start(solvable(groups))
+    if not path.outcome.ok:
+        raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
+    state, estimate, outcome = converge(path.states[-1], groups, rtol)
+    return finish(state, estimate, outcome, groups, contact, rtol, on_failure)
+
+
+def as_groups(problem: Groups | LineContact) -> tuple[Groups, LineContact | None]:
+    """Return the scalar groups of a problem and its contact, if it has one."""
+    if isinstance(problem, LineContact):
+        return problem.groups, problem
+    if not isinstance(problem, Groups):
+        raise InputError(f"problem = {show(problem)}; it must be a LineContact or Groups(speed, load, roughness).")
+    if problem.shape != ():
+        raise InputError(f"groups have shape {problem.shape}; solve takes one state, use stribeck_curve for many.")
+    return problem, None
+
+
+def check_rtol(rtol: float) -> None:
+    """Refuse a tolerance that is no number or out of range."""
+    low, high = RTOL_RANGE
+    if isinstance(rtol, bool) or not isinstance(rtol, int | float) or not low <= rtol <= high:
+        raise InputError(
+            f"rtol = {show(rtol)}; it must be a number from {low:g}, what double precision can give, to {high:g}."
+        )
+
+
+def describe(groups: Groups) -> str:
+    """Return the groups in words, for messages."""
+    return f"speed {float(groups.speed):.6g}, load {float(groups.load):.6g}, roughness {float(groups.roughness):.6g}"
+
+
+def solvable(groups: Groups) -> Groups:
+    """Return the groups that are solved for: at speed zero the load is lowered until all gaps are positive."""
+    if groups.speed > 0 or groups.load <= QUASISTATIC_LOAD:
+        return groups
+    return Groups(0.0, QUASISTATIC_LOAD, QUASISTATIC_LOAD * groups.relative_roughness)
+
+
+def quasistatic_shift(groups: Groups) -> float:
+    r"""Return by how much the gap of ``groups`` lies above that of :func:`solvable`.
+
+    .. math:: \Delta h = -\frac{\kappa}{2} \ln \frac{\bar F_N}{\bar F_N'}
+
+    Exact at speed zero, where the solution depends on kappa alone but for this shift of gap and offset.
+    """
+    return -0.5 * float(groups.relative_roughness) * math.log(float(groups.load / solvable(groups).load))
+
+
+def converge(
+    state: State, groups: Groups, rtol: float, tolerance: float | None = None
+) -> tuple[State, ErrorEstimate | None, Outcome]:
+    """Refine a state until its estimated error is at most ``rtol``; return it with the estimate and how that ended."""
+    tolerance = mesh_tolerance_for(rtol) if tolerance is None else tolerance
+    order = order_for(rtol)
+    guess: Guess = state
+    best: tuple[State, ErrorEstimate] | None = None
+    outcome = Outcome.REFINEMENT_LIMIT
+    for _ in range(MAX_REFINEMENTS):
+        try:
+            mesh = mesh_for(guess, state.groups, state.equations.law, order, tolerance)
+        except MeshTooLarge:
+            break
+        found = solve_state(state.groups, Operators(mesh), guess, newton_tolerance(rtol))
+        if not found.outcome.ok:
+            outcome = found.outcome
+            break
+        estimate = estimate_of(found, groups, FineOperators(mesh))
+        if best is None or estimate.total < best[1].total:
+            best = found, estimate
+        if estimate.total <= rtol:
+            return found, estimate, Outcome.CONVERGED
+        if estimate.floor > 0.7 * rtol:
+            return *best, Outcome.ROUNDING
+        tolerance *= min(0.3, max(1e-3, 0.3 * rtol / estimate.total))
+        guess = found
+    return (*best, outcome) if best is not None else (state, None, outcome)
+
+
+def newton_tolerance(rtol: float) -> float:
+    """Return the size of the last Newton step: what is left after it is far below ``rtol``."""
+    return max(1e-11, 1e-3 * rtol)
+
+
+def shifted(state: State, groups: Groups) -> tuple[Equations, Array]:
+    """Return equations and unknowns of ``groups`` from a state of :func:`solvable`; the same where nothing is shifted."""
+    if solvable(groups) is groups:
+        return state.equations, state.y
+    shift = quasistatic_shift(groups)
+    law = ExponentialLaw(float(groups.load), float(groups.relative_roughness))
+    y = state.y.copy()
+    y[:-1] += shift
+    gap = y[:-2]
+    y[-1] = reynolds.flux_gap(gap, state.mesh.weights) if gap.min() > 0 else math.nan
+    return replace(state.equations, law=law), y
+
+
+def estimate_of(state: State, groups: Groups, fine: FineOperators) -> ErrorEstimate:
+    """Return the estimated errors of the observables of ``groups`` from the state solved for it."""
+    equations, y = shifted(state, groups)
+    values = observables(equations, y, float(groups.load))
+    return error_estimate(state, values, changes(state, fine), float(groups.load), equations, y)
+
+
+def finish(
+    state: State,
+    estimate: ErrorEstimate | None,
+    outcome: Outcome,
+    groups: Groups,
+    contact: LineContact | None,
+    rtol: float,
+    on_failure: str,
+) -> Solution:
+    """Return the solution of a refined state, or raise what its outcome asks for."""
+    solution = None if estimate is None else solution_of(state, estimate, outcome, groups, contact, rtol)
+    if outcome.ok and solution is not None:
+        return solution
+    if on_failure == "return" and solution is not None:
+        return solution
+    reached = "" if solution is None else f" Reached: {solution.error_estimate:.1e}, asked: {rtol:.1e}."
+    raise SolveError(outcome, solution, f"{describe(groups)}: {outcome.value}{reached}")
+
+
+def solution_of(
+    state: State, estimate: ErrorEstimate, outcome: Outcome, groups: Groups, contact: LineContact | None, rtol: float
+) -> Solution:
+    """Return the solution that a refined state is."""
+    equations, y = shifted(state, groups)
+    values = observables(equations, y, float(groups.load))
+    contact_pressure, fluid_pressure = equations.pressures(y)
+    notes = list(law_notes(groups, contact, values))
+    if math.isnan(values.flux_gap):
+        notes.append("The gap is negative, so that no fluid passes: there is no flux gap.")
+    if estimate.floor > 0.1 * rtol:
+        notes.append(f"Rounding in double precision bounds the relative error of this state at {estimate.floor:.1e}.")
+    return Solution(
+        groups=groups,
+        contact=contact,
+        outcome=outcome,
+        notes=tuple(notes),
+        rtol=rtol,
+        law=equations.law.name,
+        observables=values,
+        relative_errors=estimate.relative,
+        rounding_floor=estimate.floor,
+        mesh=state.mesh,
+        nodal_gap=y[:-2],
+        nodal_contact_pressure=contact_pressure,
+        nodal_fluid_pressure=fluid_pressure,
+        newton_steps=state.root.steps,
+    )
+
+
+def hertz_solution(groups: Groups, contact: LineContact | None, rtol: float) -> Solution:
+    """Return the closed form of the dry, smooth contact on a mesh graded towards its edges."""
+    towards_edge = 1 - 0.5 ** np.arange(1, 45)
+    beyond_edge = 1 + 0.5 ** np.arange(1, 45)
+    positive = np.concatenate([towards_edge, [1.0], beyond_edge[::-1], [2.0, 4.0, 8.0, 16.0]])
+    mesh = Mesh(np.concatenate([-positive[::-1], [0.0], positive]), order_for(rtol))
+    values = Observables(
+        contact_load_share=1.0,
+        fluid_load_share=0.0,
+        central_gap=0.0,
+        minimum_gap=0.0,
+        minimum_position=0.0,
+        flux_gap=0.0,
+        offset=hertz.OFFSET,
+        viscous_paper=0.0,
+        viscous_balanced=0.0,
+    )
+    return Solution(
+        groups=groups,
+        contact=contact,
+        outcome=Outcome.CONVERGED,
+        notes=("Speed and roughness are zero: the dry contact of Hertz, in closed form.",),
+        rtol=rtol,
+        law="dry contact",
+        observables=values,
+        relative_errors=np.full(len(NAMES), float(np.finfo(float).eps)),
+        rounding_floor=0.0,
+        mesh=mesh,
+        nodal_gap=hertz.gap(mesh.nodes),
+        nodal_contact_pressure=hertz.pressure(mesh.nodes),
+        nodal_fluid_pressure=np.zeros(mesh.size),
+    )
