@@ -283,6 +283,7 @@ def test_scalar_groups_are_plain_floats(value):
         [1.0, math.nan],
         [[1.0], [1.0, 2.0]],
         10**400,
+        np.longdouble("1e4000"),
     ],
 )
 def test_impossible_groups_are_refused_by_name(name, value):

@@ -185,7 +185,7 @@ def _model() -> Any:
     text = Annotated[str, Field(strict=True, description="text in quotes")]
 
     class Table(BaseModel):
-        model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+        model_config = ConfigDict(extra="forbid")
 
     class Contact(Table):
         radius: number

@@ -13,7 +13,7 @@ To them comes what the polynomials on the panels miss between the nodes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,7 +24,7 @@ from ._types import Array
 from .elasticity import deflection_operator
 from .equations import LOAD, Equations
 from .mesh import Mesh, legendre_tail
-from .observables import NAMES, Observables, gap_at, gradients
+from .observables import NAMES, gradients
 from .states import State
 
 EXTRA_NODES = 4
@@ -32,9 +32,6 @@ EXTRA_NODES = 4
 
 SAFETY = 2.0
 """Factor from the estimated to the stated error."""
-
-TAIL_PART = 0.3
-"""Part of a panel's last Legendre coefficients by which its polynomial misses the function, at the rates met here."""
 
 ROUNDING_UNITS = 4.0
 """Units in the last place by which the residual may be wrong; checked against meshes that should agree."""
@@ -59,40 +56,48 @@ class FineOperators:
 
     @cached_property
     def deflection(self) -> Array:
-        """Fine nodal pressures -> deflection at the coarse nodes and, in the last row, at zero."""
-        return deflection_operator(self.mesh, np.append(self.coarse.nodes, 0.0))
+        """Fine nodal pressures -> deflection at the coarse nodes."""
+        return deflection_operator(self.mesh, self.coarse.nodes)
 
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """Estimated errors of the observables.
+    """Estimated errors of the observables, each an array of shape (len(NAMES),); nan for one that does not exist.
 
     Attributes
     ----------
-    discretisation, rounding : ndarray, shape (len(NAMES),)
-        Absolute errors left by mesh and iteration, and by rounding.
-    scales : ndarray, shape (len(NAMES),)
+    discretisation, interpolation, rounding : ndarray
+        Absolute errors left by mesh and iteration at the nodes, by the polynomials between them, and by rounding.
+    scales : ndarray
         What each is relative to: one for the load shares, the observable itself for the others.
     """
 
     discretisation: Array = field(repr=False)
+    interpolation: Array = field(repr=False)
     rounding: Array = field(repr=False)
     scales: Array = field(repr=False)
+
+    def at_most(self, difference: Array) -> ErrorEstimate:
+        """Return the estimate with no discretisation error above twice the ``difference`` from a clearly coarser mesh.
+
+        Where the film is thin the pressure between the nodes, not the state, makes the defect large.
+        """
+        return replace(self, discretisation=np.fmin(self.discretisation, SAFETY * difference))
 
     @property
     def relative(self) -> Array:
         """Relative errors of the observables in the order of :data:`observables.NAMES`."""
-        return np.asarray((self.discretisation + self.rounding) / self.scales)
+        return np.asarray((self.discretisation + self.interpolation + self.rounding) / self.scales)
 
     @property
     def total(self) -> float:
         """The largest relative error."""
-        return float(self.relative.max())
+        return float(np.nanmax(self.relative))
 
     @property
     def floor(self) -> float:
         """The part of it that rounding causes and no mesh removes."""
-        return float((self.rounding / self.scales).max())
+        return float(np.nanmax(self.rounding / self.scales))
 
 
 @dataclass(frozen=True)
@@ -104,7 +109,7 @@ class Changes:
     """
 
     unknowns: Array = field(repr=False)
-    interpolation: tuple[float, float]
+    interpolation: Array = field(repr=False)
 
 
 def changes(state: State, fine: FineOperators) -> Changes:
@@ -112,13 +117,11 @@ def changes(state: State, fine: FineOperators) -> Changes:
     equations, op, y = state.equations, state.equations.operators, state.y
     mesh = fine.mesh
     h_star = y[-1]
-    far = 1 + mesh.nodes**2
-    gap = np.exp(state.mesh.to_order(state.shape(state.mesh), mesh.order)) * far
+    gap = np.exp(state.mesh.to_order(state.shape, mesh.order)) * mesh.far
     slopes = reynolds.gradient(gap, h_star)
     pressure = equations.law.pressure(gap) + equations.speed * mesh.integral_from_infinity(slopes)
     deflection = fine.deflection @ pressure
     residual = np.empty((3, len(y)))
-    deflection, at_zero = deflection[:-1], deflection[-1]
     residual[0, :-2] = y[:-2] - y[-2] - op.parabola - deflection
     residual[0, -2] = mesh.weights @ pressure - LOAD
     residual[0, -1] = equations.flux_scale * (mesh.weights @ slopes)
@@ -128,11 +131,12 @@ def changes(state: State, fine: FineOperators) -> Changes:
     residual[1:] = _signs(len(y)) * noise
     assert state.root.factors is not None
     unknowns = -lu_solve(state.root.factors, residual.T, check_finite=False).T
-    central = float(gap_at(state.mesh, state.gap, np.zeros(1))[0])
-    missing = abs(y[-2] + at_zero - central) - float(noise[:-2].min())
+    tails = legendre_tail(state.shape, state.mesh.order)
+    central = int(state.mesh.locate(np.zeros(1))[0][0])
     least = int(np.argmin(state.gap)) // state.mesh.order
-    tail = float(legendre_tail(state.shape(state.mesh), state.mesh.order)[least])
-    return Changes(unknowns, (max(0.0, missing), TAIL_PART * tail * float(state.gap.min())))
+    missed = tails[central], tails[max(0, least - 1) : least + 2].max()
+    gaps = state.gap[central * state.mesh.order], state.gap.min()
+    return Changes(unknowns, SAFETY * np.multiply(missed, gaps))
 
 
 def _signs(size: int) -> Array:
@@ -141,19 +145,18 @@ def _signs(size: int) -> Array:
     return np.sign(np.stack([np.sin(2.399963 * k * k), np.cos(1.7 * k * k)]))
 
 
-def error_estimate(
-    state: State, values: Observables, changes: Changes, load: float, equations: Equations, y: Array
-) -> ErrorEstimate:
-    """Return the estimated errors of the observables ``values`` from the possible ``changes`` of the unknowns.
+def error_estimate(state: State, values: Array, changes: Changes) -> ErrorEstimate:
+    """Return the estimated errors of the observables ``values`` of a state from the possible ``changes`` of it.
 
-    ``equations`` and ``y`` are those of the state, or of the same state at another load.
+    At speed zero the values may be those of the same state under another load, see ``solve.quasistatic_shift``.
     """
-    effects = np.abs(gradients(equations, y, load) @ changes.unknowns.T)
-    effects[[2, 3], 0] += changes.interpolation
-    scales = np.abs(values.values())
+    effects = np.abs(gradients(state.equations, state.y, float(state.groups.load)) @ changes.unknowns.T)
+    interpolation = np.zeros(len(NAMES))
+    interpolation[[NAMES.index("central_gap"), NAMES.index("minimum_gap")]] = changes.interpolation
+    scales = np.abs(values)
     scales[:2] = 1.0
     scales[NAMES.index("offset")] = max(scales[NAMES.index("offset")], OFFSET_FLOOR)
-    decay = equations.law.decay if equations.speed == 0 else 0.0
+    decay = state.equations.law.decay if state.equations.speed == 0 else 0.0
     scales[2:4] = np.maximum(scales[2:4], GAP_FLOOR * decay)
     scales[scales == 0] = 1.0
-    return ErrorEstimate(SAFETY * effects[:, 0], effects[:, 1:].max(axis=1), scales)
+    return ErrorEstimate(SAFETY * effects[:, 0], interpolation, effects[:, 1:].max(axis=1), scales)

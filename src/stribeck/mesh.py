@@ -68,6 +68,8 @@ class Mesh:
         Edges of the panels in ``x``, ascending, from ``-X`` to ``X`` [half-width of the Hertz contact].
     order : int
         Nodes on each panel, even (so that no node lies at infinity).
+    scale : float
+        Length on which the fields vary in the middle; gaps are interpolated over ``scale**2 + x**2``.
 
     Notes
     -----
@@ -76,6 +78,7 @@ class Mesh:
 
     edges: Array
     order: int
+    scale: float = 1.0
 
     @property
     def panels(self) -> int:
@@ -108,6 +111,11 @@ class Mesh:
         x = self.local.copy()
         x[-1] = 1.0 / x[-1]
         return x.ravel()
+
+    @cached_property
+    def far(self) -> Array:
+        """``scale**2 + x**2`` at the nodes: how gaps grow."""
+        return self.scale**2 + self.nodes**2
 
     @cached_property
     def stretch(self) -> Array:
@@ -205,7 +213,7 @@ class Mesh:
 
     def refined(self, order: int) -> Mesh:
         """Return the same panels with ``order`` nodes each."""
-        return Mesh(self.edges, order)
+        return Mesh(self.edges, order, self.scale)
 
     def to_order(self, values: Array, order: int) -> Array:
         """Return nodal values on :meth:`refined` from nodal ``values`` of this mesh."""
@@ -215,12 +223,12 @@ class Mesh:
 
 
 def legendre_tail(values: Array, order: int) -> Array:
-    """Return the size of the last two Legendre coefficients on each panel: what a panel leaves unresolved.
+    """Return the largest of the last three Legendre coefficients on each panel: what a panel leaves unresolved.
 
     ``values`` has shape (..., panels * order); the result has shape (..., panels).
     """
     nodal = values.reshape(*values.shape[:-1], -1, order)
-    last = nodal @ reference(order).to_legendre[-2:].T
+    last = nodal @ reference(order).to_legendre[-3:].T
     return np.asarray(np.abs(last).max(axis=-1))
 
 
@@ -288,4 +296,4 @@ def adapt(
         middle = 0.5 * (left + right)
         open_panels = np.concatenate([np.column_stack([left, middle]), np.column_stack([middle, right])])
     panels = np.concatenate(done)
-    return Mesh(np.append(np.sort(panels[:, 0]), panels[:, 1].max()), order)
+    return Mesh(np.append(np.sort(panels[:, 0]), panels[:, 1].max()), order, scale)

@@ -95,11 +95,11 @@ def observables(equations: Equations, y: Array, load: float) -> Observables:
 
 
 def gap_at(mesh: Mesh, h: Array, x: Array) -> Array:
-    """Return the gap at ``x`` from the panels' polynomials: of its logarithm where it is positive, else of itself."""
-    far = 1 + mesh.nodes**2
+    """Return the gap at ``x`` from the panels' polynomials of its logarithm, or of itself where it touches zero."""
+    far = mesh.scale**2 + x * x
     if h.min() > 0:
-        return np.asarray(np.exp(mesh.interpolate(np.log(h / far), x)) * (1 + x * x))
-    return mesh.interpolate(h / far, x) * (1 + x * x)
+        return np.asarray(np.exp(mesh.interpolate(np.log(h / mesh.far), x)) * far)
+    return mesh.interpolate(h / mesh.far, x) * far
 
 
 def least_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
@@ -179,9 +179,5 @@ def _at_zero(mesh: Mesh, h: Array) -> Array:
     nodes = slice(int(panel[0]) * mesh.order, (int(panel[0]) + 1) * mesh.order)
     row = np.zeros(mesh.size + 2)
     basis = reference(mesh.order).interpolation(s)[0]
-    if h.min() > 0:
-        central = gap_at(mesh, h, np.zeros(1))[0]
-        row[nodes] = central * basis / h[nodes]
-    else:
-        row[nodes] = basis / (1 + mesh.nodes[nodes] ** 2)
+    row[nodes] = gap_at(mesh, h, np.zeros(1))[0] * basis / h[nodes]
     return row

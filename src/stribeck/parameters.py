@@ -10,7 +10,6 @@ Source: [Bertin & Pouliquen] Eq. (Hertz_scales) and the definitions of :math:`\l
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -489,26 +488,23 @@ def check_modulus_choice(modulus: Any, youngs_modulus: Any, poisson_ratio: Any) 
 
 
 def _group(name: str, value: Any, positive: bool) -> float | Array:
-    advice = "groups are bare numbers or arrays of them; for values with units use LineContact"
     try:
         raw = np.asarray(value)
-    except ValueError:
+    except ValueError:  # ragged lists
         raw = np.asarray(None)
     if raw.dtype.kind not in "iuf":
-        raise InputError(f"{name} = {show(value)} is not a real number; {advice}.")
-    with np.errstate(over="ignore"):
-        array = (
-            np.asarray(raw, dtype=np.float64) + 0.0
-        )  # a copy, and no negative zero, which would hash apart
-    allowed: Callable[[Array], Any] = (lambda x: x > 0) if positive else (lambda x: x >= 0)
-    wrong = ~(np.isfinite(array) & allowed(array))
-    if np.any(wrong):
-        first = (
-            f"{name} = {show(value)}"
-            if array.ndim == 0
-            else f"{name} has the value {array[wrong].flat[0]:g} and"
+        raise InputError(
+            f"{name} = {show(value)} is not a real number; groups are bare numbers or arrays of them, "
+            "for values with units use LineContact."
         )
-        raise InputError(f"{first} must be finite and {'positive' if positive else 'zero or positive'}.")
+    with np.errstate(over="ignore"):
+        # The sum makes a copy, and no negative zero, which would hash apart from zero.
+        array = np.asarray(raw, dtype=np.float64) + 0.0
+    wrong = ~np.isfinite(array) | (array <= 0 if positive else array < 0)
+    if np.any(wrong):
+        received = f"= {show(value)}" if array.ndim == 0 else f"has the value {array[wrong].flat[0]:g} and"
+        allowed = "positive" if positive else "zero or positive"
+        raise InputError(f"{name} {received} must be finite and {allowed}.")
     if array.ndim == 0:
         return float(array)
     array.setflags(write=False)

@@ -90,10 +90,10 @@ class Solution:
     rounding_floor: float
     mesh: Mesh = field(repr=False)
     nodal_gap: Array = field(repr=False)
+    gap_shift: float = field(repr=False)
     nodal_contact_pressure: Array = field(repr=False)
     nodal_fluid_pressure: Array = field(repr=False)
     newton_steps: int = 0
-    load_residual: float = 0.0
 
     @property
     def nodes(self) -> int:
@@ -122,7 +122,7 @@ class Solution:
     @property
     def gap(self) -> Array:
         """Gap at :attr:`x` [u_Hz]."""
-        return np.asarray(self.nodal_gap[self._ordered])
+        return np.asarray(self.nodal_gap[self._ordered]) + self.gap_shift
 
     @property
     def contact_pressure(self) -> Array:
@@ -246,7 +246,7 @@ class Solution:
             raise InputError(f"x = {show(x)}; positions must be finite numbers in one dimension.")
         pressures = np.stack([self.nodal_contact_pressure, self.nodal_fluid_pressure])
         contact, fluid = self.mesh.interpolate(pressures, points)
-        return Profile(points, gap_at(self.mesh, self.nodal_gap, points), contact, fluid)
+        return Profile(points, gap_at(self.mesh, self.nodal_gap, points) + self.gap_shift, contact, fluid)
 
     def to_si(self, x: Array | None = None) -> Profile:
         """Return the fields in SI units: positions and gaps in m, pressures in Pa.

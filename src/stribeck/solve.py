@@ -10,8 +10,7 @@ import numpy as np
 
 from . import hertz, reynolds
 from ._types import Array
-from .contact_laws import ExponentialLaw
-from .equations import Equations, Operators
+from .equations import Operators
 from .estimate import ErrorEstimate, FineOperators, changes, error_estimate
 from .mesh import Mesh, MeshTooLarge
 from .newton import Outcome
@@ -30,6 +29,12 @@ QUASISTATIC_LOAD = 0.01
 """At speed zero the load only shifts the gap: heavier contacts are solved at this load, where all gaps are positive."""
 
 MAX_REFINEMENTS = 8
+
+LEAST_ESTIMATE = 1e-2
+"""Part of the tolerance below which no error is stated: estimates so small were not checked."""
+
+CLEARLY_FINER = 1.1
+"""Ratio of mesh sizes from which the difference of two solutions measures the error of the coarser."""
 
 
 class SolveError(RuntimeError):
@@ -140,6 +145,8 @@ def quasistatic_shift(groups: Groups) -> float:
 
     Exact at speed zero, where the solution depends on kappa alone but for this shift of gap and offset.
     """
+    if solvable(groups) is groups:
+        return 0.0
     return -0.5 * float(groups.relative_roughness) * math.log(float(groups.load / solvable(groups).load))
 
 
@@ -152,25 +159,34 @@ def converge(
     guess: Guess = state
     best: tuple[State, ErrorEstimate] | None = None
     outcome = Outcome.REFINEMENT_LIMIT
+    last: tuple[int, Array] | None = None
     for _ in range(MAX_REFINEMENTS):
         try:
-            mesh = mesh_for(guess, state.groups, state.equations.law, order, tolerance)
+            mesh = mesh_for(guess, state.groups, state.equations.law, order, tolerance, 0.3 * rtol)
         except MeshTooLarge:
-            break
+            tolerance *= 5.0
+            continue
         found = solve_state(state.groups, Operators(mesh), guess, newton_tolerance(rtol))
         if not found.outcome.ok:
             outcome = found.outcome
             break
-        estimate = estimate_of(found, groups, FineOperators(mesh))
+        values, estimate = estimate_of(found, groups, FineOperators(mesh))
+        if last is not None and mesh.size >= CLEARLY_FINER * last[0]:
+            estimate = estimate.at_most(np.abs(values - last[1]))
+        last = mesh.size, values
         if best is None or estimate.total < best[1].total:
             best = found, estimate
         if estimate.total <= rtol:
             return found, estimate, Outcome.CONVERGED
-        if estimate.floor > 0.7 * rtol:
-            return *best, Outcome.ROUNDING
-        tolerance *= min(0.3, max(1e-3, 0.3 * rtol / estimate.total))
+        if estimate.total <= 3 * estimate.floor:
+            break
+        tolerance *= min(0.3, max(0.03, 0.3 * rtol / estimate.total))
         guess = found
-    return (*best, outcome) if best is not None else (state, None, outcome)
+    if best is None:
+        return state, None, outcome
+    if best[1].floor > 0.3 * rtol:
+        outcome = Outcome.ROUNDING
+    return *best, outcome
 
 
 def newton_tolerance(rtol: float) -> float:
@@ -178,24 +194,26 @@ def newton_tolerance(rtol: float) -> float:
     return max(1e-11, 1e-3 * rtol)
 
 
-def shifted(state: State, groups: Groups) -> tuple[Equations, Array]:
-    """Return equations and unknowns of ``groups`` from a state of :func:`solvable`; the same where nothing is shifted."""
+def values_of(state: State, groups: Groups) -> Observables:
+    """Return the observables of ``groups`` from the state solved for it."""
+    values = observables(state.equations, state.y, float(groups.load))
     if solvable(groups) is groups:
-        return state.equations, state.y
+        return values
     shift = quasistatic_shift(groups)
-    law = ExponentialLaw(float(groups.load), float(groups.relative_roughness))
-    y = state.y.copy()
-    y[:-1] += shift
-    gap = y[:-2]
-    y[-1] = reynolds.flux_gap(gap, state.mesh.weights) if gap.min() > 0 else math.nan
-    return replace(state.equations, law=law), y
+    gap = state.gap + shift
+    return replace(
+        values,
+        central_gap=values.central_gap + shift,
+        minimum_gap=values.minimum_gap + shift,
+        offset=values.offset + shift,
+        flux_gap=reynolds.flux_gap(gap, state.mesh.weights) if gap.min() > 0 else math.nan,
+    )
 
 
-def estimate_of(state: State, groups: Groups, fine: FineOperators) -> ErrorEstimate:
-    """Return the estimated errors of the observables of ``groups`` from the state solved for it."""
-    equations, y = shifted(state, groups)
-    values = observables(equations, y, float(groups.load))
-    return error_estimate(state, values, changes(state, fine), float(groups.load), equations, y)
+def estimate_of(state: State, groups: Groups, fine: FineOperators) -> tuple[Array, ErrorEstimate]:
+    """Return the observables of ``groups`` and their estimated errors from the state solved for it."""
+    values = values_of(state, groups).values()
+    return values, error_estimate(state, values, changes(state, fine))
 
 
 def finish(
@@ -221,9 +239,8 @@ def solution_of(
     state: State, estimate: ErrorEstimate, outcome: Outcome, groups: Groups, contact: LineContact | None, rtol: float
 ) -> Solution:
     """Return the solution that a refined state is."""
-    equations, y = shifted(state, groups)
-    values = observables(equations, y, float(groups.load))
-    contact_pressure, fluid_pressure = equations.pressures(y)
+    values = values_of(state, groups)
+    contact_pressure, fluid_pressure = state.equations.pressures(state.y)
     notes = list(law_notes(groups, contact, values))
     if math.isnan(values.flux_gap):
         notes.append("The gap is negative, so that no fluid passes: there is no flux gap.")
@@ -235,12 +252,13 @@ def solution_of(
         outcome=outcome,
         notes=tuple(notes),
         rtol=rtol,
-        law=equations.law.name,
+        law=state.equations.law.name,
         observables=values,
-        relative_errors=estimate.relative,
+        relative_errors=np.maximum(estimate.relative, LEAST_ESTIMATE * rtol),
         rounding_floor=estimate.floor,
         mesh=state.mesh,
-        nodal_gap=y[:-2],
+        nodal_gap=state.gap,
+        gap_shift=quasistatic_shift(groups),
         nodal_contact_pressure=contact_pressure,
         nodal_fluid_pressure=fluid_pressure,
         newton_steps=state.root.steps,
@@ -276,6 +294,7 @@ def hertz_solution(groups: Groups, contact: LineContact | None, rtol: float) -> 
         rounding_floor=0.0,
         mesh=mesh,
         nodal_gap=hertz.gap(mesh.nodes),
+        gap_shift=0.0,
         nodal_contact_pressure=hertz.pressure(mesh.nodes),
         nodal_fluid_pressure=np.zeros(mesh.size),
     )

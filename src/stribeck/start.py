@@ -55,15 +55,15 @@ class RigidGuess:
         """The height."""
         return self.height
 
-    def shape(self, mesh: Mesh) -> Array:
-        """Return ln(gap/(1 + x**2)) at the nodes of ``mesh``."""
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
         return np.asarray(self.fields(mesh.nodes)[0])
 
     def fields(self, x: Array) -> Array:
-        """Return ln(gap/(1 + x**2)) at ``x``: the fluid pressure is left to its gradient."""
+        """Return the logarithm of the gap at ``x``: the fluid pressure is left to its gradient."""
         b = math.sqrt(2 * self.height)
         deflection = -2 * self.speed / 3 * x / b / (x * x + b * b)
-        return np.asarray(np.log((self.height + x * x / 2 + deflection) / (1 + x * x))[None, :])
+        return np.asarray(np.log(self.height + x * x / 2 + deflection)[None, :])
 
 
 def unloaded(groups: Groups, log_factor: float) -> Groups:

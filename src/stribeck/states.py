@@ -1,7 +1,7 @@
 """Discrete states: the unknowns on one mesh, how they are predicted on another, and how that mesh is chosen.
 
 A state knows its groups, its equations and the Newton iteration that made it.  Between meshes travel the logarithm of the
-gap over ``1 + x**2``, which is smooth and bounded on the whole line, and the fluid pressure.
+gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and the fluid pressure.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ class Guess(Protocol):
     def offset(self) -> float:
         """Guess of the offset."""
 
-    def shape(self, mesh: Mesh) -> Array:
-        """Return ln(gap/(1 + x**2)) at the nodes of ``mesh``."""
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
 
     def fields(self, x: Array) -> Array:
-        """Return ln(gap/(1 + x**2)) and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
+        """Return the logarithm of the gap and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,17 +106,23 @@ class State:
 
     @cached_property
     def _nodal(self) -> Array:
-        """Nodal fields of the guess that this state is for others."""
-        x = self.mesh.nodes
-        return np.stack([np.log(self.gap / (1 + x * x)), self.equations.pressures(self.y)[1]])
+        """Nodal fields of the guess that this state is for others: log of the gap over its growth, fluid pressure."""
+        return np.stack([np.log(self.gap / self.mesh.far), self.equations.pressures(self.y)[1]])
 
-    def shape(self, mesh: Mesh) -> Array:
-        """Return ln(gap/(1 + x**2)) at the nodes of ``mesh``."""
-        return self._nodal[0] if mesh is self.mesh else self.mesh.interpolate(self._nodal[0], mesh.nodes)
+    @property
+    def shape(self) -> Array:
+        """Logarithm of the gap over ``scale**2 + x**2`` at the nodes: what the panels interpolate."""
+        return np.asarray(self._nodal[0])
+
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
+        return np.log(self.gap) if mesh is self.mesh else np.asarray(self.fields(mesh.nodes)[0])
 
     def fields(self, x: Array) -> Array:
-        """Return ln(gap/(1 + x**2)) and the fluid pressure at ``x``."""
-        return self.mesh.interpolate(self._nodal, x)
+        """Return the logarithm of the gap and the fluid pressure at ``x``."""
+        found = self.mesh.interpolate(self._nodal, x)
+        found[0] += np.log(self.mesh.scale**2 + x * x)
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,15 +142,15 @@ class Extrapolation:
         """That of the last state; Newton's first step corrects it exactly."""
         return self.states[-1].offset
 
-    def shape(self, mesh: Mesh) -> Array:
-        """Return ln(gap/(1 + x**2)) at the nodes of ``mesh``."""
-        shape = np.zeros(mesh.size)
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
+        log_gap = np.zeros(mesh.size)
         for w, s in zip(self.weights, self.states, strict=True):
-            shape += w * s.shape(mesh)
-        return shape
+            log_gap += w * s.log_gap(mesh)
+        return log_gap
 
     def fields(self, x: Array) -> Array:
-        """Return ln(gap/(1 + x**2)) and the fluid pressure at ``x``."""
+        """Return the logarithm of the gap and the fluid pressure at ``x``."""
         fields = np.zeros((2, x.size))
         for w, s in zip(self.weights, self.states, strict=True):
             fields += w * s.fields(x)
@@ -161,7 +167,9 @@ def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
     return history[-1][1]
 
 
-def mesh_for(guess: Guess, groups: Groups, law: ContactLaw, order: int, tolerance: float) -> Mesh:
+def mesh_for(
+    guess: Guess, groups: Groups, law: ContactLaw, order: int, tolerance: float, gap_tolerance: float = 1e-2
+) -> Mesh:
     """Return the coarsest mesh that resolves a guess.
 
     Parameters
@@ -177,19 +185,21 @@ def mesh_for(guess: Guess, groups: Groups, law: ContactLaw, order: int, toleranc
         Nodes a panel.
     tolerance : float
         Legendre tail allowed on each panel.
+    gap_tolerance : float
+        That of the logarithm of the gap on the panels that meet at zero, where the central gap is read off.
 
     Raises
     ------
     MeshTooLarge
         If more panels are needed than :data:`mesh.MAX_PANELS`.
     """
-    width = math.sqrt(1.0 + float(np.exp(guess.fields(np.zeros(1))[0, 0])))
+    width = math.sqrt(1.0 + math.exp(guess.fields(np.zeros(1))[0, 0]))
     scale = 2.0 ** round(math.log2(width))
 
     def fields(x: Array, half_widths: Array) -> Array:
         flat = x.ravel()
         found = guess.fields(flat)
-        gap = np.exp(found[0]) * (1 + flat * flat)
+        gap = np.exp(found[0])
         if len(found) == 2:
             fluid = found[1]
         else:
@@ -197,18 +207,20 @@ def mesh_for(guess: Guess, groups: Groups, law: ContactLaw, order: int, toleranc
             fluid = slopes * np.repeat(half_widths, x.shape[1])
         edge_scale = np.sqrt(np.minimum(1.0, half_widths / width))
         pressures = width / np.repeat(edge_scale, x.shape[1]) * np.stack([law.pressure(gap), fluid])
-        return np.concatenate([pressures, 0.1 * found[:1]]).reshape(3, *x.shape)
+        shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(x.shape)
+        central = np.abs(x.mean(axis=1)) <= half_widths
+        shape = shape * np.where(central, max(0.1, tolerance / gap_tolerance), 0.1)[:, None]
+        return np.concatenate([pressures.reshape(2, *x.shape), shape[None]])
 
     return adapt(fields, scale, 16 * scale, order, tolerance)
 
 
 def solve_state(groups: Groups, operators: Operators, guess: Guess, tolerance: float, max_steps: int = 40) -> State:
     """Return the state of the discrete equations on the mesh of ``operators`` nearest to ``guess``."""
-    x = operators.mesh.nodes
     flux_gap = guess.flux_gap
     equations = Equations(operators, float(groups.speed), contact_law(groups), flux_gap**2)
-    y = np.empty(len(x) + 2)
-    y[:-2] = np.exp(guess.shape(operators.mesh)) * (1 + x * x)
+    y = np.empty(operators.mesh.size + 2)
+    y[:-2] = np.exp(guess.log_gap(operators.mesh))
     y[-2:] = guess.offset, flux_gap
     root = root_find(
         equations.residual,

@@ -1,0 +1,234 @@
+"""Panels on the whole line: exact interpolation and integrals, spectral rates, and the choice of panels."""
+
+import numpy as np
+import pytest
+from numpy.polynomial import legendre
+
+from stribeck.mesh import MAX_PANELS, Mesh, MeshTooLarge, adapt, base_edges, legendre_tail, reference
+
+SEED = 70_419
+
+
+def graded(order=12, towards=1.0, levels=10):
+    """Panels that halve towards ``x = towards`` from both sides, on [-8, 8]."""
+    steps = 0.5 ** np.arange(1, levels)
+    edges = [-8.0, -4.0, -2.0, -1.0, 0.0, *(towards - steps), towards, *(towards + steps[::-1]), 2.0, 4.0, 8.0]
+    return Mesh(np.array(edges), order)
+
+
+def bernstein(pole, panel):
+    """Parameter of the largest ellipse around a panel in which a function with that pole is analytic."""
+    z = (pole - 0.5 * sum(panel)) / (0.5 * (panel[1] - panel[0]))
+    return max(abs(z + np.sqrt(z * z - 1)), abs(z - np.sqrt(z * z - 1)))
+
+
+# Nodes
+
+
+def test_nodes_ascend_panel_by_panel_and_those_beyond_come_last():
+    mesh = graded()
+    inside, beyond = mesh.nodes[: -mesh.order], mesh.nodes[-mesh.order :]
+    assert mesh.size == len(mesh.nodes) == mesh.panels * mesh.order
+    assert (np.diff(inside) > 0).all()
+    assert (np.abs(inside) < 8).all()
+    assert (np.abs(beyond) > 8).all()
+    assert np.array_equal(beyond, -beyond[::-1])
+    assert (np.diff(1 / beyond) > 0).all()
+
+
+def test_each_panel_holds_its_own_nodes():
+    mesh = graded()
+    panel, local = mesh.locate(mesh.nodes)
+    assert np.array_equal(panel, np.repeat(np.arange(mesh.panels), mesh.order))
+    assert np.abs(local.reshape(mesh.panels, -1) - reference(mesh.order).nodes).max() < 1e-12
+
+
+@pytest.mark.parametrize("scale, reach", [(1.0, 16.0), (0.25, 3.0), (8.0, 200.0)])
+def test_zero_is_an_edge_of_the_coarsest_panels_which_reach_far_enough(scale, reach):
+    edges = base_edges(scale, reach)
+    assert 0.0 in edges
+    assert np.array_equal(edges, -edges[::-1])
+    assert edges[-1] >= reach
+    assert np.diff(edges).min() == scale
+
+
+@pytest.mark.parametrize("order", [1, 2, 7, 16])
+def test_the_reference_rule_integrates_its_own_polynomials(order):
+    rule = reference(order)
+    coefficients = np.random.default_rng(SEED).normal(size=order)
+    values = legendre.legval(rule.nodes, coefficients)
+    antiderivative = legendre.legint(coefficients, lbnd=-1)
+    assert np.abs(rule.to_legendre @ values - coefficients).max() < 1e-13
+    assert np.abs(rule.integral @ values - legendre.legval(rule.nodes, antiderivative)).max() < 1e-13
+    assert abs(rule.left_half @ values - legendre.legval(0.0, antiderivative)) < 1e-13
+
+
+# Interpolation
+
+
+def test_interpolation_is_exact_for_polynomials_in_x_and_beyond_in_its_inverse():
+    mesh = graded(order=8)
+    rng = np.random.default_rng(SEED)
+    inner, outer = rng.normal(size=(2, 8))
+
+    def field(x):
+        t = np.where(np.abs(x) > 8, 8 / np.where(x == 0, 1, x), 0.0)
+        return np.where(np.abs(x) <= 8, np.polyval(inner, x / 8), np.polyval(outer, t))
+
+    x = np.concatenate([rng.uniform(-8, 8, 300), mesh.edges[1:-1], [0.0], 8 / rng.uniform(-0.999, 0.999, 100)])
+    assert np.abs(mesh.interpolate(field(mesh.nodes), x) - field(x)).max() < 2e-12
+
+
+def test_interpolation_takes_several_fields_at_once():
+    mesh = graded()
+    fields = np.random.default_rng(SEED).normal(size=(3, 2, mesh.size))
+    x = np.linspace(-9, 9, 37)
+    together = mesh.interpolate(fields, x)
+    assert together.shape == (3, 2, 37)
+    assert np.array_equal(together[2, 1], mesh.interpolate(fields[2, 1], x))
+
+
+def test_more_nodes_on_the_same_panels_carry_the_same_polynomials():
+    mesh = graded(order=8)
+    fine = mesh.refined(14)
+    values = np.random.default_rng(SEED).normal(size=mesh.size)
+    x = fine.nodes
+    assert np.array_equal(fine.edges, mesh.edges)
+    assert np.abs(mesh.to_order(values, 14) - mesh.interpolate(values, x)).max() < 1e-12
+
+
+# Integrals
+
+
+@pytest.mark.parametrize(
+    "function, integral",
+    [
+        (lambda x: 1 / (1 + x**2), np.pi),
+        (lambda x: 1 / (1 + x**2) ** 2, np.pi / 2),
+        (lambda x: x**2 / (1 + x**2) ** 2, np.pi / 2),
+        (lambda x: (2 + x) / (1 + x**2) ** 2, np.pi),
+        (lambda x: 1 / ((x - 1.25) ** 2 + 0.5), np.pi / np.sqrt(0.5)),
+        (lambda x: 1 / ((1 + x**2) * (9 + x**2)), np.pi / 12),
+    ],
+)
+def test_rational_functions_are_integrated_over_the_whole_line(function, integral):
+    mesh = Mesh(base_edges(0.5, 16.0), 24)
+    assert abs(mesh.weights @ function(mesh.nodes) / integral - 1) < 1e-13
+
+
+def test_the_panel_through_infinity_holds_what_the_others_leave():
+    mesh = graded()
+    values = 1 / (1 + mesh.nodes**2)
+    inside = np.arange(mesh.size) < mesh.size - mesh.order
+    assert abs(mesh.weights[~inside] @ values[~inside] - 2 * np.arctan(1 / 8)) < 1e-14
+
+
+def test_the_integral_converges_at_the_rate_of_the_nearest_pole():
+    edges, pole = base_edges(1.0, 16.0), 1j
+    orders = np.arange(4, 15, 2)
+    meshes = [Mesh(edges, int(n)) for n in orders]
+    errors = np.array([abs(mesh.weights @ (1 / (1 + mesh.nodes**2)) - np.pi) for mesh in meshes])
+    rate = -np.polyfit(orders, np.log(errors), 1)[0]
+    assert abs(rate / (2 * np.log(bernstein(pole, (0.0, 1.0)))) - 1) < 0.1
+    assert errors[-1] < 1e-13
+
+
+def test_the_running_integral_vanishes_at_both_ends():
+    mesh = Mesh(base_edges(0.5, 16.0), 20)
+    x = mesh.nodes
+    values = mesh.integral_from_infinity(-2 * x / (1 + x * x) ** 2)
+    assert np.abs(values * (1 + x * x) - 1).max() < 1e-12
+
+
+def test_the_running_integral_comes_from_the_left_left_of_zero_and_from_the_right_beyond():
+    mesh = Mesh(base_edges(0.5, 16.0), 20)
+    x = mesh.nodes
+    values = mesh.integral_from_infinity(1 / (1 + x * x))
+    assert np.abs(values + np.arctan(1 / x)).max() < 1e-14
+
+
+def test_the_running_integral_of_a_lopsided_graded_mesh_is_the_same():
+    mesh = graded(order=20)
+    x = mesh.nodes
+    values = mesh.integral_from_infinity(1 / (1 + x * x))
+    assert np.abs(values + np.arctan(1 / x)).max() < 1e-13
+
+
+@pytest.mark.parametrize("edges", [graded().edges, base_edges(1.0, 2.0), np.array([-3.0, 0.0, 5.0])])
+def test_an_operator_after_the_running_integral_is_the_product_of_their_matrices(edges):
+    mesh = Mesh(edges, 6)
+    matrix = np.stack([mesh.integral_from_infinity(column) for column in np.eye(mesh.size)], axis=1)
+    operator = np.random.default_rng(SEED).normal(size=(7, mesh.size))
+    product = operator @ matrix
+    assert np.abs(mesh.after_integral(operator) - product).max() < 1e-13 * np.abs(product).max()
+
+
+# Choice of panels
+
+
+def test_the_tail_is_the_larger_of_the_last_two_coefficients():
+    order = 9
+    nodes = reference(order).nodes
+    coefficients = np.zeros((2, 3, order))
+    coefficients[0, 0, :7] = 5.0
+    coefficients[0, 1, 7], coefficients[0, 1, 8] = -3.0, 2.0
+    coefficients[1, 2, 8] = -0.25
+    values = legendre.legval(nodes, np.moveaxis(coefficients, -1, 0)).reshape(2, -1)
+    expected = [[0.0, 3.0, 0.0], [0.0, 0.0, 0.25]]
+    assert np.abs(legendre_tail(values, order) - expected).max() < 1e-14
+
+
+def bump(width, centre=1.0):
+    return lambda x, half_widths: (width**2 / (width**2 + (x - centre) ** 2))[None]
+
+
+@pytest.mark.parametrize("width", [1e-2, 1e-4])
+def test_panels_are_halved_where_the_field_bends_and_nowhere_else(width):
+    mesh = adapt(bump(width), 1.0, 16.0, 10, 1e-6)
+    half = mesh.half_widths[:-1]
+    smallest = np.abs(mesh.centres[:-1][half == half.min()] - 1)
+    assert (smallest < 4 * width).all()
+    assert width / 10 < half.min() < 2 * width
+    left = mesh.centres[:-1] < -1
+    assert np.array_equal(half[left], 0.5 * np.diff(base_edges(1.0, 16.0))[: left.sum()])
+    assert 0.0 in mesh.edges
+    assert 1.0 in mesh.edges
+
+
+def test_the_panels_resolve_the_field_to_the_tolerance():
+    for tolerance in (1e-3, 1e-6, 1e-9):
+        mesh = adapt(bump(1e-3, 0.7), 1.0, 16.0, 10, tolerance)
+        field = bump(1e-3, 0.7)(mesh.nodes, None)[0]
+        assert legendre_tail(field, 10).max() <= tolerance
+        x = np.random.default_rng(SEED).uniform(0.69, 0.71, 400)
+        error = np.abs(mesh.interpolate(field, x) - bump(1e-3, 0.7)(x, None)[0]).max()
+        assert error < 5 * tolerance
+
+
+def test_the_panels_are_the_coarsest_that_do():
+    mesh = adapt(bump(1e-2, 0.0), 1.0, 16.0, 10, 1e-6)
+    for left, middle, right in zip(mesh.edges[:-2], mesh.edges[1:-1], mesh.edges[2:], strict=True):
+        width = right - left
+        siblings = middle - left == right - middle and width <= 1.0 and (left / width) % 1 == 0
+        if siblings:
+            parent = Mesh(np.array([left, right]), 10)
+            values = bump(1e-2, 0.0)(parent.nodes[:10], None)[0]
+            assert legendre_tail(values, 10)[0] > 1e-6
+
+
+def test_the_panel_through_infinity_begins_where_the_tail_is_resolved():
+    mesh = adapt(lambda x, half: (1e4 / (1e4 + x * x))[None], 1.0, 4.0, 10, 1e-8)
+    assert 16.0 <= mesh.edges[-1] <= 1024.0
+    values = 1e4 / (1e4 + mesh.nodes**2)
+    assert legendre_tail(values, 10)[-1] <= 1e-8
+
+
+def test_a_field_that_no_panel_resolves_needs_too_many():
+    with pytest.raises(MeshTooLarge):
+        adapt(lambda x, half: np.sin(1e4 * x)[None] * (np.abs(x) < 10), 1.0, 16.0, 10, 1e-6)
+
+
+def test_a_step_is_not_chased_beyond_double_precision():
+    mesh = adapt(lambda x, half: np.sign(x - 0.3)[None] * (np.abs(x) < 4), 1.0, 8.0, 10, 1e-6)
+    assert mesh.panels <= MAX_PANELS
+    assert np.diff(mesh.edges).min() >= 2.0**-45
