@@ -1,19 +1,30 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
-from .parameters import Groups, HertzScales, InputError, LineContact
+from . import asymptotics
+from .case import Case, load_case
+from .curve import Landmark, StribeckCurve, stribeck_curve
 from .newton import Outcome
+from .parameters import Groups, HertzScales, InputError, LineContact
+from .regimes import regime_of
 from .solution import Friction, Profile, Solution
 from .solve import SolveError, solve
 
 __all__ = [
+    "Case",
     "Friction",
     "Groups",
     "HertzScales",
     "InputError",
+    "Landmark",
     "LineContact",
     "Outcome",
     "Profile",
     "Solution",
     "SolveError",
+    "StribeckCurve",
+    "asymptotics",
+    "load_case",
+    "regime_of",
     "solve",
+    "stribeck_curve",
 ]

@@ -294,8 +294,8 @@ class _Curve:
         new = self.ahead(last, ds)
         if not new.outcome.ok:
             return new
-        lengths = np.sqrt(self.metric(last.x) * self.metric(new.x))  # each tangent is one long in its own metric
-        if (lengths * last.tangent) @ new.tangent < MAX_TURN:
+        both = np.sqrt(self.metric(last.x) * self.metric(new.x))  # each tangent has length one in its own
+        if (both * last.tangent) @ new.tangent < MAX_TURN:
             return replace(new, outcome=Outcome.PATH_LOST)
         inner, fold = last, None
         if last.tangent[-1] * new.tangent[-1] < 0.0 or new.tangent[-1] == 0.0:

@@ -148,16 +148,14 @@ def _read(path: Path) -> dict[str, Any]:
         with path.open("rb") as file:
             content = file.read(_LARGEST_FILE + 1)
     except (OSError, ValueError) as problem:
-        reason = (
-            "is a directory" if path.is_dir() else f"cannot be read ({getattr(problem, 'strerror', problem)})"
-        )
-        raise InputError(f"{path} {reason}; give the path of a TOML case file.") from None
+        reason = getattr(problem, "strerror", problem)
+        received = f"{path} is a directory" if path.is_dir() else f"{path} cannot be read ({reason})"
+        raise InputError(f"{received}; give the path of a TOML case file.") from None
     if len(content) > _LARGEST_FILE:
         raise InputError(f"{path} has more than {_LARGEST_FILE} bytes; a case file is a page of TOML.")
     try:
-        table = tomllib.loads(
-            content.decode("utf-8-sig")
-        )  # TOML knows no byte-order mark, some editors write one
+        # Some editors write a byte-order mark, which TOML does not know.
+        table = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as problem:
         raise InputError(
             f"{path} is not text (byte {problem.start} is not UTF-8); a case file is a page of TOML."

@@ -132,7 +132,7 @@ def changes(state: State, fine: FineOperators) -> Changes:
     assert state.root.factors is not None
     unknowns = -lu_solve(state.root.factors, residual.T, check_finite=False).T
     tails = legendre_tail(state.shape, state.mesh.order)
-    central = int(state.mesh.locate(np.zeros(1))[0][0])
+    central = int(np.searchsorted(state.mesh.edges, 0.0))
     least = int(np.argmin(state.gap)) // state.mesh.order
     missed = tails[central], tails[max(0, least - 1) : least + 2].max()
     gaps = state.gap[central * state.mesh.order], state.gap.min()

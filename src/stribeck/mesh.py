@@ -39,6 +39,8 @@ class Reference:
     """Nodal values -> integral from -1 to each node."""
     left_half: Array
     """Nodal values -> integral from -1 to 0."""
+    left_end: Array
+    """Nodal values -> value at -1."""
 
     def interpolation(self, points: Array) -> Array:
         """Matrix from nodal values to the values at ``points`` of the interpolating polynomial."""
@@ -55,7 +57,8 @@ def reference(order: int) -> Reference:
     antiderivatives = legendre.legint(np.eye(order), lbnd=-1)
     integral = legendre.legval(nodes, antiderivatives).T @ to_legendre
     left_half = legendre.legval(0.0, antiderivatives) @ to_legendre
-    return Reference(nodes, weights, to_legendre, integral, left_half)
+    left_end = (-1.0) ** degrees @ to_legendre
+    return Reference(nodes, weights, to_legendre, integral, left_half, left_end)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,8 @@ A factorisation costs n^3, a solve with its factors n^2. So each Newton step is 
 chord step, one with the same factors: its size measures the error left, and where that is below the tolerance
 the last factorisation is spared. With ``chord`` such steps are also taken while they contract well.
 
-Source: [Deuflhard 2011] Newton Methods for Nonlinear Problems, sections 2.1.1 (affine-covariant Newton: the
-step, not the residual, measures the error) and 2.1.2 (simplified Newton).
+Source: [Deuflhard 2011] Newton Methods for Nonlinear Problems (affine-covariant Newton: the step, not the
+residual, measures the error; simplified Newton).
 """
 
 import math
@@ -41,10 +41,7 @@ class Outcome(Enum):
     SINGULAR = "The Jacobian is singular here; near a fold use pseudo-arclength continuation."
     NOT_FINITE = "The residual or its Jacobian is not finite here; try a nearer guess."
     STALLED = "The damped Newton step became too small to make progress; try a nearer guess."
-    REFINEMENT_LIMIT = (
-        "The mesh reached its largest size before the asked tolerance held; "
-        "ask for a larger rtol or allow a larger mesh."
-    )
+    REFINEMENT_LIMIT = "The mesh reached its largest size before the tolerance held; ask for a larger rtol."
     ROUNDING = (
         "Double precision bounds the error of this state above the asked rtol; "
         "ask for a larger rtol or use the value with its error estimate."
@@ -82,8 +79,7 @@ class Root:
     residual_norm : float
         Largest absolute value of the residual at ``x``.
     factors : tuple of ndarray or None
-        The last LU factors, as :func:`scipy.linalg.lu_factor` returns them, for
-        :func:`scipy.linalg.lu_solve` or the next :func:`root_find`; None if none could be made.
+        The last LU factors, as for :func:`scipy.linalg.lu_solve`; None if none could be made.
     """
 
     x: Array
@@ -155,8 +151,7 @@ def root_find(
     factors : tuple of ndarray, optional
         LU factors of a nearby Jacobian (``Root.factors`` of a neighbour) for the first step; needs ``chord``.
     overwrite_jacobian : bool, optional
-        Let LAPACK factorise in the array that ``jacobian`` returns, where this is made or filled anew at each
-        call. ``Root.factors`` then live in it.
+        Let LAPACK factorise in the array that ``jacobian`` returns, which must fill it anew at each call.
     singular_below : float, optional
         Reciprocal condition number, once rows and columns are scaled to one, at which the Jacobian counts as
         singular. 0 leaves that to steps that are not finite, and spares a second factorisation where the
@@ -181,8 +176,7 @@ def root_find(
     A trial point where F is not finite is approached by halving the step. Newton steps that are small but no
     longer contract end the iteration as ROUNDING, with the best state that double precision gives.
 
-    Floating-point warnings of the functions are silenced during the call: a value that is not finite shows in
-    the outcome.
+    Floating-point warnings are silenced during the call: a value that is not finite shows in the outcome.
     """
     x = np.array(start, dtype=np.float64)
     if x.ndim != 1 or x.size == 0:
@@ -193,39 +187,10 @@ def root_find(
         raise ValueError(f"max_steps = {max_steps!r}; it must be at least 1")
     if chord is not None and not 0 < chord < 1:
         raise ValueError(f"chord = {chord!r}; it must lie between 0 and 1, or be None for Newton steps only")
-    if factors is not None and factors[0].shape != (x.size, x.size):
-        raise ValueError(
-            f"factors have shape {factors[0].shape}; a state of {x.size} needs {(x.size, x.size)}"
-        )
-    with np.errstate(all="ignore"):
-        return _iterate(
-            residual,
-            jacobian,
-            x,
-            fraction,
-            size,
-            tolerance,
-            max_steps,
-            chord,
-            factors,
-            overwrite_jacobian,
-            singular_below,
-        )
+    square = (x.size, x.size)
+    if factors is not None and factors[0].shape != square:
+        raise ValueError(f"factors have shape {factors[0].shape}; a state of {x.size} needs {square}")
 
-
-def _iterate(
-    residual: Callable[[Array], Array],
-    jacobian: Callable[[Array], Array],
-    x: Array,
-    fraction: Callable[[Array, Array], float] | None,
-    size: Callable[[Array, Array], float],
-    tolerance: float,
-    max_steps: int,
-    chord: float | None,
-    factors: Factors | None,
-    overwrite: bool,
-    singular_below: float,
-) -> Root:
     steps = factorisations = stale = 0
     s = before = math.nan  # sizes of this step and of the step before it
     smallest = math.inf
@@ -235,61 +200,61 @@ def _iterate(
         norm = float(np.abs(r).max())
         return Root(x, outcome, steps, factorisations, s, s / before if before else math.nan, norm, factors)
 
-    r = residual(x)
-    if r.shape != x.shape:
-        raise ValueError(f"residual returned shape {r.shape}; it must have the shape of x, {x.shape}")
-    if not np.isfinite(r).all():
-        return root(Outcome.NOT_FINITE)
-
-    while steps < max_steps:
-        chord_step = False
-        if reusable and factors is not None:
-            dx, t = _solve(factors, r), 1.0
-            s_new = size(x, dx)
-            rate = s_new / s if steps else 0.0  # unknown, taken as good, for factors that the caller brought
-            chord_step = (s_new <= tolerance and rate <= LAST_CHORD) or (chord is not None and rate <= chord)
-            if chord_step and fraction is not None:
-                chord_step = fraction(x, dx) >= 1.0
-        if not chord_step:
-            factors = None  # frees their memory for the next ones
-            factors = _factorise(jacobian(x), overwrite)
-            factorisations += 1
-            if factors[0].shape != (x.size, x.size):
-                raise ValueError(f"jacobian returned shape {factors[0].shape}; it must be {(x.size, x.size)}")
-            dx = _solve(factors, r)
-            if not np.isfinite(dx).all():
-                return root(Outcome.SINGULAR if np.isfinite(factors[0]).all() else Outcome.NOT_FINITE)
-            if singular_below > 0.0 and _may_be_singular(factors[0]):
-                if _is_singular(jacobian(x), singular_below):
-                    return root(Outcome.SINGULAR)
-                if overwrite:  # that call may have reused their memory
-                    factors = _factorise(jacobian(x), overwrite)
-                    factorisations += 1
-            s_new = size(x, dx)
-            t = 1.0 if fraction is None else fraction(x, dx)
-        if not math.isfinite(s_new):
+    with np.errstate(all="ignore"):
+        r = residual(x)
+        if r.shape != x.shape:
+            raise ValueError(f"residual returned shape {r.shape}; it must have the shape of x, {x.shape}")
+        if not np.isfinite(r).all():
             return root(Outcome.NOT_FINITE)
 
-        if not t >= SMALLEST_FRACTION:
-            return root(Outcome.STALLED)
-        trial = _finite_trial(residual, x, dx, min(t, 1.0))
-        if trial is None:
-            return root(Outcome.NOT_FINITE)
-        x_new, r_new, t = trial
-        before, s, x, r = s, s_new, x_new, r_new
-        steps += 1
-        reusable = t == 1.0
-
-        if t == 1.0:
-            unmeasured = chord_step and steps == 1  # factors that the caller brought may be far off
-            if s == 0.0 or (s <= tolerance and not unmeasured):
-                return root(Outcome.CONVERGED)
+        while steps < max_steps:
+            chord_step = False
+            if reusable and factors is not None:
+                dx, t = _solve(factors, r), 1.0
+                s_new = size(x, dx)
+                rate = s_new / s if steps else 0.0  # the caller's factors are taken to be good
+                contracts = rate <= (chord or 0.0) or (s_new <= tolerance and rate <= LAST_CHORD)
+                chord_step = contracts and (fraction is None or fraction(x, dx) >= 1.0)
             if not chord_step:
-                stale = 0 if s <= 0.5 * smallest else stale + 1
-                smallest = min(smallest, s)
-                if stale >= STALE_STEPS and smallest <= ROUNDING_SIZE:
-                    return root(Outcome.ROUNDING)
-    return root(Outcome.STEP_LIMIT)
+                factors = None  # frees their memory for the next ones
+                factors = _factorise(jacobian(x), overwrite_jacobian)
+                factorisations += 1
+                if factors[0].shape != square:
+                    raise ValueError(f"jacobian returned shape {factors[0].shape}; it must be {square}")
+                dx = _solve(factors, r)
+                if not np.isfinite(dx).all():
+                    return root(Outcome.SINGULAR if np.isfinite(factors[0]).all() else Outcome.NOT_FINITE)
+                if singular_below > 0.0 and _has_small_pivot(factors[0]):
+                    if _is_singular(jacobian(x), singular_below):
+                        return root(Outcome.SINGULAR)
+                    if overwrite_jacobian:  # that call may have reused their memory
+                        factors = _factorise(jacobian(x), overwrite_jacobian)
+                        factorisations += 1
+                s_new = size(x, dx)
+                t = 1.0 if fraction is None else fraction(x, dx)
+            if not math.isfinite(s_new):
+                return root(Outcome.NOT_FINITE)
+
+            if not t >= SMALLEST_FRACTION:
+                return root(Outcome.STALLED)
+            trial = _finite_trial(residual, x, dx, min(t, 1.0))
+            if trial is None:
+                return root(Outcome.NOT_FINITE)
+            x, r, t = trial
+            before, s = s, s_new
+            steps += 1
+            reusable = t == 1.0
+
+            if t == 1.0:
+                unmeasured = chord_step and steps == 1  # factors that the caller brought may be far off
+                if s == 0.0 or (s <= tolerance and not unmeasured):
+                    return root(Outcome.CONVERGED)
+                if not chord_step:
+                    stale = 0 if s <= 0.5 * smallest else stale + 1
+                    smallest = min(smallest, s)
+                    if stale >= STALE_STEPS and smallest <= ROUNDING_SIZE:
+                        return root(Outcome.ROUNDING)
+        return root(Outcome.STEP_LIMIT)
 
 
 def _finite_trial(
@@ -312,12 +277,11 @@ def _factorise(matrix: Array, overwrite: bool) -> Factors:
 
 
 def _solve(factors: Factors, r: Array) -> Array:
-    dx: Array
-    dx, _ = lapack.dgetrs(*factors, r)
+    dx: Array = lapack.dgetrs(*factors, r)[0]
     return np.negative(dx, out=dx)
 
 
-def _may_be_singular(lu: Array) -> bool:
+def _has_small_pivot(lu: Array) -> bool:
     """Whether a pivot is small against the largest: cheap, but true also of rows that are badly scaled."""
     pivots = np.abs(lu.diagonal())
     return bool(pivots.min() <= lu.shape[0] * np.finfo(float).eps * pivots.max())
@@ -330,8 +294,6 @@ def _is_singular(matrix: Array, singular_below: float) -> bool:
         if scale.min() == 0.0:
             return True
         matrix = matrix / scale
-    lu, _, info = lapack.dgetrf(matrix)
-    if info > 0:
-        return True
-    reciprocal_condition, _ = lapack.dgecon(lu, np.abs(matrix).sum(axis=0).max())
+    lu, _, _ = lapack.dgetrf(matrix)
+    reciprocal_condition, _ = lapack.dgecon(lu, np.abs(matrix).sum(axis=0).max())  # 0 for a zero pivot
     return bool(reciprocal_condition <= singular_below)

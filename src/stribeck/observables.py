@@ -16,8 +16,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+from numpy.polynomial import legendre
 
 from ._types import Array
 from .equations import LOAD, Equations
@@ -35,6 +37,10 @@ NAMES = (
     "viscous_balanced",
 )
 """The observables, in the order of every array of them here."""
+
+SEARCH = np.linspace(-1, 1, 41)
+SEARCH_STEP = 0.05
+"""Where on a panel the least gap is looked for, and the spacing of these points."""
 
 TAIL_HALVINGS = 12
 """Panels on each side of infinity on which the friction integrands, which hold a logarithm there, are summed."""
@@ -54,7 +60,7 @@ class Observables:
     viscous_paper: float
     viscous_balanced: float
 
-    def values(self) -> Array:
+    def array(self) -> Array:
         """Return the observables in the order of :data:`NAMES`."""
         return np.array([getattr(self, name) for name in NAMES])
 
@@ -84,7 +90,7 @@ def observables(equations: Equations, y: Array, load: float) -> Observables:
     return Observables(
         contact_load_share=float(mesh.weights @ p_c / LOAD),
         fluid_load_share=float(mesh.weights @ p_f / LOAD),
-        central_gap=float(gap_at(mesh, h, np.zeros(1))[0]),
+        central_gap=central_gap(mesh, h),
         minimum_gap=minimum,
         minimum_position=position,
         flux_gap=h_star,
@@ -102,18 +108,35 @@ def gap_at(mesh: Mesh, h: Array, x: Array) -> Array:
     return mesh.interpolate(h / mesh.far, x) * far
 
 
+def central_gap(mesh: Mesh, h: Array) -> float:
+    """Return the gap at zero, where the panel right of it begins."""
+    first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
+    nodes = slice(first, first + mesh.order)
+    return float(np.exp(reference(mesh.order).left_end @ np.log(h[nodes] / mesh.far[nodes])) * mesh.scale**2)
+
+
 def least_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
     """Return position and value of the least gap, that of the panels' polynomials around the least node."""
-    order, edges = mesh.order, mesh.edges
-    panel = min(int(np.argmin(h)) // order, mesh.panels - 2)
+    panel = min(int(np.argmin(h)) // mesh.order, mesh.panels - 2)
     first, last = max(0, panel - 1), min(mesh.panels - 2, panel + 1)
-    low, high = edges[first], edges[last + 1]
-    for _ in range(5):
-        x = np.linspace(low, high, 33)
-        gap = gap_at(mesh, h, x)
-        i = int(np.clip(np.argmin(gap), 1, 31))
-        low, high = x[i - 1], x[i + 1]
-    return float(x[np.argmin(gap)]), float(gap.min())
+    nodes = slice(first * mesh.order, (last + 1) * mesh.order)
+    shapes = np.log(h[nodes] / mesh.far[nodes]).reshape(-1, mesh.order)
+    rule, c, d = reference(mesh.order), mesh.centres[first : last + 1], mesh.half_widths[first : last + 1]
+    x = c[:, None] + d[:, None] * SEARCH
+    s = SEARCH[np.argmin(shapes @ rule.interpolation(SEARCH).T + np.log(mesh.scale**2 + x * x), axis=1)]
+    coefficients = rule.to_legendre @ shapes.T
+    slopes, curvatures = legendre.legder(coefficients), legendre.legder(coefficients, 2)
+    for _ in range(4):
+        x = c + d * s
+        far = mesh.scale**2 + x * x
+        slope = legendre.legval(s, slopes, tensor=False) + 2 * d * x / far
+        curvature = legendre.legval(s, curvatures, tensor=False) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
+        step = np.where(curvature > 0, -slope / np.where(curvature > 0, curvature, 1.0), 0.0)
+        s = np.clip(s + np.clip(step, -SEARCH_STEP, SEARCH_STEP), -1.0, 1.0)
+    x = c + d * s
+    gaps = np.exp(legendre.legval(s, coefficients, tensor=False)) * (mesh.scale**2 + x * x)
+    best = int(np.argmin(gaps))
+    return float(x[best]), float(gaps[best])
 
 
 def friction_integrals(mesh: Mesh, h: Array, h_star: float) -> Array:
@@ -124,24 +147,26 @@ def friction_integrals(mesh: Mesh, h: Array, h_star: float) -> Array:
     """
     order = mesh.order
     inner = friction_integrands(mesh.nodes[:-order], h[:-order], h_star) @ mesh.weights[:-order]
-    t, weights = _towards_infinity(order)
+    t, weights, to_tail = _towards_infinity(order)
     t = t * mesh.half_widths[-1]
     x_tail = mesh.nodes[-order:]
     smooth = h[-order:] - 0.5 * x_tail**2 + 0.5 * np.log(np.abs(x_tail))
     x = 1 / t
-    h_tail = reference(order).interpolation(t / mesh.half_widths[-1]) @ smooth + 0.5 * x**2 - 0.5 * np.log(np.abs(x))
+    h_tail = to_tail @ smooth + 0.5 * x**2 - 0.5 * np.log(np.abs(x))
     tail = friction_integrands(x, h_tail, h_star) @ (weights * mesh.half_widths[-1] * x**2)
     return np.asarray(inner + tail)
 
 
-def _towards_infinity(order: int) -> tuple[Array, Array]:
-    """Nodes and weights on [-1, 1] on panels that halve towards zero."""
+@lru_cache(maxsize=32)
+def _towards_infinity(order: int) -> tuple[Array, Array, Array]:
+    """Nodes and weights on [-1, 1] on panels that halve towards zero, and the interpolation to them."""
     edges = np.append(0.0, 2.0 ** -np.arange(TAIL_HALVINGS, -1, -1.0))
     half = 0.5 * np.diff(edges)
     rule = reference(order)
     t = (0.5 * (edges[1:] + edges[:-1])[:, None] + half[:, None] * rule.nodes).ravel()
     weights = np.outer(half, rule.weights).ravel()
-    return np.concatenate([-t, t]), np.concatenate([weights, weights])
+    t = np.concatenate([-t, t])
+    return t, np.concatenate([weights, weights]), rule.interpolation(t)
 
 
 def gradients(equations: Equations, y: Array, load: float) -> Array:
@@ -175,9 +200,8 @@ def gradients(equations: Equations, y: Array, load: float) -> Array:
 
 def _at_zero(mesh: Mesh, h: Array) -> Array:
     """Derivative of the central gap with respect to the unknowns."""
-    panel, s = mesh.locate(np.zeros(1))
-    nodes = slice(int(panel[0]) * mesh.order, (int(panel[0]) + 1) * mesh.order)
+    first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
+    nodes = slice(first, first + mesh.order)
     row = np.zeros(mesh.size + 2)
-    basis = reference(mesh.order).interpolation(s)[0]
-    row[nodes] = gap_at(mesh, h, np.zeros(1))[0] * basis / h[nodes]
+    row[nodes] = central_gap(mesh, h) * reference(mesh.order).left_end / h[nodes]
     return row

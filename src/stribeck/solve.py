@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from . import hertz, reynolds
 from ._types import Array
+from .contact_laws import contact_law
 from .equations import Operators
 from .estimate import ErrorEstimate, FineOperators, changes, error_estimate
 from .mesh import Mesh, MeshTooLarge
@@ -102,8 +103,8 @@ def solve(
     path = cold_start(solvable(groups))
     if not path.outcome.ok:
         raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
-    state, estimate, outcome = converge(path.states[-1], groups, rtol)
-    return finish(state, estimate, outcome, groups, contact, rtol, on_failure)
+    point = converge(path.states[-1], groups, rtol)
+    return finish(point, groups, contact, rtol, on_failure)
 
 
 def as_groups(problem: Groups | LineContact) -> tuple[Groups, LineContact | None]:
@@ -150,43 +151,72 @@ def quasistatic_shift(groups: Groups) -> float:
     return -0.5 * float(groups.relative_roughness) * math.log(float(groups.load / solvable(groups).load))
 
 
-def converge(
-    state: State, groups: Groups, rtol: float, tolerance: float | None = None
-) -> tuple[State, ErrorEstimate | None, Outcome]:
-    """Refine a state until its estimated error is at most ``rtol``; return it with the estimate and how that ended."""
-    tolerance = mesh_tolerance_for(rtol) if tolerance is None else tolerance
-    order = order_for(rtol)
-    guess: Guess = state
-    best: tuple[State, ErrorEstimate] | None = None
-    outcome = Outcome.REFINEMENT_LIMIT
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A refined state of ``groups``, its observables and their errors, and how the refinement ended.
+
+    ``state`` is that of :func:`solvable` groups; ``estimate`` is None where not even a coarse state was found.
+    """
+
+    groups: Groups
+    state: State | None
+    values: Observables | None
+    estimate: ErrorEstimate | None
+    outcome: Outcome
+
+    @property
+    def effort(self) -> float:
+        """What :func:`continuation.march` steers by."""
+        return 4.0 if self.state is None else self.state.effort
+
+
+def converge(guess: Guess, groups: Groups, rtol: float) -> Point:
+    """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large."""
+    base = solvable(groups)
+    law = contact_law(base)
+    tolerance = mesh_tolerance_for(rtol)
+    best = Point(groups, None, None, None, Outcome.REFINEMENT_LIMIT)
     last: tuple[int, Array] | None = None
+    outcome = Outcome.REFINEMENT_LIMIT
     for _ in range(MAX_REFINEMENTS):
         try:
-            mesh = mesh_for(guess, state.groups, state.equations.law, order, tolerance, 0.3 * rtol)
+            mesh = mesh_for(guess, base, law, order_for(rtol), tolerance, 0.3 * rtol)
         except MeshTooLarge:
             tolerance *= 5.0
             continue
-        found = solve_state(state.groups, Operators(mesh), guess, newton_tolerance(rtol))
-        if not found.outcome.ok:
-            outcome = found.outcome
+        state = solve_state(base, Operators(mesh), guess, newton_tolerance(rtol))
+        if not state.outcome.ok:
+            outcome = state.outcome
             break
-        values, estimate = estimate_of(found, groups, FineOperators(mesh))
+        point = judge(state, groups, FineOperators(mesh), rtol)
+        assert point.estimate is not None and point.values is not None
         if last is not None and mesh.size >= CLEARLY_FINER * last[0]:
-            estimate = estimate.at_most(np.abs(values - last[1]))
-        last = mesh.size, values
-        if best is None or estimate.total < best[1].total:
-            best = found, estimate
-        if estimate.total <= rtol:
-            return found, estimate, Outcome.CONVERGED
-        if estimate.total <= 3 * estimate.floor:
+            estimate = point.estimate.at_most(np.abs(point.values.array() - last[1]))
+            point = replace(point, estimate=estimate, outcome=reached(estimate, rtol))
+        last = mesh.size, point.values.array()
+        if point.outcome.ok:
+            return point
+        if best.estimate is None or point.estimate.total < best.estimate.total:
+            best = point
+        if point.estimate.total <= 3 * point.estimate.floor:
             break
-        tolerance *= min(0.3, max(0.03, 0.3 * rtol / estimate.total))
-        guess = found
-    if best is None:
-        return state, None, outcome
-    if best[1].floor > 0.3 * rtol:
+        tolerance *= min(0.3, max(0.03, 0.3 * rtol / point.estimate.total))
+        guess = state
+    if best.estimate is not None and best.estimate.floor > 0.3 * rtol:
         outcome = Outcome.ROUNDING
-    return *best, outcome
+    return replace(best, outcome=outcome)
+
+
+def judge(state: State, groups: Groups, fine: FineOperators, rtol: float) -> Point:
+    """Return the state with its observables and their errors; it counts as converged if these are at most ``rtol``."""
+    values = values_of(state, groups)
+    estimate = error_estimate(state, values.array(), changes(state, fine))
+    return Point(groups, state, values, estimate, reached(estimate, rtol))
+
+
+def reached(estimate: ErrorEstimate, rtol: float) -> Outcome:
+    """Return whether an estimate holds the tolerance."""
+    return Outcome.CONVERGED if estimate.total <= rtol else Outcome.REFINEMENT_LIMIT
 
 
 def newton_tolerance(rtol: float) -> float:
@@ -210,46 +240,32 @@ def values_of(state: State, groups: Groups) -> Observables:
     )
 
 
-def estimate_of(state: State, groups: Groups, fine: FineOperators) -> tuple[Array, ErrorEstimate]:
-    """Return the observables of ``groups`` and their estimated errors from the state solved for it."""
-    values = values_of(state, groups).values()
-    return values, error_estimate(state, values, changes(state, fine))
-
-
 def finish(
-    state: State,
-    estimate: ErrorEstimate | None,
-    outcome: Outcome,
-    groups: Groups,
-    contact: LineContact | None,
-    rtol: float,
-    on_failure: str,
+    point: Point, groups: Groups, contact: LineContact | None, rtol: float, on_failure: str = "raise"
 ) -> Solution:
-    """Return the solution of a refined state, or raise what its outcome asks for."""
-    solution = None if estimate is None else solution_of(state, estimate, outcome, groups, contact, rtol)
-    if outcome.ok and solution is not None:
-        return solution
-    if on_failure == "return" and solution is not None:
+    """Return the solution that a refined state is, or raise what its outcome asks for."""
+    solution = solution_of(point, contact, rtol)
+    if solution is not None and (point.outcome.ok or on_failure == "return"):
         return solution
     reached = "" if solution is None else f" Reached: {solution.error_estimate:.1e}, asked: {rtol:.1e}."
-    raise SolveError(outcome, solution, f"{describe(groups)}: {outcome.value}{reached}")
+    raise SolveError(point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}")
 
 
-def solution_of(
-    state: State, estimate: ErrorEstimate, outcome: Outcome, groups: Groups, contact: LineContact | None, rtol: float
-) -> Solution:
-    """Return the solution that a refined state is."""
-    values = values_of(state, groups)
+def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solution | None:
+    """Return the solution that a refined state is, or None where there is no state."""
+    state, values, estimate = point.state, point.values, point.estimate
+    if state is None or values is None or estimate is None:
+        return None
     contact_pressure, fluid_pressure = state.equations.pressures(state.y)
-    notes = list(law_notes(groups, contact, values))
+    notes = list(law_notes(point.groups, contact, values))
     if math.isnan(values.flux_gap):
         notes.append("The gap is negative, so that no fluid passes: there is no flux gap.")
     if estimate.floor > 0.1 * rtol:
         notes.append(f"Rounding in double precision bounds the relative error of this state at {estimate.floor:.1e}.")
     return Solution(
-        groups=groups,
+        groups=point.groups,
         contact=contact,
-        outcome=outcome,
+        outcome=point.outcome,
         notes=tuple(notes),
         rtol=rtol,
         law=state.equations.law.name,
@@ -258,7 +274,7 @@ def solution_of(
         rounding_floor=estimate.floor,
         mesh=state.mesh,
         nodal_gap=state.gap,
-        gap_shift=quasistatic_shift(groups),
+        gap_shift=quasistatic_shift(point.groups),
         nodal_contact_pressure=contact_pressure,
         nodal_fluid_pressure=fluid_pressure,
         newton_steps=state.root.steps,

@@ -28,6 +28,8 @@ CHORD = 0.1
 LARGEST_AMPLIFICATION = 40.0
 """Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
 
+EDGE_EXPONENT = 0.5
+
 PREDICTION_GOAL = 0.5
 """Relative error of the predicted gap at which the step of a path is kept."""
 
@@ -205,7 +207,7 @@ def mesh_for(
         else:
             slopes = float(groups.speed) * (gap - guess.flux_gap) / gap**3
             fluid = slopes * np.repeat(half_widths, x.shape[1])
-        edge_scale = np.sqrt(np.minimum(1.0, half_widths / width))
+        edge_scale = np.minimum(1.0, half_widths / width) ** EDGE_EXPONENT
         pressures = width / np.repeat(edge_scale, x.shape[1]) * np.stack([law.pressure(gap), fluid])
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(x.shape)
         central = np.abs(x.mean(axis=1)) <= half_widths

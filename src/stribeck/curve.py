@@ -1,0 +1,444 @@
+"""Friction along speed, load or roughness: the Stribeck curve, its minimum and its transitions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from ._types import Array
+from .asymptotics import hydrodynamic
+from .follow import Follower, follow
+from .newton import Outcome
+from .parameters import QUANTITIES, Groups, LineContact
+from .regimes import BOUNDARY_FLUID_SHARE, Regime, regime_of
+from .sensitivity import GROUPS, friction_slopes
+from .solution import Definition, Solution, check_definition, coefficients
+from .solve import Point, SolveError, as_groups, check_rtol, describe, finish, solution_of
+from .span import automatic_speeds
+from .threads import one_blas_thread
+from .units import InputError, show, to_si
+
+if TYPE_CHECKING:
+    import xarray
+
+Over = Literal["speed", "load", "roughness"]
+
+LOCATION_TOLERANCE = 1e-9
+"""Relative tolerance to which a minimum or a transition is located; its own error is that of the solved states."""
+
+POINTS_RANGE = (2, 100_000)
+
+
+@dataclass(frozen=True)
+class Landmark:
+    """A state of note on a curve: where it lies and the solution there.
+
+    Attributes
+    ----------
+    name : str
+        What it is, in words.
+    value : float
+        Where along the curve: group [-], or SI where the curve has a contact.
+    friction : float
+        Total friction coefficient there [-].
+    solution : Solution
+        The state.
+    """
+
+    name: str
+    value: float
+    friction: float
+    solution: Solution = field(repr=False)
+
+
+@dataclass(frozen=True, eq=False)
+class StribeckCurve:
+    """Converged states along one coordinate, and the friction on them.
+
+    Attributes
+    ----------
+    over : {"speed", "load", "roughness"}
+        What varies.
+    values : ndarray, shape (n,)
+        Where the points lie, ascending: the group [-], or SI units where the curve has a contact.
+    solutions : tuple of Solution
+        The state of each point.
+    contact : LineContact or None
+        The contact, at its own speed, load and roughness.
+    mu0, beta : float
+        Friction coefficient of the dry contact and coefficient of the contact law [-].
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    rtol : float
+        Relative tolerance of each state.
+    outcome : Outcome
+        CONVERGED, or why points are missing.
+    requested : int
+        Points asked for.
+    """
+
+    over: Over
+    values: Array
+    solutions: tuple[Solution, ...]
+    contact: LineContact | None
+    mu0: float
+    beta: float
+    definition: Definition
+    rtol: float
+    outcome: Outcome
+    requested: int
+    _points: tuple[Point, ...] = field(repr=False)
+    _path: _Coordinate = field(repr=False)
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return len(self.solutions)
+
+    @property
+    def groups(self) -> Groups:
+        """Groups of the points, as arrays."""
+        return Groups(*(np.array([float(getattr(s.groups, name)) for s in self.solutions]) for name in GROUPS))
+
+    def observable(self, name: str) -> Array:
+        """Return an attribute of every solution as an array, such as ``"central_gap"``."""
+        return np.array([getattr(s, name) for s in self.solutions])
+
+    @cached_property
+    def _friction(self) -> Array:
+        found = [s.friction(self.mu0, self.beta, self.definition) for s in self.solutions]
+        return np.array([[f.contact, f.viscous, f.total, f.error] for f in found]).reshape(-1, 4)
+
+    @property
+    def friction_contact(self) -> Array:
+        """Contact part of the friction coefficient [-]."""
+        return np.asarray(self._friction[:, 0])
+
+    @property
+    def friction_viscous(self) -> Array:
+        """Viscous part of the friction coefficient [-]."""
+        return np.asarray(self._friction[:, 1])
+
+    @property
+    def friction(self) -> Array:
+        """Friction coefficient [-]."""
+        return np.asarray(self._friction[:, 2])
+
+    @property
+    def friction_error(self) -> Array:
+        """Estimated absolute error of the friction coefficient [-]."""
+        return np.asarray(self._friction[:, 3])
+
+    @property
+    def hersey_number(self) -> Array:
+        """Hersey number eta U/F_N of the points [-]."""
+        return np.asarray(self.groups.hersey_number(self.beta))
+
+    @property
+    def hydrodynamic_friction(self) -> Array:
+        """Friction of smooth surfaces by the paper's law, the abscissa of its second representation [-]."""
+        return np.asarray(hydrodynamic.friction(self.groups, self.beta))
+
+    @property
+    def regimes(self) -> tuple[Regime, ...]:
+        """Lubrication regime of each point."""
+        shares = zip(self.observable("fluid_load_share"), self.friction_contact, self.friction, strict=True)
+        return tuple(regime_of(fluid, contact / total if total > 0 else 0.0) for fluid, contact, total in shares)
+
+    @property
+    def error_estimate(self) -> float:
+        """Largest estimated relative error over all points."""
+        return max((s.error_estimate for s in self.solutions), default=math.nan)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What to know before using the numbers; each sentence counts the points that it concerns."""
+        counts: dict[str, list[str]] = {}
+        for solution in self.solutions:
+            for note in solution.notes:
+                counts.setdefault(note.split(":")[0].split(" is ")[0], []).append(note)
+        return tuple(f"{found[0]} ({len(found)} of {len(self)} points.)" for found in counts.values())
+
+    @cached_property
+    def minimum(self) -> Landmark | None:
+        """The friction minimum, located on solved states where the slope vanishes; None where the curve has none inside."""
+        i = int(np.argmin(self.friction)) if len(self) > 2 else 0
+        if not 0 < i < len(self) - 1:
+            return None
+
+        def slope(point: Point) -> float:
+            assert point.state is not None
+            slopes = friction_slopes(point.state, self.mu0, self.beta, self.definition)
+            return float(slopes @ self._path.direction)
+
+        return self._locate("minimum of friction", i - 1, i + 1, slope)
+
+    @cached_property
+    def transitions(self) -> tuple[Landmark, ...]:
+        """Where the fluid carries 5 % and 50 % of the load, and the friction minimum, as far as the curve holds them."""
+        found = []
+        shares = self.observable("fluid_load_share")
+        for share in (BOUNDARY_FLUID_SHARE, 0.5):
+            crossings = np.nonzero(np.diff(np.sign(shares - share)))[0]
+            if len(crossings):
+                i = int(crossings[0])
+                found.append(
+                    self._locate(
+                        f"fluid carries {share:.0%} of the load", i, i + 1, lambda p, share=share: _fluid(p) - share
+                    )
+                )
+        if self.minimum is not None:
+            found.append(self.minimum)
+        return tuple(mark for mark in found if mark is not None)
+
+    @one_blas_thread
+    def _locate(self, name: str, first: int, last: int, function: Callable[[Point], float]) -> Landmark | None:
+        """Return the landmark where ``function`` of the solved state vanishes between two points, or None."""
+        known = [(float(np.log(self.values[i])), self._points[i]) for i in range(first, last + 1)]
+        follower = Follower(self._path.groups_at, min(self.rtol, 1e-8))
+        solved: dict[float, Point] = {}
+
+        def at(s: float) -> float:
+            nearest = sorted(known, key=lambda pair: -abs(pair[0] - s))
+            point = follower(s, nearest)
+            if point is None or point.state is None:
+                raise SolveError(Outcome.PATH_LOST, None, f"{describe(self._path.groups_at(s))}: {Outcome.PATH_LOST.value}")
+            solved[s] = point
+            return function(point)
+
+        low, high = known[0][0], known[-1][0]
+        if at(low) * at(high) > 0:
+            return None
+        s = float(brentq(at, low, high, xtol=LOCATION_TOLERANCE, rtol=1e-14))
+        if s not in solved:
+            at(s)
+        solution = solution_of(solved[s], self._path.contact_at(s), self.rtol)
+        assert solution is not None
+        friction = solution.friction(self.mu0, self.beta, self.definition).total
+        return Landmark(name, math.exp(s), friction, solution)
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the curve as an xarray Dataset with units and long names; see :func:`stribeck.store.curve_dataset`."""
+        from .store import curve_dataset
+
+        return curve_dataset(self)
+
+    def to_netcdf(self, path: Any, *, force: bool = False) -> None:
+        """Write the curve as NetCDF; an existing file is kept unless ``force``."""
+        from .store import write_netcdf
+
+        write_netcdf(self.to_dataset(), path, force=force)
+
+    def to_csv(self, path: Any, *, force: bool = False) -> None:
+        """Write the curve as CSV; an existing file is kept unless ``force``."""
+        from .store import write_csv
+
+        write_csv(self.to_dataset(), path, force=force)
+
+    def plot(self, path: Any = None, *, force: bool = False) -> Any:
+        """Draw the curve; return the matplotlib figure, or write it where a ``path`` is given."""
+        from .plotting import plot_curve
+
+        return plot_curve(self, path, force=force)
+
+
+def _fluid(point: Point) -> float:
+    assert point.values is not None
+    return point.values.fluid_load_share
+
+
+@dataclass(frozen=True)
+class _Coordinate:
+    """What a curve runs along: the logarithm of one group, or of one SI quantity of a contact."""
+
+    over: Over
+    base: Groups | LineContact
+
+    def contact_at(self, s: float) -> LineContact | None:
+        """Return the contact at coordinate s."""
+        return self.base.replace(**{self.over: math.exp(s)}) if isinstance(self.base, LineContact) else None
+
+    def groups_at(self, s: float) -> Groups:
+        """Return the groups at coordinate s."""
+        contact = self.contact_at(s)
+        if contact is not None:
+            return contact.groups
+        assert isinstance(self.base, Groups)
+        return replace(self.base, **{self.over: math.exp(s)})
+
+    @property
+    def direction(self) -> Array:
+        """Derivatives of ln(speed), ln(load), ln(roughness) of the groups along s."""
+        if isinstance(self.base, LineContact) and self.over == "load":
+            return np.array([-2.0, 1.0, 0.0])
+        return np.array([1.0 if name == self.over else 0.0 for name in GROUPS])
+
+
+@one_blas_thread
+def stribeck_curve(
+    problem: LineContact | Groups | None = None,
+    *,
+    speed: ArrayLike | Sequence[str] | None = None,
+    load: ArrayLike | Sequence[str] | None = None,
+    roughness: ArrayLike | Sequence[str] | None = None,
+    points: int = 101,
+    rtol: float = 1e-6,
+    mu0: float | None = None,
+    beta: float | None = None,
+    definition: Definition = "paper",
+    on_point: Callable[[int, int], object] | None = None,
+) -> StribeckCurve:
+    """Solve the contact along speed, load or roughness.
+
+    Parameters
+    ----------
+    problem : LineContact or Groups, optional
+        The contact; what varies in it is replaced.  Without it the other two groups are given as keywords.
+    speed, load, roughness : float, or (low, high), or array_like, optional
+        A pair is the range of what varies, with ``points`` in between, evenly in the logarithm; a longer array gives the
+        points themselves.  Groups [-], or SI numbers or text with units where ``problem`` is a LineContact.  Without any
+        pair the speed varies, from the boundary plateau to the hydrodynamic branch, as far as the solver reaches.
+    points : int
+        Number of points, 2 to 100000.
+    rtol : float
+        Relative tolerance of each state.
+    mu0, beta : float, optional
+        Friction coefficient of the dry contact and coefficient of the contact law [-]; those of the contact, or 1.
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction, see :meth:`Solution.friction`.
+    on_point : callable, optional
+        ``on_point(done, points)`` is called after each point, for progress.
+
+    Returns
+    -------
+    StribeckCurve
+        All points, ascending; after Ctrl-C those that were finished, with outcome INTERRUPTED.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range.
+    SolveError
+        If the first state cannot be solved.
+
+    Notes
+    -----
+    States follow one another by continuation; each meets ``rtol`` by its own error estimate.
+    """
+    check_rtol(rtol)
+    definition = check_definition(definition)
+    given: dict[Over, Any] = {"speed": speed, "load": load, "roughness": roughness}
+    base, over, ends = _problem(problem, given)
+    contact = base if isinstance(base, LineContact) else None
+    mu0, beta = coefficients(contact, mu0, beta)
+    if isinstance(points, bool) or not isinstance(points, int) or not POINTS_RANGE[0] <= points <= POINTS_RANGE[1]:
+        raise InputError(f"points = {show(points)}; it must be a whole number from {POINTS_RANGE[0]} to {POINTS_RANGE[1]}.")
+    coordinate = _Coordinate(over, base)
+    if ends is None:
+        values = _automatic(coordinate, mu0, beta, definition, points)
+    elif len(ends) == 2:
+        values = np.geomspace(ends[0], ends[1], points)
+    else:
+        values = ends
+    _check_inside(coordinate, values)
+    descending = values[::-1]
+    done = 0
+    targets = np.log(descending)
+    wanted = set(targets.tolist())
+
+    def report(s: float, point: Point) -> None:
+        nonlocal done
+        if s in wanted and on_point is not None:
+            done += 1
+            on_point(done, len(values))
+
+    path = follow(coordinate.groups_at, targets.tolist(), rtol, report)
+    found = {s: p for s, p in zip(path.coordinates, path.states, strict=True) if s in wanted}
+    if not found:
+        if path.failure is not None:
+            finish(path.failure, coordinate.groups_at(float(targets[0])), contact, rtol)
+        raise SolveError(path.outcome, None, f"{describe(coordinate.groups_at(float(targets[0])))}: {path.outcome.value}")
+    solutions, kept, where = [], [], []
+    for value, s in zip(values, targets[::-1].tolist(), strict=True):
+        if s in found:
+            solution = solution_of(found[s], coordinate.contact_at(s), rtol)
+            assert solution is not None
+            solutions.append(solution)
+            kept.append(found[s])
+            where.append(value)
+    return StribeckCurve(
+        over=over,
+        values=np.array(where),
+        solutions=tuple(solutions),
+        contact=contact,
+        mu0=mu0,
+        beta=beta,
+        definition=definition,
+        rtol=rtol,
+        outcome=path.outcome,
+        requested=len(values),
+        _points=tuple(kept),
+        _path=coordinate,
+    )
+
+
+def _problem(problem: LineContact | Groups | None, given: dict[Over, Any]) -> tuple[LineContact | Groups, Over, Array | None]:
+    """Return what stays fixed, what varies, and its ends or points; None where they are to be found."""
+    ranges = [name for name, value in given.items() if value is not None and np.ndim(value) > 0]
+    if len(ranges) > 1:
+        raise InputError(f"{' and '.join(ranges)} are both ranges; a curve varies one of speed, load and roughness.")
+    over: Over = ranges[0] if ranges else "speed"
+    fixed = {name: value for name, value in given.items() if value is not None and name not in ranges}
+    if problem is None:
+        missing = [name for name in GROUPS if name != over and name not in fixed]
+        if missing:
+            raise InputError(f"{' and '.join(missing)} missing; give a LineContact, or the groups that do not vary.")
+        low = 1.0 if not ranges else float(np.asarray(given[over], dtype=float).ravel()[0])
+        base: LineContact | Groups = Groups(**{**fixed, over: low})
+    elif isinstance(problem, LineContact):
+        base = problem.replace(**fixed) if fixed else problem
+    else:
+        as_groups(problem)
+        base = replace(problem, **fixed)
+    if not ranges:
+        return base, over, None
+    return base, over, _ends(over, given[over], isinstance(base, LineContact))
+
+
+def _ends(over: Over, value: Any, si: bool) -> Array:
+    """Return the ends or points of a range as ascending positive numbers."""
+    items = [value] if isinstance(value, str) else list(value)
+    if si:
+        numbers = [to_si(item, QUANTITIES[over].dimension, over) for item in items]
+    else:
+        try:
+            numbers = [float(item) for item in items]
+        except (TypeError, ValueError):
+            raise InputError(f"{over} = {show(value)}; a range of groups is made of plain numbers.") from None
+    found = np.asarray(numbers)
+    if len(found) < 2 or not np.isfinite(found).all() or not (found > 0).all() or not (np.diff(found) > 0).all():
+        raise InputError(
+            f"{over} = {show(value)}; a range is two or more finite positive numbers that ascend, such as (1e-9, 10)."
+        )
+    return found
+
+
+def _automatic(coordinate: _Coordinate, mu0: float, beta: float, definition: Definition, points: int) -> Array:
+    """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm."""
+    groups = coordinate.groups_at(0.0)
+    low, high = automatic_speeds(groups, mu0, beta, definition)
+    return np.geomspace(low / float(groups.speed), high / float(groups.speed), points)
+
+
+def _check_inside(coordinate: _Coordinate, values: Array) -> None:
+    """Refuse a range whose groups cannot be formed."""
+    for value in (values[0], values[-1]):
+        groups = coordinate.groups_at(math.log(value))
+        if groups.speed == 0 and groups.roughness == 0:
+            raise InputError("speed and roughness are both zero; the dry smooth contact has no curve, use solve.")

@@ -1,0 +1,104 @@
+"""Following a state along one coordinate: prediction, a mesh kept for as long as it resolves, refinement where it does not.
+
+The coordinate is the logarithm of whatever varies.  The stepping is :func:`continuation.march`; here is what it corrects with.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from .continuation import Path, march
+from .contact_laws import contact_law
+from .equations import Operators
+from .estimate import FineOperators
+from .mesh import MeshTooLarge
+from .parameters import Groups
+from .solve import Point, converge, judge, mesh_tolerance_for, newton_tolerance, order_for, solvable
+from .start import cold_start
+from .states import Guess, State, extrapolate, mesh_for, solve_state
+
+LONGEST_STEP = math.log(10.0)
+SHORTEST_STEP = 1e-3
+
+CHECK_EVERY = 10
+"""Points between two looks at whether a coarser mesh would do."""
+
+WORTH_COARSENING = 0.85
+
+
+class Follower:
+    """Corrector of a path: ``groups_at(s)`` gives the groups at coordinate s.
+
+    It keeps the operators of the present mesh, whose making costs as much as several states.
+    """
+
+    def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
+        self.groups_at = groups_at
+        self.rtol = rtol
+        self.operators: Operators | None = None
+        self.fine: FineOperators | None = None
+        self.since_check = 0
+
+    def __call__(self, s: float, history: Sequence[tuple[float, Point]]) -> Point | None:
+        """Return the point at ``s`` predicted from ``history``; from cold where that is empty."""
+        groups = self.groups_at(s)
+        if not history:
+            path = cold_start(solvable(groups))
+            return self._adopt(converge(path.states[-1], groups, self.rtol)) if path.outcome.ok else None
+        guess = extrapolate([(c, p.state) for c, p in history if p.state is not None], s)
+        return self._on_present_mesh(guess, groups) or self._adopt(converge(guess, groups, self.rtol))
+
+    def _on_present_mesh(self, guess: Guess, groups: Groups) -> Point | None:
+        if self.operators is None or self.fine is None:
+            return None
+        state = solve_state(solvable(groups), self.operators, guess, newton_tolerance(self.rtol), max_steps=12)
+        if not state.outcome.ok:
+            return None
+        point = judge(state, groups, self.fine, self.rtol)
+        if not point.outcome.ok:
+            return None
+        self.since_check += 1
+        if self.since_check >= CHECK_EVERY:
+            self._coarsen(state)
+        return point
+
+    def _coarsen(self, state: State) -> None:
+        """Adopt for the next point the mesh that this state needs, if it is clearly smaller than the present one."""
+        self.since_check = 0
+        law = contact_law(state.groups)
+        try:
+            mesh = mesh_for(state, state.groups, law, order_for(self.rtol), mesh_tolerance_for(self.rtol), 0.3 * self.rtol)
+        except MeshTooLarge:
+            return
+        if mesh.size < WORTH_COARSENING * state.mesh.size:
+            self.operators, self.fine = Operators(mesh), FineOperators(mesh)
+
+    def _adopt(self, point: Point) -> Point:
+        if point.state is not None and point.outcome.ok:
+            self.operators = point.state.equations.operators
+            self.fine = FineOperators(self.operators.mesh)
+            self.since_check = 0
+        return point
+
+
+def follow(
+    groups_at: Callable[[float], Groups],
+    coordinates: Sequence[float],
+    rtol: float,
+    on_point: Callable[[float, Point], object] | None = None,
+) -> Path[Point]:
+    """Return the converged points at ``coordinates``, ascending or descending, and those between that the path needed."""
+    targets = np.asarray(coordinates, dtype=float)
+    return march(
+        Follower(groups_at, rtol),
+        float(targets[0]),
+        float(targets[-1]),
+        first_step=0.5,
+        max_step=LONGEST_STEP,
+        min_step=SHORTEST_STEP,
+        targets=targets.tolist(),
+        on_point=on_point,
+    )

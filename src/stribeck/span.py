@@ -1,0 +1,80 @@
+"""Where a Stribeck curve begins and ends: the speeds of the boundary plateau and of the hydrodynamic branch."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from .contact_laws import contact_law
+from .continuation import march
+from .equations import Operators
+from .mesh import MeshTooLarge
+from .observables import observables
+from .parameters import Groups
+from .start import MESH_TOLERANCE, NEWTON_TOLERANCE, ORDER, RIGID_SPEED, rigid_guess
+from .states import Guess, State, extrapolate, mesh_for, solve_state
+
+LEAST_SPEED = 1e-12
+"""Speed group below which no curve begins by itself."""
+
+PLATEAU = 1e-3
+"""Change of the fluid's share of the load over a decade of speed below which it is a plateau."""
+
+BRANCH = 1e-3
+"""Part of the friction from asperities below which the branch is hydrodynamic."""
+
+MARGIN = 30.0
+"""Factor by which the curve goes on beyond plateau and branch."""
+
+
+def automatic_speeds(groups: Groups, mu0: float, beta: float, definition: str) -> tuple[float, float]:
+    """Return the speed groups from boundary plateau to hydrodynamic branch for the load and roughness of ``groups``.
+
+    They are found on coarse states that come down in speed from the rigid film.  Smooth surfaces have no plateau: their
+    curve covers ten decades up to speed 10.
+    """
+    kappa = float(groups.relative_roughness)
+    if kappa == 0:
+        return 1e-9, 10.0
+    top = math.log(max(RIGID_SPEED, (30 * kappa) ** 1.5 * math.sqrt(24)))
+    plateau = False
+
+    def correct(s: float, history: Sequence[tuple[float, State]]) -> State | None:
+        here = replace(groups, speed=math.exp(-s))
+        guess: Guess = rigid_guess(here) if not history else extrapolate(history, s)
+        try:
+            mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
+        except MeshTooLarge:
+            return None
+        return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
+
+    shares: list[tuple[float, float, float]] = []
+
+    def record(s: float, state: State) -> None:
+        nonlocal plateau
+        values = observables(state.equations, state.y, float(groups.load))
+        viscous = beta * float(getattr(values, f"viscous_{definition}"))
+        contact = mu0 * values.contact_load_share
+        shares.append((-s, values.fluid_load_share, contact / max(contact + viscous, 1e-300)))
+        if len(shares) > 1:
+            (s0, f0, _), (s1, f1, _) = shares[-2:]
+            plateau = abs(f1 - f0) < PLATEAU * (s0 - s1) / math.log(10) and values.contact_load_share > 0.1
+
+    march(
+        correct,
+        -top,
+        -math.log(LEAST_SPEED),
+        first_step=0.5,
+        max_step=math.log(10),
+        min_step=1e-3,
+        stop_when=lambda state: plateau,
+        on_point=record,
+    )
+    low = max(LEAST_SPEED, math.exp(shares[-1][0]) / MARGIN)
+    contact_part = np.array([part for _, _, part in shares])
+    on_branch = np.nonzero(contact_part < BRANCH)[0]
+    high = math.exp(shares[int(on_branch[-1])][0]) if len(on_branch) else math.exp(top)
+    return low, MARGIN * high
