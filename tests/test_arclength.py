@@ -328,22 +328,25 @@ def test_the_caller_says_how_ill_conditioned_a_jacobian_may_be():
     def tiny(p):
         return np.array([1.0, 1.0 if p < 0.5 else 1e-20])
 
-    tolerant, strict = (
-        trace(
+    def follow(p, **limit):
+        return trace(
             lambda x, p: tiny(p) * (x - p),
             lambda x, p: np.diag(tiny(p)),
             lambda x, p: -tiny(p),
-            [0.0, 0.0],
-            0.0,
+            [p, p],
+            p,
             bounds=(0.0, 1.0),
             **limit,
         )
-        for limit in ({}, {"singular_below": 1.0})
-    )
-    assert tolerant.outcome.ok
-    assert tolerant.parameters[-1] == 1.0
+
+    for start in (0.0, 0.75):
+        tolerant = follow(start)
+        assert tolerant.outcome.ok
+        assert tolerant.parameters[-1] == 1.0
+    strict = follow(0.0, singular_below=1.0)
     assert strict.outcome is Outcome.PATH_LOST
     assert 0.49 < strict.parameters[-1] < 0.5
+    assert follow(0.75, singular_below=1.0).outcome is Outcome.SINGULAR
 
 
 @pytest.mark.parametrize(

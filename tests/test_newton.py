@@ -142,6 +142,27 @@ def test_no_step_is_longer_than_the_fraction_allows():
     assert (x[1:] / x[:-1]).min() == pytest.approx(0.3)
 
 
+def test_a_chord_step_that_the_fraction_would_shorten_is_not_taken():
+    seen = []
+
+    def residual(x):
+        seen.append(x[0])
+        return np.log(x)
+
+    flat = root_find(lambda x: x, lambda x: np.eye(1), [1.0]).factors  # makes the first step 3.9 long
+    root = root_find(
+        residual,
+        lambda x: np.diag(1.0 / x),
+        [50.0],
+        fraction=lambda x, dx: min(1.0, 1.0 / abs(dx[0])),
+        chord=0.1,
+        factors=flat,
+        max_steps=100,
+    )
+    assert root.outcome.ok
+    assert np.abs(np.diff(seen)).max() <= 1.0 + 1e-12
+
+
 def test_a_damped_step_is_never_the_last():
     # The step itself is small at once, but only a tenth of it is admitted, so it proves nothing.
     root = root_find(lambda x: x, lambda x: np.eye(1), [1e-4], fraction=lambda x, dx: 0.1, tolerance=1e-3)

@@ -1,6 +1,7 @@
 """The lubrication problem followed along each of its groups, on one mesh, by both continuations.
 
-The state is a mixed one: gaps from 1e-3 in the contact to 6e3 at the ends of the mesh.
+In the state they start from asperities carry four fifths of the load; the branches reach from where these
+carry all of it to where they carry none. Gaps run from 1e-3 in the contact to 6e3 at the ends of the mesh.
 """
 
 import math
@@ -161,8 +162,8 @@ def test_a_first_step_too_long_is_retried_shorter(problem, direction):
     lengths = []
     branch = problem.trace(direction, step=100.0, max_step=100.0, on_point=lambda s, _: lengths.append(s))
     assert branch.outcome.ok
-    assert branch.failures >= 3
-    assert lengths[1] in {100.0 / 2.0**halvings for halvings in range(3, branch.failures + 1)}
+    assert branch.failures > 0
+    assert lengths[1] in {100.0 / 2.0**halvings for halvings in range(1, branch.failures + 1)}
     end = problem.parameter + direction * SPAN
     path = problem.natural([problem.parameter, end], max_steps=4)
     assert path.outcome.ok
@@ -179,7 +180,7 @@ def test_nothing_behind_a_step_that_failed_is_lost(problem, direction):
         direction, step=0.1, max_step=100.0, max_steps=4, on_point=lambda s, point: told.append((s, point))
     )
     assert branch.outcome.ok
-    assert branch.failures > 3
+    assert branch.failures > 1
     assert told[1][0] == 0.1  # so every failure had points behind it
     np.testing.assert_array_equal(branch.points, [point.x for _, point in told])
     np.testing.assert_array_equal(branch.parameters, [point.parameter for _, point in told])

@@ -23,8 +23,8 @@ from . import reynolds
 from ._types import Array
 from .elasticity import deflection_operator
 from .equations import LOAD, Equations
-from .mesh import Mesh, legendre_tail
-from .observables import NAMES, gradients
+from .mesh import Mesh, interpolation_error
+from .observables import NAMES, Observables, gradients
 from .states import State
 
 EXTRA_NODES = 4
@@ -32,6 +32,10 @@ EXTRA_NODES = 4
 
 SAFETY = 2.0
 """Factor from the estimated to the stated error."""
+
+FLAT = 0.2
+"""Where the gap differs from the flux gap by less than this part of itself all over a panel, the pressure gradient is smoother
+than its formula in the gap, which there is the difference of nearly equal numbers; it is interpolated itself."""
 
 ROUNDING_UNITS = 4.0
 """Units in the last place by which the residual may be wrong; checked against meshes that should agree."""
@@ -100,25 +104,18 @@ class ErrorEstimate:
         return float(np.nanmax(self.rounding / self.scales))
 
 
-@dataclass(frozen=True)
-class Changes:
-    """What may be wrong: with the unknowns, by defect and by rounding, and with the gap between the nodes.
-
-    ``unknowns`` has shape (1 + 2, len(y)), the defect first; ``interpolation`` holds the absolute errors of the
-    interpolated central and least gap.
-    """
-
-    unknowns: Array = field(repr=False)
-    interpolation: Array = field(repr=False)
-
-
-def changes(state: State, fine: FineOperators) -> Changes:
-    """Return what defect and rounding may change in a state."""
+def changes(state: State, fine: FineOperators) -> Array:
+    """Return the changes of the unknowns that defect and rounding may cause, shape (1 + 2, len(y)), the defect first."""
     equations, op, y = state.equations, state.equations.operators, state.y
     mesh = fine.mesh
     h_star = y[-1]
     gap = np.exp(state.mesh.to_order(state.shape, mesh.order)) * mesh.far
     slopes = reynolds.gradient(gap, h_star)
+    flat = np.abs(state.gap - h_star) < FLAT * state.gap
+    flat_panels = flat.reshape(state.mesh.panels, -1).all(axis=1)
+    slopes = np.where(
+        np.repeat(flat_panels, mesh.order), state.mesh.to_order(reynolds.gradient(state.gap, h_star), mesh.order), slopes
+    )
     pressure = equations.law.pressure(gap) + equations.speed * mesh.integral_from_infinity(slopes)
     deflection = fine.deflection @ pressure
     residual = np.empty((3, len(y)))
@@ -130,13 +127,16 @@ def changes(state: State, fine: FineOperators) -> Changes:
     noise[-1] = size * equations.flux_scale * (mesh.weights @ np.abs(slopes))
     residual[1:] = _signs(len(y)) * noise
     assert state.root.factors is not None
-    unknowns = -lu_solve(state.root.factors, residual.T, check_finite=False).T
-    tails = legendre_tail(state.shape, state.mesh.order)
-    central = int(np.searchsorted(state.mesh.edges, 0.0))
-    least = int(np.argmin(state.gap)) // state.mesh.order
-    missed = tails[central], tails[max(0, least - 1) : least + 2].max()
-    gaps = state.gap[central * state.mesh.order], state.gap.min()
-    return Changes(unknowns, SAFETY * np.multiply(missed, gaps))
+    return np.asarray(-lu_solve(state.root.factors, residual.T, check_finite=False).T)
+
+
+def interpolation_errors(state: State, minimum_position: float) -> tuple[float, float]:
+    """Return the absolute errors of the interpolated central and least gap."""
+    mesh = state.mesh
+    shapes, gaps = state.shape.reshape(mesh.panels, -1), state.gap.reshape(mesh.panels, -1)
+    central = int(np.searchsorted(mesh.edges, 0.0))
+    least = int(mesh.locate(np.array([minimum_position]))[0][0])
+    return tuple(SAFETY * interpolation_error(shapes[k]) * float(gaps[k].min()) for k in (central, least))  # type: ignore[return-value]
 
 
 def _signs(size: int) -> Array:
@@ -145,15 +145,15 @@ def _signs(size: int) -> Array:
     return np.sign(np.stack([np.sin(2.399963 * k * k), np.cos(1.7 * k * k)]))
 
 
-def error_estimate(state: State, values: Array, changes: Changes) -> ErrorEstimate:
-    """Return the estimated errors of the observables ``values`` of a state from the possible ``changes`` of it.
+def error_estimate(state: State, observed: Observables, changes: Array) -> ErrorEstimate:
+    """Return the estimated errors of what was ``observed`` on a state from the possible ``changes`` of its unknowns.
 
     At speed zero the values may be those of the same state under another load, see ``solve.quasistatic_shift``.
     """
-    effects = np.abs(gradients(state.equations, state.y, float(state.groups.load)) @ changes.unknowns.T)
+    effects = np.abs(gradients(state.equations, state.y, float(state.groups.load)) @ changes.T)
     interpolation = np.zeros(len(NAMES))
-    interpolation[[NAMES.index("central_gap"), NAMES.index("minimum_gap")]] = changes.interpolation
-    scales = np.abs(values)
+    interpolation[2:4] = interpolation_errors(state, observed.minimum_position)
+    scales = np.abs(observed.array())
     scales[:2] = 1.0
     scales[NAMES.index("offset")] = max(scales[NAMES.index("offset")], OFFSET_FLOOR)
     decay = state.equations.law.decay if state.equations.speed == 0 else 0.0

@@ -70,7 +70,7 @@ class Follower:
         self.since_check = 0
         law = contact_law(state.groups)
         try:
-            mesh = mesh_for(state, state.groups, law, order_for(self.rtol), mesh_tolerance_for(self.rtol), 0.3 * self.rtol)
+            mesh = mesh_for(state, state.groups, law, order_for(self.rtol), mesh_tolerance_for(self.rtol), 30 * self.rtol)
         except MeshTooLarge:
             return
         if mesh.size < WORTH_COARSENING * state.mesh.size:

@@ -235,6 +235,20 @@ def legendre_tail(values: Array, order: int) -> Array:
     return np.asarray(np.abs(last).max(axis=-1))
 
 
+def interpolation_error(values: Array) -> float:
+    """Return by how much the polynomial through the nodal ``values`` of one panel misses them between the nodes.
+
+    The Legendre coefficients beyond the last are taken to fall as the last four do, by pairs.
+    """
+    order = len(values)
+    c = np.abs(reference(order).to_legendre[-4:] @ values)
+    last, before = max(c[2], c[3]), max(c[0], c[1])
+    if last == 0:
+        return 0.0
+    rate = min(0.9, float(np.sqrt(last / before))) if before > 0 else 0.9
+    return float(last * rate / (1 - rate))
+
+
 def base_edges(scale: float, reach: float) -> Array:
     """Return the coarsest panels: dyadic edges ``0, +-scale, +-2 scale, ...`` up to at least ``reach``."""
     doublings = max(1, int(np.ceil(np.log2(reach / scale))))

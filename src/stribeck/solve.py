@@ -49,12 +49,12 @@ class SolveError(RuntimeError):
 
 def order_for(rtol: float) -> int:
     """Return the nodes per panel that reach ``rtol`` with the fewest unknowns."""
-    return 10 if rtol >= 1e-7 else 14
+    return 8 if rtol >= 1e-7 else 14
 
 
 def mesh_tolerance_for(rtol: float) -> float:
     """Return the Legendre tail to start refinement with; it reaches ``rtol`` at once in most states."""
-    return min(1e-3, 30.0 * rtol**0.8)
+    return min(3e-3, 30.0 * rtol**0.7)
 
 
 @one_blas_thread
@@ -180,7 +180,7 @@ def converge(guess: Guess, groups: Groups, rtol: float) -> Point:
     outcome = Outcome.REFINEMENT_LIMIT
     for _ in range(MAX_REFINEMENTS):
         try:
-            mesh = mesh_for(guess, base, law, order_for(rtol), tolerance, 0.3 * rtol)
+            mesh = mesh_for(guess, base, law, order_for(rtol), tolerance, 30 * rtol)
         except MeshTooLarge:
             tolerance *= 5.0
             continue
@@ -210,7 +210,7 @@ def converge(guess: Guess, groups: Groups, rtol: float) -> Point:
 def judge(state: State, groups: Groups, fine: FineOperators, rtol: float) -> Point:
     """Return the state with its observables and their errors; it counts as converged if these are at most ``rtol``."""
     values = values_of(state, groups)
-    estimate = error_estimate(state, values.array(), changes(state, fine))
+    estimate = error_estimate(state, values, changes(state, fine))
     return Point(groups, state, values, estimate, reached(estimate, rtol))
 
 

@@ -29,6 +29,7 @@ LARGEST_AMPLIFICATION = 40.0
 """Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
 
 EDGE_EXPONENT = 0.5
+REACH = 4
 
 PREDICTION_GOAL = 0.5
 """Relative error of the predicted gap at which the step of a path is kept."""
@@ -214,7 +215,7 @@ def mesh_for(
         shape = shape * np.where(central, max(0.1, tolerance / gap_tolerance), 0.1)[:, None]
         return np.concatenate([pressures.reshape(2, *x.shape), shape[None]])
 
-    return adapt(fields, scale, 16 * scale, order, tolerance)
+    return adapt(fields, scale, REACH * scale, order, tolerance)
 
 
 def solve_state(groups: Groups, operators: Operators, guess: Guess, tolerance: float, max_steps: int = 40) -> State:
