@@ -354,6 +354,7 @@ def test_the_caller_says_how_ill_conditioned_a_jacobian_may_be():
     [
         ("weight", {"weight": lambda x: 0.0}),
         ("weight", {"weight": lambda x: [math.nan]}),
+        ("weight", {"weight": lambda x: math.inf}),
         ("weight", {"weight": lambda x: [1.0, 1.0]}),
         ("direction", {"direction": 0}),
         ("bounds", {"bounds": (0.5, 1.0)}),

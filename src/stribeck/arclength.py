@@ -175,8 +175,8 @@ def trace(
 
     def metric(x: Array) -> Array:
         w = np.asarray(1.0 / n if weight is None else weight(x), dtype=np.float64)
-        if w.shape not in ((), (n,)) or not (w > 0.0).all():
-            raise ValueError(f"weight(x) = {w!r}; it must be positive, one number or {n} of them")
+        if w.shape not in ((), (n,)) or not ((w > 0.0) & (w < math.inf)).all():
+            raise ValueError(f"weight(x) = {w!r}; it must be positive and finite, one number or {n} of them")
         return np.append(np.broadcast_to(w, n), 1.0)
 
     curve = _Curve(

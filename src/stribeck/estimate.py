@@ -99,6 +99,16 @@ class ErrorEstimate:
         return float(np.nanmax(self.relative))
 
     @property
+    def between_nodes(self) -> float:
+        """The part of it that the polynomials between the nodes cause."""
+        return float(np.nanmax(self.interpolation / self.scales))
+
+    @property
+    def at_nodes(self) -> float:
+        """The part of it that mesh and iteration cause at the nodes."""
+        return float(np.nanmax(self.discretisation / self.scales))
+
+    @property
     def floor(self) -> float:
         """The part of it that rounding causes and no mesh removes."""
         return float(np.nanmax(self.rounding / self.scales))

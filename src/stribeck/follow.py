@@ -16,17 +16,21 @@ from .equations import Operators
 from .estimate import FineOperators
 from .mesh import MeshTooLarge
 from .parameters import Groups
-from .solve import Point, converge, judge, mesh_tolerance_for, newton_tolerance, order_for, solvable
+from .solve import Point, converge, judge, mesh_tolerances_for, newton_tolerance, order_for, solvable
 from .start import cold_start
 from .states import Guess, State, extrapolate, mesh_for, solve_state
 
 LONGEST_STEP = math.log(10.0)
 SHORTEST_STEP = 1e-3
 
-CHECK_EVERY = 10
+CHECK_EVERY = 6
 """Points between two looks at whether a coarser mesh would do."""
 
 WORTH_COARSENING = 0.85
+"""Ratio of sizes from which the coarser mesh is taken."""
+
+RELAX = 3.0
+"""Factor by which a mesh tolerance that once had to be lowered is raised again at such a look."""
 
 
 class Follower:
@@ -41,6 +45,7 @@ class Follower:
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
         self.since_check = 0
+        self.tolerances = mesh_tolerances_for(rtol)
 
     def __call__(self, s: float, history: Sequence[tuple[float, Point]]) -> Point | None:
         """Return the point at ``s`` predicted from ``history``; from cold where that is empty."""
@@ -49,7 +54,11 @@ class Follower:
             path = cold_start(solvable(groups))
             return self._adopt(converge(path.states[-1], groups, self.rtol)) if path.outcome.ok else None
         guess = extrapolate([(c, p.state) for c, p in history if p.state is not None], s)
-        return self._on_present_mesh(guess, groups) or self._adopt(converge(guess, groups, self.rtol))
+        point = self._on_present_mesh(guess, groups)
+        if point is not None and point.outcome.ok:
+            return point
+        better = guess if point is None or point.state is None else point.state
+        return self._adopt(converge(better, groups, self.rtol, self.tolerances))
 
     def _on_present_mesh(self, guess: Guess, groups: Groups) -> Point | None:
         if self.operators is None or self.fine is None:
@@ -58,10 +67,8 @@ class Follower:
         if not state.outcome.ok:
             return None
         point = judge(state, groups, self.fine, self.rtol)
-        if not point.outcome.ok:
-            return None
         self.since_check += 1
-        if self.since_check >= CHECK_EVERY:
+        if self.since_check >= CHECK_EVERY and point.outcome.ok:
             self._coarsen(state)
         return point
 
@@ -69,17 +76,21 @@ class Follower:
         """Adopt for the next point the mesh that this state needs, if it is clearly smaller than the present one."""
         self.since_check = 0
         law = contact_law(state.groups)
+        tail, gap_tail = mesh_tolerances_for(self.rtol)
+        relaxed = min(tail, RELAX * self.tolerances[0]), min(gap_tail, RELAX * self.tolerances[1])
         try:
-            mesh = mesh_for(state, state.groups, law, order_for(self.rtol), mesh_tolerance_for(self.rtol), 30 * self.rtol)
+            mesh = mesh_for(state, state.groups, law, order_for(self.rtol), *relaxed)
         except MeshTooLarge:
             return
         if mesh.size < WORTH_COARSENING * state.mesh.size:
             self.operators, self.fine = Operators(mesh), FineOperators(mesh)
+            self.tolerances = relaxed
 
     def _adopt(self, point: Point) -> Point:
         if point.state is not None and point.outcome.ok:
             self.operators = point.state.equations.operators
             self.fine = FineOperators(self.operators.mesh)
+            self.tolerances = point.tolerances or self.tolerances
             self.since_check = 0
         return point
 

@@ -41,6 +41,8 @@ class Reference:
     """Nodal values -> integral from -1 to 0."""
     left_end: Array
     """Nodal values -> value at -1."""
+    derivative: Array
+    """Legendre coefficients -> those of the derivative."""
 
     def interpolation(self, points: Array) -> Array:
         """Matrix from nodal values to the values at ``points`` of the interpolating polynomial."""
@@ -58,7 +60,9 @@ def reference(order: int) -> Reference:
     integral = legendre.legval(nodes, antiderivatives).T @ to_legendre
     left_half = legendre.legval(0.0, antiderivatives) @ to_legendre
     left_end = (-1.0) ** degrees @ to_legendre
-    return Reference(nodes, weights, to_legendre, integral, left_half, left_end)
+    derivative = np.zeros((order, order))
+    derivative[:-1] = legendre.legder(np.eye(order))
+    return Reference(nodes, weights, to_legendre, integral, left_half, left_end, derivative)
 
 
 @dataclass(frozen=True, eq=False)

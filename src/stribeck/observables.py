@@ -123,20 +123,29 @@ def least_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
     shapes = np.log(h[nodes] / mesh.far[nodes]).reshape(-1, mesh.order)
     rule, c, d = reference(mesh.order), mesh.centres[first : last + 1], mesh.half_widths[first : last + 1]
     x = c[:, None] + d[:, None] * SEARCH
-    s = SEARCH[np.argmin(shapes @ rule.interpolation(SEARCH).T + np.log(mesh.scale**2 + x * x), axis=1)]
+    s = SEARCH[np.argmin(shapes @ _to_search(mesh.order) + np.log(mesh.scale**2 + x * x), axis=1)]
     coefficients = rule.to_legendre @ shapes.T
-    slopes, curvatures = legendre.legder(coefficients), legendre.legder(coefficients, 2)
-    for _ in range(4):
+    slopes = rule.derivative @ coefficients
+    curvatures = rule.derivative @ slopes
+    for _ in range(3):
         x = c + d * s
         far = mesh.scale**2 + x * x
-        slope = legendre.legval(s, slopes, tensor=False) + 2 * d * x / far
-        curvature = legendre.legval(s, curvatures, tensor=False) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
+        basis = legendre.legvander(s, mesh.order - 1)
+        slope = np.einsum("pn,np->p", basis, slopes) + 2 * d * x / far
+        curvature = np.einsum("pn,np->p", basis, curvatures) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
         step = np.where(curvature > 0, -slope / np.where(curvature > 0, curvature, 1.0), 0.0)
         s = np.clip(s + np.clip(step, -SEARCH_STEP, SEARCH_STEP), -1.0, 1.0)
     x = c + d * s
-    gaps = np.exp(legendre.legval(s, coefficients, tensor=False)) * (mesh.scale**2 + x * x)
+    basis = legendre.legvander(s, mesh.order - 1)
+    gaps = np.exp(np.einsum("pn,np->p", basis, coefficients)) * (mesh.scale**2 + x * x)
     best = int(np.argmin(gaps))
     return float(x[best]), float(gaps[best])
+
+
+@lru_cache(maxsize=32)
+def _to_search(order: int) -> Array:
+    """Matrix from nodal values to those at :data:`SEARCH`, transposed."""
+    return reference(order).interpolation(SEARCH).T
 
 
 def friction_integrals(mesh: Mesh, h: Array, h_star: float) -> Array:

@@ -29,7 +29,7 @@ RTOL_RANGE = (1e-11, 1e-2)
 QUASISTATIC_LOAD = 0.01
 """At speed zero the load only shifts the gap: heavier contacts are solved at this load, where all gaps are positive."""
 
-MAX_REFINEMENTS = 8
+MAX_REFINEMENTS = 12
 
 LEAST_ESTIMATE = 1e-2
 """Part of the tolerance below which no error is stated: estimates so small were not checked."""
@@ -52,9 +52,9 @@ def order_for(rtol: float) -> int:
     return 8 if rtol >= 1e-7 else 14
 
 
-def mesh_tolerance_for(rtol: float) -> float:
-    """Return the Legendre tail to start refinement with; it reaches ``rtol`` at once in most states."""
-    return min(3e-3, 30.0 * rtol**0.7)
+def mesh_tolerances_for(rtol: float) -> tuple[float, float]:
+    """Return the Legendre tails to start refinement with; most states reach ``rtol`` with them at once."""
+    return min(3e-3, 30.0 * rtol**0.7), 10 * rtol
 
 
 @one_blas_thread
@@ -163,6 +163,7 @@ class Point:
     values: Observables | None
     estimate: ErrorEstimate | None
     outcome: Outcome
+    tolerances: tuple[float, float] | None = None
 
     @property
     def effort(self) -> float:
@@ -170,25 +171,28 @@ class Point:
         return 4.0 if self.state is None else self.state.effort
 
 
-def converge(guess: Guess, groups: Groups, rtol: float) -> Point:
-    """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large."""
+def converge(guess: Guess, groups: Groups, rtol: float, tolerances: tuple[float, float] | None = None) -> Point:
+    """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
+
+    ``tolerances`` are the Legendre tails to start with, see :func:`states.mesh_for`; the point tells with which it ended.
+    """
     base = solvable(groups)
     law = contact_law(base)
-    tolerance = mesh_tolerance_for(rtol)
+    tail, gap_tail = mesh_tolerances_for(rtol) if tolerances is None else tolerances
     best = Point(groups, None, None, None, Outcome.REFINEMENT_LIMIT)
     last: tuple[int, Array] | None = None
     outcome = Outcome.REFINEMENT_LIMIT
     for _ in range(MAX_REFINEMENTS):
         try:
-            mesh = mesh_for(guess, base, law, order_for(rtol), tolerance, 30 * rtol)
+            mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail)
         except MeshTooLarge:
-            tolerance *= 5.0
+            tail *= 3.0
             continue
         state = solve_state(base, Operators(mesh), guess, newton_tolerance(rtol))
         if not state.outcome.ok:
             outcome = state.outcome
             break
-        point = judge(state, groups, FineOperators(mesh), rtol)
+        point = replace(judge(state, groups, FineOperators(mesh), rtol), tolerances=(tail, gap_tail))
         assert point.estimate is not None and point.values is not None
         if last is not None and mesh.size >= CLEARLY_FINER * last[0]:
             estimate = point.estimate.at_most(np.abs(point.values.array() - last[1]))
@@ -200,11 +204,17 @@ def converge(guess: Guess, groups: Groups, rtol: float) -> Point:
             best = point
         if point.estimate.total <= 3 * point.estimate.floor:
             break
-        tolerance *= min(0.3, max(0.03, 0.3 * rtol / point.estimate.total))
+        tail *= shrink(math.sqrt(rtol / (point.estimate.at_nodes + 1e-300)))
+        gap_tail *= shrink(rtol / (point.estimate.between_nodes + 1e-300))
         guess = state
     if best.estimate is not None and best.estimate.floor > 0.3 * rtol:
         outcome = Outcome.ROUNDING
     return replace(best, outcome=outcome)
+
+
+def shrink(excess: float) -> float:
+    """Return the factor for a mesh tolerance whose error exceeds what is allowed by 1/``excess``."""
+    return 1.0 if excess > 2 else min(0.5, max(0.1, 0.5 * excess))
 
 
 def judge(state: State, groups: Groups, fine: FineOperators, rtol: float) -> Point:
@@ -221,7 +231,7 @@ def reached(estimate: ErrorEstimate, rtol: float) -> Outcome:
 
 def newton_tolerance(rtol: float) -> float:
     """Return the size of the last Newton step: what is left after it is far below ``rtol``."""
-    return max(1e-11, 1e-3 * rtol)
+    return max(1e-11, 1e-2 * rtol)
 
 
 def values_of(state: State, groups: Groups) -> Observables:

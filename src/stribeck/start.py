@@ -55,6 +55,11 @@ class RigidGuess:
         """The height."""
         return self.height
 
+    @property
+    def least_position(self) -> float:
+        """The middle."""
+        return 0.0
+
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
         return np.asarray(self.fields(mesh.nodes)[0])

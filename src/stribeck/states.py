@@ -46,6 +46,10 @@ class Guess(Protocol):
     def offset(self) -> float:
         """Guess of the offset."""
 
+    @property
+    def least_position(self) -> float:
+        """About where the gap is least."""
+
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
 
@@ -98,6 +102,11 @@ class State:
         return float(self.y[-1])
 
     @property
+    def least_position(self) -> float:
+        """The node where the gap is least."""
+        return float(self.mesh.nodes[np.argmin(self.gap)])
+
+    @property
     def outcome(self) -> Outcome:
         """Outcome of the Newton iteration; one stopped by rounding counts as converged, its error is estimated."""
         return Outcome.CONVERGED if self.root.outcome is Outcome.ROUNDING else self.root.outcome
@@ -145,6 +154,11 @@ class Extrapolation:
         """That of the last state; Newton's first step corrects it exactly."""
         return self.states[-1].offset
 
+    @property
+    def least_position(self) -> float:
+        """That of the last state."""
+        return self.states[-1].least_position
+
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
         log_gap = np.zeros(mesh.size)
@@ -189,7 +203,7 @@ def mesh_for(
     tolerance : float
         Legendre tail allowed on each panel.
     gap_tolerance : float
-        That of the logarithm of the gap on the panels that meet at zero, where the central gap is read off.
+        That of the logarithm of the gap on the panels where the central and the least gap are read off.
 
     Raises
     ------
@@ -211,8 +225,9 @@ def mesh_for(
         edge_scale = np.minimum(1.0, half_widths / width) ** EDGE_EXPONENT
         pressures = width / np.repeat(edge_scale, x.shape[1]) * np.stack([law.pressure(gap), fluid])
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(x.shape)
-        central = np.abs(x.mean(axis=1)) <= half_widths
-        shape = shape * np.where(central, max(0.1, tolerance / gap_tolerance), 0.1)[:, None]
+        centres = x.mean(axis=1)
+        read_off = (np.abs(centres) <= half_widths) | (np.abs(centres - guess.least_position) <= half_widths)
+        shape = shape * np.where(read_off, max(0.1, tolerance / gap_tolerance), 0.1)[:, None]
         return np.concatenate([pressures.reshape(2, *x.shape), shape[None]])
 
     return adapt(fields, scale, REACH * scale, order, tolerance)
