@@ -1,10 +1,18 @@
-"""What several test modules share: solved states, kept for the session."""
+"""What several test modules share: solved states, kept for the session, and what a finer and wider mesh makes of them."""
 
+import math
 from functools import cache
 
+import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck import reynolds
+from stribeck.contact_laws import contact_law
+from stribeck.equations import Equations, Operators
+from stribeck.mesh import Mesh
+from stribeck.newton import root_find
+from stribeck.observables import NAMES, observables
 
 
 @cache
@@ -20,3 +28,65 @@ def solved():
         return _solved(float(speed), float(load), float(roughness), rtol)
 
     return solve
+
+
+def values_of(equations, y, load):
+    """Return the observables in the order of NAMES."""
+    found = observables(equations, y, load)
+    return np.array([getattr(found, name) for name in NAMES])
+
+
+def _refined_values(solution, extra_nodes=6, doublings=5):
+    """Observables on a mesh with more nodes on each panel and with panels much farther out."""
+    coarse, groups = solution.mesh, solution.groups
+    out = coarse.edges[-1] * 2.0 ** np.arange(1, doublings + 1)
+    edges = np.concatenate([-out[::-1], coarse.edges, out])
+    mesh = Mesh(edges, coarse.order + extra_nodes, coarse.scale)
+    # At speed zero a light load keeps all gaps positive; a heavier one only shifts them.
+    light = min(groups.load, 1e-2) if groups.speed == 0 else groups.load
+    shift = -0.5 * groups.relative_roughness * math.log(groups.load / light)
+    base = sb.Groups(groups.speed, light, light * groups.relative_roughness)
+    gap = np.maximum(solution.profile(mesh.nodes).gap - shift, 1e-3 * solution.nodal_gap.min())
+    flux_gap = reynolds.flux_gap(gap, mesh.weights)
+    equations = Equations(Operators(mesh), base.speed, contact_law(base), flux_gap**2)
+    root = root_find(
+        equations.residual,
+        equations.jacobian,
+        np.concatenate([gap, [solution.offset - shift, flux_gap]]),
+        fraction=equations.admissible,
+        size=equations.size,
+        tolerance=1e-12,
+        singular_below=0.0,
+    )
+    assert root.outcome.name in ("CONVERGED", "ROUNDING")
+    values = values_of(equations, root.x, light)
+    if shift:
+        values[[NAMES.index(name) for name in ("central_gap", "minimum_gap", "offset")]] += shift
+        shifted = root.x[:-2] + shift
+        values[NAMES.index("flux_gap")] = (
+            reynolds.flux_gap(shifted, mesh.weights) if shifted.min() > 0 else math.nan
+        )
+    return values
+
+
+def _true_errors(solution):
+    """Errors of the observables as the error estimate means them: relative, those of the load shares absolute.
+
+    Where an observable crosses zero they are relative to a thousandth of its scale there.
+    """
+    exact = _refined_values(solution)
+    found = np.array([getattr(solution.observables, name) for name in NAMES])
+    scales = np.abs(exact)
+    scales[:2] = 1.0
+    offset = NAMES.index("offset")
+    scales[offset] = max(scales[offset], 1e-3)
+    if solution.groups.speed == 0:
+        scales[2:4] = np.maximum(scales[2:4], 1e-3 * solution.groups.relative_roughness)
+    scales[scales == 0] = 1.0
+    return np.abs(found - exact) / scales
+
+
+@pytest.fixture(scope="session")
+def true_errors():
+    """Return the function that measures the errors of a solution on a finer and wider mesh."""
+    return _true_errors

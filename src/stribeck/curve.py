@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from ._types import Array
 from .asymptotics import hydrodynamic
 from .follow import Follower, follow
 from .newton import Outcome
 from .parameters import QUANTITIES, Groups, LineContact
-from .regimes import BOUNDARY_FLUID_SHARE, Regime, regime_of
+from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
 from .sensitivity import GROUPS, friction_slopes
 from .solution import Definition, Solution, check_definition, coefficients
 from .solve import Point, SolveError, as_groups, check_rtol, describe, finish, solution_of
@@ -107,7 +106,18 @@ class StribeckCurve:
         return Groups(*(np.array([float(getattr(s.groups, name)) for s in self.solutions]) for name in GROUPS))
 
     def observable(self, name: str) -> Array:
-        """Return an attribute of every solution as an array, such as ``"central_gap"``."""
+        """Return an attribute of every solution as an array.
+
+        Parameters
+        ----------
+        name : str
+            Name of a number that :class:`Solution` has, such as ``"central_gap"``.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Its values, in the order of :attr:`values`.
+        """
         return np.array([getattr(s, name) for s in self.solutions])
 
     @cached_property
@@ -181,21 +191,30 @@ class StribeckCurve:
 
     @cached_property
     def transitions(self) -> tuple[Landmark, ...]:
-        """Where the fluid carries 5 % and 50 % of the load, and the friction minimum, as far as the curve holds them."""
-        found = []
-        shares = self.observable("fluid_load_share")
-        for share in (BOUNDARY_FLUID_SHARE, 0.5):
-            crossings = np.nonzero(np.diff(np.sign(shares - share)))[0]
+        """The boundaries between regimes, where the load is shared in halves, and the friction minimum.
+
+        As far as the curve holds them, ascending: where the fluid carries 5 % and 50 % of the load, where asperities cause
+        10 % of the friction, and where friction is least.
+        """
+        fluid = self.observable("fluid_load_share")
+        contact = self.friction_contact / np.maximum(self.friction, 1e-300)
+        found = [self.minimum]
+
+        def cross(name: str, line: float, values: Array, of: Callable[[Point], float]) -> None:
+            crossings = np.nonzero(np.diff(np.sign(values - line)))[0]
             if len(crossings):
                 i = int(crossings[0])
-                found.append(
-                    self._locate(
-                        f"fluid carries {share:.0%} of the load", i, i + 1, lambda p, share=share: _fluid(p) - share
-                    )
-                )
-        if self.minimum is not None:
-            found.append(self.minimum)
-        return tuple(mark for mark in found if mark is not None)
+                found.append(self._locate(name.format(line), i, i + 1, lambda point: of(point) - line))
+
+        cross("fluid carries {:.0%} of the load", BOUNDARY_FLUID_SHARE, fluid, _fluid)
+        cross("fluid carries {:.0%} of the load", 0.5, fluid, _fluid)
+        cross("asperities cause {:.0%} of the friction", HYDRODYNAMIC_CONTACT_SHARE, contact, self._contact_part)
+        return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
+
+    def _contact_part(self, point: Point) -> float:
+        assert point.values is not None
+        contact = self.mu0 * point.values.contact_load_share
+        return contact / (contact + self.beta * float(getattr(point.values, f"viscous_{self.definition}")))
 
     @one_blas_thread
     def _locate(self, name: str, first: int, last: int, function: Callable[[Point], float]) -> Landmark | None:
@@ -215,6 +234,9 @@ class StribeckCurve:
         low, high = known[0][0], known[-1][0]
         if at(low) * at(high) > 0:
             return None
+        # Imported here because it takes longer than the rest of the package, and few uses get here.
+        from scipy.optimize import brentq
+
         s = float(brentq(at, low, high, xtol=LOCATION_TOLERANCE, rtol=1e-14))
         if s not in solved:
             at(s)
@@ -224,25 +246,61 @@ class StribeckCurve:
         return Landmark(name, math.exp(s), friction, solution)
 
     def to_dataset(self) -> xarray.Dataset:
-        """Return the curve as an xarray Dataset with units and long names; see :func:`stribeck.store.curve_dataset`."""
+        """Return the curve as an xarray Dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Observables, friction, regimes and inputs of each point, with units and long names as attributes; needs the
+            extra ``data``.
+        """
         from .store import curve_dataset
 
         return curve_dataset(self)
 
     def to_netcdf(self, path: Any, *, force: bool = False) -> None:
-        """Write the curve as NetCDF; an existing file is kept unless ``force``."""
+        """Write the curve as NetCDF.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+        force : bool
+            Whether an existing file is replaced; else it is kept and the call refused.
+        """
         from .store import write_netcdf
 
         write_netcdf(self.to_dataset(), path, force=force)
 
     def to_csv(self, path: Any, *, force: bool = False) -> None:
-        """Write the curve as CSV; an existing file is kept unless ``force``."""
+        """Write the curve as CSV.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+        force : bool
+            Whether an existing file is replaced; else it is kept and the call refused.
+        """
         from .store import write_csv
 
         write_csv(self.to_dataset(), path, force=force)
 
     def plot(self, path: Any = None, *, force: bool = False) -> Any:
-        """Draw the curve; return the matplotlib figure, or write it where a ``path`` is given."""
+        """Draw the curve.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            Image file to write as well, its format by its ending.
+        force : bool
+            Whether an existing file is replaced; else it is kept and the call refused.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure; needs the extra ``plot``.
+        """
         from .plotting import plot_curve
 
         return plot_curve(self, path, force=force)
@@ -381,7 +439,7 @@ def stribeck_curve(
         beta=beta,
         definition=definition,
         rtol=rtol,
-        outcome=path.outcome,
+        outcome=path.outcome if path.failure is None or path.outcome is not Outcome.PATH_LOST else path.failure.outcome,
         requested=len(values),
         _points=tuple(kept),
         _path=coordinate,

@@ -24,8 +24,9 @@ from .mesh import Mesh, reference
 NEAR = 3.0
 """Beyond this many half-widths from its centre a panel is integrated by its own Gauss rule: the error is below 1e-13."""
 
-FORWARD = 1.1
-"""Upward recurrence of Q_n within this distance; it loses digits only where the Legendre coefficients are small."""
+LOST_DIGITS = 1e5
+"""Amplification of rounding that the upward recurrence of Q_n may have outside a panel: it falls on the highest degrees, whose
+coefficients are small.  Beyond, the downward recurrence takes over."""
 
 
 def log_moments(points: Array, order: int) -> Array:
@@ -36,7 +37,7 @@ def log_moments(points: Array, order: int) -> Array:
     q = np.empty((order + 1, len(s)))
     q[0] = 0.5 * np.log(np.abs((s + 1) / (s - 1)))
     q[1] = s * q[0] - 1
-    near = np.abs(s) <= FORWARD
+    near = np.abs(s) <= np.cosh(np.log(LOST_DIGITS) / (2 * order))
     for n in range(1, order):
         q[n + 1] = ((2 * n + 1) * s * q[n] - n * q[n - 1]) / (n + 1)
     if not near.all():
@@ -49,7 +50,7 @@ def log_moments(points: Array, order: int) -> Array:
 
 
 def _second_kind_outside(s: Array, order: int) -> Array:
-    """Legendre functions of the second kind up to ``order`` for ``|s| > FORWARD``, by downward recurrence (Miller)."""
+    """Legendre functions of the second kind up to ``order`` outside the panel, by downward recurrence (Miller)."""
     nearest = np.abs(s).min()
     decay = np.log(nearest + np.sqrt(nearest**2 - 1))
     top = order + int(np.ceil(19.0 / decay))

@@ -22,8 +22,9 @@ from .states import Guess, State, extrapolate, mesh_for, solve_state
 
 LONGEST_STEP = math.log(10.0)
 SHORTEST_STEP = 1e-3
+PREDICTOR_ORDER = 4
 
-CHECK_EVERY = 6
+CHECK_EVERY = 12
 """Points between two looks at whether a coarser mesh would do."""
 
 WORTH_COARSENING = 0.85
@@ -53,17 +54,19 @@ class Follower:
         if not history:
             path = cold_start(solvable(groups))
             return self._adopt(converge(path.states[-1], groups, self.rtol)) if path.outcome.ok else None
-        guess = extrapolate([(c, p.state) for c, p in history if p.state is not None], s)
-        point = self._on_present_mesh(guess, groups)
+        known = [(c, p.state) for c, p in history if p.state is not None]
+        guess = extrapolate(known, s)
+        point = self._on_present_mesh(guess, groups, history[-1][1].state)
         if point is not None and point.outcome.ok:
             return point
         better = guess if point is None or point.state is None else point.state
         return self._adopt(converge(better, groups, self.rtol, self.tolerances))
 
-    def _on_present_mesh(self, guess: Guess, groups: Groups) -> Point | None:
+    def _on_present_mesh(self, guess: Guess, groups: Groups, last: State | None) -> Point | None:
         if self.operators is None or self.fine is None:
             return None
-        state = solve_state(solvable(groups), self.operators, guess, newton_tolerance(self.rtol), max_steps=12)
+        factors = last.root.factors if last is not None and last.mesh is self.operators.mesh else None
+        state = solve_state(solvable(groups), self.operators, guess, newton_tolerance(self.rtol), 12, factors)
         if not state.outcome.ok:
             return None
         point = judge(state, groups, self.fine, self.rtol)
@@ -110,6 +113,7 @@ def follow(
         first_step=0.5,
         max_step=LONGEST_STEP,
         min_step=SHORTEST_STEP,
+        order=PREDICTOR_ORDER,
         targets=targets.tolist(),
         on_point=on_point,
     )

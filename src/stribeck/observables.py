@@ -38,8 +38,8 @@ NAMES = (
 )
 """The observables, in the order of every array of them here."""
 
-SEARCH = np.linspace(-1, 1, 41)
-SEARCH_STEP = 0.05
+SEARCH = np.linspace(-1, 1, 21)
+SEARCH_STEP = 0.1
 """Where on a panel the least gap is looked for, and the spacing of these points."""
 
 TAIL_HALVINGS = 12
@@ -133,8 +133,8 @@ def least_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
         basis = legendre.legvander(s, mesh.order - 1)
         slope = np.einsum("pn,np->p", basis, slopes) + 2 * d * x / far
         curvature = np.einsum("pn,np->p", basis, curvatures) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
-        step = np.where(curvature > 0, -slope / np.where(curvature > 0, curvature, 1.0), 0.0)
-        s = np.clip(s + np.clip(step, -SEARCH_STEP, SEARCH_STEP), -1.0, 1.0)
+        step = -slope / np.maximum(curvature, np.abs(slope) / SEARCH_STEP + 1e-300)
+        s = np.minimum(1.0, np.maximum(-1.0, s + step))
     x = c + d * s
     basis = legendre.legvander(s, mesh.order - 1)
     gaps = np.exp(np.einsum("pn,np->p", basis, coefficients)) * (mesh.scale**2 + x * x)

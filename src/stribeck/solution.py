@@ -26,7 +26,19 @@ LAW_LEAST_GAP = 0.4
 
 @dataclass(frozen=True)
 class Friction:
-    """Friction coefficient and its two parts [-]; ``error`` is the estimated absolute error of the total."""
+    """Friction coefficient and its two parts.
+
+    Attributes
+    ----------
+    contact : float
+        Part from asperities, mu0 times their share of the load [-].
+    viscous : float
+        Part from the fluid [-].
+    total : float
+        Their sum [-].
+    error : float
+        Estimated absolute error of the sum [-].
+    """
 
     contact: float
     viscous: float
@@ -36,7 +48,19 @@ class Friction:
 
 @dataclass(frozen=True)
 class Profile:
-    """Fields along the contact: position, gap, contact, fluid and total pressure, in the units that ``unit`` names."""
+    """Fields along the contact.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n,)
+        Positions [a or m].
+    gap : ndarray, shape (n,)
+        Gap [u_Hz or m].
+    contact_pressure, fluid_pressure : ndarray, shape (n,)
+        The two parts of the pressure [p_Hz or Pa].
+    unit : {"Hertz", "SI"}
+        Which of the two units hold.
+    """
 
     x: Array
     gap: Array
@@ -69,8 +93,20 @@ class Solution:
         bounds the error.
     rtol : float
         The relative tolerance asked for.
-    nodes : int
-        Unknown gaps in the final discretisation.
+    law : str
+        Name of the contact law.
+    observables : Observables
+        The observables as one object, in Hertz units and for beta = 1.
+    relative_errors : ndarray
+        Estimated relative errors of the observables, by name in :attr:`errors`.
+    rounding_floor : float
+        The part of the error estimate that double precision causes and no mesh removes.
+    mesh : Mesh
+        The final discretisation.
+    nodal_gap, nodal_contact_pressure, nodal_fluid_pressure : ndarray, shape (nodes,)
+        The fields in the order of the mesh; :attr:`gap` and its neighbours give them by position.
+    gap_shift : float
+        What :attr:`gap` adds to ``nodal_gap``: at speed zero the load only shifts the gap [u_Hz].
     newton_steps : int
         Steps of its Newton iteration.
 
@@ -256,6 +292,11 @@ class Solution:
         x : array_like, shape (n,), optional
             Positions along the contact [m]; the nodes by default.
 
+        Returns
+        -------
+        Profile
+            In SI units.
+
         Raises
         ------
         InputError
@@ -277,7 +318,18 @@ class Solution:
         )
 
     def to_dict(self, mu0: float | None = None, beta: float | None = None) -> dict[str, object]:
-        """Return inputs, observables, both frictions, errors and outcome under their names, ready for JSON."""
+        """Return inputs, observables, both frictions, errors and outcome under their names, ready for JSON.
+
+        Parameters
+        ----------
+        mu0, beta : float, optional
+            As in :meth:`friction`.
+
+        Returns
+        -------
+        dict
+            Numbers, text, lists and dictionaries of these; nan or infinity where a quantity does not exist.
+        """
         names = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "minimum_position", "flux_gap")
         result: dict[str, object] = {
             "speed": float(self.groups.speed),

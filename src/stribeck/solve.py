@@ -39,7 +39,17 @@ CLEARLY_FINER = 1.1
 
 
 class SolveError(RuntimeError):
-    """A solve that did not reach its tolerance; ``solution`` is what it reached, or None, ``outcome`` says why."""
+    """A solve that did not reach its tolerance.
+
+    Parameters
+    ----------
+    outcome : Outcome
+        Why.
+    solution : Solution or None
+        What was reached, with its error estimate, if there is a state.
+    message : str
+        The sentence shown: the state, the outcome, what was reached.
+    """
 
     def __init__(self, outcome: Outcome, solution: Solution | None, message: str) -> None:
         super().__init__(message)
@@ -171,7 +181,9 @@ class Point:
         return 4.0 if self.state is None else self.state.effort
 
 
-def converge(guess: Guess, groups: Groups, rtol: float, tolerances: tuple[float, float] | None = None) -> Point:
+def converge(
+    guess: Guess, groups: Groups, rtol: float, tolerances: tuple[float, float] | None = None
+) -> Point:
     """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
 
     ``tolerances`` are the Legendre tails to start with, see :func:`states.mesh_for`; the point tells with which it ended.

@@ -12,6 +12,7 @@ from .contact_laws import contact_law
 from .continuation import march
 from .equations import Operators
 from .mesh import MeshTooLarge
+from .newton import Outcome
 from .observables import observables
 from .parameters import Groups
 from .start import MESH_TOLERANCE, NEWTON_TOLERANCE, ORDER, RIGID_SPEED, rigid_guess
@@ -63,7 +64,7 @@ def automatic_speeds(groups: Groups, mu0: float, beta: float, definition: str) -
             (s0, f0, _), (s1, f1, _) = shares[-2:]
             plateau = abs(f1 - f0) < PLATEAU * (s0 - s1) / math.log(10) and values.contact_load_share > 0.1
 
-    march(
+    path = march(
         correct,
         -top,
         -math.log(LEAST_SPEED),
@@ -73,6 +74,8 @@ def automatic_speeds(groups: Groups, mu0: float, beta: float, definition: str) -
         stop_when=lambda state: plateau,
         on_point=record,
     )
+    if path.outcome is Outcome.INTERRUPTED:
+        raise KeyboardInterrupt
     low = max(LEAST_SPEED, math.exp(shares[-1][0]) / MARGIN)
     contact_part = np.array([part for _, _, part in shares])
     on_branch = np.nonzero(contact_part < BRANCH)[0]

@@ -19,10 +19,10 @@ from .contact_laws import ContactLaw, contact_law
 from .continuation import extrapolation_weights
 from .equations import Equations, Operators
 from .mesh import Mesh, adapt
-from .newton import Outcome, Root, root_find
+from .newton import Factors, Outcome, Root, root_find
 from .parameters import Groups
 
-CHORD = 0.1
+CHORD = 0.2
 """Contraction above which a kept factorisation is given up."""
 
 LARGEST_AMPLIFICATION = 40.0
@@ -233,8 +233,18 @@ def mesh_for(
     return adapt(fields, scale, REACH * scale, order, tolerance)
 
 
-def solve_state(groups: Groups, operators: Operators, guess: Guess, tolerance: float, max_steps: int = 40) -> State:
-    """Return the state of the discrete equations on the mesh of ``operators`` nearest to ``guess``."""
+def solve_state(
+    groups: Groups,
+    operators: Operators,
+    guess: Guess,
+    tolerance: float,
+    max_steps: int = 40,
+    factors: Factors | None = None,
+) -> State:
+    """Return the state of the discrete equations on the mesh of ``operators`` nearest to ``guess``.
+
+    ``factors`` are those of a neighbour on the same mesh, to be used for as long as its Jacobian makes the steps contract.
+    """
     flux_gap = guess.flux_gap
     equations = Equations(operators, float(groups.speed), contact_law(groups), flux_gap**2)
     y = np.empty(operators.mesh.size + 2)
@@ -249,6 +259,7 @@ def solve_state(groups: Groups, operators: Operators, guess: Guess, tolerance: f
         tolerance=tolerance,
         max_steps=max_steps,
         chord=CHORD,
+        factors=factors,
         overwrite_jacobian=True,
         singular_below=0.0,
     )
