@@ -1,4 +1,4 @@
-"""What several test modules share: solved states, kept for the session, and what a finer and wider mesh makes of them."""
+"""What several test modules share: solved states, and what a finer and wider mesh makes of them."""
 
 import math
 from functools import cache
@@ -70,7 +70,7 @@ def _refined_values(solution, extra_nodes=6, doublings=5):
 
 
 def _true_errors(solution):
-    """Errors of the observables as the error estimate means them: relative, those of the load shares absolute.
+    """Errors of the observables as the estimate means them: relative, those of the load shares absolute.
 
     Where an observable crosses zero they are relative to a thousandth of its scale there.
     """

@@ -1,4 +1,4 @@
-"""Solved states: reference numbers, exact identities, limits with the slope of their error, refusals and failures."""
+"""Solved states: reference numbers, identities, limits with the slope of their error, refusals, failures."""
 
 import importlib
 import json
@@ -14,6 +14,7 @@ from stribeck import hertz, reynolds
 from stribeck.elasticity import deflection_operator
 from stribeck.mesh import Mesh, reference
 from stribeck.newton import Outcome
+from stribeck.observables import NAMES
 
 SEED = 91_577
 REFERENCE = json.loads((Path(__file__).parent / "data" / "reference_states.json").read_text())["states"]
@@ -54,7 +55,7 @@ OBSERVABLES = {
 
 
 def scale_of(name, listed):
-    """What an error is relative to: nothing for load shares; the offset crosses zero, its terms are not smaller than h(0)."""
+    """What an error is relative to: one for load shares; the offset crosses zero, its terms are as h(0)."""
     if name.endswith("load_share"):
         return 1.0
     if name == "offset":
@@ -65,8 +66,8 @@ def scale_of(name, listed):
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9])
 @pytest.mark.parametrize("listed", REFERENCE, ids=lambda state: f"speed {state['speed']:.1e}")
 def test_the_reference_states_are_reached(listed, rtol, solved):
-    # An independent solver's numbers.  Its own uncertainty bounds some: where contact carries nothing the two frictions
-    # are equal, which it meets to 1e-8 in the state at speed 0.994, and this solver to 1e-14.
+    # An independent solver's numbers.  Its own uncertainty bounds some: where contact carries nothing the two
+    # frictions are equal, which it meets to 1e-8 in the state at speed 0.994, and this solver to 1e-14.
     s = solved(listed["speed"], listed["load"], listed["roughness"], rtol=rtol)
     allowed = 1e-6 if rtol == 1e-6 else max(1e-8, listed["relative_uncertainty"])
     errors = {
@@ -96,7 +97,7 @@ FROZEN_MIXED = {
 
 
 def test_frozen_numbers_of_a_mixed_state(solved):
-    """Of the first version of this solver, at rtol 1e-9: they tell a change of the numbers from a change of the code."""
+    """Of the first version of this solver, at rtol 1e-9: whoever moves them says so in the changelog."""
     s = solved(3e-6, 0.05, 2e-5, rtol=1e-9)
     for name, value in FROZEN_MIXED.items():
         found = viscous(s, name.removeprefix("viscous_")) if name.startswith("viscous_") else getattr(s, name)
@@ -181,7 +182,8 @@ def test_the_two_frictions_differ_by_the_moment_of_the_contact_pressure(state):
     expected = 0.0
     if state.groups.speed > 0:
         expected = 4 * math.sqrt(state.groups.load) / math.pi * moment
-    assert viscous(state) - viscous(state, "balanced") == pytest.approx(expected, abs=3e-9 * viscous(state) + 1e-18)
+    difference = viscous(state) - viscous(state, "balanced")
+    assert difference == pytest.approx(expected, abs=3e-9 * viscous(state) + 1e-18)
 
 
 @pytest.mark.parametrize("speed", [1e-3, 1.0, 1e3])
@@ -238,8 +240,8 @@ def test_the_profile_at_the_nodes_is_the_nodal_field(state):
 
 
 def test_central_and_least_gap_are_those_of_the_profile(state):
-    dense = np.unique(np.concatenate([np.linspace(-2, 2, 4001), state.minimum_position + np.linspace(-1e-3, 1e-3, 401)]))
-    gap = state.profile(dense).gap
+    near = state.minimum_position + np.linspace(-1e-3, 1e-3, 401)
+    gap = state.profile(np.concatenate([np.linspace(-2, 2, 4001), near])).gap
     assert state.central_gap == pytest.approx(state.profile([0.0]).gap[0], rel=1e-12)
     assert state.minimum_gap == pytest.approx(state.profile([state.minimum_position]).gap[0], rel=1e-12)
     assert state.minimum_gap <= gap.min() * (1 + 1e-12)
@@ -309,7 +311,7 @@ def test_rough_pressures_end_in_hertz(solved):
 
 
 def test_very_rough_contacts_have_the_gaussian_pressure_of_a_rigid_parabola(solved):
-    """p_c = (pi/(8 kappa))**(1/2) exp(-x**2/(2 kappa)); the deflection takes ln(2)/(4 kappa) off its middle."""
+    """p_c = (pi/(8 kappa))**(1/2) exp(-x**2/(2 kappa)), less a part ln(2)/(4 kappa) in its middle."""
     kappas = np.array([10.0, 100.0, 1000.0])
     errors = []
     for kappa in kappas:
@@ -494,9 +496,9 @@ def test_a_contact_brings_its_own_coefficients_and_scales():
     assert np.allclose(si.x, s.x * a, rtol=1e-14, atol=0)
     assert np.allclose(si.gap, s.gap * a * a / 0.01, rtol=1e-14, atol=0)
     assert np.allclose(si.pressure, s.pressure * 2 * 50 / (math.pi * a), rtol=1e-14, atol=0)
-    at, fields = s.to_si([x]), s.profile([0.3])
+    at, fields, p_hertz = s.to_si([x]), s.profile([0.3]), 100 / (math.pi * a)
     assert at.gap[0] == pytest.approx(fields.gap[0] * a * a / 0.01, rel=1e-12)
-    assert at.contact_pressure[0] == pytest.approx(fields.contact_pressure[0] * 100 / (math.pi * a), rel=1e-12)
+    assert at.contact_pressure[0] == pytest.approx(fields.contact_pressure[0] * p_hertz, rel=1e-12)
     inside = np.abs(si.x) < 64 * a
     weights = (s.mesh.weights[np.argsort(s.mesh.nodes)] * a)[inside]
     assert weights @ si.pressure[inside] == pytest.approx(50, rel=1e-4)
@@ -530,9 +532,8 @@ def test_the_gap_is_judged_in_roughness_heights_of_the_surface():
     """alpha counts: the law's length is h_rms/alpha."""
     common = {"radius": 0.01, "modulus": 2.7e6, "load": 10.0, "viscosity": 0.1, "speed": 0.0}
     common |= {"beta": 0.05, "friction_coefficient": 0.8}
-    low, high = (
-        sb.solve(sb.LineContact(roughness=alpha * 1e-6, alpha=alpha, **common), rtol=1e-4) for alpha in (1.0, 4.0)
-    )
+    contacts = (sb.LineContact(roughness=alpha * 1e-6, alpha=alpha, **common) for alpha in (1.0, 4.0))
+    low, high = (sb.solve(contact, rtol=1e-4) for contact in contacts)
     assert low.central_gap == pytest.approx(high.central_gap, rel=1e-9)
     assert low.notes == ()
     assert "h_rms" in high.notes[0] and "h_rms/alpha" not in high.notes[0]
@@ -541,7 +542,7 @@ def test_the_gap_is_judged_in_roughness_heights_of_the_surface():
 def test_a_dictionary_of_a_solution_holds_every_observable(solved):
     s = solved(*TYPICAL["mixed"])
     values = s.to_dict(mu0=0.4, beta=0.01)
-    for name in ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset"):
+    for name in NAMES[:6]:
         assert values[name] == getattr(s, name)
     assert values["friction_balanced"]["total"] == s.friction(0.4, 0.01, "balanced").total
     assert values["friction_paper"]["viscous"] == s.friction(0.4, 0.01).viscous
@@ -621,8 +622,8 @@ def test_where_rounding_bounds_the_error_the_solve_says_so_and_keeps_what_it_has
 
 def test_where_refinement_ends_early_the_solve_says_so_and_keeps_what_it_has(monkeypatch):
     module = importlib.import_module("stribeck.solve")
-    monkeypatch.setattr(module, "MAX_REFINEMENTS", 1)
-    monkeypatch.setattr(module, "mesh_tolerance_for", lambda rtol: 1e-2)
+    mesh_for = module.mesh_for
+    monkeypatch.setattr(module, "mesh_for", lambda *arguments: mesh_for(*arguments[:4], 1e-2))
     groups = sb.Groups(1e-6, 0.1, 1e-5)
     with pytest.raises(sb.SolveError, match="largest size") as caught:
         sb.solve(groups, rtol=1e-9)

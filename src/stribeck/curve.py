@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -22,7 +23,7 @@ from .solution import Definition, Solution, check_definition, coefficients
 from .solve import Point, SolveError, as_groups, check_rtol, describe, finish, solution_of
 from .span import automatic_speeds
 from .threads import one_blas_thread
-from .units import InputError, show, to_si
+from .units import InputError, format_si, show, to_si
 
 if TYPE_CHECKING:
     import xarray
@@ -161,6 +162,22 @@ class StribeckCurve:
         shares = zip(self.observable("fluid_load_share"), self.friction_contact, self.friction, strict=True)
         return tuple(regime_of(fluid, contact / total if total > 0 else 0.0) for fluid, contact, total in shares)
 
+    @cached_property
+    def regime_ranges(self) -> tuple[tuple[Regime, float, float], ...]:
+        """Regimes along the curve, ascending: name, and the values between which it holds.
+
+        They meet at a located transition where there is one, else in the middle between two points.
+        """
+        edges = [float(self.values[0])]
+        names = [self.regimes[0]]
+        marks = [mark.value for mark in self.transitions if mark is not self.minimum]
+        for i in range(1, len(self)):
+            if self.regimes[i] != names[-1]:
+                low, high = float(self.values[i - 1]), float(self.values[i])
+                edges.append(next((value for value in marks if low <= value <= high), math.sqrt(low * high)))
+                names.append(self.regimes[i])
+        return tuple(zip(names, edges, [*edges[1:], float(self.values[-1])], strict=True))
+
     @property
     def error_estimate(self) -> float:
         """Largest estimated relative error over all points."""
@@ -168,12 +185,23 @@ class StribeckCurve:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What to know before using the numbers; each sentence counts the points that it concerns."""
-        counts: dict[str, list[str]] = {}
-        for solution in self.solutions:
+        """What to know before using the numbers; each sentence says which points it concerns."""
+        found: dict[str, list[tuple[float, str]]] = {}
+        for value, solution in zip(self.values.tolist(), self.solutions, strict=True):
             for note in solution.notes:
-                counts.setdefault(note.split(":")[0].split(" is ")[0], []).append(note)
-        return tuple(f"{found[0]} ({len(found)} of {len(self)} points.)" for found in counts.values())
+                # The numbers in it, which differ from point to point, are those of the first point.
+                kind = re.sub(r"[-+]?[0-9][-+.0-9e]*", "", note)
+                found.setdefault(kind, []).append((value, note))
+        return tuple(self._note(points) for points in found.values())
+
+    def _note(self, points: list[tuple[float, str]]) -> str:
+        first, last = points[0][0], points[-1][0]
+        if self.contact is None:
+            where = f"{self.over} group {first:.3g} to {last:.3g}"
+        else:
+            ends = (format_si(value, QUANTITIES[self.over].dimension) for value in (first, last))
+            where = f"{self.over} {' to '.join(ends)}"
+        return f"{points[0][1]} ({len(points)} of {len(self)} points, {where}.)"
 
     @cached_property
     def minimum(self) -> Landmark | None:

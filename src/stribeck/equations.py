@@ -91,15 +91,13 @@ class Equations:
     def residual(self, y: Array) -> Array:
         """Return the residual at ``y``, shape (N + 2,)."""
         op = self.operators
-        h, z0, h_star = y[:-2], y[-2], y[-1]
-        g = reynolds.gradient(h, h_star)
-        p_c = self.law.pressure(h)
-        r = np.empty_like(y)
-        r[:-2] = h - z0 - op.parabola - op.deflection @ p_c
-        r[-2] = op.mesh.weights @ p_c - LOAD
+        g = reynolds.gradient(y[:-2], y[-1])
+        p = self.law.pressure(y[:-2])
         if self.speed > 0:
-            r[:-2] -= op.deflection_of_gradient @ (self.speed * g)
-            r[-2] += self.speed * (op.load_of_gradient @ g)
+            p += self.speed * op.mesh.integral_from_infinity(g)
+        r = np.empty_like(y)
+        r[:-2] = y[:-2] - y[-2] - op.parabola - op.deflection @ p
+        r[-2] = op.mesh.weights @ p - LOAD
         r[-1] = self.flux_scale * (op.mesh.weights @ g)
         return r
 

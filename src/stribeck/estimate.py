@@ -14,17 +14,17 @@ To them comes what the polynomials on the panels miss between the nodes.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
-from scipy.linalg import lu_solve
+from scipy.linalg import lapack
 
 from . import reynolds
 from ._types import Array
 from .elasticity import deflection_operator
 from .equations import LOAD, Equations
 from .mesh import Mesh, interpolation_error
-from .observables import NAMES, Observables, gradients
+from .observables import NAMES, Observables, friction_integrals, friction_scale, gradients
 from .states import State
 
 EXTRA_NODES = 4
@@ -114,8 +114,20 @@ class ErrorEstimate:
         return float(np.nanmax(self.rounding / self.scales))
 
 
-def changes(state: State, fine: FineOperators) -> Array:
-    """Return the changes of the unknowns that defect and rounding may cause, shape (1 + 2, len(y)), the defect first."""
+@dataclass(frozen=True)
+class Changes:
+    """What may be wrong with a state.
+
+    ``unknowns``, shape (1 + 2, len(y)), are the changes that defect and rounding may cause, the defect first; ``friction``,
+    shape (2,), is by how much the two friction integrals change on the finer nodes.
+    """
+
+    unknowns: Array = field(repr=False)
+    friction: Array = field(repr=False)
+
+
+def changes(state: State, fine: FineOperators) -> Changes:
+    """Return what defect, quadrature and rounding may change in a state."""
     equations, op, y = state.equations, state.equations.operators, state.y
     mesh = fine.mesh
     h_star = y[-1]
@@ -137,7 +149,12 @@ def changes(state: State, fine: FineOperators) -> Array:
     noise[-1] = size * equations.flux_scale * (mesh.weights @ np.abs(slopes))
     residual[1:] = _signs(len(y)) * noise
     assert state.root.factors is not None
-    return np.asarray(-lu_solve(state.root.factors, residual.T, check_finite=False).T)
+    unknowns = -lapack.dgetrs(*state.root.factors, residual.T)[0].T
+    friction = np.zeros(2)
+    if equations.speed > 0:
+        finer = friction_integrals(mesh, gap, h_star, slopes) - friction_integrals(state.mesh, state.gap, h_star)
+        friction = friction_scale(float(state.groups.load), equations.speed) * np.abs(finer)
+    return Changes(unknowns, friction)
 
 
 def interpolation_errors(state: State, minimum_position: float) -> tuple[float, float]:
@@ -149,18 +166,20 @@ def interpolation_errors(state: State, minimum_position: float) -> tuple[float, 
     return tuple(SAFETY * interpolation_error(shapes[k]) * float(gaps[k].min()) for k in (central, least))  # type: ignore[return-value]
 
 
+@lru_cache(maxsize=64)
 def _signs(size: int) -> Array:
     """Two fixed patterns of signs without order, shape (2, size)."""
     k = np.arange(1, size + 1)
     return np.sign(np.stack([np.sin(2.399963 * k * k), np.cos(1.7 * k * k)]))
 
 
-def error_estimate(state: State, observed: Observables, changes: Array) -> ErrorEstimate:
+def error_estimate(state: State, observed: Observables, changes: Changes) -> ErrorEstimate:
     """Return the estimated errors of what was ``observed`` on a state from the possible ``changes`` of its unknowns.
 
     At speed zero the values may be those of the same state under another load, see ``solve.quasistatic_shift``.
     """
-    effects = np.abs(gradients(state.equations, state.y, float(state.groups.load)) @ changes.T)
+    effects = np.abs(gradients(state.equations, state.y, float(state.groups.load)) @ changes.unknowns.T)
+    effects[-2:, 0] += changes.friction
     interpolation = np.zeros(len(NAMES))
     interpolation[2:4] = interpolation_errors(state, observed.minimum_position)
     scales = np.abs(observed.array())

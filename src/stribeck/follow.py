@@ -24,7 +24,7 @@ LONGEST_STEP = math.log(10.0)
 SHORTEST_STEP = 1e-3
 PREDICTOR_ORDER = 4
 
-CHECK_EVERY = 12
+CHECK_EVERY = 8
 """Points between two looks at whether a coarser mesh would do."""
 
 WORTH_COARSENING = 0.85
@@ -76,23 +76,20 @@ class Follower:
         return point
 
     def _coarsen(self, state: State) -> None:
-        """Adopt for the next point the mesh that this state needs, if it is clearly smaller than the present one."""
+        """Try wider tolerances from now on, and at once where the mesh they make is clearly smaller than the present one."""
         self.since_check = 0
-        law = contact_law(state.groups)
         tail, gap_tail = mesh_tolerances_for(self.rtol)
-        relaxed = min(tail, RELAX * self.tolerances[0]), min(gap_tail, RELAX * self.tolerances[1])
+        self.tolerances = min(tail, RELAX * self.tolerances[0]), min(gap_tail, RELAX * self.tolerances[1])
         try:
-            mesh = mesh_for(state, state.groups, law, order_for(self.rtol), *relaxed)
+            mesh = mesh_for(state, state.groups, contact_law(state.groups), order_for(self.rtol), *self.tolerances)
         except MeshTooLarge:
             return
         if mesh.size < WORTH_COARSENING * state.mesh.size:
             self.operators, self.fine = Operators(mesh), FineOperators(mesh)
-            self.tolerances = relaxed
 
     def _adopt(self, point: Point) -> Point:
         if point.state is not None and point.outcome.ok:
-            self.operators = point.state.equations.operators
-            self.fine = FineOperators(self.operators.mesh)
+            self.operators, self.fine = point.state.equations.operators, point.fine
             self.tolerances = point.tolerances or self.tolerances
             self.since_check = 0
         return point

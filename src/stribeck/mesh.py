@@ -242,7 +242,8 @@ def legendre_tail(values: Array, order: int) -> Array:
 def interpolation_error(values: Array) -> float:
     """Return by how much the polynomial through the nodal ``values`` of one panel misses them between the nodes.
 
-    The Legendre coefficients beyond the last are taken to fall as the last four do, by pairs.
+    Twice the last Legendre coefficients, for truncation and aliasing, summed as if those beyond fell no faster than the last
+    four do, by pairs.
     """
     order = len(values)
     c = np.abs(reference(order).to_legendre[-4:] @ values)
@@ -250,7 +251,7 @@ def interpolation_error(values: Array) -> float:
     if last == 0:
         return 0.0
     rate = min(0.9, float(np.sqrt(last / before))) if before > 0 else 0.9
-    return float(last * rate / (1 - rate))
+    return float(2 * last / (1 - rate))
 
 
 def base_edges(scale: float, reach: float) -> Array:
@@ -261,16 +262,17 @@ def base_edges(scale: float, reach: float) -> Array:
 
 
 def adapt(
-    fields: Callable[[Array, Array], Array], scale: float, reach: float, order: int, tolerance: float
+    fields: Callable[[Array, Array, Array], Array], scale: float, reach: float, order: int, tolerance: float
 ) -> Mesh:
     """Return the coarsest dyadic mesh that resolves the given fields.
 
     Parameters
     ----------
     fields : callable
-        ``fields(x, half_widths)`` with ``x`` of shape (panels, order) and the half-widths of the panels, shape
+        ``fields(x, half_widths, stretch)`` with ``x`` of shape (panels, order) and the half-widths of the panels, shape
         (panels,), returns the fields there, shape (number, panels, order), each scaled so that ``tolerance`` is the size
-        that may be neglected.
+        that may be neglected. ``stretch``, of the shape of ``x``, is one but on the panel through infinity, where it is by
+        how much dx/dt grows towards it: what is integrated over x has to be multiplied by it.
     scale, reach : float
         Width of the coarsest panels and the least half-width of their box [half-width of the Hertz contact].
     order : int
@@ -293,12 +295,12 @@ def adapt(
     def unresolved(edges: Array) -> Array:
         half = 0.5 * (edges[:, 1] - edges[:, 0])
         x = edges.mean(axis=1)[:, None] + half[:, None] * nodes
-        tails = legendre_tail(fields(x, half).reshape(-1, x.size), order)
+        tails = legendre_tail(fields(x, half, np.ones_like(x)).reshape(-1, x.size), order)
         return np.asarray(tails.max(axis=0) > tolerance)
 
     while True:
-        t = nodes / reach
-        tail = legendre_tail(fields(1.0 / t[None, :], np.array([1.0 / reach])).reshape(-1, order), order)
+        x = reach / nodes[None, :]
+        tail = legendre_tail(fields(x, np.array([reach]), nodes[None, :] ** -2.0).reshape(-1, order), order)
         if tail.max() <= tolerance or reach > 1e9 * scale:
             break
         reach *= 2.0
@@ -317,4 +319,16 @@ def adapt(
         middle = 0.5 * (left + right)
         open_panels = np.concatenate([np.column_stack([left, middle]), np.column_stack([middle, right])])
     panels = np.concatenate(done)
-    return Mesh(np.append(np.sort(panels[:, 0]), panels[:, 1].max()), order, scale)
+    edges = np.append(np.sort(panels[:, 0]), panels[:, 1].max())
+    return Mesh(_merged(edges, unresolved), order, scale)
+
+
+def _merged(edges: Array, unresolved: Callable[[Array], Array]) -> Array:
+    """Return the edges without those whose two panels are resolved as one: halving leaves more than are needed."""
+    for parity in (0, 1, 0, 1):
+        inner = np.arange(1 + parity, len(edges) - 1, 2)
+        inner = inner[edges[inner] != 0.0]
+        unions = np.column_stack([edges[inner - 1], edges[inner + 1]])
+        if len(unions):
+            edges = np.delete(edges, inner[~unresolved(unions)])
+    return edges

@@ -70,12 +70,14 @@ def friction_scale(load: float, speed: float) -> float:
     return 2 * math.sqrt(load) * speed / (3 * math.pi)
 
 
-def friction_integrands(x: Array, h: Array, h_star: float) -> Array:
-    """Return the integrands of the two definitions of friction, shape (2, len(x))."""
+def friction_integrands(x: Array, h: Array, h_star: float, slopes: Array | None = None) -> Array:
+    """Return the integrands of the two definitions of friction, shape (2, len(x)).
+
+    ``slopes`` is the pressure gradient ``(h - h*)/h**3`` over lambda where that is known better than from the gap.
+    """
     u = 1 / h
-    paper = u * (3 * h_star * u - 2 + 3 * x * x * u * (1 - h_star * u))
-    balanced = u * (4 - 3 * h_star * u)
-    return np.stack([paper, balanced])
+    projected = 3 * x * x * (u * u * (1 - h_star * u) if slopes is None else slopes)
+    return np.stack([u * (3 * h_star * u - 2) + projected, u * (4 - 3 * h_star * u)])
 
 
 def observables(equations: Equations, y: Array, load: float) -> Observables:
@@ -127,7 +129,7 @@ def least_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
     coefficients = rule.to_legendre @ shapes.T
     slopes = rule.derivative @ coefficients
     curvatures = rule.derivative @ slopes
-    for _ in range(3):
+    for _ in range(2):
         x = c + d * s
         far = mesh.scale**2 + x * x
         basis = legendre.legvander(s, mesh.order - 1)
@@ -148,14 +150,15 @@ def _to_search(order: int) -> Array:
     return reference(order).interpolation(SEARCH).T
 
 
-def friction_integrals(mesh: Mesh, h: Array, h_star: float) -> Array:
+def friction_integrals(mesh: Mesh, h: Array, h_star: float, slopes: Array | None = None) -> Array:
     """Return the integrals of :func:`friction_integrands` over the whole line.
 
     Beyond the panels in ``x`` the gap is ``x**2/2 - ln|x|/2`` plus a smooth function of ``1/x``: that is interpolated, and
     the integrand summed on panels that halve towards infinity.
     """
     order = mesh.order
-    inner = friction_integrands(mesh.nodes[:-order], h[:-order], h_star) @ mesh.weights[:-order]
+    inner_slopes = None if slopes is None else slopes[:-order]
+    inner = friction_integrands(mesh.nodes[:-order], h[:-order], h_star, inner_slopes) @ mesh.weights[:-order]
     t, weights, to_tail = _towards_infinity(order)
     t = t * mesh.half_widths[-1]
     x_tail = mesh.nodes[-order:]

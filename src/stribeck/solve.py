@@ -59,12 +59,12 @@ class SolveError(RuntimeError):
 
 def order_for(rtol: float) -> int:
     """Return the nodes per panel that reach ``rtol`` with the fewest unknowns."""
-    return 8 if rtol >= 1e-7 else 14
+    return 12 if rtol >= 1e-7 else 16
 
 
 def mesh_tolerances_for(rtol: float) -> tuple[float, float]:
     """Return the Legendre tails to start refinement with; most states reach ``rtol`` with them at once."""
-    return min(3e-3, 30.0 * rtol**0.7), 10 * rtol
+    return min(1e-2, 0.4 * math.sqrt(rtol)), 0.3 * rtol
 
 
 @one_blas_thread
@@ -174,6 +174,7 @@ class Point:
     estimate: ErrorEstimate | None
     outcome: Outcome
     tolerances: tuple[float, float] | None = None
+    fine: FineOperators | None = None
 
     @property
     def effort(self) -> float:
@@ -226,14 +227,14 @@ def converge(
 
 def shrink(excess: float) -> float:
     """Return the factor for a mesh tolerance whose error exceeds what is allowed by 1/``excess``."""
-    return 1.0 if excess > 2 else min(0.5, max(0.1, 0.5 * excess))
+    return 1.0 if excess > 2 else min(0.5, max(0.3, 0.5 * excess))
 
 
 def judge(state: State, groups: Groups, fine: FineOperators, rtol: float) -> Point:
     """Return the state with its observables and their errors; it counts as converged if these are at most ``rtol``."""
     values = values_of(state, groups)
     estimate = error_estimate(state, values, changes(state, fine))
-    return Point(groups, state, values, estimate, reached(estimate, rtol))
+    return Point(groups, state, values, estimate, reached(estimate, rtol), fine=fine)
 
 
 def reached(estimate: ErrorEstimate, rtol: float) -> Outcome:

@@ -29,6 +29,7 @@ LARGEST_AMPLIFICATION = 40.0
 """Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
 
 EDGE_EXPONENT = 0.5
+VISCOUS = 1.0
 REACH = 4
 
 PREDICTION_GOAL = 0.5
@@ -210,10 +211,11 @@ def mesh_for(
     MeshTooLarge
         If more panels are needed than :data:`mesh.MAX_PANELS`.
     """
-    width = math.sqrt(1.0 + math.exp(guess.fields(np.zeros(1))[0, 0]))
+    central_gap = math.exp(guess.fields(np.zeros(1))[0, 0])
+    width = math.sqrt(1.0 + central_gap)
     scale = 2.0 ** round(math.log2(width))
 
-    def fields(x: Array, half_widths: Array) -> Array:
+    def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
         found = guess.fields(flat)
         gap = np.exp(found[0])
@@ -228,7 +230,8 @@ def mesh_for(
         centres = x.mean(axis=1)
         read_off = (np.abs(centres) <= half_widths) | (np.abs(centres - guess.least_position) <= half_widths)
         shape = shape * np.where(read_off, max(0.1, tolerance / gap_tolerance), 0.1)[:, None]
-        return np.concatenate([pressures.reshape(2, *x.shape), shape[None]])
+        shear = VISCOUS * (np.exp(-found[0]) * central_gap).reshape(x.shape)
+        return np.concatenate([stretch * pressures.reshape(2, *x.shape), shape[None], shear[None]])
 
     return adapt(fields, scale, REACH * scale, order, tolerance)
 

@@ -1,0 +1,168 @@
+"""Error of the observables against the number of unknowns: prints the table that docs/convergence.md shows.
+
+Usage::
+
+    python benchmarks/convergence.py [--out docs/convergence.md]
+
+The true error is the largest relative difference of the observables (absolute for the load shares) from a
+solution on a mesh with more nodes and with panels farther out; the estimate is what a user would read.  Runs
+for about ten seconds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import math
+import platform
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import scipy
+
+import stribeck as sb
+from stribeck.equations import Operators
+from stribeck.estimate import FineOperators
+from stribeck.mesh import Mesh, MeshTooLarge
+from stribeck.observables import NAMES
+from stribeck.start import cold_start
+from stribeck.states import State, mesh_for, solve_state
+
+judge = importlib.import_module("stribeck.solve").judge  # the name stribeck.solve is the function
+
+STATES = {
+    "mixed": (1e-5, 0.1, 1e-4),
+    "hydrodynamic": (1.0, 0.1, 1e-4),
+    "boundary": (1e-8, 0.1, 1e-2),
+    "thin film": (1e-7, 0.1, 1e-6),
+}
+ORDERS = (6, 8, 10, 12, 14, 16)
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
+NEWTON = 1e-12
+
+
+def head() -> str:
+    """Return the machine, the versions and the commit."""
+    try:
+        git = ["git", "-C", str(Path(__file__).parent), "describe", "--always", "--dirty"]
+        commit = subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        commit = "unknown"
+    versions = f"Python {platform.python_version()}, NumPy {np.__version__}, SciPy {scipy.__version__}"
+    return f"Made by `benchmarks/convergence.py` on {platform.platform()}; {versions}; commit {commit}."
+
+
+def observed(state: State) -> tuple[np.ndarray, float, np.ndarray]:
+    """Return the observables of a state, its estimated error and what errors are relative to."""
+    point = judge(state, state.groups, FineOperators(state.mesh), 1e-6)
+    values = np.array([getattr(point.values, name) for name in NAMES])
+    return values, point.estimate.total, point.estimate.scales
+
+
+def exact(groups: sb.Groups) -> State:
+    """Return the state on 20 nodes a panel and panels that reach 64 times as far as the solver's."""
+    guess = cold_start(groups).states[-1]
+    mesh = mesh_for(guess, groups, guess.equations.law, 14, 1e-5)
+    guess = solve_state(groups, Operators(mesh), guess, NEWTON)
+    mesh = mesh_for(guess, groups, guess.equations.law, 14, 1e-6)
+    return solve_state(groups, Operators(wider(mesh, 6, 20)), guess, NEWTON)
+
+
+def wider(mesh: Mesh, doublings: int, order: int) -> Mesh:
+    """Return a mesh with panels added that double on both sides."""
+    out = mesh.edges[-1] * 2.0 ** np.arange(1, doublings + 1)
+    return Mesh(np.concatenate([-out[::-1], mesh.edges, out]), order, mesh.scale)
+
+
+def row(groups: sb.Groups, guess: State, mesh: Mesh, truth: np.ndarray) -> tuple[int, int, float, float]:
+    """Return panels, unknowns, true and estimated error on one mesh."""
+    values, estimate, scales = observed(solve_state(groups, Operators(mesh), guess, NEWTON))
+    return mesh.panels, mesh.size, float((np.abs(values - truth) / scales).max()), estimate
+
+
+def by_order(groups: sb.Groups, guess: State, truth: np.ndarray) -> Iterator[str]:
+    """Yield the rows of the table on fixed panels."""
+    panels = wider(mesh_for(guess, groups, guess.equations.law, 10, 1e-4), 3, 10)
+    for order in ORDERS:
+        count, unknowns, error, estimate = row(groups, guess, panels.refined(order), truth)
+        yield f"| {order} | {count} | {unknowns} | {error:.1e} | {estimate:.1e} |"
+
+
+def by_tolerance(groups: sb.Groups, guess: State, truth: np.ndarray, order: int) -> Iterator[str]:
+    """Yield the rows of the table on panels chosen for a tolerance."""
+    seen = 0
+    for tolerance in TOLERANCES:
+        try:
+            mesh = mesh_for(guess, groups, guess.equations.law, order, tolerance, 0.1 * tolerance)
+        except MeshTooLarge:
+            return
+        if mesh.size == seen:
+            continue
+        seen = mesh.size
+        count, unknowns, error, estimate = row(groups, guess, mesh, truth)
+        yield f"| {tolerance:.0e} | {order} | {count} | {unknowns} | {error:.1e} | {estimate:.1e} |"
+
+
+def by_roughness() -> Iterator[str]:
+    """Yield the rows of the table of unknowns against the width of the edge."""
+    for kappa in 10.0 ** -np.arange(0, 7):
+        groups = sb.Groups(0.0, 0.01, 0.01 * kappa)
+        found = [sb.solve(groups, rtol=rtol, on_failure="return") for rtol in (1e-6, 1e-9)]
+        cells = " | ".join(f"{s.nodes} | {s.error_estimate:.1e}" for s in found)
+        yield f"| {kappa:.0e} | {math.log2(1 / kappa):.1f} | {cells} |"
+
+
+def document() -> Iterator[str]:
+    """Yield the lines of the document."""
+    yield "# Convergence"
+    yield ""
+    yield head()
+    yield ""
+    yield (
+        "The error is the largest relative error of load shares (absolute), central and least gap, flux gap, "
+        "offset and both frictions; the estimate is what a solution would state."
+    )
+    for name, numbers in STATES.items():
+        groups = sb.Groups(*numbers)
+        guess = exact(groups)
+        truth = observed(guess)[0]
+        yield ""
+        yield f"## {name.capitalize()}: speed {numbers[0]:g}, load {numbers[1]:g}, roughness {numbers[2]:g}"
+        yield ""
+        yield "More nodes on the same panels, which reach so far that the logarithm in the gap does not show:"
+        yield ""
+        yield "| nodes a panel | panels | unknowns | error | estimate |"
+        yield "|---:|---:|---:|---:|---:|"
+        yield from by_order(groups, guess, truth)
+        yield ""
+        yield "Panels chosen for a tolerance, as the solver does:"
+        yield ""
+        yield "| tolerance | nodes a panel | panels | unknowns | error | estimate |"
+        yield "|---:|---:|---:|---:|---:|---:|"
+        for order in (10, 14):
+            yield from by_tolerance(groups, guess, truth, order)
+    yield ""
+    yield "## Unknowns against the width of the edge"
+    yield ""
+    yield "Speed zero; panels halve towards the edge: their number grows as the logarithm of 1/kappa."
+    yield ""
+    yield "| kappa | log2(1/kappa) | unknowns, rtol 1e-6 | estimate | unknowns, rtol 1e-9 | estimate |"
+    yield "|---:|---:|---:|---:|---:|---:|"
+    yield from by_roughness()
+
+
+def main() -> None:
+    """Print the document, and write it if asked to."""
+    parser = argparse.ArgumentParser(description="Error of the observables against the number of unknowns.")
+    parser.add_argument("--out", type=Path, help="Markdown file to write")
+    out = parser.parse_args().out
+    text = "\n".join(document()) + "\n"
+    print(text, end="")
+    if out is not None:
+        out.write_text(text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+"""Which of the two friction forces balances the contact, and where do they differ?
+
+The identities of theory.md, section 6, on solved states: int p w' dx = 0, int p_c h' dx = 0, and the difference of the two
+viscous frictions, (4 beta F**(1/2)/pi) int p_c x dx.  Slopes are central differences of the profile.  Runs in half a second.
+"""
+
+import numpy as np
+
+import stribeck as sb
+
+LOAD, ROUGHNESS = 0.1, 1e-4
+
+
+def main():
+    """Return, for each speed, both identities and both viscous frictions for beta = 1."""
+    return {speed: balance(sb.solve(sb.Groups(speed, LOAD, ROUGHNESS), rtol=1e-9)) for speed in np.geomspace(1e-8, 1e-3, 6)}
+
+
+def balance(state):
+    """Return the identities, relative to the integral of their absolute values, and the frictions of one state."""
+    x, weights = state.mesh.nodes, state.mesh.weights
+    here = state.profile(x)
+    step = 1e-6 * np.maximum(1.0, np.abs(x))
+    gap_slope = (state.profile(x + step).gap - state.profile(x - step).gap) / (2 * step)
+    deflection_slope = gap_slope - x
+    paper, balanced = (state.friction(mu0=1, beta=1, definition=d) for d in ("paper", "balanced"))
+    return {
+        "int p w'": relative(weights * here.pressure * deflection_slope),
+        "int p_c h'": relative(weights * here.contact_pressure * gap_slope),
+        "paper": paper.viscous,
+        "balanced": balanced.viscous,
+        "difference": paper.viscous - balanced.viscous,
+        "4 F^(1/2)/pi int p_c x": 4 * LOAD**0.5 / np.pi * (weights @ (here.contact_pressure * x)),
+        "paper, total": paper.total,
+        "balanced, total": balanced.total,
+    }
+
+
+def relative(terms):
+    """Return the sum of terms over the sum of their absolute values."""
+    return float(terms.sum() / np.abs(terms).sum())
+
+
+def plot(rows):
+    """Draw the two viscous frictions against the speed group."""
+    from matplotlib.figure import Figure
+
+    axes = Figure(figsize=(6, 4), layout="constrained").subplots()
+    for name in ("paper", "balanced"):
+        axes.loglog(list(rows), [row[name] for row in rows.values()], "o-", label=name)
+    axes.set(xlabel=r"speed group $\lambda$", ylabel="viscous friction for beta = 1")
+    axes.legend()
+    return axes.figure
+
+
+if __name__ == "__main__":
+    rows = main()
+    print(f"{'speed group':24}", *(f"{speed:12.0e}" for speed in rows))
+    for name in rows[min(rows)]:
+        print(f"{name:24}", *(f"{row[name]:12.4e}" for row in rows.values()))

@@ -1,0 +1,142 @@
+"""The error estimate against the true error: what mesh, rounding and Newton's iteration leave."""
+
+import importlib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.equations import Operators
+from stribeck.estimate import FineOperators
+from stribeck.observables import NAMES
+from stribeck.start import cold_start
+from stribeck.states import mesh_for, solve_state
+
+SEED = 17_903
+judge = importlib.import_module("stribeck.solve").judge  # the name stribeck.solve is the function
+
+STATES = {
+    "mixed": (1e-5, 0.1, 1e-4),
+    "hydrodynamic": (1.0, 0.1, 1e-4),
+    "boundary": (1e-8, 0.1, 1e-2),
+    "thin film": (1e-7, 0.1, 1e-6),
+    "heavy": (1e-3, 3.0, 0.3),
+    "smooth": (1e-6, 0.1, 0.0),
+}
+UNRESOLVED = [(6, 3e-3), (8, 1e-2), (10, 3e-3), (10, 1e-3), (14, 1e-3)]
+
+
+def state_on(groups, order, tolerance, newton=1e-11):
+    """A state on a mesh that was chosen for the end of the cold start."""
+    guess = cold_start(groups).states[-1]
+    mesh = mesh_for(guess, groups, guess.equations.law, order, tolerance, tolerance)
+    return solve_state(groups, Operators(mesh), guess, newton)
+
+
+def judged(state):
+    """Observables and their estimated relative errors, by part."""
+    point = judge(state, state.groups, FineOperators(state.mesh), 1e-6)
+    values = np.array([getattr(point.values, name) for name in NAMES])
+    estimate = point.estimate
+    names = ("discretisation", "interpolation", "rounding")
+    parts = {part: getattr(estimate, part) / estimate.scales for part in names}
+    return values, parts, estimate
+
+
+@pytest.fixture(scope="module", params=STATES)
+def case(request, solved):
+    """Groups and the exact observables, with what their errors are relative to."""
+    solution = solved(*STATES[request.param], rtol=1e-10)
+    exact = np.array([getattr(solution.observables, name) for name in NAMES])
+    return sb.Groups(*STATES[request.param]), exact
+
+
+def test_the_estimate_follows_the_true_error_on_coarse_meshes(case):
+    groups, exact = case
+    ratios = []
+    for order, tolerance in UNRESOLVED:
+        values, _, estimate = judged(state_on(groups, order, tolerance))
+        error = (np.abs(values - exact) / estimate.scales).max()
+        if 1e-8 < error < 1e-2:  # above, a first-order estimate knows nothing; below, the exact values do not
+            ratios.append(estimate.total / error)
+    assert len(ratios) >= 2
+    assert min(ratios) > 0.9
+    assert 1 < np.exp(np.log(ratios).mean()) < 300
+
+
+def test_the_defect_measures_the_error_at_the_nodes(case):
+    """Friction, offset and load share owe nothing to interpolation: the defect is their error, within ten."""
+    groups, exact = case
+    names = [NAMES.index(name) for name in ("fluid_load_share", "viscous_paper", "offset")]
+    ratios = []
+    for order, tolerance in UNRESOLVED:
+        values, parts, estimate = judged(state_on(groups, order, tolerance))
+        error = (np.abs(values - exact) / estimate.scales)[names].max()
+        if 1e-10 < error < 1e-2:
+            ratios.append(parts["discretisation"][names].max() / error)
+    assert len(ratios) >= 3
+    assert 0.1 < np.median(ratios) < 10
+    assert min(ratios) > 0.03
+
+
+@pytest.mark.parametrize("speed", [1e-12, 1e-11])
+def test_rounding_is_not_below_the_scatter_of_equivalent_meshes(speed):
+    groups = sb.Groups(speed, 0.1, 0.0)
+    found = [judged(state_on(groups, order, 1e-6)) for order in (12, 14, 16)]
+    values = np.array([values for values, _, _ in found])
+    rounding = np.max([parts["rounding"] for _, parts, _ in found], axis=0)
+    scatter = 0.5 * np.ptp(values, axis=0) / found[0][2].scales
+    assert (scatter <= rounding + 1e-14).all()
+    assert scatter.max() > 0.01 * rounding.max()
+    assert rounding.max() > 1e-9
+    assert found[0][2].floor == pytest.approx(found[0][1]["rounding"].max(), rel=1e-12)
+
+
+def test_an_iteration_that_stopped_early_is_seen(case):
+    """The defect holds the residual at the nodes too: a state beside the solution is found to be so."""
+    groups, _ = case
+    state = state_on(groups, 14, 1e-4)
+    exact, _, _ = judged(state)
+    rng = np.random.default_rng(SEED)
+    step = state.root.last_step
+    assert step < 1e-3
+    scale = min(state.gap.min(), state.equations.law.decay or np.inf)
+    x = state.mesh.nodes
+    gap = 1e-4 * scale / (1 + ((x - 0.2) / 0.7) ** 2)
+    change = np.append(gap, [1e-5 * rng.normal(), 1e-4 * state.flux_gap])
+    values, parts, estimate = judged(replace(state, y=state.y + change))
+    error = np.abs(values - exact) / estimate.scales
+    large = error > 0.03 * error.max()
+    ratio = (parts["discretisation"] / np.maximum(error, 1e-300))[large]
+    assert error.max() > 1e-6
+    assert (ratio > 1).all()
+    assert (ratio < 4).all()
+
+
+def test_a_difference_of_meshes_bounds_the_defect():
+    groups = sb.Groups(*STATES["mixed"])
+    _, _, estimate = judged(state_on(groups, 10, 3e-3))
+    difference = 1e-3 * estimate.discretisation
+    assert (estimate.at_most(difference).discretisation <= estimate.discretisation).all()
+    assert estimate.at_most(difference).total < estimate.total
+    assert estimate.at_most(1e3 * estimate.discretisation).total == estimate.total
+
+
+def test_errors_of_load_shares_are_absolute_and_others_relative(solved):
+    s = solved(*STATES["boundary"])
+    assert set(s.errors) == set(NAMES)
+    assert s.errors["fluid_load_share"] < 1e-6  # of a share that is itself far smaller
+    assert s.fluid_load_share < 1e-6
+    assert s.error_estimate == max(s.errors.values())
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("name", STATES)
+def test_the_stated_error_covers_the_true_one(name, rtol, solved, true_errors):
+    s = solved(*STATES[name], rtol=rtol)
+    error = true_errors(s)
+    assert np.nanmax(error) <= max(s.error_estimate, 3e-11)
+    assert s.error_estimate <= rtol
+    each = np.maximum(s.relative_errors, 1e-11)
+    assert (error <= 10 * each).all(), dict(zip(NAMES, error / each, strict=True))

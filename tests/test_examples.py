@@ -1,0 +1,86 @@
+"""The examples run, and their headline numbers hold."""
+
+import ast
+import importlib.util
+import inspect
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parents[1] / "examples"
+EXAMPLES = sorted(FOLDER.glob("*.py"))
+EACH = pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+
+
+def load(name):
+    spec = importlib.util.spec_from_file_location(f"example_{name}", FOLDER / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def results():
+    """Return a function that gives an example's module and what its main returns, once."""
+    kept = {}
+
+    def run(name):
+        if name not in kept:
+            module = load(name)
+            kept[name] = module, module.main()
+        return kept[name]
+
+    return run
+
+
+@EACH
+def test_an_example_fits_on_a_page_and_says_what_it_answers(path):
+    text = path.read_text()
+    assert len(text.splitlines()) <= 60
+    docstring = ast.get_docstring(ast.parse(text))
+    assert all(words in docstring for words in ("theory.md", "Runs in"))
+
+
+@EACH
+def test_an_example_draws_what_it_returns(path, results):
+    module, data = results(path.stem)
+    assert list(inspect.signature(module.plot).parameters)
+    figure = module.plot(data)
+    assert all(axes.has_data() for axes in figure.axes)
+
+
+def test_friction_of_the_pdms_cylinder_is_least_at_28_mm_per_second(results):
+    _, curve = results("stribeck_curve")
+    assert curve.outcome.ok
+    assert curve.minimum.value == pytest.approx(0.02787, rel=2e-3)
+    assert curve.minimum.friction == pytest.approx(0.034891, rel=1e-4)
+    assert (curve.regimes[0], curve.regimes[-1]) == ("boundary", "hydrodynamic")
+
+
+def test_the_fluid_carries_two_thirds_in_the_mixed_state(results):
+    _, (state, fields) = results("one_state")
+    assert state.fluid_load_share == pytest.approx(0.6830745, abs=1e-7)
+    assert state.friction(mu0=1, beta=1).total == pytest.approx(0.3433184, abs=1e-7)
+    assert fields.gap.min() == pytest.approx(state.minimum_gap, rel=1e-3)
+
+
+def test_roughness_and_load_move_the_minimum_most(results):
+    _, exponents = results("what_moves_the_minimum")
+    assert exponents["roughness"] == pytest.approx((0.881, 1.353), abs=2e-3)
+    assert exponents["load"] == pytest.approx((-0.490, 0.364), abs=2e-3)
+
+
+def test_viscosity_and_speed_are_one_variable(results):
+    _, exponents = results("what_moves_the_minimum")
+    assert exponents["viscosity"] == pytest.approx((0, -1), abs=1e-5)
+
+
+def test_the_forces_balance_and_the_printed_one_is_71_times_too_large_at_low_speed(results):
+    _, rows = results("force_balance")
+    for row in rows.values():
+        assert abs(row["int p w'"]) < 1e-6
+        assert abs(row["int p_c h'"]) < 1e-6
+        assert row["difference"] == pytest.approx(row["4 F^(1/2)/pi int p_c x"], rel=1e-6)
+    slowest = rows[min(rows)]
+    assert slowest["paper"] / slowest["balanced"] == pytest.approx(70.55, abs=0.01)
+    assert max(row["paper, total"] for row in rows.values()) == pytest.approx(1.003, abs=1e-3)

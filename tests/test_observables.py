@@ -1,0 +1,164 @@
+"""Observables: gradients against differences, friction integrals in closed form, least and central gap."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from stribeck.contact_laws import contact_law
+from stribeck.equations import Equations, Operators
+from stribeck.mesh import Mesh, base_edges
+from stribeck.observables import (
+    NAMES,
+    friction_integrals,
+    friction_integrands,
+    friction_scale,
+    gap_at,
+    gradients,
+    least_gap,
+    observables,
+)
+from stribeck.parameters import Groups
+
+SEED = 45_389
+STATES = {
+    "mixed": (1e-4, 0.1, 2e-4),
+    "fluid": (1.0, 0.1, 1e-4),
+    "contact": (1e-6, 0.1, 1e-2),
+    "slow": (0.0, 5e-3, 1e-4),
+}
+
+
+@pytest.fixture(scope="module", params=STATES)
+def case(request, solved):
+    """Equations, unknowns and load of a solved state."""
+    groups = Groups(*STATES[request.param])
+    s = solved(*STATES[request.param], rtol=1e-9)
+    equations = Equations(Operators(s.mesh), groups.speed, contact_law(groups), s.flux_gap**2)
+    rank = np.argsort(np.argsort(s.mesh.nodes))
+    return equations, np.concatenate([s.gap[rank], [s.offset, s.flux_gap]]), groups.load
+
+
+def values(equations, y, load):
+    found = observables(equations, y, load)
+    return np.array([getattr(found, name) for name in NAMES])
+
+
+# Friction
+
+
+def test_the_friction_integrals_of_a_parabola_are_their_closed_forms():
+    """h = h0 + x**2/2, h* = 4 h0/3: balanced 2**(3/2) pi h0**(-1/2), and the printed one is the same."""
+    for height in (1e-2, 1.0, 50.0):
+        width = math.sqrt(height)
+        mesh = Mesh(base_edges(0.5, 64.0) * max(width, 0.5), 24)
+        gap = height + mesh.nodes**2 / 2
+        paper, balanced = mesh.weights @ friction_integrands(mesh.nodes, gap, 4 * height / 3).T
+        exact = 2**1.5 * math.pi / width
+        assert balanced == pytest.approx(exact, rel=1e-11)
+        assert paper == pytest.approx(exact, rel=1e-11)
+
+
+def test_the_integrands_are_the_formulas():
+    rng = np.random.default_rng(SEED)
+    x, h, h_star = rng.normal(size=30), rng.uniform(0.1, 2, 30), 0.7
+    paper, balanced = friction_integrands(x, h, h_star)
+    assert np.allclose(paper, (1 - 3 * (h - h_star) / h + 6 * (h - h_star) / h**2 * x**2 / 2) / h, rtol=1e-13)
+    assert np.allclose(balanced, (1 + 3 * (h - h_star) / h) / h, rtol=1e-13)
+
+
+def test_the_scale_of_friction_is_that_of_the_groups():
+    """eta U a/(F_N u_Hz) = 2 F**(1/2) lambda/(3 pi) for beta = 1, from SI numbers."""
+    radius, modulus, load, stress = 0.02, 3e6, 40.0, 0.05 * 0.3
+    a = math.sqrt(4 * load * radius / (math.pi * modulus))
+    speed = 3 * math.pi**2 / 4 * stress * radius * modulus / load**2
+    group = load / (math.pi * radius * modulus)
+    assert friction_scale(group, speed) == pytest.approx(stress * a / (load * a * a / radius), rel=1e-13)
+
+
+def test_the_tail_of_friction_holds_the_logarithm_of_the_gap():
+    """With h = x**2/2 - ln(x**2 + 1)/4 + 1: against a box so wide that its own tail is closed enough."""
+
+    def gap(x):
+        return 1 + x * x / 2 - 0.25 * np.log1p(x * x)
+
+    narrow, wide = Mesh(base_edges(0.5, 8.0), 16), Mesh(base_edges(0.5, 4096.0), 24)
+    found = friction_integrals(narrow, gap(narrow.nodes), 1.2)
+    exact = wide.weights @ friction_integrands(wide.nodes, gap(wide.nodes), 1.2).T
+    plain = narrow.weights @ friction_integrands(narrow.nodes, gap(narrow.nodes), 1.2).T
+    assert np.abs(found / exact - 1).max() < 1e-10
+    assert np.abs(plain / exact - 1).max() > 1e-8
+
+
+# Gradients
+
+
+def smooth_changes(equations, y):
+    """Changes of gap, offset and flux gap without noise from node to node."""
+    x, rng = equations.operators.mesh.nodes, np.random.default_rng(SEED)
+    size = min(y[:-2].min(), equations.law.decay)
+    for _ in range(4):
+        centre, width = rng.uniform(-1, 1), rng.uniform(0.5, 1.5)
+        gap = size * rng.normal() / (1 + ((x - centre) / width) ** 2)
+        yield np.concatenate([gap, [rng.normal(), y[-1] * rng.normal()]])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_gradient_of_each_observable_is_its_derivative(case, name):
+    equations, y, load = case
+    row = gradients(equations, y, load)[NAMES.index(name)]
+    for change in smooth_changes(equations, y):
+        step = 1e-4
+        up, down = (values(equations, y + d * change, load)[NAMES.index(name)] for d in (step, -step))
+        difference = (up - down) / (2 * step)
+        # The printed friction answers through the moment of the pressure on the panels in x, all but its far
+        # end; the least gap answers at the node next to it.
+        allowed = {"viscous_paper": 2e-3, "minimum_gap": 2e-2}.get(name, 1e-5)
+        scale = np.abs(row) @ np.abs(change)
+        assert abs(row @ change - difference) <= allowed * scale + 1e-13, name
+
+
+def test_at_speed_zero_only_contact_has_gradients(solved):
+    s = solved(*STATES["slow"], rtol=1e-9)
+    groups = Groups(*STATES["slow"])
+    equations = Equations(Operators(s.mesh), 0.0, contact_law(groups), s.flux_gap**2)
+    y = np.concatenate([s.nodal_gap, [s.offset, s.flux_gap]])
+    rows = gradients(equations, y, groups.load)
+    for name in ("fluid_load_share", "viscous_paper", "viscous_balanced"):
+        assert not rows[NAMES.index(name)].any()
+
+
+# Central and least gap
+
+
+def dipped(x, least):
+    """A positive gap with one narrow dip."""
+    return (1 + x * x / 20) * (1 - 0.3 / (1 + ((x - least) / 0.05) ** 2))
+
+
+@pytest.mark.parametrize("least", [0.0, 0.013, 0.4999, 0.5, -0.77, 1.0])
+def test_the_least_gap_is_that_between_the_nodes(least):
+    edges = np.concatenate([-np.array([8.0, 4, 2]), np.linspace(-1.25, 1.25, 51), [2.0, 4, 8]])
+    mesh = Mesh(edges, 20)
+    position, gap = least_gap(mesh, dipped(mesh.nodes, least))
+    bounds = (least - 0.02, least + 0.02)
+    exact = minimize_scalar(dipped, bounds=bounds, args=(least,), method="bounded", options={"xatol": 1e-10})
+    assert gap == pytest.approx(exact.fun, rel=1e-9)
+    assert position == pytest.approx(exact.x, abs=1e-6)
+    assert gap <= dipped(mesh.nodes, least).min()
+
+
+def test_the_gap_between_the_nodes_is_interpolated_in_its_logarithm():
+    mesh = Mesh(base_edges(0.25, 16.0), 20, 0.5)
+    x = np.concatenate([np.random.default_rng(SEED).uniform(-15, 15, 200), mesh.edges, [-1e3, 1e5]])
+    gap = np.exp(-3 / (1 + x * x)) * (0.1 + x * x / 2)
+    found = gap_at(mesh, np.exp(-3 / (1 + mesh.nodes**2)) * (0.1 + mesh.nodes**2 / 2), x)
+    assert np.abs(found / gap - 1).max() < 1e-9
+
+
+def test_a_gap_that_touches_zero_is_interpolated_itself():
+    mesh = Mesh(np.array([-8.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0, 8.0]), 20)
+    gap = np.where(np.abs(mesh.nodes) < 1, 0.0, (np.abs(mesh.nodes) - 1) ** 2)
+    found = gap_at(mesh, gap, np.array([-0.3, 0.9, 1.5, -5.0]))
+    assert np.abs(found - [0.0, 0.0, 0.25, 16.0]).max() < 1e-8

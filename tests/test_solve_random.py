@@ -1,0 +1,100 @@
+"""Cold starts anywhere in the box that the package promises: none fails, and the estimates cover the errors.
+
+The true error is measured on a mesh with more nodes on each panel and with panels much farther out, so that
+it owes nothing to the choices of the solver.
+"""
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.newton import Outcome
+from stribeck.observables import NAMES
+
+SEED = 27_644_437
+
+
+def box(number, seed):
+    """Random groups: speed 1e-12 to 1e6, load 1e-8 to 10, relative roughness 1e-6 to 1e3, and zeros."""
+    rng = np.random.default_rng(seed)
+    for i in range(number):
+        speed, load, kappa = 10 ** rng.uniform((-12, -8, -6), (6, 1, 3))
+        if i % 12 == 5:
+            speed = 0.0
+        if i % 12 == 9:
+            kappa = 0.0
+        yield sb.Groups(speed, load, kappa * load)
+
+
+def corners():
+    """The ends of the box, where every extreme meets every other."""
+    for speed in (0.0, 1e-12, 1e6):
+        for load in (1e-8, 10.0):
+            for kappa in (0.0, 1e-6, 1e3):
+                if speed > 0 or kappa > 0:
+                    yield sb.Groups(speed, load, kappa * load)
+
+
+def check(states, true_errors, rtol=1e-6):
+    """Solve cold; return true over estimated errors, largest and single, and how many rounding bounds."""
+    ratios, singles, bounded = [], [], 0
+    for groups in states:
+        s = sb.solve(groups, rtol=rtol)  # a failure raises
+        assert s.outcome is Outcome.CONVERGED
+        assert abs(s.contact_load_share + s.fluid_load_share - 1) < 1e-8, groups
+        assert s.minimum_gap > 0 or groups.speed == 0
+        assert s.error_estimate <= rtol
+        errors = true_errors(s)
+        ratios.append(np.nanmax(errors) / s.error_estimate)
+        singles.append(np.nanmax(errors / s.relative_errors))
+        bounded += s.rounding_floor > 0.5 * s.error_estimate
+        assert ratios[-1] < 10, (groups, dict(zip(NAMES, errors, strict=True)), s.error_estimate)
+    return np.array(ratios), np.array(singles), bounded
+
+
+def test_forty_random_states_are_solved_and_their_errors_covered(true_errors):
+    ratios, singles, _ = check(box(40, SEED), true_errors)
+    assert len(ratios) == 40
+    assert (ratios <= 1).mean() >= 0.95
+    assert (singles <= 1).mean() >= 0.85
+    assert singles.max() < 10
+
+
+def test_the_corners_of_the_box_are_solved_and_their_errors_covered(true_errors):
+    ratios, _, bounded = check(corners(), true_errors)
+    assert len(ratios) == 16
+    assert (ratios <= 1).mean() >= 0.9
+    assert bounded >= 2  # the thinnest smooth films
+
+
+def test_random_states_reach_a_small_tolerance_or_say_that_rounding_bounds_it(true_errors):
+    rtol, covered, bounded = 1e-9, [], 0
+    for groups in box(20, SEED + 1):
+        s = sb.solve(groups, rtol=rtol, on_failure="return")
+        error = np.nanmax(true_errors(s))
+        assert s.outcome in (Outcome.CONVERGED, Outcome.ROUNDING)
+        assert s.error_estimate <= rtol or s.outcome is Outcome.ROUNDING
+        bounded += s.outcome is Outcome.ROUNDING
+        covered.append(error <= max(s.error_estimate, 1e-11))
+        assert error <= 10 * max(s.error_estimate, 1e-11), groups
+    assert np.mean(covered) >= 0.95
+    assert bounded <= 4
+
+
+@pytest.mark.slow
+def test_five_hundred_random_states_are_solved_and_their_errors_covered(true_errors):
+    ratios, singles, bounded = check(box(500, SEED + 2), true_errors)
+    assert (ratios <= 1).mean() >= 0.95
+    assert (singles <= 1).mean() >= 0.85
+    assert 0 < bounded < 50
+
+
+@pytest.mark.slow
+def test_two_hundred_random_states_at_a_small_tolerance_cover_their_errors(true_errors):
+    errors = []
+    for groups in box(200, SEED + 3):
+        s = sb.solve(groups, rtol=1e-9, on_failure="return")
+        assert s.outcome in (Outcome.CONVERGED, Outcome.ROUNDING)
+        errors.append(np.nanmax(true_errors(s)) / max(s.error_estimate, 1e-11))
+    assert np.mean(np.array(errors) <= 1) >= 0.95
+    assert max(errors) < 10
