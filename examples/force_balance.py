@@ -1,7 +1,7 @@
-"""Which of the two friction forces balances the contact, and where do they differ?
+"""Which friction force balances the contact, and where the printed one departs from it.
 
-The identities of theory.md, section 6, on solved states: int p w' dx = 0, int p_c h' dx = 0, and the difference of the two
-viscous frictions, (4 beta F**(1/2)/pi) int p_c x dx.  Slopes are central differences of the profile.  Runs in half a second.
+The identities of theory.md, section 6, on solved states: int p w' dx = 0, int p_c h' dx = 0, and the
+difference of the viscous frictions.  Slopes are differences of the profile.  Runs in half a second.
 """
 
 import numpy as np
@@ -13,19 +13,19 @@ LOAD, ROUGHNESS = 0.1, 1e-4
 
 def main():
     """Return, for each speed, both identities and both viscous frictions for beta = 1."""
-    return {speed: balance(sb.solve(sb.Groups(speed, LOAD, ROUGHNESS), rtol=1e-9)) for speed in np.geomspace(1e-8, 1e-3, 6)}
+    states = (sb.solve(sb.Groups(s, LOAD, ROUGHNESS), rtol=1e-9) for s in np.geomspace(1e-8, 1e-3, 6))
+    return {state.groups.speed: balance(state) for state in states}
 
 
 def balance(state):
-    """Return the identities, relative to the integral of their absolute values, and the frictions of one state."""
+    """Return the identities, relative to the integrals of their absolute values, and the frictions."""
     x, weights = state.mesh.nodes, state.mesh.weights
     here = state.profile(x)
     step = 1e-6 * np.maximum(1.0, np.abs(x))
     gap_slope = (state.profile(x + step).gap - state.profile(x - step).gap) / (2 * step)
-    deflection_slope = gap_slope - x
     paper, balanced = (state.friction(mu0=1, beta=1, definition=d) for d in ("paper", "balanced"))
     return {
-        "int p w'": relative(weights * here.pressure * deflection_slope),
+        "int p w'": relative(weights * here.pressure * (gap_slope - x)),
         "int p_c h'": relative(weights * here.contact_pressure * gap_slope),
         "paper": paper.viscous,
         "balanced": balanced.viscous,
@@ -45,7 +45,7 @@ def plot(rows):
     """Draw the two viscous frictions against the speed group."""
     from matplotlib.figure import Figure
 
-    axes = Figure(figsize=(6, 4), layout="constrained").subplots()
+    axes = Figure(layout="constrained").subplots()
     for name in ("paper", "balanced"):
         axes.loglog(list(rows), [row[name] for row in rows.values()], "o-", label=name)
     axes.set(xlabel=r"speed group $\lambda$", ylabel="viscous friction for beta = 1")

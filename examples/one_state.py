@@ -1,6 +1,7 @@
 """One state in mixed lubrication: who carries the load, and what the film looks like.
 
-Equations: theory.md Eqs. (1)-(5).  Reference: Bertin and Pouliquen, Fig. 8 (its parameters).  Runs in a tenth of a second.
+Equations: theory.md Eqs. (1)-(5).  Reference: Bertin and Pouliquen, Fig. 8, for its parameters.
+Runs in a tenth of a second.
 """
 
 import numpy as np

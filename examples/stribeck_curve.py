@@ -1,6 +1,7 @@
-"""The Stribeck curve of a PDMS cylinder in glycerol-water, from a data sheet: where is friction least, and how low is it?
+"""The Stribeck curve of a PDMS cylinder in glycerol-water, from a data sheet to the least friction.
 
-Equations: theory.md Eqs. (1)-(5).  Reference: Bertin and Pouliquen, Section "Stribeck curve".  Runs in about a second.
+Equations: theory.md Eqs. (1)-(5).  Reference: Bertin and Pouliquen, Section "Stribeck curve".
+Runs in about a second.
 """
 
 import stribeck as sb

@@ -1,8 +1,9 @@
-"""What moves the friction minimum of a lubricated contact, and by how much?
+"""What moves the friction minimum of a lubricated contact, and by how much.
 
-Each quantity of the contact is doubled alone; the minimum is located on solved states.  Equations: theory.md Eqs. (1)-(5).
-Reference: Bertin and Pouliquen, Eq. (minimal_friction): the minimum grows as h_rms**(2/3) F_N**(-1/6), up to logarithms.
-Runs in about ten seconds.
+Each quantity of the contact is doubled alone; the minimum is located on solved states.
+Equations: theory.md Eqs. (1)-(5).  Reference: Bertin and Pouliquen, Eq. (minimal_friction), by which the
+least friction goes as h_rms**(2/3) F_N**(-1/6) up to logarithms where the minimum lies at a small speed
+group; here it lies at 0.3.  Runs in about four seconds.
 """
 
 import math

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal
 from .parameters import QUANTITIES, InputError, LineContact, check_modulus_choice, quantity
 from .units import DIMENSIONS, show
 
-__all__ = ["Case", "CurveSettings", "load_case"]
+__all__ = ["Case", "CurveSettings", "curve_range", "load_case"]
 
 Axis = Literal["speed", "load", "roughness"]
 Law = Literal["exponential"]
@@ -176,7 +176,7 @@ def _model() -> Any:
         return quantity(str(info.field_name), value)
 
     def check_range(value: Any, info: ValidationInfo) -> tuple[float, float] | None:
-        return _curve_range(value, info.data["over"]) if "over" in info.data else None
+        return curve_range(value, info.data["over"]) if "over" in info.data else None
 
     # A description completes the sentence "... must be ..." for what pydantic refuses by itself.
     number = Annotated[float, BeforeValidator(check_quantity)]
@@ -223,7 +223,26 @@ def _model() -> Any:
     return File
 
 
-def _curve_range(value: Any, over: str) -> tuple[float, float]:
+def curve_range(value: Any, over: str) -> tuple[float, float]:
+    """Return the ends of a curve in SI units.
+
+    Parameters
+    ----------
+    value : object
+        A list of two values with units or in SI.
+    over : str
+        What varies.
+
+    Returns
+    -------
+    tuple of float
+        The lowest and the highest value.
+
+    Raises
+    ------
+    InputError
+        Where these are no two positive values, the lowest first.
+    """
     if not isinstance(value, list) or len(value) != 2:
         raise InputError(
             f"range = {show(value)} must be a list of two values, the lowest and the highest {over}."

@@ -279,8 +279,8 @@ class StribeckCurve:
         Returns
         -------
         xarray.Dataset
-            Observables, friction, regimes and inputs of each point, with units and long names as attributes; needs the
-            extra ``data``.
+            Observables, friction, regimes and inputs of each point, with units and long names as attributes;
+            needs the extra ``data``.
         """
         from .store import curve_dataset
 

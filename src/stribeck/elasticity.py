@@ -21,8 +21,9 @@ from numpy.polynomial import legendre
 from ._types import Array
 from .mesh import Mesh, reference
 
-NEAR = 3.0
-"""Beyond this many half-widths from its centre a panel is integrated by its own Gauss rule: the error is below 1e-13."""
+FAR_ACCURACY = 4e-13
+"""Error of a panel's own Gauss rule for the logarithm from which a target counts as far: rho**(-2 order) for a distance of
+(rho + 1/rho)/2 half-widths."""
 
 LOST_DIGITS = 1e5
 """Amplification of rounding that the upward recurrence of Q_n may have outside a panel: it falls on the highest degrees, whose
@@ -77,6 +78,12 @@ def _on_panel(order: int) -> Array:
     return log_moments(reference(order).nodes, order) @ _from_moments(order)
 
 
+def near_distance(order: int) -> float:
+    """Return the distance from its centre, in half-widths, within which a panel is integrated exactly."""
+    rho = float(FAR_ACCURACY ** (-0.5 / order))
+    return 0.5 * (rho + 1 / rho)
+
+
 def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:
     r"""Return the matrix from nodal pressures to the deflection.
 
@@ -107,7 +114,8 @@ def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:
 
     distance = np.abs(x[:, None] - inner)
     s = (x[:, None] - mesh.centres[:-1]) / mesh.half_widths[:-1]
-    target, source = np.nonzero(np.abs(s) < NEAR)
+    near_by = near_distance(order)
+    target, source = np.nonzero(np.abs(s) < near_by)
     distance[distance == 0] = 1.0
     kernel[:, :-1, :] = (np.log(distance) * mesh.weights[:-order]).reshape(len(x), mesh.panels - 1, order)
     half = mesh.half_widths[source][:, None]
@@ -116,7 +124,7 @@ def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:
 
     half_tail = mesh.half_widths[-1]
     t_source = mesh.local[-1]
-    close = np.nonzero(np.abs(x) * half_tail * NEAR > 1.0)[0]
+    close = np.nonzero(np.abs(x) * half_tail * near_by > 1.0)[0]
     ratio = t_source * x[:, None]
     ratio[close] = 0.0
     tail = np.log1p(-ratio) * rule.weights

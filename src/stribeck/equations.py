@@ -92,13 +92,15 @@ class Equations:
         """Return the residual at ``y``, shape (N + 2,)."""
         op = self.operators
         g = reynolds.gradient(y[:-2], y[-1])
-        p = self.law.pressure(y[:-2])
-        if self.speed > 0:
-            p += self.speed * op.mesh.integral_from_infinity(g)
+        p_c = self.law.pressure(y[:-2])
         r = np.empty_like(y)
-        r[:-2] = y[:-2] - y[-2] - op.parabola - op.deflection @ p
-        r[-2] = op.mesh.weights @ p - LOAD
+        r[:-2] = y[:-2] - y[-2] - op.parabola - op.deflection @ p_c
+        r[-2] = op.mesh.weights @ p_c - LOAD
         r[-1] = self.flux_scale * (op.mesh.weights @ g)
+        if self.speed > 0:
+            g *= self.speed
+            r[:-2] -= op.deflection_of_gradient @ g
+            r[-2] += op.load_of_gradient @ g
         return r
 
     def jacobian(self, y: Array) -> Array:

@@ -27,7 +27,7 @@ from .mesh import Mesh, interpolation_error
 from .observables import NAMES, Observables, friction_integrals, friction_scale, gradients
 from .states import State
 
-EXTRA_NODES = 4
+EXTRA_NODES = 2
 """Nodes that a panel gains where the defect is evaluated."""
 
 SAFETY = 2.0

@@ -262,7 +262,12 @@ def base_edges(scale: float, reach: float) -> Array:
 
 
 def adapt(
-    fields: Callable[[Array, Array, Array], Array], scale: float, reach: float, order: int, tolerance: float
+    fields: Callable[[Array, Array, Array], Array],
+    scale: float,
+    reach: float,
+    order: int,
+    tolerance: float,
+    start: Mesh | None = None,
 ) -> Mesh:
     """Return the coarsest dyadic mesh that resolves the given fields.
 
@@ -279,6 +284,8 @@ def adapt(
         Nodes on each panel.
     tolerance : float
         Largest Legendre tail left on any panel.
+    start : Mesh, optional
+        Panels to begin with, instead of the coarsest; those of another ``scale`` are not used.
 
     Returns
     -------
@@ -305,6 +312,9 @@ def adapt(
             break
         reach *= 2.0
     edges = base_edges(scale, reach)
+    if start is not None and start.scale == scale:
+        inside = start.edges[np.abs(start.edges) <= reach]
+        edges = np.unique(np.concatenate([inside, [-reach, reach], edges[np.abs(edges) > np.abs(inside).max()]]))
     open_panels = np.column_stack([edges[:-1], edges[1:]])
     done = []
     count = 0

@@ -19,7 +19,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from ._types import Array
 from .equations import LOAD, Equations
@@ -38,9 +37,9 @@ NAMES = (
 )
 """The observables, in the order of every array of them here."""
 
-SEARCH = np.linspace(-1, 1, 21)
-SEARCH_STEP = 0.1
-"""Where on a panel the least gap is looked for, and the spacing of these points."""
+NEWTON_STEPS = 5
+LARGEST_STEP = 0.2
+"""Of the search for the least gap, the step in half-widths of a panel."""
 
 TAIL_HALVINGS = 12
 """Panels on each side of infinity on which the friction integrands, which hold a logarithm there, are summed."""
@@ -119,35 +118,45 @@ def central_gap(mesh: Mesh, h: Array) -> float:
 
 def least_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
     """Return position and value of the least gap, that of the panels' polynomials around the least node."""
-    panel = min(int(np.argmin(h)) // mesh.order, mesh.panels - 2)
-    first, last = max(0, panel - 1), min(mesh.panels - 2, panel + 1)
-    nodes = slice(first * mesh.order, (last + 1) * mesh.order)
-    shapes = np.log(h[nodes] / mesh.far[nodes]).reshape(-1, mesh.order)
-    rule, c, d = reference(mesh.order), mesh.centres[first : last + 1], mesh.half_widths[first : last + 1]
-    x = c[:, None] + d[:, None] * SEARCH
-    s = SEARCH[np.argmin(shapes @ _to_search(mesh.order) + np.log(mesh.scale**2 + x * x), axis=1)]
-    coefficients = rule.to_legendre @ shapes.T
-    slopes = rule.derivative @ coefficients
-    curvatures = rule.derivative @ slopes
-    for _ in range(2):
+    order = mesh.order
+    panel, node = divmod(int(np.argmin(h)), order)
+    panels = {panel, panel - (node == 0), panel + (node == order - 1)}
+    found = [_least_on_panel(mesh, h, k) for k in panels if 0 <= k < mesh.panels - 1]
+    return min(found, key=lambda pair: pair[1]) if found else (float(mesh.nodes[np.argmin(h)]), float(h.min()))
+
+
+def _least_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
+    """Return position and value of the least gap on a panel, by Newton's iteration from its least node."""
+    nodes = slice(panel * mesh.order, (panel + 1) * mesh.order)
+    rule, c, d = reference(mesh.order), float(mesh.centres[panel]), float(mesh.half_widths[panel])
+    coefficients = (rule.to_legendre @ np.log(h[nodes] / mesh.far[nodes])).tolist()
+    s = float(rule.nodes[np.argmin(h[nodes])])
+    for _ in range(NEWTON_STEPS):
+        _, slope, curvature = _legendre_jet(coefficients, s)
         x = c + d * s
         far = mesh.scale**2 + x * x
-        basis = legendre.legvander(s, mesh.order - 1)
-        slope = np.einsum("pn,np->p", basis, slopes) + 2 * d * x / far
-        curvature = np.einsum("pn,np->p", basis, curvatures) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
-        step = -slope / np.maximum(curvature, np.abs(slope) / SEARCH_STEP + 1e-300)
-        s = np.minimum(1.0, np.maximum(-1.0, s + step))
+        slope += 2 * d * x / far
+        curvature += 2 * d * d * (mesh.scale**2 - x * x) / far**2
+        step = -slope / max(curvature, abs(slope) / LARGEST_STEP, 1e-300)
+        s = min(1.0, max(-1.0, s + step))
     x = c + d * s
-    basis = legendre.legvander(s, mesh.order - 1)
-    gaps = np.exp(np.einsum("pn,np->p", basis, coefficients)) * (mesh.scale**2 + x * x)
-    best = int(np.argmin(gaps))
-    return float(x[best]), float(gaps[best])
+    return x, math.exp(_legendre_jet(coefficients, s)[0]) * (mesh.scale**2 + x * x)
 
 
-@lru_cache(maxsize=32)
-def _to_search(order: int) -> Array:
-    """Matrix from nodal values to those at :data:`SEARCH`, transposed."""
-    return reference(order).interpolation(SEARCH).T
+def _legendre_jet(coefficients: list[float], s: float) -> tuple[float, float, float]:
+    """Return a Legendre series and its first two derivatives at ``s``."""
+    p, before = [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+    total = [coefficients[0], 0.0, 0.0]
+    for n, coefficient in enumerate(coefficients[1:]):
+        a, b = (2 * n + 1) / (n + 1), n / (n + 1)
+        ahead = [
+            a * s * p[0] - b * before[0],
+            a * (s * p[1] + p[0]) - b * before[1],
+            a * (s * p[2] + 2 * p[1]) - b * before[2],
+        ]
+        p, before = ahead, p
+        total = [t + coefficient * q for t, q in zip(total, p, strict=True)]
+    return total[0], total[1], total[2]
 
 
 def friction_integrals(mesh: Mesh, h: Array, h_star: float, slopes: Array | None = None) -> Array:

@@ -1,8 +1,18 @@
-"""The lubrication regime of a state, read off its solved fields."""
+"""The lubrication regime of a state, read off its solved fields, and what would move its friction."""
 
 from __future__ import annotations
 
+import math
 from typing import Literal
+
+import numpy as np
+
+from .parameters import LineContact
+from .sensitivity import friction_slopes
+from .solution import Definition, Solution, check_definition
+from .solve import SolveError, check_rtol, converge, describe, finish, solvable, solve
+from .start import cold_start
+from .threads import one_blas_thread
 
 Regime = Literal["boundary", "mixed", "hydrodynamic"]
 
@@ -33,3 +43,76 @@ def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:
     if contact_friction_share <= HYDRODYNAMIC_CONTACT_SHARE:
         return "hydrodynamic"
     return "boundary" if fluid_load_share <= BOUNDARY_FLUID_SHARE else "mixed"
+
+
+EXPONENTS = {
+    "speed": (1, 0, 0),
+    "load": (-2, 1, 0),
+    "viscosity": (1, 0, 0),
+    "modulus": (1, -1, 0),
+    "radius": (1, -1, -1),
+    "roughness": (0, 0, 1),
+    "alpha": (0, 0, -1),
+    "beta": (0, -2, -2),
+    "friction_coefficient": (0, 0, 0),
+}
+"""Exponents with which each input enters the groups of speed, load and roughness."""
+
+
+@one_blas_thread
+def friction_elasticities(
+    contact: LineContact, *, rtol: float = 1e-6, definition: Definition = "paper"
+) -> tuple[Solution, dict[str, float]]:
+    r"""Solve a contact and tell how its friction answers to each input.
+
+    .. math::
+
+        \epsilon_X = \frac{d \ln \mu}{d \ln X}
+        = \frac{1}{\mu} \left[ \sum_G n_{GX} \frac{\partial \mu}{\partial \ln G}
+        + \left.\frac{\partial \mu}{\partial \ln X}\right|_G \right]
+
+    with G the three groups and n their exponents, :data:`EXPONENTS`. The last term is the contact part of the friction
+    for the friction coefficient and the viscous part for beta.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    rtol : float
+        Relative tolerance of the state.
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+
+    Returns
+    -------
+    Solution
+        The state.
+    dict of str to float
+        Elasticity by name of the input: 0.5 means that 1 % more of it makes 0.5 % more friction; nan where there is
+        no friction.
+
+    Notes
+    -----
+    At speed zero friction is that of the dry contact, and at roughness zero the roughness group is held at zero, both
+    exactly.
+    """
+    check_rtol(rtol)
+    definition = check_definition(definition)
+    groups = contact.groups
+    if groups.speed == 0:
+        solution, slopes = solve(contact, rtol=rtol), np.zeros(3)
+    else:
+        path = cold_start(solvable(groups))
+        if not path.outcome.ok:
+            raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
+        point = converge(path.states[-1], groups, rtol)
+        solution = finish(point, groups, contact, rtol)
+        assert point.state is not None
+        slopes = friction_slopes(point.state, contact.friction_coefficient, contact.beta, definition)
+    friction = solution.friction(definition=definition)
+    direct = {"friction_coefficient": friction.contact, "beta": friction.viscous}
+    total = friction.total or math.nan
+    return solution, {
+        name: (float(slopes @ np.array(exponents)) + direct.get(name, 0.0)) / total
+        for name, exponents in EXPONENTS.items()
+    }

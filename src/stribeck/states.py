@@ -118,18 +118,22 @@ class State:
         return 4.0 + 0.5 * math.log2(max(self.prediction_error, 1e-9) / PREDICTION_GOAL)
 
     @cached_property
-    def _nodal(self) -> Array:
-        """Nodal fields of the guess that this state is for others: log of the gap over its growth, fluid pressure."""
-        return np.stack([np.log(self.gap / self.mesh.far), self.equations.pressures(self.y)[1]])
+    def _log_gap(self) -> Array:
+        return np.log(self.gap)
 
-    @property
+    @cached_property
     def shape(self) -> Array:
         """Logarithm of the gap over ``scale**2 + x**2`` at the nodes: what the panels interpolate."""
-        return np.asarray(self._nodal[0])
+        return np.log(self.gap / self.mesh.far)
+
+    @cached_property
+    def _nodal(self) -> Array:
+        """Nodal fields of the guess that this state is for others: :attr:`shape` and fluid pressure."""
+        return np.stack([self.shape, self.equations.pressures(self.y)[1]])
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
-        return np.log(self.gap) if mesh is self.mesh else np.asarray(self.fields(mesh.nodes)[0])
+        return self._log_gap if mesh is self.mesh else np.asarray(self.fields(mesh.nodes)[0])
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and the fluid pressure at ``x``."""
@@ -233,7 +237,8 @@ def mesh_for(
         shear = VISCOUS * (np.exp(-found[0]) * central_gap).reshape(x.shape)
         return np.concatenate([stretch * pressures.reshape(2, *x.shape), shape[None], shear[None]])
 
-    return adapt(fields, scale, REACH * scale, order, tolerance)
+    start = guess.mesh if isinstance(guess, State) else None
+    return adapt(fields, scale, REACH * scale, order, tolerance, start)
 
 
 def solve_state(

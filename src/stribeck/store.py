@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._types import Array
 from .output import MissingExtraError, PathLike, replacing
 from .parameters import QUANTITIES
-from .solution import DEFINITIONS
+from .solution import DEFINITIONS, Solution
 from .units import DIMENSIONS, InputError
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 
     from .curve import StribeckCurve
 
-__all__ = ["CSV", "DATA", "NETCDF", "curve_dataset", "write_csv", "write_data", "write_netcdf"]
+__all__ = ["CSV", "DATA", "NETCDF", "curve_dataset", "si_films", "write_csv", "write_data", "write_netcdf"]
 
 NETCDF = (".nc",)
 CSV = (".csv",)
@@ -188,10 +187,10 @@ def write_data(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) 
 
 
 def _unit_over(curve: StribeckCurve) -> str:
-    return "1" if curve.contact is None else _unit(curve.over)
+    return "1" if curve.contact is None else unit_of(curve.over)
 
 
-def _unit(name: str) -> str:
+def unit_of(name: str) -> str:
     """Return the SI unit of an input in the spelling of UDUNITS, which files use."""
     return DIMENSIONS[QUANTITIES[name].dimension].unit.replace("*", " ") or "1"
 
@@ -229,39 +228,39 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
             "1",
             f"{label}: estimated absolute error",
         )
-    columns |= _si_columns(curve)
+    films = [si_films(solution) for solution in curve.solutions]
+    for name, (_, unit, label) in (films[0] if films else {}).items():
+        columns[name] = (np.array([film[name][0] for film in films]), unit, label)
     outcomes = np.array([s.outcome.name for s in curve.solutions], dtype=object)
     columns["outcome"] = (outcomes, "1", "how the solve of the point ended")
     return columns
 
 
-def _si_columns(curve: StribeckCurve) -> dict[str, tuple[Array, str, str]]:
-    """Return the Hertz scales of the points, and what they turn into SI units."""
-    scales = [s.contact.hertz for s in curve.solutions if s.contact is not None]
-    if curve.contact is None or not scales:
+def si_films(solution: Solution) -> dict[str, tuple[float, str, str]]:
+    """Return films and Hertz scales of a solution in SI units: value, unit and long name of each.
+
+    Parameters
+    ----------
+    solution : Solution
+        A state; one that comes from groups alone has no scales.
+
+    Returns
+    -------
+    dict
+        By name; empty where there is no contact.
+    """
+    if solution.contact is None:
         return {}
-    half_width = np.array([scale.half_width for scale in scales])
-    indentation = np.array([scale.indentation for scale in scales])
+    scales = solution.contact.hertz
+    a, u = scales.half_width, scales.indentation
     return {
-        "central_film_thickness": (curve.observable("central_gap") * indentation, "m", "gap at the centre"),
-        "minimum_film_thickness": (curve.observable("minimum_gap") * indentation, "m", "least gap"),
-        "minimum_film_position": (
-            curve.observable("minimum_position") * half_width,
-            "m",
-            "position of the least gap",
-        ),
-        "flux_film_thickness": (
-            curve.observable("flux_gap") * indentation,
-            "m",
-            "fluid flux over half the speed",
-        ),
-        "hertz_half_width": (half_width, "m", "half-width a of the dry smooth contact"),
-        "hertz_indentation": (indentation, "m", "indentation u_Hz of the dry smooth contact"),
-        "hertz_pressure": (
-            np.array([s.pressure for s in scales]),
-            "Pa",
-            "largest pressure p_Hz of the dry smooth contact",
-        ),
+        "central_film_thickness": (solution.central_gap * u, "m", "gap at the centre"),
+        "minimum_film_thickness": (solution.minimum_gap * u, "m", "least gap"),
+        "minimum_film_position": (solution.minimum_position * a, "m", "position of the least gap"),
+        "flux_film_thickness": (solution.flux_gap * u, "m", "fluid flux over half the speed"),
+        "hertz_half_width": (a, "m", "half-width a of the dry smooth contact"),
+        "hertz_indentation": (u, "m", "indentation u_Hz of the dry smooth contact"),
+        "hertz_pressure": (scales.pressure, "Pa", "largest pressure p_Hz of the dry smooth contact"),
     }
 
 
@@ -286,7 +285,7 @@ def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
     if curve.contact is not None:
         names = [name for name in INPUTS if name != curve.over]
         found |= {f"input_{name}": getattr(curve.contact, name) for name in names}
-        found["input_units"] = ", ".join(f"{name} {_unit(name)}" for name in names)
+        found["input_units"] = ", ".join(f"{name} {unit_of(name)}" for name in names)
     for name in GROUPS:
         values = np.asarray(getattr(curve.groups, name))
         if len(values) and np.ptp(values) <= 1e-12 * values[0]:

@@ -1,4 +1,4 @@
-"""Asymptotic laws of the model, each with its range and source; never imported by the solver, which they judge."""
+"""Asymptotic laws of the model, each with range and source; the solver, which they judge, imports none."""
 
 from . import hydrodynamic
 

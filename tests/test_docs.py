@@ -1,0 +1,147 @@
+"""The documentation is true: its code runs, its links lead somewhere, its names are all names and all there."""
+
+import dataclasses
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import stribeck as sb
+
+ROOT = Path(__file__).parents[1]
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "CONTRIBUTING.md",
+    ROOT / "CHANGELOG.md",
+    *sorted((ROOT / "docs").glob("*.md")),
+]
+TEXT = {page: page.read_text() for page in PAGES}
+FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+
+
+def blocks(language):
+    """Return the code blocks of all pages in one language, as parameters of a test."""
+    return [
+        pytest.param(code, id=f"{page.stem}-{i}")
+        for page, text in TEXT.items()
+        for i, (found, code) in enumerate(FENCE.findall(text))
+        if found == language
+    ]
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    """Return a folder with the examples in which the documentation's commands run."""
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("code", blocks("python"))
+def test_a_python_block_runs(code, desk):
+    exec(compile(code, "block", "exec"), {"__name__": "block"})
+
+
+@pytest.mark.parametrize("code", blocks("toml"))
+def test_a_case_file_block_is_a_case_file(code, desk):
+    Path("case.toml").write_text(code)
+    assert sb.load_case("case.toml").contact.groups.load > 0
+
+
+def sessions(code):
+    """Yield the commands of a console block, each with the lines of output shown below it."""
+    for part in re.split(r"^\$ ", code, flags=re.MULTILINE)[1:]:
+        command, *shown = part.rstrip().split("\n")
+        yield command, shown
+
+
+@pytest.mark.parametrize("code", blocks("console"))
+def test_a_console_block_does_what_it_shows(code, desk):
+    """Each shown line is in the output, in order; ``...`` stands for lines or words left out."""
+    for command, shown in sessions(code):
+        program, *arguments = shlex.split(command)
+        start = {"stribeck": [sys.executable, "-m", "stribeck"], "python": [sys.executable]}[program]
+        run = subprocess.run([*start, *arguments], capture_output=True, text=True, check=False)
+        output = run.stdout + run.stderr
+        assert run.returncode == (2 if "# exit code 2" in command else 0), output
+        pattern = ".*".join(".*?".join(map(re.escape, line.strip().split("..."))) for line in shown)
+        assert re.search(pattern, re.sub(r"[ \t]+\n", "\n", output), re.DOTALL), output
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_links_lead_somewhere(page):
+    prose = FENCE.sub("", TEXT[page])
+    for target in re.findall(r"\]\((?!https?:)([^)\s]+)\)", prose):
+        name, _, anchor = target.partition("#")
+        other = (page.parent / name).resolve() if name else page
+        assert other.exists(), target
+        if anchor:
+            assert anchor in {anchor_of(title) for title in re.findall(r"^#+ (.*)$", other.read_text(), re.M)}
+
+
+def anchor_of(title):
+    """Return the anchor that GitHub gives a heading."""
+    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+
+
+def test_no_page_stands_alone():
+    reached, queue = set(), [ROOT / "README.md"]
+    while queue:
+        page = queue.pop()
+        reached.add(page)
+        names = re.findall(r"\]\(([^)#\s]+\.md)", page.read_text())
+        queue += [other for name in names if (other := (page.parent / name).resolve()) not in reached]
+    assert set(PAGES) <= reached
+
+
+def test_every_public_name_is_documented():
+    code = " ".join(re.findall(r"`[^`\n]+`", " ".join(TEXT.values()))) + " ".join(
+        found for text in TEXT.values() for _, found in FENCE.findall(text)
+    )
+    assert [name for name in sb.__all__ if not re.search(rf"\b{name}\b", code)] == []
+
+
+def names_in_tables_of(section):
+    """Return the names in code type of the tables of one section of theory.md, without their class."""
+    theory = TEXT[ROOT / "docs" / "theory.md"]
+    body = theory.split(f"\n## {section}", 1)[1].split("\n## ", 1)[0]
+    lines = [line for line in body.splitlines() if line.startswith("|")]
+    return [name.rpartition(".")[2] for name in re.findall(r"`([A-Za-z_.0-9]+)`", "\n".join(lines))]
+
+
+RESULTS = (sb.Groups, sb.LineContact, sb.HertzScales, sb.Friction, sb.Profile, sb.Solution, sb.StribeckCurve)
+RESULTS += (sb.Landmark, sb.Case)
+
+
+@pytest.mark.parametrize("kind", RESULTS, ids=lambda kind: kind.__name__)
+def test_the_table_of_symbols_names_every_field(kind):
+    fields = {field.name for field in dataclasses.fields(kind) if not field.name.startswith("_")}
+    assert fields - set(names_in_tables_of("4. Symbols")) == set()
+
+
+def test_the_table_of_symbols_names_every_variable_of_a_data_file():
+    pytest.importorskip("xarray")
+    case = sb.load_case(ROOT / "examples" / "pdms_cylinder.toml")
+    curve = sb.stribeck_curve(case.contact, speed=(1e-3, 1e-2), points=3)
+    assert set(curve.to_dataset().variables) - set(names_in_tables_of("4. Symbols")) <= {"speed"}
+
+
+def test_the_table_of_symbols_names_every_observable():
+    state = sb.solve(sb.Groups(speed=0.0, load=0.1, roughness=0.0))
+    inputs = {"contact_law", "message", "nodes"}
+    assert set(state.to_dict()) - inputs - set(names_in_tables_of("4. Symbols")) == set()
+
+
+def test_the_shown_formulas_are_numbered_as_docstrings_cite_them():
+    theory = TEXT[ROOT / "docs" / "theory.md"]
+    assert re.findall(r"\\tag\{(\d+)\}", theory) == ["1", "2", "3", "4", "5"]
+    cited = {
+        int(number)
+        for path in (ROOT / "src").rglob("*.py")
+        for number in re.findall(r"theory\.md,? section (\d+)", path.read_text())
+    }
+    assert cited <= set(map(int, re.findall(r"^## (\d+)\.", theory, re.M)))
