@@ -1,4 +1,4 @@
-"""The documentation is true: its code runs, its links lead somewhere, its names are all names and all there."""
+"""The documentation is true: its code runs, its links lead somewhere, its names are all there."""
 
 import dataclasses
 import re

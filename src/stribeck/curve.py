@@ -295,6 +295,11 @@ class StribeckCurve:
             The file.
         force : bool
             Whether an existing file is replaced; else it is kept and the call refused.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given.
         """
         from .store import write_netcdf
 
@@ -309,6 +314,11 @@ class StribeckCurve:
             The file.
         force : bool
             Whether an existing file is replaced; else it is kept and the call refused.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given.
         """
         from .store import write_csv
 
@@ -328,6 +338,11 @@ class StribeckCurve:
         -------
         matplotlib.figure.Figure
             The figure; needs the extra ``plot``.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given.
         """
         from .plotting import plot_curve
 

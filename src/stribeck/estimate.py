@@ -17,13 +17,14 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
+from numpy.polynomial import legendre
 from scipy.linalg import lapack
 
 from . import reynolds
 from ._types import Array
-from .elasticity import deflection_operator
-from .equations import LOAD, Equations
-from .mesh import Mesh, interpolation_error
+from .elasticity import log_moments, near_distance
+from .equations import LOAD, Operators
+from .mesh import Mesh, interpolation_error, reference
 from .observables import NAMES, Observables, friction_integrals, friction_scale, gradients
 from .states import State
 
@@ -49,7 +50,11 @@ GAP_FLOOR = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class FineOperators:
-    """The panels of a mesh with more nodes, and the deflection that pressures there cause at the nodes of the mesh."""
+    """The panels of a mesh with more nodes, and the deflection that pressures there cause at the nodes of the mesh.
+
+    The degrees that the mesh itself holds deflect as on it.  Those above fall so fast with the distance from their panel that
+    only its neighbourhood feels them.
+    """
 
     coarse: Mesh
 
@@ -59,9 +64,29 @@ class FineOperators:
         return self.coarse.refined(self.coarse.order + EXTRA_NODES)
 
     @cached_property
-    def deflection(self) -> Array:
-        """Fine nodal pressures -> deflection at the coarse nodes."""
-        return deflection_operator(self.mesh, self.coarse.nodes)
+    def _lowered(self) -> Array:
+        """Fine nodal values -> coarse nodal values of the polynomial without its highest degrees."""
+        m = self.coarse.order
+        return legendre.legvander(reference(m).nodes, m - 1) @ reference(self.mesh.order).to_legendre[:m]
+
+    @cached_property
+    def _near(self) -> tuple[Array, Array, Array]:
+        """Targets, their near panels, and the deflection by the highest degrees of these, shape (pairs, EXTRA_NODES)."""
+        mesh, m = self.coarse, self.coarse.order
+        s = (mesh.nodes[:, None] - mesh.centres) / mesh.half_widths
+        s[:, -1] = 1 / (mesh.nodes * mesh.half_widths[-1])
+        target, panel = np.nonzero(np.abs(s) < near_distance(m))
+        moments = log_moments(s[target, panel], m + EXTRA_NODES)[:, m:]
+        return target, panel, moments * mesh.half_widths[panel, None] / -np.pi
+
+    def deflection(self, pressure: Array, operators: Operators) -> Array:
+        """Return the deflection at the coarse nodes under fine nodal ``pressure``, with the ``operators`` of the mesh."""
+        density = (pressure * self.mesh.stretch).reshape(self.mesh.panels, -1)
+        lowered = (density @ self._lowered.T).ravel() / self.coarse.stretch
+        highest = density @ reference(self.mesh.order).to_legendre[self.coarse.order :].T
+        target, panel, moments = self._near
+        near = np.bincount(target, np.einsum("pk,pk->p", moments, highest[panel]), len(lowered))
+        return operators.deflection @ lowered + near
 
 
 @dataclass(frozen=True)
@@ -139,7 +164,7 @@ def changes(state: State, fine: FineOperators) -> Changes:
         np.repeat(flat_panels, mesh.order), state.mesh.to_order(reynolds.gradient(state.gap, h_star), mesh.order), slopes
     )
     pressure = equations.law.pressure(gap) + equations.speed * mesh.integral_from_infinity(slopes)
-    deflection = fine.deflection @ pressure
+    deflection = fine.deflection(pressure, op)
     residual = np.empty((3, len(y)))
     residual[0, :-2] = y[:-2] - y[-2] - op.parabola - deflection
     residual[0, -2] = mesh.weights @ pressure - LOAD

@@ -71,8 +71,8 @@ def friction_elasticities(
         = \frac{1}{\mu} \left[ \sum_G n_{GX} \frac{\partial \mu}{\partial \ln G}
         + \left.\frac{\partial \mu}{\partial \ln X}\right|_G \right]
 
-    with G the three groups and n their exponents, :data:`EXPONENTS`. The last term is the contact part of the friction
-    for the friction coefficient and the viscous part for beta.
+    with G the three groups and n their exponents, :data:`EXPONENTS`. The last term is the contact part of the
+    friction for the friction coefficient and the viscous part for beta.
 
     Parameters
     ----------
@@ -88,13 +88,13 @@ def friction_elasticities(
     Solution
         The state.
     dict of str to float
-        Elasticity by name of the input: 0.5 means that 1 % more of it makes 0.5 % more friction; nan where there is
-        no friction.
+        Elasticity by name of the input: 0.5 means that 1 % more of it makes 0.5 % more friction; nan where
+        there is no friction.
 
     Notes
     -----
-    At speed zero friction is that of the dry contact, and at roughness zero the roughness group is held at zero, both
-    exactly.
+    At speed zero friction is that of the dry contact, and at roughness zero the roughness group is held at zero,
+    both exactly.
     """
     check_rtol(rtol)
     definition = check_definition(definition)

@@ -1,0 +1,583 @@
+"""The command ``stribeck``: arguments in, files and tables out; no physics here.
+
+Exit codes: 0 done, 1 the solve failed, 2 bad input, 130 interrupted (Ctrl-C).
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import signal
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
+from importlib.metadata import version
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import App, CycloptsError, Parameter
+
+from .case import Case, curve_range, load_case
+from .curve import Over, StribeckCurve, stribeck_curve
+from .newton import Outcome
+from .output import MissingExtraError, check_output
+from .parameters import Groups
+from .regimes import friction_elasticities
+from .solve import SolveError, solve
+from .units import InputError, show
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+__all__ = ["main"]
+
+FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+"""Exit codes besides 0."""
+
+REGIME_POINTS = 41
+"""Points of the curve on which ``stribeck regimes`` looks for transitions, which are then located exactly."""
+
+HELP = """Friction and film thickness of lubricated rough line contacts, from a TOML file with units.
+
+Example: stribeck curve examples/pdms_cylinder.toml -o curve.nc --plot curve.png
+
+Exit codes: 0 done, 1 the solve failed, 2 bad input, 130 interrupted."""
+
+CaseFile = Annotated[Path | None, Parameter(name="CASE", show_default=False)]
+Number = Annotated[str | None, Parameter(allow_leading_hyphen=True, show_default=False)]
+Flag = Annotated[bool, Parameter(negative="", show_default=False)]
+File = Annotated[Path | None, Parameter(show_default=False)]
+Pair = Annotated[
+    tuple[str, str] | None, Parameter(allow_leading_hyphen=True, show_default=False, negative="")
+]
+Triple = Annotated[
+    tuple[str, str, str] | None, Parameter(allow_leading_hyphen=True, show_default=False, negative="")
+]
+
+
+def main(tokens: Sequence[str] | None = None) -> int:
+    """Run the command and return its exit code; errors become sentences on stderr.
+
+    Parameters
+    ----------
+    tokens : sequence of str, optional
+        Arguments; those of the process by default.
+
+    Returns
+    -------
+    int
+        0 done, 1 the solve failed, 2 bad input, 130 interrupted.
+    """
+    if tokens is None:
+        tokens = sys.argv[1:]
+        _adapt_process()
+    try:
+        result = make_app()(
+            list(tokens),
+            print_error=False,
+            exit_on_error=False,
+            help_on_error=False,
+            result_action="return_value",
+        )
+        sys.stdout.flush()
+        return result if isinstance(result, int) else 0
+    except CycloptsError as problem:
+        return _complain(f"{_line(problem)} See {_command(tokens)} --help.", BAD_INPUT)
+    except InputError as problem:
+        return _complain(str(problem), BAD_INPUT)
+    except SolveError as problem:
+        return _complain(str(problem), BAD_INPUT if problem.outcome is Outcome.ROUNDING else FAILED)
+    except KeyboardInterrupt:
+        return _complain("Interrupted; nothing was written.", INTERRUPTED)
+    except BrokenPipeError:  # the reader, such as head, had enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except MemoryError:
+        return _complain(
+            "The memory of this machine does not suffice; ask for fewer points or a larger rtol.", FAILED
+        )
+    except Exception as problem:
+        if os.environ.get("STRIBECK_DEBUG"):
+            raise
+        return _complain(
+            f"Something went wrong that should not ({type(problem).__name__}: {_line(problem)}) "
+            "Please report it with what STRIBECK_DEBUG=1 in the environment adds.",
+            FAILED,
+        )
+
+
+def make_app() -> App:
+    """Return the command line as cyclopts sees it."""
+    app = App(
+        name="stribeck",
+        help=HELP,
+        version=version("stribeck"),
+        help_format="plaintext",
+        suppress_keyboard_interrupt=False,
+    )
+    for command in (solve_command, curve_command, regimes_command):
+        app.command(command, name=command.__name__.removesuffix("_command"))
+    app.register_install_completion_command()
+    return app
+
+
+def solve_command(
+    case: CaseFile = None,
+    /,
+    *,
+    groups: Triple = None,
+    mu0: Number = None,
+    beta: Number = None,
+    rtol: Number = None,
+    plot: File = None,
+    json: Flag = False,
+    force: Flag = False,
+) -> int:
+    """Solve one state: films, load shares and friction, each with its error.
+
+    Example: stribeck solve examples/pdms_cylinder.toml --plot profile.png
+
+    Example: stribeck solve --groups 1e-5 0.1 1e-4 --json
+
+    Parameters
+    ----------
+    case
+        Case file (TOML).
+    groups
+        Groups instead of a case: SPEED LOAD ROUGHNESS.
+    mu0
+        Dry friction coefficient; only with --groups, 1 if not given.
+    beta
+        Coefficient of the contact law; only with --groups, 1 if not given.
+    rtol
+        Largest relative error of the results, 1e-11 to 1e-2; that of the case or 1e-6 if not given.
+    plot
+        Draw gap and pressure to this file (.png, .svg or .pdf).
+    json
+        Print JSON: every observable under its name, friction_paper and friction_balanced, with a case the SI values.
+    force
+        Replace an existing file.
+    """
+    loaded = _case(case, groups, mu0, beta)
+    tolerance = _rtol(rtol, loaded)
+    mu, b = _number("mu0", mu0), _number("beta", beta)
+    pictures = _pictures(plot, force)
+    problem = (
+        loaded.contact
+        if loaded
+        else Groups(*map(_group, ("speed", "load", "roughness"), groups or (), strict=True))
+    )
+    solution = solve(problem, rtol=tolerance)
+    with _named("friction_coefficient", "mu0", loaded is None):
+        solution.friction(mu, b)  # refuses impossible coefficients before anything is written
+    title = loaded.title if loaded else ""
+    for picture in pictures:
+        from .plotting import plot_profile
+
+        plot_profile(solution, picture, force=force, title=title)
+    from . import report
+
+    if json:
+        print(report.dump(report.solution_json(solution, mu, b)))
+        return 0
+    console = _console()
+    report.print_solution(console, solution, title, mu, b)
+    for picture in pictures:
+        console.print(f"Written: {picture}", markup=False, highlight=False, soft_wrap=True)
+    return 0
+
+
+def curve_command(
+    case: CaseFile = None,
+    /,
+    *,
+    output: Annotated[
+        list[Path] | None, Parameter(name=["--output", "-o"], negative="", show_default=False)
+    ] = None,
+    plot: File = None,
+    over: Annotated[Literal["speed", "load", "roughness"] | None, Parameter(show_default=False)] = None,
+    range: Pair = None,
+    points: Number = None,
+    rtol: Number = None,
+    groups: Pair = None,
+    mu0: Number = None,
+    beta: Number = None,
+    json: Flag = False,
+    force: Flag = False,
+) -> int:
+    """Solve a Stribeck curve: friction along speed, load or roughness, its minimum and its regimes.
+
+    Example: stribeck curve examples/pdms_cylinder.toml -o curve.nc -o curve.csv --plot curve.png
+
+    Example: stribeck curve examples/pdms_cylinder.toml --over load --range "5 N/m" "200 N/m" -o load.csv
+
+    Example: stribeck curve --groups 0.1 1e-4 --range 1e-9 10 -o curve.nc
+
+    After Ctrl-C the finished points are written, marked incomplete; the exit code is then 130.
+
+    Parameters
+    ----------
+    case
+        Case file (TOML); options override its tables [curve] and [solver].
+    output
+        Write the data to this file (.nc or .csv); may be given several times.
+    plot
+        Draw the curve to this file (.png, .svg or .pdf).
+    over
+        What varies; that of the case or speed if not given.
+    range
+        Lowest and highest value of what varies, with units for a case; for speed found if not given.
+    points
+        Number of points, 2 to 100000; that of the case or 101 if not given.
+    rtol
+        Largest relative error of the results, 1e-11 to 1e-2; that of the case or 1e-6 if not given.
+    groups
+        Groups instead of a case: the two that stay fixed, in the order speed, load, roughness.
+    mu0
+        Dry friction coefficient; only with --groups, 1 if not given.
+    beta
+        Coefficient of the contact law; only with --groups, 1 if not given.
+    json
+        Print the curve as JSON.
+    force
+        Replace existing files.
+    """
+    loaded = _case(case, groups, mu0, beta)
+    outputs, pictures = _outputs(output or [], plot, force)
+    arguments = _curve_arguments(loaded, over, range, points, rtol, groups, mu0, beta)
+    title = loaded.title if loaded else ""
+    with _interruptible() as progress, _named("friction_coefficient", "mu0", loaded is None):
+        curve = stribeck_curve(on_point=progress, **arguments)
+        if curve.outcome is Outcome.ROUNDING:
+            raise InputError(_too_small(curve))
+        written, problems = _write(curve, title, outputs, pictures, force)
+    from . import report
+
+    if json:
+        print(report.dump(report.curve_json(curve, title, written)))
+    else:
+        report.print_curve(_console(), curve, title, written)
+    if problems:
+        return _complain("\n".join(problems), BAD_INPUT)
+    if curve.outcome is Outcome.INTERRUPTED:
+        kept = (
+            f"{' and '.join(written)} hold the points so far, marked incomplete"
+            if written
+            else "no file was asked for"
+        )
+        return _complain(f"Interrupted after {len(curve)} of {curve.requested} points; {kept}.", INTERRUPTED)
+    if not curve.outcome.ok:
+        return _complain(f"{len(curve)} of {curve.requested} points: {curve.outcome.value}", FAILED)
+    return 0
+
+
+def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
+    """Tell the lubrication regime of a contact, the transition speeds, and what moves its friction.
+
+    Example: stribeck regimes examples/pdms_cylinder.toml
+
+    Parameters
+    ----------
+    case
+        Case file (TOML).
+    json
+        Print JSON.
+    """
+    if case is None:
+        raise InputError("CASE is missing; give a case file, as in: stribeck regimes case.toml.")
+    loaded = load_case(case)
+    solution, elasticities = friction_elasticities(
+        loaded.contact, rtol=loaded.rtol, definition=loaded.definition
+    )
+    with _interruptible() as progress:
+        curve = stribeck_curve(
+            loaded.contact,
+            points=REGIME_POINTS,
+            rtol=loaded.rtol,
+            definition=loaded.definition,
+            on_point=progress,
+        )
+        _ = curve.transitions
+    if curve.outcome is Outcome.INTERRUPTED:
+        raise KeyboardInterrupt
+    from . import report
+
+    if json:
+        print(report.dump(report.regimes_json(solution, elasticities, curve, loaded.title)))
+    else:
+        report.print_regimes(_console(), solution, elasticities, curve, loaded.title)
+    return 0 if curve.outcome.ok else _complain(curve.outcome.value, FAILED)
+
+
+# --- arguments ---
+
+
+def _case(path: Path | None, groups: Sequence[str] | None, mu0: str | None, beta: str | None) -> Case | None:
+    """Return the case, or None where groups are given instead."""
+    if path is not None and groups is not None:
+        raise InputError(f"{path} and --groups are both given; give a case file or groups.")
+    if path is None and groups is None:
+        raise InputError("CASE is missing; give a case file, or groups with --groups.")
+    if path is None:
+        return None
+    for name, key, value in (("--mu0", "friction_coefficient", mu0), ("--beta", "beta", beta)):
+        if value is not None:
+            raise InputError(f"{name} = {value} goes with --groups only; in {path} it is the key {key}.")
+    return load_case(path)
+
+
+def _number(name: str, text: str | None) -> float | None:
+    if text is None:
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"{name} = {show(text)} is not a number; write it as 0.001 or 1e-3.") from None
+
+
+def _group(name: str, text: str) -> float:
+    value = _number(name, text)
+    assert value is not None
+    return value
+
+
+def _whole(name: str, text: str) -> int:
+    if not re.fullmatch(r"[+-]?[0-9]{1,18}", text.strip()):
+        raise InputError(f"{name} = {show(text)} is not a whole number; write it as 101.")
+    return int(text)
+
+
+def _rtol(text: str | None, case: Case | None) -> float:
+    given = _number("rtol", text)
+    return given if given is not None else case.rtol if case else Case.rtol
+
+
+def _curve_arguments(
+    case: Case | None,
+    over: Over | None,
+    ends: tuple[str, str] | None,
+    points: str | None,
+    rtol: str | None,
+    groups: tuple[str, str] | None,
+    mu0: str | None,
+    beta: str | None,
+) -> dict[str, Any]:
+    """Return the arguments of :func:`stribeck_curve` that a command line asks for."""
+    from .case import CurveSettings
+
+    settings = case.curve if case else CurveSettings()
+    varied: Over = over or settings.over
+    found: dict[str, Any] = {
+        "points": settings.points if points is None else _whole("points", points),
+        "rtol": _rtol(rtol, case),
+    }
+    if case is not None:
+        found |= {"problem": case.contact, "definition": case.definition}
+        span = settings.range if varied == settings.over else None
+        if ends is not None:
+            span = curve_range([_bare_or_text(end) for end in ends], varied)
+    else:
+        fixed = [name for name in ("speed", "load", "roughness") if name != varied]
+        found |= {name: _group(name, text) for name, text in zip(fixed, groups or (), strict=True)}
+        found |= {"mu0": _number("mu0", mu0), "beta": _number("beta", beta)}
+        span = None
+        if ends is not None:
+            low, high = (_group(varied, text) for text in ends)
+            span = low, high
+    if span is not None:
+        found[varied] = span
+    elif varied != "speed":
+        raise InputError(
+            f"range is missing; a curve over {varied} needs --range with the lowest and highest {varied}."
+        )
+    return found
+
+
+def _bare_or_text(text: str) -> float | str:
+    """Return a bare number, which is in SI units, as number; what has a unit as it is."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _outputs(data: Sequence[Path], plot: Path | None, force: bool) -> tuple[list[Path], list[Path]]:
+    """Return the files to write, after a look at whether that will be possible."""
+    from .store import DATA, NETCDF
+
+    for path in data:
+        check_output(path, DATA, force=force)
+    if data:
+        _need("a data file", "data", "xarray")
+    if any(path.suffix.lower() in NETCDF for path in data):
+        _need("a NetCDF file", "data", "netCDF4")
+    pictures = _pictures(plot, force)
+    targets = [path.resolve() for path in (*data, *pictures)]
+    for path, target in zip((*data, *pictures), targets, strict=True):
+        if targets.count(target) > 1:
+            raise InputError(f"{path} is named twice among the outputs; give each its own name.")
+    return list(data), pictures
+
+
+def _pictures(plot: Path | None, force: bool) -> list[Path]:
+    from .plotting import PICTURES
+
+    if plot is None:
+        return []
+    check_output(plot, PICTURES, force=force)
+    _need("a picture", "plot", "matplotlib")
+    return [plot]
+
+
+def _need(purpose: str, extra: str, library: str) -> None:
+    if importlib.util.find_spec(library) is None:
+        raise MissingExtraError(purpose, extra, library)
+
+
+# --- results ---
+
+
+def _write(
+    curve: StribeckCurve, title: str, outputs: Collection[Path], pictures: Collection[Path], force: bool
+) -> tuple[list[str], list[str]]:
+    """Write the files of a curve; return their names, and sentences about those that failed."""
+    written, problems = [], []
+
+    def attempt(path: Path, action: Callable[[], object]) -> None:
+        try:
+            action()
+        except InputError as problem:
+            problems.append(str(problem))
+        else:
+            written.append(str(path))
+
+    if outputs:
+        from .store import curve_dataset, write_data
+
+        dataset = curve_dataset(curve, title)
+        for path in outputs:
+            attempt(path, lambda path=path: write_data(dataset, path, force=force))  # type: ignore[misc]
+    for path in pictures:
+        from .plotting import plot_curve
+
+        attempt(path, lambda path=path: plot_curve(curve, path, force=force, title=title))  # type: ignore[misc]
+    return written, problems
+
+
+def _too_small(curve: StribeckCurve) -> str:
+    where = f" at {curve.over} below {curve.values[0]:.3g}" if len(curve) else ""
+    return f"rtol = {curve.rtol:g}: {Outcome.ROUNDING.value[0].lower()}{Outcome.ROUNDING.value[1:]}".replace(
+        "this state", f"the states{where}"
+    )
+
+
+def _console() -> Console:
+    from rich.console import Console
+
+    return Console(file=sys.stdout)
+
+
+@contextmanager
+def _named(key: str, option: str, wanted: bool) -> Iterator[None]:
+    """Let sentences about a key of case files speak of the option that took its place."""
+    try:
+        yield
+    except InputError as problem:
+        if not wanted or type(problem) is not InputError:
+            raise
+        raise InputError(str(problem).replace(key, option)) from None
+
+
+class _Progress:
+    """A bar on stderr where this is a terminal, and the place where Ctrl-C takes effect.
+
+    Ctrl-C is a wish to stop after the present point: then nothing that was finished can be lost. Before the first
+    point, and when it comes a second time, it takes effect at once.
+    """
+
+    def __init__(self) -> None:
+        self.started = self.wanted = False
+        self.bar: Any = None
+        self.task: Any = None
+
+    def __call__(self, done: int, total: int) -> None:
+        """Take note of a finished point."""
+        self.started = True
+        if self.bar is not None:
+            self.bar.update(self.task, completed=done, total=total, description="solving")
+        if self.wanted and done < total:
+            raise KeyboardInterrupt
+
+    def interrupt(self, number: int, frame: FrameType | None) -> None:
+        """Handle Ctrl-C."""
+        again, self.wanted = self.wanted, True
+        if again or not self.started:
+            raise KeyboardInterrupt
+
+
+@contextmanager
+def _interruptible() -> Iterator[_Progress]:
+    """Show progress and let Ctrl-C stop the work between two points."""
+    progress = _Progress()
+    handles = threading.current_thread() is threading.main_thread()
+    # A shell makes background jobs ignore Ctrl-C; that stays so.
+    handles = handles and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if handles:
+        signal.signal(signal.SIGINT, progress.interrupt)
+    try:
+        with _bar(progress):
+            yield progress
+    except SolveError:
+        # Also a path that was lost because it was interrupted.
+        if progress.wanted:
+            raise KeyboardInterrupt from None
+        raise
+    finally:
+        if handles:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def _bar(progress: _Progress) -> Iterator[None]:
+    if not sys.stderr.isatty():
+        yield
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        progress.bar, progress.task = bar, bar.add_task("looking for the range", total=None)
+        yield
+
+
+# --- errors ---
+
+
+def _complain(text: str, code: int) -> int:
+    for line in text.splitlines():
+        print(f"stribeck: {line}", file=sys.stderr)
+    return code
+
+
+def _line(problem: BaseException) -> str:
+    text = " ".join(str(problem).split())
+    return text if not text or text.endswith((".", "?", "!")) else f"{text}."
+
+
+def _command(tokens: Sequence[str]) -> str:
+    known = ("solve", "curve", "regimes")
+    return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
+
+
+def _adapt_process() -> None:
+    """Set what belongs to a process of our own: letters that any terminal takes, and warnings only where asked for."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+    if not sys.warnoptions and not os.environ.get("STRIBECK_DEBUG"):
+        warnings.simplefilter("ignore")

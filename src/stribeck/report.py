@@ -1,0 +1,470 @@
+"""Results in words and as JSON: what the commands print. Nothing is computed here but percentages."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .curve import Landmark, StribeckCurve
+from .parameters import QUANTITIES, Groups, LineContact
+from .regimes import regime_of
+from .solution import DEFINITIONS, Definition, Solution
+from .store import GROUPS, INPUTS, si_films, unit_of
+from .units import format_si
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+__all__ = [
+    "curve_json",
+    "dump",
+    "print_curve",
+    "print_regimes",
+    "print_solution",
+    "regimes_json",
+    "solution_json",
+]
+
+LABELS = {
+    "friction_coefficient": "dry friction coefficient",
+    "alpha": "alpha of the contact law",
+    "beta": "beta of the contact law",
+}
+"""Names of inputs that are not words by themselves."""
+
+HANDS_ON = ("speed", "load", "viscosity", "modulus", "radius", "roughness", "friction_coefficient")
+"""Inputs that one may change; alpha and beta follow from the surface."""
+
+Elasticities = dict[str, float]
+
+
+def dump(content: dict[str, Any]) -> str:
+    """Return content as JSON text; what is not finite becomes null, as JSON knows no nan.
+
+    Parameters
+    ----------
+    content : dict
+        Numbers, text, arrays, sequences and dictionaries of these.
+
+    Returns
+    -------
+    str
+        The text.
+    """
+    return json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False)
+
+
+def _plain(content: Any) -> Any:
+    if isinstance(content, dict):
+        return {name: _plain(value) for name, value in content.items()}
+    if isinstance(content, np.ndarray):
+        return _plain(content.tolist())
+    if isinstance(content, list | tuple):
+        return [_plain(value) for value in content]
+    if isinstance(content, float) and not math.isfinite(content):
+        return None
+    return content
+
+
+def solution_json(solution: Solution, mu0: float | None = None, beta: float | None = None) -> dict[str, Any]:
+    """Return :meth:`Solution.to_dict`, and under ``si`` the inputs and films in SI units where there is a contact.
+
+    Parameters
+    ----------
+    solution : Solution
+        The state.
+    mu0, beta : float, optional
+        As in :meth:`Solution.friction`.
+
+    Returns
+    -------
+    dict
+        Ready for :func:`dump`.
+    """
+    found: dict[str, Any] = solution.to_dict(mu0, beta)
+    if solution.contact is not None:
+        films = si_films(solution)
+        found["si"] = {
+            **_inputs(solution.contact),
+            **{name: value for name, (value, _, _) in films.items()},
+            "units": _units() | {name: unit for name, (_, unit, _) in films.items()},
+        }
+    return found
+
+
+def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[str, Any]:
+    """Return a curve with its settings, landmarks and points.
+
+    Parameters
+    ----------
+    curve : StribeckCurve
+        The curve.
+    title : str
+        Headline.
+    files : sequence of str
+        Files that were written.
+
+    Returns
+    -------
+    dict
+        Ready for :func:`dump`.
+    """
+    names = (
+        "contact_load_share",
+        "fluid_load_share",
+        "central_gap",
+        "minimum_gap",
+        "flux_gap",
+        "lambda_ratio",
+    )
+    return {
+        "title": title,
+        "over": curve.over,
+        "unit": "1" if curve.contact is None else unit_of(curve.over),
+        "definition": curve.definition,
+        "rtol": curve.rtol,
+        "mu0": curve.mu0,
+        "beta": curve.beta,
+        "inputs": None if curve.contact is None else _inputs(curve.contact),
+        "units": None if curve.contact is None else _units(),
+        "minimum": None if curve.minimum is None else _landmark(curve.minimum),
+        "transitions": [_landmark(mark) for mark in curve.transitions],
+        "regimes": [{"regime": name, "from": low, "to": high} for name, low, high in curve.regime_ranges],
+        "points": {
+            "value": curve.values,
+            **{f"{name}_group": np.asarray(getattr(curve.groups, name)) for name in GROUPS},
+            "hersey_number": curve.hersey_number,
+            "hydrodynamic_friction": curve.hydrodynamic_friction,
+            "friction": curve.friction,
+            "friction_contact": curve.friction_contact,
+            "friction_viscous": curve.friction_viscous,
+            "friction_error": curve.friction_error,
+            "regime": curve.regimes,
+            **{name: curve.observable(name) for name in names},
+        },
+        "requested_points": curve.requested,
+        "complete": curve.outcome.ok,
+        "error_estimate": curve.error_estimate,
+        "outcome": curve.outcome.name,
+        "message": curve.outcome.value,
+        "notes": list(curve.notes),
+        "files": list(files),
+    }
+
+
+def regimes_json(
+    solution: Solution, elasticities: Elasticities, curve: StribeckCurve, title: str = ""
+) -> dict[str, Any]:
+    """Return the regime of a state, the transitions around it and what moves its friction.
+
+    Parameters
+    ----------
+    solution : Solution
+        The state, of a contact.
+    elasticities : dict of str to float
+        Those of its friction.
+    curve : StribeckCurve
+        The curve over the speed through it.
+    title : str
+        Headline.
+
+    Returns
+    -------
+    dict
+        Ready for :func:`dump`.
+    """
+    assert solution.contact is not None
+    friction = solution.friction(definition=curve.definition)
+    speed = solution.contact.speed
+    return {
+        "title": title,
+        "regime": _regime(solution, curve.definition),
+        "speed": speed,
+        "unit": unit_of("speed"),
+        "fluid_load_share": solution.fluid_load_share,
+        "contact_friction_share": friction.contact / friction.total if friction.total > 0 else 0.0,
+        "friction": friction.total,
+        "friction_error": friction.error,
+        "definition": curve.definition,
+        "transitions": [
+            {**_landmark(mark), "factor": mark.value / speed if speed > 0 else math.inf}
+            for mark in curve.transitions
+        ],
+        "regimes": [{"regime": name, "from": low, "to": high} for name, low, high in curve.regime_ranges],
+        "elasticities": elasticities,
+        "moves_friction_most": _strongest(elasticities),
+        "inputs": _inputs(solution.contact),
+        "units": _units(),
+        "error_estimate": max(solution.error_estimate, curve.error_estimate),
+        "outcome": curve.outcome.name,
+        "message": curve.outcome.value,
+        "notes": list(solution.notes),
+    }
+
+
+def print_solution(
+    console: Console, solution: Solution, title: str, mu0: float | None = None, beta: float | None = None
+) -> None:
+    """Print one state as a table with units and errors.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    solution : Solution
+        The state.
+    title : str
+        Headline.
+    mu0, beta : float, optional
+        As in :meth:`Solution.friction`.
+    """
+    _print_head(console, title, solution.contact, solution.groups)
+    table = _table("", "value", "in SI units", "error")
+    for row in _solution_rows(solution, mu0, beta):
+        table.add_row(*row)
+    console.print(table)
+    _print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes)
+
+
+def _solution_rows(
+    solution: Solution, mu0: float | None, beta: float | None
+) -> Iterator[tuple[str, str, str, str]]:
+    errors = solution.errors
+    for definition in DEFINITIONS:
+        f = solution.friction(mu0, beta, definition)
+        relative = f.error / f.total if f.total > 0 else 0.0
+        yield f"friction coefficient ({definition})", _digits(f.total, relative), "", _error(relative)
+        yield "  from asperities", _digits(f.contact, relative), "", ""
+        yield "  from the fluid", _digits(f.viscous, relative), "", ""
+    for name, label in (
+        ("contact_load_share", "load on asperities"),
+        ("fluid_load_share", "load on the fluid"),
+    ):
+        yield label, _digits(getattr(solution, name), errors[name]), "", f"{errors[name]:.0e} of the load"
+    scales = None if solution.contact is None else solution.contact.hertz
+    for name, label in (
+        ("central_gap", "central film"),
+        ("minimum_gap", "least film"),
+        ("flux_gap", "flux film h*"),
+        ("offset", "offset z0"),
+    ):
+        value = getattr(solution, name)
+        si = "" if scales is None else _length(value * scales.indentation, errors[name])
+        yield label, f"{_digits(value, errors[name])} u_Hz", si, _error(errors[name])
+    si = "" if scales is None else _length(solution.minimum_position * scales.half_width, 1e-4)
+    yield "place of the least film", f"{solution.minimum_position:.4g} a", si, ""
+    yield "Lambda, central film over h_rms/alpha", f"{solution.lambda_ratio:.4g}", "", ""
+    regime = regime_of(solution.fluid_load_share, _contact_part(solution.friction(mu0, beta)))
+    yield "Hersey number", f"{_hersey(solution, beta):.4g}", "", ""
+    yield "regime", regime, "", ""
+
+
+def _hersey(solution: Solution, beta: float | None) -> float:
+    if solution.contact is None and beta is not None:
+        return float(solution.groups.hersey_number(beta))
+    return solution.hersey_number
+
+
+def print_curve(console: Console, curve: StribeckCurve, title: str, files: Sequence[str]) -> None:
+    """Print what a curve holds: inputs, regimes, transitions, error, notes, files.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    curve : StribeckCurve
+        The curve.
+    title : str
+        Headline.
+    files : sequence of str
+        Files that were written.
+    """
+    _print_head(console, title, curve.contact, curve.groups, curve.over)
+    low, high = _place(curve, curve.values[0]), _place(curve, curve.values[-1])
+    _say(console, f"{len(curve)} points, {curve.over} {low} to {high}.")
+    table = _table("regime", "from", "to", right=(1, 2))
+    for regime, first, last in curve.regime_ranges:
+        table.add_row(regime, _place(curve, first), _place(curve, last))
+    console.print(table)
+    if curve.transitions:
+        table = _table("where", curve.over, "friction", right=(1, 2))
+        for mark in curve.transitions:
+            table.add_row(mark.name, _place(curve, mark.value, 7), f"{mark.friction:.7g}")
+        console.print(table)
+    if curve.minimum is None:
+        _say(console, "Friction has no minimum inside this range.")
+    _print_outcome(console, curve.outcome.value, curve.error_estimate, curve.notes)
+    for name in files:
+        _say(console, f"Written: {name}")
+
+
+def print_regimes(
+    console: Console, solution: Solution, elasticities: Elasticities, curve: StribeckCurve, title: str
+) -> None:
+    """Print in which regime a contact runs, where the transitions lie, and what moves its friction.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    solution : Solution
+        The state, of a contact.
+    elasticities : dict of str to float
+        Those of its friction.
+    curve : StribeckCurve
+        The curve over the speed through it.
+    title : str
+        Headline.
+    """
+    contact = solution.contact
+    assert contact is not None
+    _print_head(console, title, contact, solution.groups)
+    friction = solution.friction(definition=curve.definition)
+    speed = format_si(contact.speed, "speed")
+    _say(
+        console,
+        f"At {speed} lubrication is {_regime(solution, curve.definition)}: the fluid carries "
+        f"{_percent(solution.fluid_load_share)} of the load, asperities cause {_percent(_contact_part(friction))} of "
+        f"the friction coefficient {friction.total:.4g}.",
+    )
+    if curve.transitions:
+        table = _table("where", "speed", "from here", "friction", right=(1, 3))
+        for mark in curve.transitions:
+            table.add_row(
+                mark.name, _place(curve, mark.value, 4), _way(mark, contact.speed), f"{mark.friction:.4g}"
+            )
+        console.print(table)
+    else:
+        _say(
+            console,
+            "No transition lies between the boundary plateau and the hydrodynamic branch of this contact.",
+        )
+    table = _table("input", "value", "d ln(friction)/d ln(input)", "10 % more of it gives", right=(1, 2, 3))
+    for name in sorted(elasticities, key=lambda name: -abs(elasticities[name])):
+        value, slope = getattr(contact, name), elasticities[name]
+        text = format_si(value, QUANTITIES[name].dimension)
+        table.add_row(LABELS.get(name, name), text, f"{slope:+.3f}", f"{_change(1.1, slope):+.1%} friction")
+    console.print(table)
+    strongest = _strongest(elasticities)
+    if strongest is not None:
+        slope = elasticities[strongest]
+        factor = 0.9 if slope > 0 else 1.1
+        _say(
+            console,
+            f"The {LABELS.get(strongest, strongest)} moves friction most: 10 % {'less' if slope > 0 else 'more'} of it "
+            f"lowers friction by {-_change(factor, slope):.1%}, all else kept.",
+        )
+    _print_outcome(
+        console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), solution.notes
+    )
+
+
+def _print_head(
+    console: Console, title: str, contact: LineContact | None, groups: Groups, over: str | None = None
+) -> None:
+    """Print the headline, the inputs and the groups, without those that vary."""
+    if title:
+        console.print(title, style="bold", markup=False, highlight=False)
+    if contact is not None:
+        shown = [
+            f"{LABELS.get(name, name)} {format_si(getattr(contact, name), QUANTITIES[name].dimension, 4)}"
+            for name in INPUTS
+            if name != over
+        ]
+        _say(console, f"Contact: {', '.join(shown)}.")
+    constant = []
+    for name in GROUPS:
+        values = np.asarray(getattr(groups, name))
+        if values.ndim == 0 or (len(values) and np.ptp(values) <= 1e-12 * values[0]):
+            constant.append(f"{name} {float(values.flat[0]):.6g}")
+    _say(console, f"Groups: {', '.join(constant)}.")
+
+
+def _print_outcome(console: Console, outcome: str, error: float, notes: Sequence[str]) -> None:
+    _say(console, f"{outcome} Largest estimated relative error: {error:.1e}.")
+    for note in notes:
+        console.print(f"Note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+
+
+def _say(console: Console, text: str) -> None:
+    console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def _table(*columns: str, right: Sequence[int] = ()) -> Any:
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for i, name in enumerate(columns):
+        table.add_column(name, justify="right" if i in right else "left", no_wrap=True)
+    return table
+
+
+def _digits(value: float, error: float) -> str:
+    """Return a number with the digits that its relative error allows."""
+    if not math.isfinite(value):
+        return "none" if math.isnan(value) else "infinite"
+    count = 12 if error <= 0 else min(12, max(3, math.ceil(-math.log10(error))))
+    return f"{value:.{count}g}"
+
+
+def _length(value: float, error: float) -> str:
+    if not math.isfinite(value):
+        return ""
+    count = 12 if error <= 0 else min(12, max(3, math.ceil(-math.log10(error))))
+    return format_si(value, "length", count)
+
+
+def _error(relative: float) -> str:
+    return f"{relative:.0e}" if math.isfinite(relative) else ""
+
+
+def _percent(part: float) -> str:
+    return f"{100 * part:.3g} %"
+
+
+def _contact_part(friction: Any) -> float:
+    return friction.contact / friction.total if friction.total > 0 else 0.0
+
+
+def _regime(solution: Solution, definition: Definition) -> str:
+    return regime_of(solution.fluid_load_share, _contact_part(solution.friction(definition=definition)))
+
+
+def _change(factor: float, slope: float) -> float:
+    """Return the relative change of friction where an input with this elasticity is multiplied."""
+    return float(factor**slope - 1)
+
+
+def _strongest(elasticities: Elasticities) -> str | None:
+    found = max(HANDS_ON, key=lambda name: abs(np.nan_to_num(elasticities[name])))
+    return found if abs(np.nan_to_num(elasticities[found])) > 0 else None
+
+
+def _way(mark: Landmark, speed: float) -> str:
+    if speed == 0:
+        return "from rest"
+    factor = mark.value / speed
+    return f"{factor:.3g} times faster" if factor >= 1 else f"{1 / factor:.3g} times slower"
+
+
+def _place(curve: StribeckCurve, value: float, digits: int = 3) -> str:
+    if curve.contact is None:
+        return f"{value:.{digits}g}"
+    return format_si(value, QUANTITIES[curve.over].dimension, digits)
+
+
+def _landmark(mark: Landmark) -> dict[str, Any]:
+    return {"name": mark.name, "value": mark.value, "friction": mark.friction}
+
+
+def _inputs(contact: LineContact) -> dict[str, float]:
+    return {name: getattr(contact, name) for name in INPUTS}
+
+
+def _units() -> dict[str, str]:
+    return {name: unit_of(name) for name in INPUTS}
