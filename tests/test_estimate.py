@@ -47,7 +47,7 @@ def judged(state):
 @pytest.fixture(scope="module", params=STATES)
 def case(request, solved):
     """Groups and the exact observables, with what their errors are relative to."""
-    solution = solved(*STATES[request.param], rtol=1e-10)
+    solution = solved(*STATES[request.param], rtol=1e-9)
     exact = np.array([getattr(solution.observables, name) for name in NAMES])
     return sb.Groups(*STATES[request.param]), exact
 
@@ -66,14 +66,14 @@ def test_the_estimate_follows_the_true_error_on_coarse_meshes(case):
 
 
 def test_the_defect_measures_the_error_at_the_nodes(case):
-    """Friction, offset and load share owe nothing to interpolation: the defect is their error, within ten."""
+    """Offset and flux gap owe nothing to interpolation: the defect is their error, within ten."""
     groups, exact = case
-    names = [NAMES.index(name) for name in ("fluid_load_share", "viscous_paper", "offset")]
+    names = [NAMES.index(name) for name in ("flux_gap", "offset")]
     ratios = []
     for order, tolerance in UNRESOLVED:
         values, parts, estimate = judged(state_on(groups, order, tolerance))
         error = (np.abs(values - exact) / estimate.scales)[names].max()
-        if 1e-10 < error < 1e-2:
+        if 1e-9 < error < 1e-2:
             ratios.append(parts["discretisation"][names].max() / error)
     assert len(ratios) >= 3
     assert 0.1 < np.median(ratios) < 10
@@ -83,12 +83,14 @@ def test_the_defect_measures_the_error_at_the_nodes(case):
 @pytest.mark.parametrize("speed", [1e-12, 1e-11])
 def test_rounding_is_not_below_the_scatter_of_equivalent_meshes(speed):
     groups = sb.Groups(speed, 0.1, 0.0)
-    found = [judged(state_on(groups, order, 1e-6)) for order in (12, 14, 16)]
+    found = [judged(state_on(groups, order, 1e-7)) for order in (12, 14, 16)]
     values = np.array([values for values, _, _ in found])
     rounding = np.max([parts["rounding"] for _, parts, _ in found], axis=0)
     scatter = 0.5 * np.ptp(values, axis=0) / found[0][2].scales
-    assert (scatter <= rounding + 1e-14).all()
-    assert scatter.max() > 0.01 * rounding.max()
+    # Shares and offset are known better than the film, the central gap is interpolated: they tell of meshes.
+    films = [NAMES.index(name) for name in ("minimum_gap", "flux_gap", "viscous_paper", "viscous_balanced")]
+    assert (scatter <= rounding)[films].all()
+    assert scatter[films].max() > 0.01 * rounding.max()
     assert rounding.max() > 1e-9
     assert found[0][2].floor == pytest.approx(found[0][1]["rounding"].max(), rel=1e-12)
 

@@ -19,7 +19,7 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, MissingArgumentError, Parameter, UnusedCliTokensError
 
 from .case import Case, curve_range, load_case
 from .curve import Over, StribeckCurve, stribeck_curve
@@ -86,11 +86,13 @@ def main(tokens: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
         return result if isinstance(result, int) else 0
     except CycloptsError as problem:
-        return _complain(f"{_line(problem)} See {_command(tokens)} --help.", BAD_INPUT)
+        return _complain(f"{_parsing(problem)} See {_command(tokens)} --help.", BAD_INPUT)
     except InputError as problem:
         return _complain(str(problem), BAD_INPUT)
     except SolveError as problem:
-        return _complain(str(problem), BAD_INPUT if problem.outcome is Outcome.ROUNDING else FAILED)
+        if problem.outcome is Outcome.ROUNDING and problem.solution is not None:
+            return _complain(f"rtol = {problem.solution.rtol:g} cannot be reached at {problem}", BAD_INPUT)
+        return _complain(str(problem), FAILED)
     except KeyboardInterrupt:
         return _complain("Interrupted; nothing was written.", INTERRUPTED)
     except BrokenPipeError:  # the reader, such as head, had enough
@@ -158,7 +160,7 @@ def solve_command(
     plot
         Draw gap and pressure to this file (.png, .svg or .pdf).
     json
-        Print JSON: every observable under its name, friction_paper and friction_balanced, with a case the SI values.
+        Print JSON: every observable under its name, friction_paper, friction_balanced; with a case SI values.
     force
         Replace an existing file.
     """
@@ -166,11 +168,7 @@ def solve_command(
     tolerance = _rtol(rtol, loaded)
     mu, b = _number("mu0", mu0), _number("beta", beta)
     pictures = _pictures(plot, force)
-    problem = (
-        loaded.contact
-        if loaded
-        else Groups(*map(_group, ("speed", "load", "roughness"), groups or (), strict=True))
-    )
+    problem = loaded.contact if loaded else Groups(*map(_group, ("speed", "load", "roughness"), groups or ()))
     solution = solve(problem, rtol=tolerance)
     with _named("friction_coefficient", "mu0", loaded is None):
         solution.friction(mu, b)  # refuses impossible coefficients before anything is written
@@ -319,6 +317,10 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
 def _case(path: Path | None, groups: Sequence[str] | None, mu0: str | None, beta: str | None) -> Case | None:
     """Return the case, or None where groups are given instead."""
     if path is not None and groups is not None:
+        if re.fullmatch(r"[-+0-9.eE]+", str(path)):
+            raise InputError(
+                f"--groups has more than {len(groups)} numbers: {' '.join(groups)} {path}; see --help."
+            )
         raise InputError(f"{path} and --groups are both given; give a case file or groups.")
     if path is None and groups is None:
         raise InputError("CASE is missing; give a case file, or groups with --groups.")
@@ -495,8 +497,8 @@ def _named(key: str, option: str, wanted: bool) -> Iterator[None]:
 class _Progress:
     """A bar on stderr where this is a terminal, and the place where Ctrl-C takes effect.
 
-    Ctrl-C is a wish to stop after the present point: then nothing that was finished can be lost. Before the first
-    point, and when it comes a second time, it takes effect at once.
+    Ctrl-C is a wish to stop after the present point: then nothing that was finished can be lost. Before the
+    first point, and when it comes a second time, it takes effect at once.
     """
 
     def __init__(self) -> None:
@@ -564,6 +566,19 @@ def _complain(text: str, code: int) -> int:
     return code
 
 
+def _parsing(problem: CycloptsError) -> str:
+    """Return the sentence for arguments that do not fit together."""
+    if isinstance(problem, UnusedCliTokensError) and problem.unused_tokens:
+        return f"{problem.unused_tokens[0]!r} is one argument too many."
+    if isinstance(problem, MissingArgumentError) and problem.argument is not None:
+        count = problem.argument.token_count()[0]
+        wanted = f"{count} values" if count > 1 else "a value"
+        return (
+            f"{problem.keyword or problem.argument.name} needs {wanted}, {len(problem.tokens_so_far)} given."
+        )
+    return _line(problem)
+
+
 def _line(problem: BaseException) -> str:
     text = " ".join(str(problem).split())
     return text if not text or text.endswith((".", "?", "!")) else f"{text}."
@@ -575,7 +590,7 @@ def _command(tokens: Sequence[str]) -> str:
 
 
 def _adapt_process() -> None:
-    """Set what belongs to a process of our own: letters that any terminal takes, and warnings only where asked for."""
+    """Set what belongs to a process of our own: letters that any terminal takes, warnings only on demand."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")

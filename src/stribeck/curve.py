@@ -168,14 +168,15 @@ class StribeckCurve:
 
         They meet at a located transition where there is one, else in the middle between two points.
         """
+        regimes = self.regimes
         edges = [float(self.values[0])]
-        names = [self.regimes[0]]
+        names = [regimes[0]]
         marks = [mark.value for mark in self.transitions if mark is not self.minimum]
         for i in range(1, len(self)):
-            if self.regimes[i] != names[-1]:
+            if regimes[i] != names[-1]:
                 low, high = float(self.values[i - 1]), float(self.values[i])
                 edges.append(next((value for value in marks if low <= value <= high), math.sqrt(low * high)))
-                names.append(self.regimes[i])
+                names.append(regimes[i])
         return tuple(zip(names, edges, [*edges[1:], float(self.values[-1])], strict=True))
 
     @property

@@ -88,6 +88,10 @@ class Equations:
         fluid = self.speed * (self.operators.mesh.integral_from_infinity(reynolds.gradient(h, h_star)))
         return self.law.pressure(h), fluid
 
+    def fluid_load(self, y: Array) -> float:
+        """Return the load that the fluid carries, in Hertz units."""
+        return float(self.speed * (self.operators.load_of_gradient @ reynolds.gradient(y[:-2], y[-1])))
+
     def residual(self, y: Array) -> Array:
         """Return the residual at ``y``, shape (N + 2,)."""
         op = self.operators

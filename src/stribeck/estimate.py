@@ -151,7 +151,7 @@ class Changes:
     friction: Array = field(repr=False)
 
 
-def changes(state: State, fine: FineOperators) -> Changes:
+def changes(state: State, observed: Observables, fine: FineOperators) -> Changes:
     """Return what defect, quadrature and rounding may change in a state."""
     equations, op, y = state.equations, state.equations.operators, state.y
     mesh = fine.mesh
@@ -177,8 +177,8 @@ def changes(state: State, fine: FineOperators) -> Changes:
     unknowns = -lapack.dgetrs(*state.root.factors, residual.T)[0].T
     friction = np.zeros(2)
     if equations.speed > 0:
-        finer = friction_integrals(mesh, gap, h_star, slopes) - friction_integrals(state.mesh, state.gap, h_star)
-        friction = friction_scale(float(state.groups.load), equations.speed) * np.abs(finer)
+        finer = friction_scale(float(state.groups.load), equations.speed) * friction_integrals(mesh, gap, h_star, slopes)
+        friction = np.abs(finer - [observed.viscous_paper, observed.viscous_balanced])
     return Changes(unknowns, friction)
 
 
@@ -198,13 +198,14 @@ def _signs(size: int) -> Array:
     return np.sign(np.stack([np.sin(2.399963 * k * k), np.cos(1.7 * k * k)]))
 
 
-def error_estimate(state: State, observed: Observables, changes: Changes) -> ErrorEstimate:
-    """Return the estimated errors of what was ``observed`` on a state from the possible ``changes`` of its unknowns.
+def error_estimate(state: State, observed: Observables, fine: FineOperators) -> ErrorEstimate:
+    """Return the estimated errors of what was ``observed`` on a state.
 
     At speed zero the values may be those of the same state under another load, see ``solve.quasistatic_shift``.
     """
-    effects = np.abs(gradients(state.equations, state.y, float(state.groups.load)) @ changes.unknowns.T)
-    effects[-2:, 0] += changes.friction
+    changed = changes(state, observed, fine)
+    effects = np.abs(gradients(state.equations, state.y, float(state.groups.load)) @ changed.unknowns.T)
+    effects[-2:, 0] += changed.friction
     interpolation = np.zeros(len(NAMES))
     interpolation[2:4] = interpolation_errors(state, observed.minimum_position)
     scales = np.abs(observed.array())

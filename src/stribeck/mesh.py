@@ -250,7 +250,7 @@ def interpolation_error(values: Array) -> float:
     last, before = max(c[2], c[3]), max(c[0], c[1])
     if last == 0:
         return 0.0
-    rate = min(0.9, float(np.sqrt(last / before))) if before > 0 else 0.9
+    rate = min(0.7, float(np.sqrt(last / before))) if before > 0 else 0.7
     return float(2 * last / (1 - rate))
 
 

@@ -214,7 +214,7 @@ def root_find(
                 s_new = size(x, dx)
                 rate = s_new / s if steps else 0.0  # the caller's factors are taken to be good
                 contracts = rate <= (chord or 0.0) or (s_new <= tolerance and rate <= LAST_CHORD)
-                chord_step = contracts and (fraction is None or fraction(x, dx) >= 1.0)
+                chord_step = contracts and (steps > 0 or fraction is None or fraction(x, dx) >= 1.0)
             if not chord_step:
                 factors = None  # frees their memory for the next ones
                 factors = _factorise(jacobian(x), overwrite_jacobian)

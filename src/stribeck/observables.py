@@ -37,7 +37,7 @@ NAMES = (
 )
 """The observables, in the order of every array of them here."""
 
-NEWTON_STEPS = 5
+NEWTON_STEPS = 3
 LARGEST_STEP = 0.2
 """Of the search for the least gap, the step in half-widths of a panel."""
 
@@ -83,14 +83,14 @@ def observables(equations: Equations, y: Array, load: float) -> Observables:
     """Return the observables of the unknowns ``y`` of ``equations`` at the load group ``load``."""
     mesh = equations.operators.mesh
     h, z0, h_star = y[:-2], float(y[-2]), float(y[-1])
-    p_c, p_f = equations.pressures(y)
+    p_c = equations.law.pressure(h)
     position, minimum = least_gap(mesh, h)
     paper = balanced = 0.0
     if equations.speed > 0:
         paper, balanced = friction_scale(load, equations.speed) * friction_integrals(mesh, h, h_star)
     return Observables(
         contact_load_share=float(mesh.weights @ p_c / LOAD),
-        fluid_load_share=float(mesh.weights @ p_f / LOAD),
+        fluid_load_share=equations.fluid_load(y) / LOAD,
         central_gap=central_gap(mesh, h),
         minimum_gap=minimum,
         minimum_position=position,

@@ -71,7 +71,7 @@ def _plain(content: Any) -> Any:
 
 
 def solution_json(solution: Solution, mu0: float | None = None, beta: float | None = None) -> dict[str, Any]:
-    """Return :meth:`Solution.to_dict`, and under ``si`` the inputs and films in SI units where there is a contact.
+    """Return :meth:`Solution.to_dict`, and under ``si`` inputs and films of the contact, if any, in SI units.
 
     Parameters
     ----------
@@ -86,6 +86,7 @@ def solution_json(solution: Solution, mu0: float | None = None, beta: float | No
         Ready for :func:`dump`.
     """
     found: dict[str, Any] = solution.to_dict(mu0, beta)
+    found["hersey_number"] = _hersey(solution, beta)
     if solution.contact is not None:
         films = si_films(solution)
         found["si"] = {
@@ -223,9 +224,10 @@ def print_solution(
         As in :meth:`Solution.friction`.
     """
     _print_head(console, title, solution.contact, solution.groups)
-    table = _table("", "value", "in SI units", "error")
+    columns = (0, 1, 3) if solution.contact is None else (0, 1, 2, 3)
+    table = _table(*(("quantity", "value", "in SI", "error")[i] for i in columns))
     for row in _solution_rows(solution, mu0, beta):
-        table.add_row(*row)
+        table.add_row(*(row[i] for i in columns))
     console.print(table)
     _print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes)
 
@@ -244,7 +246,7 @@ def _solution_rows(
         ("contact_load_share", "load on asperities"),
         ("fluid_load_share", "load on the fluid"),
     ):
-        yield label, _digits(getattr(solution, name), errors[name]), "", f"{errors[name]:.0e} of the load"
+        yield label, _digits(getattr(solution, name), errors[name]), "", _error(errors[name])
     scales = None if solution.contact is None else solution.contact.hertz
     for name, label in (
         ("central_gap", "central film"),
@@ -254,10 +256,11 @@ def _solution_rows(
     ):
         value = getattr(solution, name)
         si = "" if scales is None else _length(value * scales.indentation, errors[name])
-        yield label, f"{_digits(value, errors[name])} u_Hz", si, _error(errors[name])
+        unit = " u_Hz" if math.isfinite(value) else ""
+        yield label, f"{_digits(value, errors[name])}{unit}", si, _error(errors[name])
     si = "" if scales is None else _length(solution.minimum_position * scales.half_width, 1e-4)
     yield "place of the least film", f"{solution.minimum_position:.4g} a", si, ""
-    yield "Lambda, central film over h_rms/alpha", f"{solution.lambda_ratio:.4g}", "", ""
+    yield "Lambda (film over h_rms/alpha)", _digits(solution.lambda_ratio, 1e-4), "", ""
     regime = regime_of(solution.fluid_load_share, _contact_part(solution.friction(mu0, beta)))
     yield "Hersey number", f"{_hersey(solution, beta):.4g}", "", ""
     yield "regime", regime, "", ""
@@ -285,7 +288,7 @@ def print_curve(console: Console, curve: StribeckCurve, title: str, files: Seque
     """
     _print_head(console, title, curve.contact, curve.groups, curve.over)
     low, high = _place(curve, curve.values[0]), _place(curve, curve.values[-1])
-    _say(console, f"{len(curve)} points, {curve.over} {low} to {high}.")
+    _say(console, f"{len(curve)} point{'s' * (len(curve) > 1)}, {curve.over} {low} to {high}.")
     table = _table("regime", "from", "to", right=(1, 2))
     for regime, first, last in curve.regime_ranges:
         table.add_row(regime, _place(curve, first), _place(curve, last))
@@ -328,8 +331,8 @@ def print_regimes(
     _say(
         console,
         f"At {speed} lubrication is {_regime(solution, curve.definition)}: the fluid carries "
-        f"{_percent(solution.fluid_load_share)} of the load, asperities cause {_percent(_contact_part(friction))} of "
-        f"the friction coefficient {friction.total:.4g}.",
+        f"{_percent(solution.fluid_load_share)} of the load, asperities cause "
+        f"{_percent(_contact_part(friction))} of the friction coefficient {friction.total:.4g}.",
     )
     if curve.transitions:
         table = _table("where", "speed", "from here", "friction", right=(1, 3))
@@ -343,20 +346,23 @@ def print_regimes(
             console,
             "No transition lies between the boundary plateau and the hydrodynamic branch of this contact.",
         )
-    table = _table("input", "value", "d ln(friction)/d ln(input)", "10 % more of it gives", right=(1, 2, 3))
+    table = _table("input", "value", "elasticity", "10 % more gives", right=(1, 2, 3))
     for name in sorted(elasticities, key=lambda name: -abs(elasticities[name])):
         value, slope = getattr(contact, name), elasticities[name]
         text = format_si(value, QUANTITIES[name].dimension)
-        table.add_row(LABELS.get(name, name), text, f"{slope:+.3f}", f"{_change(1.1, slope):+.1%} friction")
+        table.add_row(
+            LABELS.get(name, name), text, f"{slope:+.3f}", f"{100 * _change(1.1, slope):+.2g} % friction"
+        )
     console.print(table)
     strongest = _strongest(elasticities)
     if strongest is not None:
         slope = elasticities[strongest]
         factor = 0.9 if slope > 0 else 1.1
+        way, gain = "less" if slope > 0 else "more", _percent(-_change(factor, slope))
+        name = LABELS.get(strongest, strongest)
         _say(
             console,
-            f"The {LABELS.get(strongest, strongest)} moves friction most: 10 % {'less' if slope > 0 else 'more'} of it "
-            f"lowers friction by {-_change(factor, slope):.1%}, all else kept.",
+            f"The {name} moves friction most: 10 % {way} of it lowers friction by {gain}, all else kept.",
         )
     _print_outcome(
         console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), solution.notes
@@ -408,15 +414,18 @@ def _digits(value: float, error: float) -> str:
     """Return a number with the digits that its relative error allows."""
     if not math.isfinite(value):
         return "none" if math.isnan(value) else "infinite"
-    count = 12 if error <= 0 else min(12, max(3, math.ceil(-math.log10(error))))
-    return f"{value:.{count}g}"
+    return f"{value:.{_count(error)}g}"
 
 
 def _length(value: float, error: float) -> str:
     if not math.isfinite(value):
         return ""
-    count = 12 if error <= 0 else min(12, max(3, math.ceil(-math.log10(error))))
-    return format_si(value, "length", count)
+    return format_si(value, "length", _count(error))
+
+
+def _count(error: float) -> int:
+    """Return how many digits a relative error allows, 3 to 9."""
+    return 9 if error <= 0 else min(9, max(3, math.ceil(-math.log10(error))))
 
 
 def _error(relative: float) -> str:
@@ -449,7 +458,7 @@ def _way(mark: Landmark, speed: float) -> str:
     if speed == 0:
         return "from rest"
     factor = mark.value / speed
-    return f"{factor:.3g} times faster" if factor >= 1 else f"{1 / factor:.3g} times slower"
+    return f"{factor:.3g}x faster" if factor >= 1 else f"{1 / factor:.3g}x slower"
 
 
 def _place(curve: StribeckCurve, value: float, digits: int = 3) -> str:

@@ -12,7 +12,7 @@ from . import hertz, reynolds
 from ._types import Array
 from .contact_laws import contact_law
 from .equations import Operators
-from .estimate import ErrorEstimate, FineOperators, changes, error_estimate
+from .estimate import ErrorEstimate, FineOperators, error_estimate
 from .mesh import Mesh, MeshTooLarge
 from .newton import Outcome
 from .observables import NAMES, Observables, observables
@@ -31,8 +31,11 @@ QUASISTATIC_LOAD = 0.01
 
 MAX_REFINEMENTS = 12
 
-LEAST_ESTIMATE = 1e-2
+LEAST_ESTIMATE = 3e-2
 """Part of the tolerance below which no error is stated: estimates so small were not checked."""
+
+LEAST_GAP_TAIL = 0.02
+"""Part of the tolerance below which resolving the gap where it is read off alone does not help."""
 
 CLEARLY_FINER = 1.1
 """Ratio of mesh sizes from which the difference of two solutions measures the error of the coarser."""
@@ -218,7 +221,11 @@ def converge(
         if point.estimate.total <= 3 * point.estimate.floor:
             break
         tail *= shrink(math.sqrt(rtol / (point.estimate.at_nodes + 1e-300)))
-        gap_tail *= shrink(rtol / (point.estimate.between_nodes + 1e-300))
+        between = shrink(rtol / (point.estimate.between_nodes + 1e-300))
+        if gap_tail * between >= LEAST_GAP_TAIL * rtol:
+            gap_tail *= between
+        else:
+            tail *= between
         guess = state
     if best.estimate is not None and best.estimate.floor > 0.3 * rtol:
         outcome = Outcome.ROUNDING
@@ -233,7 +240,7 @@ def shrink(excess: float) -> float:
 def judge(state: State, groups: Groups, fine: FineOperators, rtol: float) -> Point:
     """Return the state with its observables and their errors; it counts as converged if these are at most ``rtol``."""
     values = values_of(state, groups)
-    estimate = error_estimate(state, values, changes(state, fine))
+    estimate = error_estimate(state, values, fine)
     return Point(groups, state, values, estimate, reached(estimate, rtol), fine=fine)
 
 

@@ -30,7 +30,6 @@ LARGEST_AMPLIFICATION = 40.0
 
 EDGE_EXPONENT = 0.5
 VISCOUS = 1.0
-REACH = 4
 
 PREDICTION_GOAL = 0.5
 """Relative error of the predicted gap at which the step of a path is kept."""
@@ -233,12 +232,13 @@ def mesh_for(
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(x.shape)
         centres = x.mean(axis=1)
         read_off = (np.abs(centres) <= half_widths) | (np.abs(centres - guess.least_position) <= half_widths)
+        read_off &= stretch[:, 0] == 1.0
         shape = shape * np.where(read_off, max(0.1, tolerance / gap_tolerance), 0.1)[:, None]
         shear = VISCOUS * (np.exp(-found[0]) * central_gap).reshape(x.shape)
         return np.concatenate([stretch * pressures.reshape(2, *x.shape), shape[None], shear[None]])
 
     start = guess.mesh if isinstance(guess, State) else None
-    return adapt(fields, scale, REACH * scale, order, tolerance, start)
+    return adapt(fields, scale, (8 if order <= 12 else 16) * scale, order, tolerance, start)
 
 
 def solve_state(

@@ -1,0 +1,180 @@
+"""Random cold starts: how many are solved, whether the estimate covers the error, and what a start costs.
+
+Usage::
+
+    python benchmarks/cold_starts.py [--number 200] [--seed 20261121]
+
+Groups are drawn evenly in the logarithm from speed 1e-12 to 1e6, load 1e-8 to 10, relative roughness 1e-6 to
+1e3; one in twelve has speed zero, one in twelve roughness zero. The true error is that against a mesh with six
+more nodes on each panel and panels that reach 32 times as far. The last table starts with the flux condition
+written in other ways, see docs/numerics.md. Runs for about two minutes; prints the tables that docs/numerics.md
+shows.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from unittest.mock import patch
+
+import numpy as np
+
+import stribeck as sb
+from stribeck import reynolds
+from stribeck.contact_laws import contact_law
+from stribeck.equations import Equations, Operators
+from stribeck.mesh import Mesh
+from stribeck.newton import root_find
+from stribeck.observables import NAMES, observables
+from stribeck.start import cold_start
+
+SIDES = {"both infinities": False, "the left infinity": True}
+SCALES = {"constant": False, "`h*`**2 of the iterate": True}
+
+
+def draw(number: int, seed: int) -> list[sb.Groups]:
+    """Return random groups."""
+    rng = np.random.default_rng(seed)
+    states = []
+    for i in range(number):
+        speed, load, kappa = 10 ** rng.uniform((-12, -8, -6), (6, 1, 3))
+        speed, kappa = (0.0 if i % 12 == 5 else speed), (0.0 if i % 12 == 9 else kappa)
+        states.append(sb.Groups(speed, load, kappa * load))
+    return states
+
+
+def true_error(s: sb.Solution) -> float:
+    """Return the largest relative error of the observables against a finer and wider mesh."""
+    g, coarse = s.groups, s.mesh
+    out = coarse.edges[-1] * 2.0 ** np.arange(1, 6)
+    mesh = Mesh(np.concatenate([-out[::-1], coarse.edges, out]), coarse.order + 6, coarse.scale)
+    light = min(g.load, 1e-2) if g.speed == 0 else g.load  # as the solver does, see "Contact at rest"
+    shift = -0.5 * g.relative_roughness * np.log(g.load / light)
+    base = sb.Groups(g.speed, light, light * g.relative_roughness)
+    gap = np.maximum(s.profile(mesh.nodes).gap - shift, 1e-3 * s.nodal_gap.min())
+    flux = reynolds.flux_gap(gap, mesh.weights)
+    equations = Equations(Operators(mesh), base.speed, contact_law(base), flux**2)
+    y = np.concatenate([gap, [s.offset - shift, flux]])
+    newton = {
+        "fraction": equations.admissible,
+        "size": equations.size,
+        "tolerance": 1e-12,
+        "singular_below": 0.0,
+    }
+    root = root_find(equations.residual, equations.jacobian, y, **newton)
+    found = observables(equations, root.x, light)
+    exact = np.array([getattr(found, name) for name in NAMES])
+    exact[[2, 3, 5]] += shift
+    if shift:
+        gap = root.x[:-2] + shift
+        exact[4] = reynolds.flux_gap(gap, mesh.weights) if gap.min() > 0 else np.nan
+    scales = np.abs(exact)
+    scales[:2] = 1.0
+    scales[5] = max(scales[5], 1e-3)
+    if g.speed == 0:
+        scales[2:4] = np.maximum(scales[2:4], 1e-3 * g.relative_roughness)
+    scales[scales == 0] = 1.0
+    values = np.array([getattr(s.observables, name) for name in NAMES])
+    return float(np.nanmax(np.abs(values - exact) / scales))
+
+
+def coverage(states: list[sb.Groups], rtol: float) -> str:
+    """Return the row of the first table for one tolerance."""
+    ratios, times, nodes, outcomes, balance = [], [], [], [], 0.0
+    for groups in states:
+        start = time.perf_counter()
+        s = sb.solve(groups, rtol=rtol, on_failure="return")
+        times.append(time.perf_counter() - start)
+        nodes.append(s.nodes)
+        outcomes.append(s.outcome.name)
+        balance = max(balance, abs(s.contact_load_share + s.fluid_load_share - 1))
+        ratios.append(true_error(s) / s.error_estimate)
+    covered = np.mean(np.array(ratios) <= 1)
+    return (
+        f"| {rtol:.0e} | {outcomes.count('CONVERGED')} | {outcomes.count('ROUNDING')} "
+        f"| {len(states) - outcomes.count('CONVERGED') - outcomes.count('ROUNDING')} | {covered:.1%} "
+        f"| {max(ratios):.1f} | {balance:.0e} | {np.median(nodes):.0f} | {max(nodes)} "
+        f"| {1e3 * np.median(times):.0f} | {1e3 * max(times):.0f} |"
+    )
+
+
+def variant(states: list[sb.Groups], one_sided: bool, moving_scale: bool) -> tuple[int, int, int, int]:
+    """Return lost paths, points, factorisations and rejected steps of cold starts on changed equations."""
+    integral, after = Mesh.integral_from_infinity, Mesh.after_integral
+    residual, jacobian = Equations.residual, Equations.jacobian
+
+    def integral_from_left(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+        return integral(mesh, values) + np.where(mesh.nodes > 0, mesh.weights @ values, 0.0)
+
+    def after_integral_from_left(mesh: Mesh, operator: np.ndarray) -> np.ndarray:
+        return after(mesh, operator) + np.outer(operator[:, mesh.nodes > 0].sum(axis=1), mesh.weights)
+
+    def scaled_residual(equations: Equations, y: np.ndarray) -> np.ndarray:
+        r = residual(equations, y)
+        r[-1] *= y[-1] ** 2 / equations.flux_scale
+        return r
+
+    def scaled_jacobian(equations: Equations, y: np.ndarray) -> np.ndarray:
+        matrix = jacobian(equations, y)
+        matrix[-1] *= y[-1] ** 2 / equations.flux_scale
+        weights = equations.operators.mesh.weights
+        matrix[-1, -1] += 2 * y[-1] * (weights @ reynolds.gradient(y[:-2], y[-1]))
+        return matrix
+
+    left = {"integral_from_infinity": integral_from_left, "after_integral": after_integral_from_left}
+    scaled = {"residual": scaled_residual, "jacobian": scaled_jacobian}
+    with ExitStack() as stack:
+        if one_sided:
+            stack.enter_context(patch.multiple(Mesh, **left))
+        if moving_scale:
+            stack.enter_context(patch.multiple(Equations, **scaled))
+        paths = [cold_start(groups) for groups in states]
+    return (
+        sum(not path.outcome.ok for path in paths),
+        sum(len(path.states) for path in paths),
+        sum(s.root.factorisations for path in paths for s in path.states),
+        sum(path.failures for path in paths),
+    )
+
+
+def document(number: int, seed: int) -> Iterator[str]:
+    """Yield the tables."""
+    states = draw(number, seed)
+    yield f"{number} random cold starts, seed {seed}:"
+    yield ""
+    yield (
+        "| rtol | converged | bounded by rounding | failed | error covered | largest error/estimate "
+        "| load balance | nodes, median | most | ms, median | most |"
+    )
+    yield "|---|---|---|---|---|---|---|---|---|---|---|"
+    for rtol in (1e-4, 1e-6, 1e-9):
+        yield coverage(states, rtol)
+    yield ""
+    yield "| pressure from | scale of the flux condition | lost | points | factorisations | rejected steps |"
+    yield "|---|---|---|---|---|---|"
+    moving = [groups for groups in states if groups.speed > 0 and groups.roughness > 0]
+    for side, one_sided in SIDES.items():
+        for scale, moving_scale in SCALES.items():
+            yield (
+                f"| {side} | {scale} | "
+                + " | ".join(map(str, variant(moving, one_sided, moving_scale)))
+                + " |"
+            )
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--number", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=20261121)
+    arguments = parser.parse_args()
+    for line in document(arguments.number, arguments.seed):
+        print(line, flush=True)
+
+
+if __name__ == "__main__":
+    main()
