@@ -33,6 +33,9 @@ Over = Literal["speed", "load", "roughness"]
 LOCATION_TOLERANCE = 1e-9
 """Relative tolerance to which a minimum or a transition is located; its own error is that of the solved states."""
 
+WIDENINGS = (0, 2, 8, 32, 128)
+"""Points by which the search for a landmark widens on both sides."""
+
 POINTS_RANGE = (2, 100_000)
 
 
@@ -247,21 +250,28 @@ class StribeckCurve:
 
     @one_blas_thread
     def _locate(self, name: str, first: int, last: int, function: Callable[[Point], float]) -> Landmark | None:
-        """Return the landmark where ``function`` of the solved state vanishes between two points, or None."""
-        known = [(float(np.log(self.values[i])), self._points[i]) for i in range(first, last + 1)]
+        """Return the landmark where ``function`` of the solved state vanishes between two points, or None.
+
+        Where points are dense their own errors hide between which two it is: the search then widens.
+        """
         follower = Follower(self._path.groups_at, min(self.rtol, 1e-8))
         solved: dict[float, Point] = {}
 
         def at(s: float) -> float:
             nearest = sorted(known, key=lambda pair: -abs(pair[0] - s))
-            point = follower(s, nearest)
+            point = follower(s, nearest[-3:])
             if point is None or point.state is None:
                 raise SolveError(Outcome.PATH_LOST, None, f"{describe(self._path.groups_at(s))}: {Outcome.PATH_LOST.value}")
             solved[s] = point
             return function(point)
 
-        low, high = known[0][0], known[-1][0]
-        if at(low) * at(high) > 0:
+        for wider in WIDENINGS:
+            ends = max(0, first - wider), min(len(self) - 1, last + wider)
+            known = [(float(np.log(self.values[i])), self._points[i]) for i in range(ends[0], ends[1] + 1)]
+            low, high = known[0][0], known[-1][0]
+            if at(low) * at(high) <= 0:
+                break
+        else:
             return None
         # Imported here because it takes longer than the rest of the package, and few uses get here.
         from scipy.optimize import brentq

@@ -187,7 +187,7 @@ def interpolation_errors(state: State, minimum_position: float) -> tuple[float, 
     mesh = state.mesh
     shapes, gaps = state.shape.reshape(mesh.panels, -1), state.gap.reshape(mesh.panels, -1)
     central = int(np.searchsorted(mesh.edges, 0.0))
-    least = int(mesh.locate(np.array([minimum_position]))[0][0])
+    least = min(max(int(np.searchsorted(mesh.edges, minimum_position)) - 1, 0), mesh.panels - 1)
     return tuple(SAFETY * interpolation_error(shapes[k]) * float(gaps[k].min()) for k in (central, least))  # type: ignore[return-value]
 
 

@@ -24,7 +24,7 @@ LONGEST_STEP = math.log(10.0)
 SHORTEST_STEP = 1e-3
 PREDICTOR_ORDER = 4
 
-CHECK_EVERY = 8
+CHECK_EVERY = 25
 """Points between two looks at whether a coarser mesh would do."""
 
 WORTH_COARSENING = 0.85

@@ -46,7 +46,14 @@ class Reference:
 
     def interpolation(self, points: Array) -> Array:
         """Matrix from nodal values to the values at ``points`` of the interpolating polynomial."""
-        return np.asarray(legendre.legvander(points, len(self.nodes) - 1) @ self.to_legendre)
+        basis = np.empty((len(self.nodes), len(points)))
+        basis[0] = 1.0
+        basis[1] = points
+        for n in range(1, len(self.nodes) - 1):
+            np.multiply(points, basis[n], out=basis[n + 1])
+            basis[n + 1] *= (2 * n + 1) / (n + 1)
+            basis[n + 1] -= n / (n + 1) * basis[n - 1]
+        return basis.T @ self.to_legendre
 
 
 @lru_cache(maxsize=32)
@@ -63,6 +70,12 @@ def reference(order: int) -> Reference:
     derivative = np.zeros((order, order))
     derivative[:-1] = legendre.legder(np.eye(order))
     return Reference(nodes, weights, to_legendre, integral, left_half, left_end, derivative)
+
+
+@lru_cache(maxsize=32)
+def between_orders(order: int, other: int) -> Array:
+    """Return the matrix from nodal values (as a row) of one rule to those of another with more nodes."""
+    return reference(order).interpolation(reference(other).nodes).T
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,7 +238,7 @@ class Mesh:
     def to_order(self, values: Array, order: int) -> Array:
         """Return nodal values on :meth:`refined` from nodal ``values`` of this mesh."""
         nodal = values.reshape(*values.shape[:-1], self.panels, self.order)
-        fine = nodal @ reference(self.order).interpolation(reference(order).nodes).T
+        fine = nodal @ between_orders(self.order, order)
         return np.asarray(fine.reshape(*values.shape[:-1], self.panels * order))
 
 
@@ -330,13 +343,13 @@ def adapt(
         open_panels = np.concatenate([np.column_stack([left, middle]), np.column_stack([middle, right])])
     panels = np.concatenate(done)
     edges = np.append(np.sort(panels[:, 0]), panels[:, 1].max())
-    return Mesh(_merged(edges, unresolved), order, scale)
+    return Mesh(_merged(edges, unresolved, 2 if start is not None else 4), order, scale)
 
 
-def _merged(edges: Array, unresolved: Callable[[Array], Array]) -> Array:
+def _merged(edges: Array, unresolved: Callable[[Array], Array], passes: int) -> Array:
     """Return the edges without those whose two panels are resolved as one: halving leaves more than are needed."""
-    for parity in (0, 1, 0, 1):
-        inner = np.arange(1 + parity, len(edges) - 1, 2)
+    for trial in range(passes):
+        inner = np.arange(1 + trial % 2, len(edges) - 1, 2)
         inner = inner[edges[inner] != 0.0]
         unions = np.column_stack([edges[inner - 1], edges[inner + 1]])
         if len(unions):

@@ -80,6 +80,8 @@ class Groups:
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape of the three groups broadcast together; ``()`` for one state."""
+        if isinstance(self.speed, float) and isinstance(self.load, float) and isinstance(self.roughness, float):
+            return ()
         return np.broadcast_shapes(np.shape(self.speed), np.shape(self.load), np.shape(self.roughness))
 
     @property
@@ -488,6 +490,8 @@ def check_modulus_choice(modulus: Any, youngs_modulus: Any, poisson_ratio: Any) 
 
 
 def _group(name: str, value: Any, positive: bool) -> float | Array:
+    if type(value) is float and (0.0 < value < math.inf or (value == 0.0 and not positive)):
+        return value + 0.0
     try:
         raw = np.asarray(value)
     except ValueError:  # ragged lists

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
@@ -103,8 +104,10 @@ class Solution:
         The part of the error estimate that double precision causes and no mesh removes.
     mesh : Mesh
         The final discretisation.
-    nodal_gap, nodal_contact_pressure, nodal_fluid_pressure : ndarray, shape (nodes,)
-        The fields in the order of the mesh; :attr:`gap` and its neighbours give them by position.
+    nodal_gap : ndarray, shape (nodes,)
+        The gap in the order of the mesh; :attr:`gap` gives it by position.
+    nodal_pressures : callable
+        Returns contact and fluid pressure in the order of the mesh.
     gap_shift : float
         What :attr:`gap` adds to ``nodal_gap``: at speed zero the load only shifts the gap [u_Hz].
     newton_steps : int
@@ -127,8 +130,7 @@ class Solution:
     mesh: Mesh = field(repr=False)
     nodal_gap: Array = field(repr=False)
     gap_shift: float = field(repr=False)
-    nodal_contact_pressure: Array = field(repr=False)
-    nodal_fluid_pressure: Array = field(repr=False)
+    nodal_pressures: Callable[[], tuple[Array, Array]] = field(repr=False)
     newton_steps: int = 0
 
     @property
@@ -147,6 +149,10 @@ class Solution:
         return dict(zip(NAMES, map(float, self.relative_errors), strict=True))
 
     @cached_property
+    def _pressures(self) -> tuple[Array, Array]:
+        return self.nodal_pressures()
+
+    @cached_property
     def _ordered(self) -> Array:
         return np.argsort(self.mesh.nodes)
 
@@ -163,12 +169,12 @@ class Solution:
     @property
     def contact_pressure(self) -> Array:
         """Contact pressure at :attr:`x` [p_Hz]."""
-        return np.asarray(self.nodal_contact_pressure[self._ordered])
+        return np.asarray(self._pressures[0][self._ordered])
 
     @property
     def fluid_pressure(self) -> Array:
         """Fluid pressure at :attr:`x` [p_Hz]; negative behind the contact, as the fluid does not cavitate."""
-        return np.asarray(self.nodal_fluid_pressure[self._ordered])
+        return np.asarray(self._pressures[1][self._ordered])
 
     @property
     def pressure(self) -> Array:
@@ -280,7 +286,7 @@ class Solution:
         points = np.atleast_1d(np.asarray(x, dtype=float))
         if points.ndim != 1 or not np.isfinite(points).all():
             raise InputError(f"x = {show(x)}; positions must be finite numbers in one dimension.")
-        pressures = np.stack([self.nodal_contact_pressure, self.nodal_fluid_pressure])
+        pressures = np.stack(self._pressures)
         contact, fluid = self.mesh.interpolate(pressures, points)
         return Profile(points, gap_at(self.mesh, self.nodal_gap, points) + self.gap_shift, contact, fluid)
 

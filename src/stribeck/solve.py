@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -286,7 +287,6 @@ def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solut
     state, values, estimate = point.state, point.values, point.estimate
     if state is None or values is None or estimate is None:
         return None
-    contact_pressure, fluid_pressure = state.equations.pressures(state.y)
     notes = list(law_notes(point.groups, contact, values))
     if math.isnan(values.flux_gap):
         notes.append("The gap is negative, so that no fluid passes: there is no flux gap.")
@@ -305,8 +305,7 @@ def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solut
         mesh=state.mesh,
         nodal_gap=state.gap,
         gap_shift=quasistatic_shift(point.groups),
-        nodal_contact_pressure=contact_pressure,
-        nodal_fluid_pressure=fluid_pressure,
+        nodal_pressures=partial(state.equations.pressures, state.y),
         newton_steps=state.root.steps,
     )
 
@@ -341,6 +340,9 @@ def hertz_solution(groups: Groups, contact: LineContact | None, rtol: float) -> 
         mesh=mesh,
         nodal_gap=hertz.gap(mesh.nodes),
         gap_shift=0.0,
-        nodal_contact_pressure=hertz.pressure(mesh.nodes),
-        nodal_fluid_pressure=np.zeros(mesh.size),
+        nodal_pressures=partial(_dry_pressures, mesh),
     )
+
+
+def _dry_pressures(mesh: Mesh) -> tuple[Array, Array]:
+    return hertz.pressure(mesh.nodes), np.zeros(mesh.size)

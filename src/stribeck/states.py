@@ -22,7 +22,7 @@ from .mesh import Mesh, adapt
 from .newton import Factors, Outcome, Root, root_find
 from .parameters import Groups
 
-CHORD = 0.2
+CHORD = 0.25
 """Contraction above which a kept factorisation is given up."""
 
 LARGEST_AMPLIFICATION = 40.0

@@ -52,7 +52,7 @@ OBSERVABLES = {
     "minimum_position": ("1", "position of the least gap, in Hertz half-widths"),
     "flux_gap": ("1", "flux gap: fluid flux over half the speed, in Hertz indentations"),
     "offset": (
-        "u_Hz",
+        "1",
         "height of the undeformed cylinder over the undeformed surface, in Hertz indentations",
     ),
     "lambda_ratio": ("1", "central gap over h_rms/alpha"),

@@ -1,0 +1,386 @@
+"""Curves as datasets and files: what is in them, and that a file is written whole or not at all."""
+
+import csv
+import io
+import os
+import re
+import sys
+import textwrap
+
+import netCDF4
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from command_line import run_python
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import stribeck as sb
+from stribeck.output import MissingExtraError, check_output, replacing
+from stribeck.store import curve_dataset, write_csv, write_data, write_netcdf
+
+CONTACT = sb.LineContact(
+    radius="10 mm",
+    modulus="2.7 MPa",
+    load="30 N/m",
+    viscosity="50 mPa*s",
+    speed="1 mm/s",
+    roughness="1 um",
+    alpha=2.0,
+    beta=0.06,
+    friction_coefficient=0.7,
+)
+INPUTS = ("radius", "modulus", "load", "viscosity", "roughness", "alpha", "beta", "friction_coefficient")
+WRITERS = {".nc": write_netcdf, ".csv": write_csv}
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return sb.stribeck_curve(CONTACT, speed=("0.3 mm/s", "0.1 m/s"), points=7)
+
+
+@pytest.fixture(scope="module")
+def dataset(curve):
+    return curve_dataset(curve, "A title")
+
+
+@pytest.fixture(scope="module")
+def dimensionless():
+    return sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1.0), points=4, mu0=0.5, beta=0.1)
+
+
+@pytest.fixture(params=[".nc", ".csv"])
+def ending(request):
+    return request.param
+
+
+# --- what a dataset holds ---
+
+
+def test_every_variable_has_a_unit_and_a_long_name(dataset):
+    for variable in [*dataset.data_vars.values(), *dataset.coords.values()]:
+        assert re.fullmatch(r"1|m|m/s|Pa", variable.attrs["units"])
+        assert len(variable.attrs["long_name"]) > 5
+    assert dataset.speed.attrs["units"] == "m/s"
+    assert dataset.central_film_thickness.attrs["units"] == "m"
+    assert dataset.hertz_pressure.attrs["units"] == "Pa"
+
+
+def test_a_dataset_holds_every_observable_of_every_point(curve, dataset):
+    names = set(curve.solutions[0].to_dict()) & set(dataset)
+    assert names >= {
+        "contact_load_share",
+        "fluid_load_share",
+        "central_gap",
+        "minimum_gap",
+        "minimum_position",
+        "flux_gap",
+        "offset",
+        "lambda_ratio",
+        "hersey_number",
+        "error_estimate",
+        "outcome",
+    }
+    for name in names - {"friction_paper", "friction_balanced", "outcome"}:
+        np.testing.assert_allclose(dataset[name], [s.to_dict()[name] for s in curve.solutions], rtol=1e-14)
+    for definition in ("paper", "balanced"):
+        found = [s.friction(definition=definition) for s in curve.solutions]
+        np.testing.assert_array_equal(dataset[f"friction_{definition}"], [f.total for f in found])
+        np.testing.assert_array_equal(dataset[f"friction_{definition}_viscous"], [f.viscous for f in found])
+        np.testing.assert_array_equal(dataset[f"friction_{definition}_error"], [f.error for f in found])
+    np.testing.assert_array_equal(dataset.friction, dataset.friction_paper)
+    np.testing.assert_allclose(dataset.friction, dataset.friction_contact + dataset.friction_viscous, rtol=1e-14)
+    assert dataset.regime.values.tolist() == list(curve.regimes)
+    assert set(dataset.outcome.values.tolist()) == {"CONVERGED"}
+    for name in ("speed", "load", "roughness"):
+        np.testing.assert_array_equal(dataset[f"{name}_group"], getattr(curve.groups, name))
+
+
+def test_films_in_metres_are_gaps_times_the_hertz_indentation(dataset):
+    u, a = dataset.hertz_indentation, dataset.hertz_half_width
+    np.testing.assert_allclose(dataset.central_film_thickness, dataset.central_gap * u, rtol=1e-15)
+    np.testing.assert_allclose(dataset.minimum_film_thickness, dataset.minimum_gap * u, rtol=1e-15)
+    np.testing.assert_allclose(dataset.minimum_film_position, dataset.minimum_position * a, rtol=1e-15)
+    np.testing.assert_allclose(u, CONTACT.hertz.indentation, rtol=1e-15)
+
+
+def test_the_attributes_of_a_file_suffice_to_solve_its_points_again(dataset):
+    inputs = {name: dataset.attrs[f"input_{name}"] for name in INPUTS}
+    point = dataset.isel(speed=2)
+    again = sb.solve(sb.LineContact(speed=float(point.speed), **inputs), rtol=dataset.attrs["rtol"])
+    assert again.friction().total == pytest.approx(float(point.friction), abs=2 * float(point.friction_error))
+    assert "viscosity Pa s" in dataset.attrs["input_units"]
+    assert dataset.attrs["mu0"] == 0.7
+    assert dataset.attrs["beta"] == 0.06
+
+
+def test_the_attributes_tell_settings_landmarks_and_outcome(curve, dataset):
+    attributes = dataset.attrs
+    assert attributes["title"] == "A title"
+    assert re.fullmatch(r"stribeck \d+\.\d+\.\d+", attributes["source"])
+    assert attributes["outcome"] == "Converged."
+    assert attributes["complete"] == 1
+    assert attributes["points"] == attributes["requested_points"] == 7
+    assert attributes["contact_law"] == "exponential"
+    assert attributes["definition"] == "paper"
+    assert attributes["minimum_speed"] == curve.minimum.value
+    assert attributes["minimum_friction"] == curve.minimum.friction
+    assert attributes["transition_names"].split("; ") == [mark.name for mark in curve.transitions]
+    assert attributes["transition_speed"].tolist() == [mark.value for mark in curve.transitions]
+    assert attributes["load_group"] == curve.groups.load[0]
+    assert "speed_group" not in attributes
+    assert "of its range" in attributes["notes"]
+
+
+def test_without_a_contact_the_coordinate_is_a_group_and_nothing_is_in_metres(dimensionless):
+    dataset = dimensionless.to_dataset()
+    assert dataset.speed.attrs == {"units": "1", "long_name": "speed group, what varies"}
+    assert {variable.attrs["units"] for variable in dataset.data_vars.values()} == {"1"}
+    assert not [name for name in dataset.attrs if name.startswith("input_")]
+    assert (dataset.attrs["mu0"], dataset.attrs["beta"]) == (0.5, 0.1)
+    assert dataset.attrs["roughness_group"] == 1e-3
+
+
+def test_a_curve_without_minimum_says_so_by_nan():
+    curve = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1.0, 10.0), points=2)
+    assert np.isnan(curve.to_dataset().attrs["minimum_speed"])
+
+
+def test_an_interrupted_curve_is_marked_incomplete(tmp_path):
+    def stop(done, total):
+        if done == 3:
+            raise KeyboardInterrupt
+
+    curve = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1.0), points=9, on_point=stop)
+    curve.to_netcdf(tmp_path / "curve.nc")
+    with xr.open_dataset(tmp_path / "curve.nc", engine="netcdf4") as found:
+        assert found.sizes["speed"] == 3
+        assert found.attrs["complete"] == 0
+        assert found.attrs["requested_points"] == 9
+        assert found.attrs["outcome"].startswith("Interrupted")
+
+
+# --- files ---
+
+
+def test_netcdf_gives_back_values_units_and_attributes(dataset, tmp_path):
+    write_netcdf(dataset, tmp_path / "curve.nc")
+    with xr.open_dataset(tmp_path / "curve.nc", engine="netcdf4") as found:
+        xr.testing.assert_equal(found, dataset)
+        for name, variable in dataset.variables.items():
+            assert found[name].attrs == variable.attrs
+        assert set(found.attrs) == set(dataset.attrs)
+        for name, value in dataset.attrs.items():
+            np.testing.assert_array_equal(found.attrs[name], value)
+
+
+def test_netcdf_is_read_without_xarray(dataset, tmp_path):
+    write_netcdf(dataset, tmp_path / "curve.nc")
+    with netCDF4.Dataset(tmp_path / "curve.nc") as file:
+        assert file.data_model == "NETCDF4"
+        assert file["speed"].units == "m/s"
+        assert file["friction"][:].tolist() == dataset.friction.values.tolist()
+
+
+def test_csv_is_read_by_pandas_to_the_last_digit(dataset, tmp_path):
+    write_csv(dataset, tmp_path / "curve.csv")
+    table = pd.read_csv(tmp_path / "curve.csv", comment="#", float_precision="round_trip")
+    assert list(table)[:2] == ["speed [m/s]", "friction [1]"]
+    assert len(table.columns) == len(dataset.variables)
+    for column in table:
+        name, unit = re.fullmatch(r"(\w+) \[(.+)\]", column).groups()
+        assert unit == dataset[name].attrs["units"]
+        assert table[column].tolist() == dataset[name].values.tolist()
+
+
+def test_csv_begins_with_inputs_and_outcome_as_comments(dataset, tmp_path):
+    write_csv(dataset, tmp_path / "curve.csv")
+    comments = [line for line in (tmp_path / "curve.csv").read_text().splitlines() if line.startswith("#")]
+    assert "# title: A title" in comments
+    assert "# outcome: Converged." in comments
+    assert "# input_radius: 0.01" in comments
+    assert len(comments) >= len(dataset.attrs)
+
+
+@given(title=st.text(max_size=40))
+@settings(max_examples=30, deadline=None)
+def test_csv_stays_readable_whatever_the_title(dataset, tmp_path_factory, title):
+    path = tmp_path_factory.mktemp("title") / "curve.csv"
+    try:
+        title.encode()
+    except UnicodeEncodeError:  # lone surrogates, which no case file holds
+        return
+    write_csv(dataset.assign_attrs(title=title), path)
+    table = pd.read_csv(path, comment="#")
+    assert len(table) == dataset.sizes["speed"]
+    rows = [row for row in csv.reader(io.StringIO(path.read_text())) if row and not row[0].startswith("#")]
+    assert rows[0][0] == "speed [m/s]"
+
+
+def test_the_ending_chooses_the_format(dataset, tmp_path):
+    write_data(dataset, tmp_path / "a.NC")
+    write_data(dataset, tmp_path / "a.csv")
+    assert (tmp_path / "a.NC").read_bytes()[1:4] == b"HDF"
+    assert (tmp_path / "a.csv").read_bytes()[:2] == b"# "
+
+
+def test_the_methods_of_a_curve_write_the_same(curve, tmp_path):
+    curve.to_csv(tmp_path / "one.csv")
+    write_csv(curve_dataset(curve), tmp_path / "other.csv")
+    assert (tmp_path / "one.csv").read_bytes() == (tmp_path / "other.csv").read_bytes()
+
+
+# --- whole or not at all ---
+
+
+def test_an_existing_file_is_kept_unless_forced(dataset, tmp_path, ending):
+    path = tmp_path / f"curve{ending}"
+    path.write_text("precious")
+    with pytest.raises(sb.InputError, match=r"curve\.\w+ exists already and is kept; add --force"):
+        WRITERS[ending](dataset, path)
+    assert path.read_text() == "precious"
+    WRITERS[ending](dataset, path, force=True)
+    assert path.stat().st_size > 1000
+    assert os.listdir(tmp_path) == [path.name]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("folder.nc", "is a directory"),
+        ("missing/curve.nc", "there is no folder"),
+        ("curve.txt", r"has the ending '\.txt'; the name of this file must end in \.nc or \.csv"),
+        ("curve", "has no ending"),
+        ("x" * 300 + ".nc", "cannot be written"),
+        ("pipe.nc", "is not an ordinary file"),
+        ("file.nc/curve.nc", "there is no folder"),
+        ("loop.nc", "cannot be written|is not an ordinary file"),
+    ],
+)
+def test_a_place_that_cannot_be_written_is_refused_beforehand(tmp_path, name, words):
+    (tmp_path / "folder.nc").mkdir()
+    (tmp_path / "file.nc").touch()
+    os.mkfifo(tmp_path / "pipe.nc")
+    (tmp_path / "loop.nc").symlink_to(tmp_path / "loop.nc")
+    before = sorted(os.listdir(tmp_path))
+    with pytest.raises(sb.InputError, match=words):
+        check_output(tmp_path / name, (".nc", ".csv"), force=True)
+    assert sorted(os.listdir(tmp_path)) == before
+
+
+def test_a_folder_without_permission_is_refused(tmp_path, monkeypatch):
+    # Root may write everywhere, so that the refusal of the system is played.
+    def refuse(self, exist_ok=True):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("pathlib.Path.touch", refuse)
+    with pytest.raises(sb.InputError, match="cannot be written \\(Permission denied\\)"):
+        check_output(tmp_path / "curve.nc", (".nc",))
+
+
+def test_a_protected_file_is_kept_even_when_forced(tmp_path, monkeypatch):
+    (tmp_path / "curve.nc").write_text("precious")
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    with pytest.raises(sb.InputError, match="protected against writing"):
+        check_output(tmp_path / "curve.nc", (".nc",), force=True)
+
+
+def test_through_a_link_its_target_is_written_and_the_link_kept(dataset, tmp_path):
+    (tmp_path / "data").mkdir()
+    (tmp_path / "link.csv").symlink_to(tmp_path / "data" / "curve.csv")
+    write_csv(dataset, tmp_path / "link.csv")
+    assert (tmp_path / "link.csv").is_symlink()
+    assert (tmp_path / "data" / "curve.csv").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("failure", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, failure):
+    path = tmp_path / "curve.csv"
+    path.write_text("precious")
+    with (
+        pytest.raises((sb.InputError, KeyboardInterrupt)) as caught,
+        replacing(path, (".csv",), force=True) as temporary,
+    ):
+        temporary.write_text("half")
+        raise failure
+    if isinstance(failure, OSError):
+        assert "could not be written (No space left on device); it is as it was before" in str(caught.value)
+    assert path.read_text() == "precious"
+    assert os.listdir(tmp_path) == ["curve.csv"]
+
+
+def test_a_file_that_appears_meanwhile_is_kept(tmp_path):
+    path = tmp_path / "curve.csv"
+    with pytest.raises(sb.InputError, match="exists already"), replacing(path, (".csv",)) as temporary:
+        temporary.write_text("ours")
+        path.write_text("theirs")
+    assert path.read_text() == "theirs"
+
+
+FULL = """
+import resource, sys
+import numpy as np, xarray as xr
+import stribeck as sb
+from stribeck.store import write_data
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))
+x = np.linspace(0, 1, 50_000)
+dataset = xr.Dataset({"y": ("x", np.sin(x), {"units": "1"})}, coords={"x": ("x", x, {"units": "1"})})
+try:
+    write_data(dataset, sys.argv[1], force=True)
+except sb.InputError as problem:
+    print(problem)
+"""
+
+
+def test_a_full_disk_leaves_the_old_file_and_a_sentence(tmp_path, ending):
+    path = tmp_path / f"curve{ending}"
+    path.write_text("precious")
+    answer = run_python(FULL, path)
+    assert answer.code == 0, answer.err
+    assert re.fullmatch(r".*could not be written \(.+\); it is as it was before\.\n", answer.out)
+    assert path.read_text() == "precious"
+    assert os.listdir(tmp_path) == [path.name]
+
+
+KILLED = """
+import os, signal, sys
+import xarray as xr
+whole = xr.Dataset.to_netcdf
+def half(self, path, **options):
+    whole(self, path, **options)
+    os.truncate(path, 1000)
+    os.kill(os.getpid(), signal.SIGKILL)
+xr.Dataset.to_netcdf = half
+from stribeck.cli import main
+main(sys.argv[1:])
+"""
+
+
+def test_a_kill_while_writing_leaves_no_half_file(tmp_path):
+    path = tmp_path / "curve.nc"
+    path.write_text("precious")
+    tokens = ["curve", "--groups", "0.1", "1e-3", "--range", "0.1", "1", "--points", "2", "-o", path, "--force"]
+    assert run_python(KILLED, *tokens).code == -9
+    assert path.read_text() == "precious"
+    # What the killed process could not take away is hidden and not taken for a result.
+    assert all(name == "curve.nc" or name.startswith(".stribeck-") for name in os.listdir(tmp_path))
+
+
+@pytest.mark.parametrize(("library", "call"), [("xarray", "to_dataset"), ("netCDF4", "to_netcdf")])
+def test_a_missing_extra_is_one_sentence_with_the_remedy(curve, tmp_path, monkeypatch, library, call):
+    monkeypatch.setitem(sys.modules, library, None)
+    arguments = [] if call == "to_dataset" else [tmp_path / "curve.nc"]
+    with pytest.raises(ImportError, match=rf"needs {library}; install it with: pip install 'stribeck\[data\]'\.") as e:
+        getattr(curve, call)(*arguments)
+    assert isinstance(e.value, MissingExtraError)
+    assert isinstance(e.value, sb.InputError)
+
+
+def test_importing_the_module_does_not_import_xarray():
+    code = textwrap.dedent("""
+        import sys
+        import stribeck.store, stribeck.plotting
+        assert not {"xarray", "netCDF4", "matplotlib", "pandas"} & set(sys.modules)
+    """)
+    assert run_python(code).code == 0
