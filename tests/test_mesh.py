@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 
-from stribeck.mesh import MAX_PANELS, Mesh, MeshTooLarge, adapt, base_edges, legendre_tail, reference
+from stribeck.mesh import MAX_PANELS, Mesh, MeshTooLargeError, adapt, base_edges, legendre_tail, reference
 
 SEED = 70_419
 
@@ -259,7 +259,7 @@ def test_the_panel_through_infinity_begins_where_the_tail_is_resolved():
 
 
 def test_a_field_that_no_panel_resolves_needs_too_many():
-    with pytest.raises(MeshTooLarge):
+    with pytest.raises(MeshTooLargeError):
         adapt(lambda x, *_: np.sin(300 * x)[None] * (np.abs(x) < 10), 1.0, 16.0, 10, 1e-6)
 
 

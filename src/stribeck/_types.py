@@ -1,6 +1,8 @@
-"""The one array type that annotations use."""
+"""The array types that annotations use."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+Flags = NDArray[np.bool_]

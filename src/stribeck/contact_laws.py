@@ -28,19 +28,19 @@ class ContactLaw(Protocol):
         """Length over which the pressure falls by a factor e at most [u_Hz]; 0 where there is no contact."""
 
     def pressure(self, gap: Array) -> Array:
-        """Contact pressure [p_Hz] at the gap [u_Hz]."""
+        """Return the contact pressure [p_Hz] at the gap [u_Hz]."""
 
     def log_pressure(self, gap: Array) -> Array:
-        """Logarithm of the contact pressure over p_Hz, finite where the pressure itself underflows."""
+        """Return the logarithm of the contact pressure over p_Hz, finite where the pressure itself underflows."""
 
     def slope(self, gap: Array, pressure: Array) -> Array:
-        """Derivative of the contact pressure with respect to the gap, given that pressure [p_Hz/u_Hz]."""
+        """Return the derivative of the contact pressure with respect to the gap, given that pressure [p_Hz/u_Hz]."""
 
     def load_derivative(self, gap: Array, pressure: Array) -> Array:
-        """Derivative of the contact pressure with respect to the logarithm of the load group [p_Hz]."""
+        """Return the derivative of the contact pressure with respect to the logarithm of the load group [p_Hz]."""
 
     def roughness_derivative(self, gap: Array, pressure: Array) -> Array:
-        """Derivative of the contact pressure with respect to the logarithm of the roughness group [p_Hz]."""
+        """Return the derivative of the contact pressure with respect to the logarithm of the roughness group [p_Hz]."""
 
 
 @dataclass(frozen=True)

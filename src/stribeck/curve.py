@@ -17,10 +17,11 @@ from .asymptotics import hydrodynamic
 from .follow import Follower, follow
 from .newton import Outcome
 from .parameters import QUANTITIES, Groups, LineContact
+from .refine import Point
 from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
 from .sensitivity import GROUPS, friction_slopes
 from .solution import Definition, Solution, check_definition, coefficients
-from .solve import Point, SolveError, as_groups, check_rtol, describe, finish, solution_of
+from .solve import SolveError, as_groups, check_rtol, describe, finish, solution_of
 from .span import automatic_speeds
 from .threads import one_blas_thread
 from .units import InputError, format_si, show, to_si

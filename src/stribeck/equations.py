@@ -47,15 +47,15 @@ class Operators:
 
     @cached_property
     def load_of_gradient(self) -> Array:
-        """w A: nodal pressure gradients -> load."""
-        return self.mesh.after_integral(self.mesh.weights[None, :])[0]
+        """Row w A: nodal pressure gradients -> load."""
+        return np.asarray(self.mesh.after_integral(self.mesh.weights[None, :])[0])
 
     @cached_property
     def moment_of_gradient(self) -> Array:
-        """w x A on the panels in x: nodal pressure gradients -> first moment of the pressure."""
+        """Row w x A on the panels in x: nodal pressure gradients -> first moment of the pressure."""
         row = self.mesh.weights * self.mesh.nodes
         row[-self.mesh.order :] = 0.0
-        return self.mesh.after_integral(row[None, :])[0]
+        return np.asarray(self.mesh.after_integral(row[None, :])[0])
 
     @cached_property
     def parabola(self) -> Array:
@@ -171,7 +171,7 @@ class Equations:
             closing = float((-decays / (3.0 + np.maximum(0.0, -1.0 - log_p))).max())
             opening = float((decays * (log_p > -7.0)).max()) / 3.0
             part = min(part, 1.0 / max(1.0, closing, opening))
-        return part
+        return float(part)
 
     @staticmethod
     def size(y: Array, dy: Array) -> float:

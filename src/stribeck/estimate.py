@@ -21,7 +21,7 @@ from numpy.polynomial import legendre
 from scipy.linalg import lapack
 
 from . import reynolds
-from ._types import Array
+from ._types import Array, Indices
 from .elasticity import log_moments, near_distance
 from .equations import LOAD, Operators
 from .mesh import Mesh, interpolation_error, reference
@@ -70,7 +70,7 @@ class FineOperators:
         return legendre.legvander(reference(m).nodes, m - 1) @ reference(self.mesh.order).to_legendre[:m]
 
     @cached_property
-    def _near(self) -> tuple[Array, Array, Array]:
+    def _near(self) -> tuple[Indices, Indices, Array]:
         """Targets, their near panels, and the deflection by the highest degrees of these, shape (pairs, EXTRA_NODES)."""
         mesh, m = self.coarse, self.coarse.order
         s = (mesh.nodes[:, None] - mesh.centres) / mesh.half_widths
@@ -195,7 +195,7 @@ def interpolation_errors(state: State, minimum_position: float) -> tuple[float, 
 def _signs(size: int) -> Array:
     """Two fixed patterns of signs without order, shape (2, size)."""
     k = np.arange(1, size + 1)
-    return np.sign(np.stack([np.sin(2.399963 * k * k), np.cos(1.7 * k * k)]))
+    return np.asarray(np.sign(np.stack([np.sin(2.399963 * k * k), np.cos(1.7 * k * k)])))
 
 
 def error_estimate(state: State, observed: Observables, fine: FineOperators) -> ErrorEstimate:

@@ -10,13 +10,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from .continuation import Path, march
 from .contact_laws import contact_law
+from .continuation import Path, march
 from .equations import Operators
 from .estimate import FineOperators
-from .mesh import MeshTooLarge
+from .mesh import MeshTooLargeError
 from .parameters import Groups
-from .solve import Point, converge, judge, mesh_tolerances_for, newton_tolerance, order_for, solvable
+from .refine import Point, converge, judge, mesh_tolerances_for, newton_tolerance, order_for, solvable
 from .start import cold_start
 from .states import Guess, State, extrapolate, mesh_for, solve_state
 
@@ -82,7 +82,7 @@ class Follower:
         self.tolerances = min(tail, RELAX * self.tolerances[0]), min(gap_tail, RELAX * self.tolerances[1])
         try:
             mesh = mesh_for(state, state.groups, contact_law(state.groups), order_for(self.rtol), *self.tolerances)
-        except MeshTooLarge:
+        except MeshTooLargeError:
             return
         if mesh.size < WORTH_COARSENING * state.mesh.size:
             self.operators, self.fine = Operators(mesh), FineOperators(mesh)

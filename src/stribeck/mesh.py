@@ -17,13 +17,13 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.polynomial import legendre
 
-from ._types import Array
+from ._types import Array, Flags, Indices
 
 MAX_PANELS = 128
 """Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator."""
 
 
-class MeshTooLarge(Exception):
+class MeshTooLargeError(Exception):
     """The fields need more than :data:`MAX_PANELS` panels."""
 
 
@@ -196,7 +196,7 @@ class Mesh:
         after = right_tail + np.concatenate([[0.0], np.cumsum(whole[:middle:-1])])[::-1]
         result[:middle] += before[:, None]
         result[middle:-1] -= after[:, None]
-        return result.ravel()
+        return np.asarray(result.ravel())
 
     def after_integral(self, operator: Array) -> Array:
         """Return ``operator @ A`` with A the matrix of :meth:`integral_from_infinity`, in O(rows size order)."""
@@ -213,9 +213,9 @@ class Mesh:
         result[:, middle + 1 : -1] -= earlier[:, :-1, None] * whole[middle + 1 :]
         left_tail, right_tail = self._tail_weights
         result[:, -1] += np.outer(later[:, 0], left_tail) - np.outer(earlier[:, -1], right_tail)
-        return result.reshape(rows, self.size)
+        return np.asarray(result.reshape(rows, self.size))
 
-    def locate(self, x: Array) -> tuple[Array, Array]:
+    def locate(self, x: Array) -> tuple[Indices, Array]:
         """Return the panel of each point and its coordinate in ``[-1, 1]`` there."""
         panel = np.searchsorted(self.edges, x, side="right") - 1
         outside = (panel < 0) | (panel >= self.panels - 1)
@@ -307,12 +307,12 @@ def adapt(
 
     Raises
     ------
-    MeshTooLarge
+    MeshTooLargeError
         If more than :data:`MAX_PANELS` panels are needed.
     """
     nodes = reference(order).nodes
 
-    def unresolved(edges: Array) -> Array:
+    def unresolved(edges: Array) -> Flags:
         half = 0.5 * (edges[:, 1] - edges[:, 0])
         x = edges.mean(axis=1)[:, None] + half[:, None] * nodes
         tails = legendre_tail(fields(x, half, np.ones_like(x)).reshape(-1, x.size), order)
@@ -337,7 +337,7 @@ def adapt(
         done.append(open_panels[~split])
         count += int((~split).sum())
         if count + 2 * int(split.sum()) > MAX_PANELS:
-            raise MeshTooLarge
+            raise MeshTooLargeError
         left, right = open_panels[split].T
         middle = 0.5 * (left + right)
         open_panels = np.concatenate([np.column_stack([left, middle]), np.column_stack([middle, right])])
@@ -346,7 +346,7 @@ def adapt(
     return Mesh(_merged(edges, unresolved, 2 if start is not None else 4), order, scale)
 
 
-def _merged(edges: Array, unresolved: Callable[[Array], Array], passes: int) -> Array:
+def _merged(edges: Array, unresolved: Callable[[Array], Flags], passes: int) -> Array:
     """Return the edges without those whose two panels are resolved as one: halving leaves more than are needed."""
     for trial in range(passes):
         inner = np.arange(1 + trial % 2, len(edges) - 1, 2)

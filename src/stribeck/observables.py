@@ -20,10 +20,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from . import reynolds
 from ._types import Array
 from .equations import LOAD, Equations
 from .mesh import Mesh, reference
-from . import reynolds
 
 NAMES = (
     "contact_load_share",
@@ -220,7 +220,7 @@ def gradients(equations: Equations, y: Array, load: float) -> Array:
 
 
 def _at_zero(mesh: Mesh, h: Array) -> Array:
-    """Derivative of the central gap with respect to the unknowns."""
+    """Return the derivative of the central gap with respect to the unknowns."""
     first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
     nodes = slice(first, first + mesh.order)
     row = np.zeros(mesh.size + 2)

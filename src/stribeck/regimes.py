@@ -8,9 +8,10 @@ from typing import Literal
 import numpy as np
 
 from .parameters import LineContact
+from .refine import converge, solvable
 from .sensitivity import friction_slopes
 from .solution import Definition, Solution, check_definition
-from .solve import SolveError, check_rtol, converge, describe, finish, solvable, solve
+from .solve import SolveError, check_rtol, describe, finish, solve
 from .start import cold_start
 from .threads import one_blas_thread
 

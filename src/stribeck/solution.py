@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, Indices
 from .mesh import Mesh
 from .newton import Outcome
 from .observables import NAMES, Observables, gap_at
@@ -153,7 +153,7 @@ class Solution:
         return self.nodal_pressures()
 
     @cached_property
-    def _ordered(self) -> Array:
+    def _ordered(self) -> Indices:
         return np.argsort(self.mesh.nodes)
 
     @property

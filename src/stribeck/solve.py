@@ -3,43 +3,28 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal
 
 import numpy as np
 
-from . import hertz, reynolds
+from . import hertz
 from ._types import Array
-from .contact_laws import contact_law
-from .equations import Operators
-from .estimate import ErrorEstimate, FineOperators, error_estimate
-from .mesh import Mesh, MeshTooLarge
+from .mesh import Mesh
 from .newton import Outcome
-from .observables import NAMES, Observables, observables
+from .observables import NAMES, Observables
 from .parameters import Groups, LineContact
+from .refine import Point, converge, order_for, quasistatic_shift, solvable
 from .solution import Solution, law_notes
 from .start import cold_start
-from .states import Guess, State, mesh_for, solve_state
 from .threads import one_blas_thread
 from .units import InputError, show
 
 RTOL_RANGE = (1e-11, 1e-2)
 """Tolerances that may be asked for; below, double precision reaches no state."""
 
-QUASISTATIC_LOAD = 0.01
-"""At speed zero the load only shifts the gap: heavier contacts are solved at this load, where all gaps are positive."""
-
-MAX_REFINEMENTS = 12
-
 LEAST_ESTIMATE = 3e-2
 """Part of the tolerance below which no error is stated: estimates so small were not checked."""
-
-LEAST_GAP_TAIL = 0.02
-"""Part of the tolerance below which resolving the gap where it is read off alone does not help."""
-
-CLEARLY_FINER = 1.1
-"""Ratio of mesh sizes from which the difference of two solutions measures the error of the coarser."""
 
 
 class SolveError(RuntimeError):
@@ -59,16 +44,6 @@ class SolveError(RuntimeError):
         super().__init__(message)
         self.outcome = outcome
         self.solution = solution
-
-
-def order_for(rtol: float) -> int:
-    """Return the nodes per panel that reach ``rtol`` with the fewest unknowns."""
-    return 12 if rtol >= 1e-7 else 16
-
-
-def mesh_tolerances_for(rtol: float) -> tuple[float, float]:
-    """Return the Legendre tails to start refinement with; most states reach ``rtol`` with them at once."""
-    return min(1e-2, 0.4 * math.sqrt(rtol)), 0.3 * rtol
 
 
 @one_blas_thread
@@ -144,131 +119,6 @@ def check_rtol(rtol: float) -> None:
 def describe(groups: Groups) -> str:
     """Return the groups in words, for messages."""
     return f"speed {float(groups.speed):.6g}, load {float(groups.load):.6g}, roughness {float(groups.roughness):.6g}"
-
-
-def solvable(groups: Groups) -> Groups:
-    """Return the groups that are solved for: at speed zero the load is lowered until all gaps are positive."""
-    if groups.speed > 0 or groups.load <= QUASISTATIC_LOAD:
-        return groups
-    return Groups(0.0, QUASISTATIC_LOAD, QUASISTATIC_LOAD * groups.relative_roughness)
-
-
-def quasistatic_shift(groups: Groups) -> float:
-    r"""Return by how much the gap of ``groups`` lies above that of :func:`solvable`.
-
-    .. math:: \Delta h = -\frac{\kappa}{2} \ln \frac{\bar F_N}{\bar F_N'}
-
-    Exact at speed zero, where the solution depends on kappa alone but for this shift of gap and offset.
-    """
-    if solvable(groups) is groups:
-        return 0.0
-    return -0.5 * float(groups.relative_roughness) * math.log(float(groups.load / solvable(groups).load))
-
-
-@dataclass(frozen=True, eq=False)
-class Point:
-    """A refined state of ``groups``, its observables and their errors, and how the refinement ended.
-
-    ``state`` is that of :func:`solvable` groups; ``estimate`` is None where not even a coarse state was found.
-    """
-
-    groups: Groups
-    state: State | None
-    values: Observables | None
-    estimate: ErrorEstimate | None
-    outcome: Outcome
-    tolerances: tuple[float, float] | None = None
-    fine: FineOperators | None = None
-
-    @property
-    def effort(self) -> float:
-        """What :func:`continuation.march` steers by."""
-        return 4.0 if self.state is None else self.state.effort
-
-
-def converge(
-    guess: Guess, groups: Groups, rtol: float, tolerances: tuple[float, float] | None = None
-) -> Point:
-    """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
-
-    ``tolerances`` are the Legendre tails to start with, see :func:`states.mesh_for`; the point tells with which it ended.
-    """
-    base = solvable(groups)
-    law = contact_law(base)
-    tail, gap_tail = mesh_tolerances_for(rtol) if tolerances is None else tolerances
-    best = Point(groups, None, None, None, Outcome.REFINEMENT_LIMIT)
-    last: tuple[int, Array] | None = None
-    outcome = Outcome.REFINEMENT_LIMIT
-    for _ in range(MAX_REFINEMENTS):
-        try:
-            mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail)
-        except MeshTooLarge:
-            tail *= 3.0
-            continue
-        state = solve_state(base, Operators(mesh), guess, newton_tolerance(rtol))
-        if not state.outcome.ok:
-            outcome = state.outcome
-            break
-        point = replace(judge(state, groups, FineOperators(mesh), rtol), tolerances=(tail, gap_tail))
-        assert point.estimate is not None and point.values is not None
-        if last is not None and mesh.size >= CLEARLY_FINER * last[0]:
-            estimate = point.estimate.at_most(np.abs(point.values.array() - last[1]))
-            point = replace(point, estimate=estimate, outcome=reached(estimate, rtol))
-        last = mesh.size, point.values.array()
-        if point.outcome.ok:
-            return point
-        if best.estimate is None or point.estimate.total < best.estimate.total:
-            best = point
-        if point.estimate.total <= 3 * point.estimate.floor:
-            break
-        tail *= shrink(math.sqrt(rtol / (point.estimate.at_nodes + 1e-300)))
-        between = shrink(rtol / (point.estimate.between_nodes + 1e-300))
-        if gap_tail * between >= LEAST_GAP_TAIL * rtol:
-            gap_tail *= between
-        else:
-            tail *= between
-        guess = state
-    if best.estimate is not None and best.estimate.floor > 0.3 * rtol:
-        outcome = Outcome.ROUNDING
-    return replace(best, outcome=outcome)
-
-
-def shrink(excess: float) -> float:
-    """Return the factor for a mesh tolerance whose error exceeds what is allowed by 1/``excess``."""
-    return 1.0 if excess > 2 else min(0.5, max(0.3, 0.5 * excess))
-
-
-def judge(state: State, groups: Groups, fine: FineOperators, rtol: float) -> Point:
-    """Return the state with its observables and their errors; it counts as converged if these are at most ``rtol``."""
-    values = values_of(state, groups)
-    estimate = error_estimate(state, values, fine)
-    return Point(groups, state, values, estimate, reached(estimate, rtol), fine=fine)
-
-
-def reached(estimate: ErrorEstimate, rtol: float) -> Outcome:
-    """Return whether an estimate holds the tolerance."""
-    return Outcome.CONVERGED if estimate.total <= rtol else Outcome.REFINEMENT_LIMIT
-
-
-def newton_tolerance(rtol: float) -> float:
-    """Return the size of the last Newton step: what is left after it is far below ``rtol``."""
-    return max(1e-11, 1e-2 * rtol)
-
-
-def values_of(state: State, groups: Groups) -> Observables:
-    """Return the observables of ``groups`` from the state solved for it."""
-    values = observables(state.equations, state.y, float(groups.load))
-    if solvable(groups) is groups:
-        return values
-    shift = quasistatic_shift(groups)
-    gap = state.gap + shift
-    return replace(
-        values,
-        central_gap=values.central_gap + shift,
-        minimum_gap=values.minimum_gap + shift,
-        offset=values.offset + shift,
-        flux_gap=reynolds.flux_gap(gap, state.mesh.weights) if gap.min() > 0 else math.nan,
-    )
 
 
 def finish(

@@ -11,7 +11,7 @@ import numpy as np
 from .contact_laws import contact_law
 from .continuation import march
 from .equations import Operators
-from .mesh import MeshTooLarge
+from .mesh import MeshTooLargeError
 from .newton import Outcome
 from .observables import observables
 from .parameters import Groups
@@ -48,7 +48,7 @@ def automatic_speeds(groups: Groups, mu0: float, beta: float, definition: str) -
         guess: Guess = rigid_guess(here) if not history else extrapolate(history, s)
         try:
             mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
-        except MeshTooLarge:
+        except MeshTooLargeError:
             return None
         return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
 

@@ -19,7 +19,7 @@ from ._types import Array
 from .contact_laws import contact_law
 from .continuation import Path, march
 from .equations import LOAD, Operators
-from .mesh import Mesh, MeshTooLarge
+from .mesh import Mesh, MeshTooLargeError
 from .parameters import Groups
 from .states import Guess, State, extrapolate, mesh_for, solve_state
 
@@ -129,7 +129,7 @@ def cold_start(groups: Groups) -> Path[State]:
         guess: Guess = rigid_guess(here) if top - log_factor < 0.7 and len(history) < 3 else extrapolate(history, log_factor)
         try:
             mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
-        except MeshTooLarge:
+        except MeshTooLargeError:
             return None
         return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
 

@@ -28,8 +28,9 @@ CHORD = 0.25
 LARGEST_AMPLIFICATION = 40.0
 """Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
 
-EDGE_EXPONENT = 0.5
-VISCOUS = 1.0
+LONG_REACH_ORDER = 14
+"""Nodes a panel from which the panel through infinity begins twice as far out, to keep up with them: the logarithm in the
+gap limits its order."""
 
 PREDICTION_GOAL = 0.5
 """Relative error of the predicted gap at which the step of a path is kept."""
@@ -197,7 +198,8 @@ def mesh_for(
     ----------
     guess : Guess
         The fields to resolve: contact and fluid pressure to ``tolerance``, relative to what a Hertz pressure has at that
-        distance from its edge, the square root of the half-width of the panel; the logarithm of the gap to ten times that.
+        distance from its edge, the square root of the half-width of the panel; the viscous shear 1/h, relative to that at
+        zero, to ``tolerance`` too, the logarithm of the gap to ten times that.
     groups : Groups
         Scalar groups.
     law : ContactLaw
@@ -211,7 +213,7 @@ def mesh_for(
 
     Raises
     ------
-    MeshTooLarge
+    MeshTooLargeError
         If more panels are needed than :data:`mesh.MAX_PANELS`.
     """
     central_gap = math.exp(guess.fields(np.zeros(1))[0, 0])
@@ -227,18 +229,19 @@ def mesh_for(
         else:
             slopes = float(groups.speed) * (gap - guess.flux_gap) / gap**3
             fluid = slopes * np.repeat(half_widths, x.shape[1])
-        edge_scale = np.minimum(1.0, half_widths / width) ** EDGE_EXPONENT
+        edge_scale = np.minimum(1.0, half_widths / width) ** 0.5
         pressures = width / np.repeat(edge_scale, x.shape[1]) * np.stack([law.pressure(gap), fluid])
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(x.shape)
         centres = x.mean(axis=1)
         read_off = (np.abs(centres) <= half_widths) | (np.abs(centres - guess.least_position) <= half_widths)
         read_off &= stretch[:, 0] == 1.0
         shape = shape * np.where(read_off, max(0.1, tolerance / gap_tolerance), 0.1)[:, None]
-        shear = VISCOUS * (np.exp(-found[0]) * central_gap).reshape(x.shape)
+        shear = (np.exp(-found[0]) * central_gap).reshape(x.shape)
         return np.concatenate([stretch * pressures.reshape(2, *x.shape), shape[None], shear[None]])
 
     start = guess.mesh if isinstance(guess, State) else None
-    return adapt(fields, scale, (8 if order <= 12 else 16) * scale, order, tolerance, start)
+    reach = (8 if order < LONG_REACH_ORDER else 16) * scale
+    return adapt(fields, scale, reach, order, tolerance, start)
 
 
 def solve_state(

@@ -1,0 +1,271 @@
+"""Pictures: they show the solved numbers, say where they are not to be trusted, and can be read."""
+
+import itertools
+import os
+import sys
+import textwrap
+
+import matplotlib
+import numpy as np
+import pytest
+from command_line import PDMS, WIPER, run_python
+
+import stribeck as sb
+from stribeck.plotting import plot_curve, plot_profile
+
+SIGNATURES = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
+
+
+def curve_of(path, **arguments):
+    return sb.stribeck_curve(sb.load_case(path).contact, **arguments)
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return curve_of(PDMS, points=9)
+
+
+@pytest.fixture(scope="module")
+def heavy():
+    return curve_of(WIPER, speed=("1 mm/s", "100 m/s"), points=5)
+
+
+@pytest.fixture(scope="module")
+def solution():
+    return sb.solve(sb.load_case(PDMS).contact)
+
+
+KINDS = {
+    "over speed": lambda: curve_of(PDMS, points=5),
+    "over load": lambda: curve_of(PDMS, load=("5 N/m", "200 N/m"), points=4),
+    "over roughness": lambda: curve_of(PDMS, roughness=("0.1 um", "10 um"), points=4),
+    "of groups": lambda: sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-5, 10), points=4),
+    "quasistatic": lambda: sb.stribeck_curve(sb.Groups(0, 0.1, 1e-3), load=(0.1, 5), points=4),
+    "of a smooth contact": lambda: sb.stribeck_curve(load=0.1, roughness=0, speed=(1e-5, 10), points=4),
+    "without dry friction": lambda: sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 2), points=2, mu0=0),
+    "without any friction": lambda: sb.stribeck_curve(sb.Groups(0, 0.1, 1e-3), load=(0.1, 1), points=2, mu0=0),
+    "beyond the law": lambda: curve_of(WIPER, speed=("1 mm/s", "100 m/s"), points=4),
+}
+
+
+def line(axes, label):
+    [found] = [each for each in axes.lines if each.get_label().startswith(label)]
+    return found
+
+
+def texts(figure):
+    found = list(figure.texts)
+    for axes in figure.axes:
+        found += [*axes.texts, axes.title, axes.xaxis.label, axes.yaxis.label]
+        for child in axes.child_axes:
+            found.append(child.xaxis.label)
+    for legend in figure.legends:
+        found += legend.get_texts()
+    return [text for text in found if text.get_text() and text.get_visible()]
+
+
+def words(figure):
+    return "\n".join(text.get_text() for text in texts(figure))
+
+
+# --- the numbers ---
+
+
+def test_the_first_panel_shows_friction_and_its_parts_against_the_hersey_number(curve):
+    axes = plot_curve(curve).axes[0]
+    for label, values in (
+        ("friction", curve.friction),
+        ("from asperities", curve.friction_contact),
+        ("from the fluid", curve.friction_viscous),
+    ):
+        np.testing.assert_array_equal(line(axes, label).get_xdata(), curve.hersey_number)
+        np.testing.assert_array_equal(line(axes, label).get_ydata(), values)
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+
+
+def test_the_second_panel_shows_friction_against_the_hydrodynamic_law_beside_the_law_itself(curve):
+    axes = plot_curve(curve).axes[1]
+    np.testing.assert_array_equal(line(axes, "friction").get_xdata(), curve.hydrodynamic_friction)
+    np.testing.assert_array_equal(line(axes, "friction").get_ydata(), curve.friction)
+    law = line(axes, "the law itself")
+    np.testing.assert_array_equal(law.get_xdata(), law.get_ydata())
+
+
+def test_the_upper_axis_turns_hersey_numbers_into_speeds(curve):
+    figure = plot_curve(curve)
+    figure.canvas.draw()
+    [upper] = figure.axes[0].child_axes
+    np.testing.assert_allclose(upper.get_xlim(), curve.values[[0, -1]], rtol=1e-12)
+    assert upper.get_xlabel() == "sliding speed $U$ (m/s)"
+
+
+def test_minimum_and_equal_shares_are_marked_where_they_were_located(curve):
+    axes = plot_curve(curve).axes[0]
+    mark = line(axes, "minimum")
+    hersey = curve.contact.viscosity * curve.minimum.value / curve.contact.load
+    np.testing.assert_allclose(mark.get_xdata(), hersey, rtol=1e-12)
+    assert mark.get_ydata() == pytest.approx([curve.minimum.friction])
+    assert mark.get_label().endswith("at 27.9 mm/s")
+    assert line(axes, "fluid carries half the load").get_label().endswith("at 2.79 mm/s")
+
+
+def test_regimes_are_shaded_between_the_transitions(curve):
+    axes = plot_curve(curve).axes[0]
+    assert [text.get_text() for text in axes.texts] == ["boundary", "mixed", "hydrodynamic"]
+    spans = [patch for patch in axes.patches if patch.get_zorder() == 0]
+    per_hersey = curve.contact.load / curve.contact.viscosity
+    edges = [patch.get_x() * per_hersey for patch in spans]
+    np.testing.assert_allclose(edges, [low for _, low, _ in curve.regime_ranges], rtol=1e-9)
+
+
+def test_a_curve_over_load_or_roughness_has_it_as_abscissa():
+    for over, unit in (("load", "N/m"), ("roughness", "m")):
+        curve = KINDS[f"over {over}"]()
+        axes = plot_curve(curve).axes[0]
+        np.testing.assert_array_equal(line(axes, "friction").get_xdata(), curve.values)
+        assert axes.get_xlabel().startswith(over) and axes.get_xlabel().endswith(f"({unit})")
+
+
+def test_where_the_hydrodynamic_law_says_nothing_the_shares_of_the_load_are_shown():
+    curve = KINDS["over roughness"]()
+    axes = plot_curve(curve).axes[1]
+    np.testing.assert_array_equal(line(axes, "from the fluid").get_ydata(), curve.observable("fluid_load_share"))
+    assert axes.get_ylabel() == "share of the load"
+
+
+def test_a_profile_shows_the_fields_in_si_units(solution):
+    above, below = plot_profile(solution).axes
+    gap = line(above, "gap")
+    fields = solution.to_si(gap.get_xdata() * 1e-6)
+    assert above.get_ylabel() == "gap $h$ (µm)"
+    np.testing.assert_allclose(gap.get_ydata(), fields.gap * 1e6, rtol=1e-9)
+    assert below.get_ylabel() == "pressure (kPa)"
+    np.testing.assert_allclose(line(below, "from asperities").get_ydata(), fields.contact_pressure / 1e3, atol=1e-6)
+    np.testing.assert_allclose(line(below, "from the fluid").get_ydata(), fields.fluid_pressure / 1e3, atol=1e-6)
+    np.testing.assert_allclose(line(below, "total").get_ydata(), fields.pressure / 1e3, atol=1e-6)
+
+
+def test_a_profile_reaches_as_far_as_the_pressure(solved):
+    for groups in ((1e4, 0.1, 1e-3), (1e-6, 0.1, 1e-4)):
+        found = solved(*groups)
+        axes = plot_profile(found).axes[1]
+        share = np.abs(found.pressure) / np.abs(found.pressure).max()
+        assert np.abs(found.x[share > 0.03]).max() < axes.get_xlim()[1]
+
+
+# --- what a reader must know ---
+
+
+def test_the_footer_holds_inputs_law_tolerance_and_version(curve):
+    found = words(plot_curve(curve, title="A title"))
+    for part in ("A title", "$R$ = 10 mm", "= 2.7 MPa", "$F_N$ = 30 N/m", "= 50 mPa·s", "exponential contact law"):
+        assert part in found
+    for part in ("definition paper", "rtol 1e-06", "estimated error", "9 points", "stribeck 0."):
+        assert part in found
+    assert "$U$ =" not in found  # it varies
+
+
+def test_where_the_law_is_beyond_its_range_the_picture_says_so(curve, heavy):
+    hatched = [patch.get_label() for patch in plot_curve(heavy).axes[0].collections]
+    assert "contact law outside its range" in hatched
+    assert "outside its range, as asperities cannot carry this load" in words(plot_curve(heavy))
+    assert "contact law outside its range" not in [c.get_label() for c in plot_curve(curve).axes[0].collections]
+
+
+def test_an_interrupted_curve_says_how_many_points_it_has():
+    def stop(done, total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    found = words(plot_curve(sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 10), points=5, on_point=stop)))
+    assert "2 of 5 points" in found
+    assert "Interrupted before the end" in found
+
+
+# --- legibility ---
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_texts_lie_inside_the_picture_and_apart_from_one_another(kind):
+    figure = plot_curve(KINDS[kind](), title="A title")
+    figure.canvas.draw()
+    renderer = figure.canvas.get_renderer()
+    boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts(figure)]
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            labels = [label for label in axis.get_ticklabels(which="both") if label.get_text()]
+            low, high = sorted(axis.get_view_interval())
+            positions = [*axis.get_majorticklocs(), *axis.get_minorticklocs()]
+            inside = [low * (1 - 1e-9) <= at <= high * (1 + 1e-9) for at in positions]
+            labels = [label for label, kept in zip(axis.get_ticklabels(which="both"), inside, strict=True) if kept]
+            boxes += [(label.get_text(), label.get_window_extent(renderer)) for label in labels if label.get_text()]
+    whole = figure.bbox
+    for text, box in boxes:
+        assert whole.x0 <= box.x0 and box.x1 <= whole.x1 and whole.y0 <= box.y0 and box.y1 <= whole.y1, text
+    for (text, box), (other, beside) in itertools.combinations(boxes, 2):
+        overlap = min(box.x1, beside.x1) - max(box.x0, beside.x0), min(box.y1, beside.y1) - max(box.y0, beside.y0)
+        assert min(overlap) < 1.0, (text, other)
+
+
+@pytest.mark.parametrize("groups", [(0, 0.1, 0), (0, 5, 1e-3), (1e4, 0.1, 1e-3), (1e-6, 0.1, 1e-4)])
+def test_a_profile_of_any_state_can_be_drawn(solved, groups, tmp_path):
+    plot_profile(solved(*groups), tmp_path / "profile.png")
+    assert (tmp_path / "profile.png").stat().st_size > 10_000
+
+
+def test_lines_differ_by_dashes_and_not_by_colour_alone(curve):
+    lines = plot_curve(curve).axes[0].lines[:3]
+    assert len({str(each.get_linestyle()) for each in lines}) == 3
+    assert len({each.get_color() for each in lines}) == 3
+
+
+# --- files ---
+
+
+@pytest.mark.parametrize("ending", SIGNATURES)
+def test_the_ending_chooses_the_format(curve, tmp_path, ending):
+    path = tmp_path / f"curve{ending}"
+    curve.plot(path)
+    assert path.read_bytes().startswith(SIGNATURES[ending])
+    assert os.listdir(tmp_path) == [path.name]
+
+
+def test_an_unknown_ending_is_one_sentence(curve, tmp_path):
+    with pytest.raises(sb.InputError, match=r"must end in \.png, \.svg or \.pdf\.$"):
+        curve.plot(tmp_path / "curve.bmp")
+    assert os.listdir(tmp_path) == []
+
+
+def test_an_existing_picture_is_kept_unless_forced(curve, solution, tmp_path):
+    path = tmp_path / "picture.png"
+    path.write_text("precious")
+    for draw in (lambda **force: plot_curve(curve, path, **force), lambda **force: plot_profile(solution, path, **force)):
+        with pytest.raises(sb.InputError, match="exists already and is kept"):
+            draw()
+        assert path.read_text() == "precious"
+    plot_profile(solution, path, force=True)
+    assert path.read_bytes().startswith(SIGNATURES[".png"])
+
+
+def test_a_missing_matplotlib_is_one_sentence_with_the_remedy(curve, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    with pytest.raises(sb.InputError, match=r"needs matplotlib; install it with: pip install 'stribeck\[plot\]'\."):
+        plot_curve(curve)
+
+
+def test_drawing_changes_no_settings(curve, solution):
+    before = dict(matplotlib.rcParams)
+    plot_curve(curve)
+    plot_profile(solution)
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_drawing_needs_neither_pyplot_nor_a_display(tmp_path):
+    code = """
+        import sys
+        import stribeck as sb
+        sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 10), points=2).plot(sys.argv[1])
+        assert "matplotlib.pyplot" not in sys.modules
+    """
+    answer = run_python(textwrap.dedent(code), tmp_path / "curve.png", DISPLAY="", MPLBACKEND="TkAgg")
+    assert answer.code == 0, answer.err
