@@ -14,7 +14,7 @@ from stribeck.start import cold_start
 from stribeck.states import mesh_for, solve_state
 
 SEED = 17_903
-judge = importlib.import_module("stribeck.solve").judge  # the name stribeck.solve is the function
+judge = importlib.import_module("stribeck.refine").judge  # the name stribeck.solve is the function
 
 STATES = {
     "mixed": (1e-5, 0.1, 1e-4),

@@ -102,11 +102,28 @@ def observables(equations: Equations, y: Array, load: float) -> Observables:
 
 
 def gap_at(mesh: Mesh, h: Array, x: Array) -> Array:
-    """Return the gap at ``x`` from the panels' polynomials of its logarithm, or of itself where it touches zero."""
+    """Return the gap at ``x`` from the panels' polynomials.
+
+    Those are of the logarithm of the gap over its growth, or of the gap over its growth where it touches zero; on the panel
+    through infinity they are of what the gap has beyond ``x**2/2 - ln|x|/2``.
+    """
     far = mesh.scale**2 + x * x
     if h.min() > 0:
-        return np.asarray(np.exp(mesh.interpolate(np.log(h / mesh.far), x)) * far)
-    return mesh.interpolate(h / mesh.far, x) * far
+        gap = np.exp(mesh.interpolate(np.log(h / mesh.far), x)) * far
+    else:
+        gap = mesh.interpolate(h / mesh.far, x) * far
+    beyond = np.abs(x) > mesh.edges[-1]
+    if beyond.any():
+        x, tail = x[beyond], mesh.nodes[-mesh.order :]
+        rule = reference(mesh.order)
+        remainder = rule.interpolation(1 / (x * mesh.half_widths[-1])) @ (h[-mesh.order :] - far_gap(tail))
+        gap[beyond] = far_gap(x) + remainder
+    return np.asarray(gap)
+
+
+def far_gap(x: Array) -> Array:
+    """Return ``x**2/2 - ln|x|/2``, the gap far away but for a smooth function of ``1/x``."""
+    return 0.5 * x**2 - 0.5 * np.log(np.abs(x))
 
 
 def central_gap(mesh: Mesh, h: Array) -> float:
@@ -171,9 +188,9 @@ def friction_integrals(mesh: Mesh, h: Array, h_star: float, slopes: Array | None
     t, weights, to_tail = _towards_infinity(order)
     t = t * mesh.half_widths[-1]
     x_tail = mesh.nodes[-order:]
-    smooth = h[-order:] - 0.5 * x_tail**2 + 0.5 * np.log(np.abs(x_tail))
+    smooth = h[-order:] - far_gap(x_tail)
     x = 1 / t
-    h_tail = to_tail @ smooth + 0.5 * x**2 - 0.5 * np.log(np.abs(x))
+    h_tail = to_tail @ smooth + far_gap(x)
     tail = friction_integrands(x, h_tail, h_star) @ (weights * mesh.half_widths[-1] * x**2)
     return np.asarray(inner + tail)
 

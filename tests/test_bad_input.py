@@ -1,0 +1,306 @@
+"""Bad input to the command: one sentence with the key, the value and what is allowed, exit code 2, nothing written."""
+
+import os
+import re
+
+import pytest
+from command_line import PDMS, call, call_outside, case_text
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import stribeck as sb
+from stribeck import cli
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_solved(monkeypatch):
+    """Bad input must be refused before any work; what gets through shows by this sentence."""
+
+    def solve(*arguments, **options):
+        raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "this was not refused")
+
+    monkeypatch.setattr(cli, "solve", solve)
+    monkeypatch.setattr(cli, "friction_elasticities", solve)
+    checked = sb.stribeck_curve
+
+    def curve(*arguments, **options):
+        # Its own checks stay; the first point would be solved after them.
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("stribeck.curve.follow", solve)
+            patch.setattr("stribeck.curve.automatic_speeds", solve)
+            return checked(*arguments, **options)
+
+    monkeypatch.setattr(cli, "stribeck_curve", curve)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder with a good case, and things that are none."""
+    (tmp_path / "case.toml").write_text(case_text())
+    (tmp_path / "empty.toml").touch()
+    (tmp_path / "binary.toml").write_bytes(bytes(range(128, 256)))
+    (tmp_path / "null.toml").write_bytes(b"\0\0\0")
+    (tmp_path / "folder.toml").mkdir()
+    (tmp_path / "folder.nc").mkdir()
+    (tmp_path / "old.nc").write_text("precious")
+    (tmp_path / "old.png").write_text("precious")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def contents(folder):
+    return {path.name: path.read_bytes() if path.is_file() else None for path in folder.iterdir()}
+
+
+def assert_refused(capsys, folder, tokens, *parts):
+    """Check exit code, the one sentence with its parts, and that the folder is as it was."""
+    before = contents(folder)
+    answer = call(capsys, *tokens)
+    assert answer.code == 2, answer
+    assert answer.out == ""
+    assert re.fullmatch(r"stribeck: [^\n]*[^\n.][.]\n", answer.err), answer.err
+    assert "Traceback" not in answer.err
+    for part in parts:
+        assert part in answer.err
+    assert contents(folder) == before
+
+
+# --- case files ---
+
+BAD_CONTACTS = {
+    "unknown key": ({"radios": '"10 mm"'}, "[contact] radios = '10 mm' is not a known key; did you mean radius"),
+    "missing key": ({"viscosity": None}, "[contact] viscosity is missing; add a viscosity"),
+    "speed in metres": ({"speed": '"1 m"'}, "speed = '1 m' is a length; a speed such as '0.1 m/s' is wanted"),
+    "load in newtons": ({"load": '"30 N"'}, "load = '30 N' is a force (divide it by the length of the contact)"),
+    "unknown unit": ({"viscosity": '"50 mPaxs"'}, "viscosity = '50 mPaxs' has the unknown unit"),
+    "no unit": ({"radius": '"10"'}, "radius = '10' has no unit; add one"),
+    "negative radius": ({"radius": '"-10 mm"'}, "radius = '-10 mm' must be positive"),
+    "zero radius": ({"radius": "0"}, "radius = 0 must be positive"),
+    "zero load": ({"load": '"0 N/m"'}, "load = '0 N/m' must be positive"),
+    "negative speed": ({"speed": '"-1 m/s"'}, "speed = '-1 m/s' must be zero or positive"),
+    "nan": ({"roughness": "nan"}, "roughness = nan is not a finite number"),
+    "infinity": ({"load": "inf"}, "load = inf is not a finite number"),
+    "text for number": ({"alpha": '"two"'}, "alpha = 'two' is text where a number belongs"),
+    "list for number": ({"beta": "[1, 2]"}, "beta = [1, 2] is not a single real number"),
+    "truth for number": ({"beta": "true"}, "beta = True is not a single real number"),
+    "comma": ({"modulus": '"2,7 MPa"'}, "modulus = '2,7 MPa' has a comma; write a decimal point"),
+    "ratio above a half": (
+        {"modulus": None, "youngs_modulus": '"2 MPa"', "poisson_ratio": "0.51"},
+        "poisson_ratio = 0.51 must be between 0 and 0.5",
+    ),
+    "ratio without modulus": ({"modulus": None, "poisson_ratio": "0.5"}, "youngs_modulus is missing beside"),
+    "no modulus": ({"modulus": None}, "modulus (which is E*) is missing"),
+    "two moduli": (
+        {"youngs_modulus": '"2 MPa"', "poisson_ratio": "0.5"},
+        "modulus = '2.7 MPa' (which is E*) and youngs_modulus = '2 MPa'",
+    ),
+    "law": ({"law": '"linear"'}, "law = 'linear' must be 'exponential'"),
+    "range of double precision": ({"radius": '"1e-300 m"'}, "leave the range of double precision"),
+}
+BAD_TABLES = {
+    "zero points": ({"curve": {"points": "0"}}, "points = 0 must be a whole number from 2 to 100000"),
+    "half a point": ({"curve": {"points": "10.5"}}, "points = 10.5 must be a whole number"),
+    "reversed range": (
+        {"curve": {"range": '["1 m/s", "1 mm/s"]'}},
+        "range = ['1 m/s', '1 mm/s'] must increase; write the lowest speed first",
+    ),
+    "range in metres": ({"curve": {"range": '["1 mm", "1 m"]'}}, "in range, speed = '1 mm' is a length"),
+    "range from zero": ({"curve": {"range": "[0, 1]"}}, "in range, speed = 0 must be positive"),
+    "range of one": ({"curve": {"range": "[1]"}}, "range = [1] must be a list of two values"),
+    "unknown coordinate": ({"curve": {"over": '"time"'}}, "over = 'time' must be 'speed', 'load' or 'roughness'"),
+    "small rtol": ({"solver": {"rtol": "1e-20"}}, "rtol = 1e-20 must be a number from 1e-11 to 1e-2"),
+    "rtol in quotes": ({"solver": {"rtol": '"1e-6"'}}, "rtol = '1e-6' must be a number from 1e-11 to 1e-2"),
+    "definition": ({"solver": {"definition": '"mine"'}}, "definition = 'mine' must be 'paper' or 'balanced'"),
+    "unknown table": ({"contacts": {"a": "1"}}, "contacts = {'a': 1} is not a known key; did you mean contact"),
+}
+
+
+@pytest.mark.parametrize("command", ["solve", "curve", "regimes"])
+@pytest.mark.parametrize(("contact", "sentence"), BAD_CONTACTS.values(), ids=BAD_CONTACTS)
+def test_a_contact_that_cannot_be_is_refused_by_key_value_and_what_is_allowed(
+    capsys, folder, command, contact, sentence
+):
+    (folder / "bad.toml").write_text(case_text(contact))
+    assert_refused(capsys, folder, [command, "bad.toml"], "bad.toml", sentence)
+
+
+@pytest.mark.parametrize(("tables", "sentence"), BAD_TABLES.values(), ids=BAD_TABLES)
+def test_settings_that_cannot_be_are_refused_by_key_value_and_what_is_allowed(capsys, folder, tables, sentence):
+    (folder / "bad.toml").write_text(case_text(**tables))
+    assert_refused(capsys, folder, ["curve", "bad.toml", "-o", "new.nc"], "bad.toml", sentence)
+
+
+@pytest.mark.parametrize("command", ["solve", "curve", "regimes"])
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("missing.toml", "cannot be read (No such file or directory)"),
+        ("empty.toml", "is empty; a case file needs at least the table [contact]"),
+        ("binary.toml", "is not text (byte 0 is not UTF-8)"),
+        ("null.toml", "is not valid TOML"),
+        ("folder.toml", "is a directory; give the path of a TOML case file"),
+    ],
+)
+def test_a_file_that_is_no_case_is_refused(capsys, folder, command, name, words):
+    assert_refused(capsys, folder, [command, name], name, words)
+
+
+def test_all_problems_of_a_file_are_told_at_once_each_on_its_line(capsys, folder):
+    (folder / "bad.toml").write_text(case_text({"radius": "-1", "alpha": '"x"', "speed": None}))
+    answer = call(capsys, "solve", "bad.toml")
+    lines = answer.err.splitlines()
+    assert answer.code == 2
+    assert all(re.fullmatch(r"stribeck: bad\.toml: \[contact\] .*\.", line) for line in lines)
+    assert {line.split()[3] for line in lines} == {"radius", "alpha", "speed"}
+
+
+# --- arguments ---
+
+CURVE = ["curve", "case.toml"]
+OF_GROUPS = ["curve", "--groups", "0.1", "1e-3"]
+BAD_ARGUMENTS = [
+    (["solve"], "CASE is missing; give a case file, or groups with --groups"),
+    (["curve"], "CASE is missing"),
+    (["regimes"], "CASE is missing"),
+    (["solve", "case.toml", "other.toml"], "'other.toml' is one argument too many"),
+    (["solve", "case.toml", "--groups", "1", "1", "1"], "case.toml and --groups are both given"),
+    (["solve", "case.toml", "--mu0", "0.5"], "--mu0 = 0.5 goes with --groups only"),
+    (["curve", "case.toml", "--beta", "0.5"], "--beta = 0.5 goes with --groups only"),
+    (["solve", "--groups", "1", "1"], "--groups needs 3 values, 2 given"),
+    (["solve", "--groups", "1", "1", "1", "1"], "--groups has more than 3 numbers: 1 1 1 1"),
+    (["solve", "--groups", "-1", "0.1", "1e-3"], "speed = -1.0 must be finite and zero or positive"),
+    (["solve", "--groups", "1", "0", "1e-3"], "load = 0.0 must be finite and positive"),
+    (["solve", "--groups", "1", "0.1", "nan"], "roughness = nan must be finite and zero or positive"),
+    (["solve", "--groups", "1 m/s", "0.1", "1e-3"], "speed = '1 m/s' is not a number; write it as 0.001 or 1e-3"),
+    (["solve", "--groups", "1", "1", "1", "--mu0", "-1"], "mu0 = -1.0 must be zero or positive"),
+    (["solve", "--groups", "1", "1", "1", "--beta", "0"], "beta = 0.0 must be positive"),
+    (["solve", "case.toml", "--rtol", "small"], "rtol = 'small' is not a number"),
+    (["solve", "case.toml", "--rtol"], "--rtol needs a value"),
+    ([*CURVE, "--points", "0"], "points = 0; it must be a whole number from 2 to 100000"),
+    ([*CURVE, "--points", "-3"], "points = -3; it must be a whole number from 2 to 100000"),
+    ([*CURVE, "--points", "1000000"], "points = 1000000; it must be a whole number from 2 to 100000"),
+    ([*CURVE, "--points", "10.5"], "points = '10.5' is not a whole number"),
+    ([*CURVE, "--rtol", "0"], "rtol = 0.0; it must be a number from 1e-11, what double precision can give, to 0.01"),
+    ([*CURVE, "--rtol", "1e-30"], "rtol = 1e-30; it must be a number from 1e-11"),
+    ([*CURVE, "--rtol", "nan"], "rtol = nan; it must be a number from 1e-11"),
+    ([*CURVE, "--range", "1 m/s", "1 mm/s"], "range = ['1 m/s', '1 mm/s'] must increase"),
+    ([*CURVE, "--range", "1", "1"], "range = [1.0, 1.0] must increase"),
+    ([*CURVE, "--range", "1 mm", "1 m"], "in range, speed = '1 mm' is a length"),
+    ([*CURVE, "--range", "-1", "1"], "in range, speed = -1.0 must be zero or positive"),
+    ([*CURVE, "--range", "1 mm/s"], "--range needs 2 values, 1 given"),
+    ([*CURVE, "--over", "load"], "range is missing; a curve over load needs --range"),
+    ([*CURVE, "--over", "time"], 'Invalid value "time" for --over. Choose from: "speed", "load", "roughness"'),
+    ([*OF_GROUPS, "--range", "1", "1e-3"], "speed = (1.0, 0.001); a range is two or more finite positive numbers"),
+    ([*OF_GROUPS, "--range", "0", "1"], "speed = (0.0, 1.0); a range is two or more finite positive numbers"),
+    ([*OF_GROUPS, "--range", "1", "x"], "speed = 'x' is not a number"),
+    (["curve", "--groups", "1", "2", "3"], "--groups has more than 2 numbers: 1 2 3"),
+    (["curve", "--groups", "0.1", "-1"], "roughness = -1.0 must be finite and zero or positive"),
+    (["curve", "--groups", "0", "0", "--over", "load", "--range", "1e-3", "1"], "speed and roughness are both zero"),
+    ([*CURVE, "--jsno"], "Unknown option: --jsno. Did you mean --json?"),
+    (["sovle", "case.toml"], 'Unknown command "sovle". Did you mean "solve"?'),
+    ([*CURVE, "-o", "old.nc"], "old.nc exists already and is kept; add --force"),
+    ([*CURVE, "--plot", "old.png"], "old.png exists already and is kept; add --force"),
+    (["solve", "case.toml", "--plot", "old.png"], "old.png exists already and is kept; add --force"),
+    ([*CURVE, "-o", "new.nc", "-o", "old.nc"], "old.nc exists already"),
+    ([*CURVE, "-o", "folder.nc", "--force"], "folder.nc is a directory; give the name of a file"),
+    ([*CURVE, "-o", "nowhere/new.nc"], "nowhere/new.nc cannot be written, as there is no folder nowhere"),
+    ([*CURVE, "-o", "/proc/new.nc"], "/proc/new.nc cannot be written"),
+    ([*CURVE, "-o", "case.toml", "--force"], "case.toml has the ending '.toml'"),
+    ([*CURVE, "-o", "new.xlsx"], "new.xlsx has the ending '.xlsx'; the name of this file must end in .nc or .csv"),
+    ([*CURVE, "--plot", "new.bmp"], "new.bmp has the ending '.bmp'; the name of this file must end in .png, .svg"),
+    ([*CURVE, "-o", "new.nc", "-o", "./new.nc"], "new.nc is named twice among the outputs"),
+    ([*CURVE, "-o"], "-o needs a value"),
+]
+
+
+@pytest.mark.parametrize(("tokens", "sentence"), BAD_ARGUMENTS, ids=lambda each: str(each)[:60])
+def test_arguments_that_cannot_be_are_refused_in_one_sentence(capsys, folder, tokens, sentence):
+    assert_refused(capsys, folder, tokens, sentence)
+
+
+def test_good_input_gets_past_the_checks(capsys, folder):
+    for tokens in (["solve", "case.toml"], ["regimes", "case.toml"], [*CURVE, "-o", "new.nc"], [*OF_GROUPS]):
+        answer = call(capsys, *tokens)
+        assert answer.code == 1
+        assert answer.err == "stribeck: this was not refused\n"
+
+
+# --- in a process of its own ---
+
+
+@pytest.mark.parametrize(
+    ("tokens", "sentence"),
+    [
+        (["curve", "case.toml", "-o", "old.nc"], "old.nc exists already and is kept"),
+        (["curve", "bad.toml", "-o", "new.nc"], "speed = '1 m' is a length"),
+        (["solve", "binary.toml"], "is not text"),
+        (["curve", "case.toml", "--points", "0"], "points = 0"),
+    ],
+)
+def test_the_installed_command_refuses_in_the_same_way(folder, tokens, sentence):
+    (folder / "bad.toml").write_text(case_text({"speed": '"1 m"'}))
+    before = contents(folder)
+    answer = call_outside(*tokens, cwd=folder)
+    assert (answer.code, answer.out) == (2, "")
+    assert sentence in answer.err
+    assert answer.err.count("\n") == 1
+    assert contents(folder) == before
+
+
+def test_a_tolerance_that_rounding_forbids_is_refused_with_that_sentence(folder):
+    # Known only after the solve, so that this one is not stopped before it.
+    tokens = ["solve", "--groups", "1e-12", "1", "1e-6", "--rtol", "1e-11", "--plot", "new.png"]
+    answer = call_outside(*tokens, cwd=folder)
+    assert answer.code == 2
+    assert re.search(r"rtol = 1e-11 cannot be reached at .*Double precision bounds the error", answer.err)
+    assert not (folder / "new.png").exists()
+
+
+# --- nonsense ---
+
+WORDS = st.one_of(
+    st.sampled_from(
+        [
+            *("solve", "curve", "regimes", "case.toml", "empty.toml", "old.nc", "new.nc", "--groups", "--rtol"),
+            *("--points", "--range", "--over", "speed", "load", "-o", "--plot", "--json", "--mu0", "--beta", "--", "-"),
+            *("1", "-1", "1e-3", "1 mm/s", "1e999", "nan", "", " ", "=", "--json=5", "--help", "[", "\0", "ä"),
+        ]
+    ),
+    st.text(max_size=8),
+)
+
+
+@given(tokens=st.lists(WORDS, max_size=7))
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_nonsense_gets_a_sentence_and_never_a_traceback(capsys, folder, tokens):
+    before = contents(folder)
+    answer = call(capsys, *tokens)
+    assert answer.code in (0, 1, 2), tokens
+    if answer.code:
+        assert answer.err.startswith("stribeck: ")
+        assert answer.err.count("\n") <= 2
+    if answer.code == 1:
+        assert answer.err == "stribeck: this was not refused\n"
+    assert contents(folder) == before
+
+
+@given(value=st.one_of(st.text(max_size=12), st.floats(), st.integers(), st.booleans(), st.lists(st.integers())))
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_any_value_of_any_key_gets_a_sentence_and_never_a_traceback(capsys, folder, value):
+    text = {True: "true", False: "false"}.get(value, repr(value)) if isinstance(value, bool) else repr(value)
+    for table, key in (("contact", "radius"), ("contact", "alpha"), ("curve", "points"), ("solver", "rtol")):
+        tables = {"contact": {key: text}} if table == "contact" else {table: {key: text}}
+        try:
+            (folder / "bad.toml").write_text(case_text(**tables))
+        except UnicodeEncodeError:  # lone surrogates cannot be in a file
+            return
+        answer = call(capsys, "curve", "bad.toml", "-o", "new.nc")
+        assert answer.code in (1, 2)
+        if answer.code == 1:
+            assert answer.err == "stribeck: this was not refused\n"
+        assert not (folder / "new.nc").exists()
+
+
+def test_the_example_is_good_input(capsys, folder):
+    assert call(capsys, "curve", PDMS).err == "stribeck: this was not refused\n"
+    assert os.listdir(folder)

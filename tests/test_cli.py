@@ -1,0 +1,570 @@
+"""The command: what it prints and writes, its exit codes, and that Ctrl-C loses nothing."""
+
+import json
+import os
+import pty
+import re
+import select
+import signal
+import shlex
+import subprocess
+import time
+from importlib.metadata import version
+
+import numpy as np
+import pytest
+import xarray as xr
+from command_line import (
+    EXAMPLES,
+    FEW,
+    PDMS,
+    SCRIPT,
+    WIPER,
+    call,
+    call_outside,
+    case_text,
+    environment,
+    run_python,
+)
+
+import stribeck as sb
+from stribeck import cli, report
+from stribeck.newton import Outcome
+
+GROUPS = ("--groups", "1e-4", "0.1", "1e-3")
+FAST = ("--groups", "0.1", "1e-3", "--range", "0.1", "1", "--points", "3")
+
+
+def strict_json(text):
+    """Parse JSON as other languages do, without nan and infinity."""
+
+    def refuse(name):
+        raise AssertionError(f"{name} is no JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def opened(path):
+    with xr.open_dataset(path, engine="netcdf4") as found:
+        return found.load()
+
+
+# --- solve ---
+
+
+def test_solve_prints_the_dictionary_of_the_solution_as_json(capsys):
+    answer = call(capsys, "solve", *GROUPS, "--json")
+    assert (answer.code, answer.err) == (0, "")
+    expected = sb.solve(sb.Groups(1e-4, 0.1, 1e-3)).to_dict()
+    assert strict_json(answer.out) == expected
+
+
+def test_the_json_of_a_state_has_exactly_these_keys(capsys):
+    found = strict_json(call(capsys, "solve", PDMS, "--json").out)
+    assert list(found) == [
+        "speed",
+        "load",
+        "roughness",
+        "contact_law",
+        "contact_load_share",
+        "fluid_load_share",
+        "central_gap",
+        "minimum_gap",
+        "minimum_position",
+        "flux_gap",
+        "offset",
+        "hersey_number",
+        "lambda_ratio",
+        "friction_paper",
+        "friction_balanced",
+        "errors",
+        "error_estimate",
+        "rtol",
+        "nodes",
+        "outcome",
+        "message",
+        "notes",
+        "si",
+    ]
+    for definition in ("paper", "balanced"):
+        assert list(found[f"friction_{definition}"]) == ["contact", "viscous", "total", "error"]
+    si = found["si"]
+    assert si["units"].keys() == si.keys() - {"units"}
+    assert si["radius"] == 0.01
+    assert si["central_film_thickness"] == pytest.approx(found["central_gap"] * si["hertz_indentation"], rel=1e-14)
+    assert (si["units"]["central_film_thickness"], si["units"]["load"]) == ("m", "N/m")
+
+
+@pytest.mark.parametrize(("groups", "missing"), [(("0.1", "0.1", "0"), "lambda_ratio"), (("0", "5", "1e-3"), "flux_gap")])
+def test_json_knows_no_nan_and_no_infinity(capsys, groups, missing):
+    assert strict_json(call(capsys, "solve", "--groups", *groups, "--json").out)[missing] is None
+
+
+def test_coefficients_given_with_groups_scale_friction_and_hersey_number(capsys):
+    plain = strict_json(call(capsys, "solve", *GROUPS, "--json").out)
+    scaled = strict_json(call(capsys, "solve", *GROUPS, "--mu0", "0.5", "--beta", "0.1", "--json").out)
+    for definition in ("friction_paper", "friction_balanced"):
+        assert scaled[definition]["contact"] == pytest.approx(0.5 * plain[definition]["contact"], rel=1e-14)
+        assert scaled[definition]["viscous"] == pytest.approx(0.1 * plain[definition]["viscous"], rel=1e-14)
+    assert scaled["hersey_number"] == pytest.approx(0.01 * plain["hersey_number"], rel=1e-14)
+
+
+def test_solve_prints_values_with_units_errors_outcome_and_notes(capsys):
+    answer = call(capsys, "solve", PDMS)
+    solution = sb.solve(sb.load_case(PDMS).contact)
+    assert answer.code == 0
+    assert answer.out.startswith("PDMS cylinder in glycerol-water\n")
+    assert "modulus 2.7 MPa" in answer.out
+    row = next(line for line in answer.out.splitlines() if line.startswith(" central film"))
+    gap, film = re.fullmatch(r" central film +([0-9.e-]+) u_Hz +([0-9.]+) nm +\d+e-\d+ *", row).groups()
+    assert float(gap) == pytest.approx(solution.central_gap, rel=1e-6)
+    assert float(film) * 1e-9 == pytest.approx(float(solution.to_si([0.0]).gap[0]), rel=1e-6)
+    assert "Converged. Largest estimated relative error:" in answer.out
+    assert all(f"Note: {note}\n" in answer.out for note in solution.notes)
+    assert "…" not in answer.out  # nothing is cut off
+
+
+def test_digits_beyond_the_error_are_not_printed():
+    assert report._digits(0.123456789, 1e-4) == "0.1235"
+    assert report._digits(0.123456789, 2e-7) == "0.1234568"
+    assert report._digits(float("nan"), 1e-4) == "none"
+    assert report._digits(float("inf"), 1e-4) == "infinite"
+
+
+def test_the_tolerance_of_the_case_holds_and_the_option_overrides_it(capsys, tmp_path):
+    case = tmp_path / "case.toml"
+    case.write_text(case_text(solver={"rtol": "1e-4"}))
+    assert strict_json(call(capsys, "solve", case, "--json").out)["rtol"] == 1e-4
+    assert strict_json(call(capsys, "solve", case, "--rtol", "1e-5", "--json").out)["rtol"] == 1e-5
+
+
+def test_solve_draws_a_profile(capsys, tmp_path):
+    answer = call(capsys, "solve", *GROUPS, "--plot", tmp_path / "profile.svg")
+    assert f"Written: {tmp_path / 'profile.svg'}\n" in answer.out
+    assert b"<svg" in (tmp_path / "profile.svg").read_bytes()
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_example_case_is_solved(capsys, path):
+    assert call(capsys, "solve", path).code == 0
+
+
+# --- curve ---
+
+
+def test_curve_writes_what_it_was_asked_for_and_says_so(capsys, tmp_path):
+    files = [tmp_path / name for name in ("curve.nc", "curve.csv", "curve.png")]
+    answer = call(capsys, "curve", PDMS, *FEW, "-o", files[0], "--output", files[1], "--plot", files[2])
+    assert (answer.code, answer.err) == (0, "")
+    for path in files:
+        assert f"Written: {path}\n" in answer.out
+        assert path.stat().st_size > 1000
+    curve = sb.stribeck_curve(sb.load_case(PDMS).contact, speed=("0.3 mm/s", "0.1 m/s"), points=6)
+    found = opened(files[0])
+    np.testing.assert_allclose(found.friction, curve.friction, rtol=1e-12)
+    assert found.attrs["title"] == "PDMS cylinder in glycerol-water"
+    assert sorted(os.listdir(tmp_path)) == ["curve.csv", "curve.nc", "curve.png"]
+
+
+def test_curve_prints_inputs_regimes_minimum_error_and_notes(capsys):
+    answer = call(capsys, "curve", PDMS, *FEW)
+    assert "6 points, speed 300 µm/s to 100 mm/s." in answer.out
+    assert re.search(r"boundary +300 µm/s +368 µm/s", answer.out)
+    assert re.search(r"mixed +368 µm/s +30.4 mm/s", answer.out)
+    assert re.search(r"minimum of friction +27\.871\d+ mm/s +0\.034890\d+", answer.out)
+    assert "Largest estimated relative error" in answer.out
+    assert "Note: The central gap is" in answer.out
+
+
+def test_the_settings_of_the_case_hold_and_options_override_them(capsys, tmp_path):
+    case = tmp_path / "case.toml"
+    text = case_text(
+        curve={"over": '"load"', "range": '["10 N/m", "40 N/m"]', "points": "3"},
+        solver={"rtol": "1e-4", "definition": '"balanced"'},
+    )
+    case.write_text(text)
+    found = strict_json(call(capsys, "curve", case, "--json").out)
+    assert (found["over"], found["unit"], found["definition"], found["rtol"]) == ("load", "N/m", "balanced", 1e-4)
+    assert found["points"]["value"] == pytest.approx([10, 20, 40])
+    options = ("--points", "2", "--rtol", "1e-5", "--range", "15", "0.03 N/mm")
+    found = strict_json(call(capsys, "curve", case, *options, "--json").out)
+    assert found["points"]["value"] == pytest.approx([15, 30])
+    assert found["rtol"] == 1e-5
+    # Another coordinate does not take over the range of the first.
+    found = strict_json(call(capsys, "curve", case, "--over", "speed", "--points", "2", "--json").out)
+    assert found["over"] == "speed"
+    assert found["points"]["value"][0] < 1e-4 < 0.1 < found["points"]["value"][1]
+
+
+def test_the_json_of_a_curve_holds_its_points_and_landmarks(capsys, tmp_path):
+    found = strict_json(call(capsys, "curve", PDMS, *FEW, "--json", "-o", tmp_path / "curve.csv").out)
+    assert set(found) == {
+        *("title", "over", "unit", "definition", "rtol", "mu0", "beta", "inputs", "units", "minimum", "transitions"),
+        *("regimes", "points", "requested_points", "complete", "error_estimate", "outcome", "message", "notes"),
+        "files",
+    }
+    assert {len(values) for values in found["points"].values()} == {6}
+    assert found["minimum"]["value"] == pytest.approx(0.0278716, rel=1e-5)
+    assert [mark["name"] for mark in found["transitions"]][0] == "fluid carries 5% of the load"
+    assert [part["regime"] for part in found["regimes"]] == ["boundary", "mixed", "hydrodynamic"]
+    assert found["complete"] is True
+    assert found["files"] == [str(tmp_path / "curve.csv")]
+
+
+@pytest.mark.parametrize(
+    ("over", "fixed", "ends", "constant"),
+    [
+        ("speed", ("0.1", "1e-3"), ("1e-3", "1"), {"load_group": 0.1, "roughness_group": 1e-3}),
+        ("load", ("1e-3", "1e-3"), ("0.01", "0.1"), {"speed_group": 1e-3, "roughness_group": 1e-3}),
+        ("roughness", ("1e-3", "0.1"), ("1e-4", "1e-3"), {"speed_group": 1e-3, "load_group": 0.1}),
+    ],
+)
+def test_a_curve_of_groups_takes_the_two_that_stay_fixed(capsys, over, fixed, ends, constant):
+    tokens = ("--groups", *fixed, "--over", over, "--range", *ends, "--points", "2", "--mu0", "0.5", "--json")
+    found = strict_json(call(capsys, "curve", *tokens).out)
+    assert found["points"]["value"] == pytest.approx([float(end) for end in ends])
+    assert found["mu0"] == 0.5
+    for name, value in constant.items():
+        assert found["points"][name] == pytest.approx([value, value])
+
+
+def test_a_range_of_speeds_is_found_where_none_is_given(capsys):
+    found = strict_json(call(capsys, "curve", "--groups", "0.1", "1e-3", "--points", "3", "--json").out)
+    assert found["points"]["value"][0] < 1e-6
+    assert found["points"]["value"][-1] > 1e-2
+
+
+def test_where_the_law_is_beyond_its_range_every_output_says_so(capsys, tmp_path):
+    sentence = "The load group is 1.59, not below 1: the exponential contact law is outside its range"
+    range_ = ("--range", "1 m/s", "2 m/s", "--points", "2")
+    files = ("-o", tmp_path / "curve.nc", "-o", tmp_path / "curve.csv", "--plot", tmp_path / "curve.svg")
+    assert sentence in call(capsys, "solve", WIPER).out
+    assert sentence in call(capsys, "solve", WIPER, "--json").out
+    assert sentence in call(capsys, "regimes", WIPER).out
+    assert sentence in call(capsys, "curve", WIPER, *range_, *files).out
+    assert sentence in call(capsys, "curve", WIPER, *range_, "--json").out
+    assert sentence in opened(tmp_path / "curve.nc").attrs["notes"]
+    assert sentence in (tmp_path / "curve.csv").read_text()
+    assert b"outside its range" in (tmp_path / "curve.svg").read_bytes()
+
+
+def test_a_failure_to_write_one_file_does_not_lose_the_other(capsys, tmp_path, monkeypatch):
+    def fail(*arguments, **options):
+        raise sb.InputError("curve.nc could not be written (No space left on device); it is as it was before.")
+
+    monkeypatch.setattr("stribeck.store.write_netcdf", fail)
+    answer = call(capsys, "curve", *FAST, "-o", tmp_path / "curve.nc", "-o", tmp_path / "curve.csv")
+    assert answer.code == 2
+    assert answer.err == "stribeck: curve.nc could not be written (No space left on device); it is as it was before.\n"
+    assert os.listdir(tmp_path) == ["curve.csv"]
+
+
+# --- regimes ---
+
+
+def test_regimes_tells_the_regime_the_transitions_and_what_moves_friction(capsys):
+    answer = call(capsys, "regimes", PDMS)
+    assert (answer.code, answer.err) == (0, "")
+    assert "At 1 mm/s lubrication is mixed: the fluid carries 20.3 % of the load" in answer.out
+    assert re.search(r"fluid carries 5% of the load +367\.9 µm/s +2\.72x slower", answer.out)
+    assert re.search(r"fluid carries 50% of the load +2\.795 mm/s +2\.79x faster", answer.out)
+    assert re.search(r"minimum of friction +27\.87 mm/s +27\.9x faster +0\.03489", answer.out)
+    assert re.search(r"roughness +1 µm +\+0\.523 +\+5\.1 % friction", answer.out)
+    assert "The dry friction coefficient moves friction most: 10 % less of it lowers friction by 9.89 %" in answer.out
+    assert "…" not in answer.out
+
+
+def test_regimes_as_json_gives_transitions_as_factors_of_the_speed(capsys):
+    found = strict_json(call(capsys, "regimes", PDMS, "--json").out)
+    assert found["regime"] == "mixed"
+    assert (found["speed"], found["unit"]) == (0.001, "m/s")
+    for mark in found["transitions"]:
+        assert mark["factor"] == pytest.approx(mark["value"] / 0.001)
+    assert len(found["transitions"]) == 4
+    assert set(found["elasticities"]) == {
+        *("speed", "load", "viscosity", "modulus", "radius", "roughness", "alpha", "beta", "friction_coefficient")
+    }
+    assert found["moves_friction_most"] == "friction_coefficient"
+
+
+@pytest.mark.parametrize(
+    ("speed", "roughness", "regime"),
+    [
+        ("0 m/s", "1 um", "boundary"),
+        ("1 m/s", "1 um", "hydrodynamic"),
+        ("1 mm/s", "0 m", "hydrodynamic"),
+        ("0 m/s", "0 m", "boundary"),
+    ],
+)
+def test_regimes_of_resting_and_smooth_contacts_are_told_too(capsys, tmp_path, speed, roughness, regime):
+    case = tmp_path / "case.toml"
+    case.write_text(case_text({"speed": f'"{speed}"', "roughness": f'"{roughness}"'}))
+    found = strict_json(call(capsys, "regimes", case, "--json").out)
+    assert found["regime"] == regime
+    assert f"lubrication is {regime}" in call(capsys, "regimes", case).out
+
+
+# --- exit codes and errors ---
+
+
+def failing(outcome):
+    def solve(*arguments, **options):
+        raise sb.SolveError(outcome, None, f"speed 1, load 1, roughness 1: {outcome.value}")
+
+    return solve
+
+
+def test_a_solve_that_fails_exits_with_1_and_its_outcome(capsys, tmp_path, monkeypatch):
+    monkeypatch.setattr(cli, "solve", failing(Outcome.STEP_LIMIT))
+    monkeypatch.setattr(cli, "stribeck_curve", failing(Outcome.PATH_LOST))
+    answer = call(capsys, "solve", *GROUPS)
+    assert answer.code == 1
+    assert answer.err == f"stribeck: speed 1, load 1, roughness 1: {Outcome.STEP_LIMIT.value}\n"
+    answer = call(capsys, "curve", *FAST, "-o", tmp_path / "curve.nc")
+    assert answer.code == 1
+    assert Outcome.PATH_LOST.value in answer.err
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_curve_whose_path_is_lost_keeps_its_points_and_exits_with_1(capsys, tmp_path, monkeypatch):
+    whole = sb.stribeck_curve
+
+    def lost(*arguments, **options):
+        curve = whole(*arguments, **options)
+        object.__setattr__(curve, "outcome", Outcome.PATH_LOST)
+        object.__setattr__(curve, "requested", 9)
+        return curve
+
+    monkeypatch.setattr(cli, "stribeck_curve", lost)
+    answer = call(capsys, "curve", *FAST, "-o", tmp_path / "curve.nc")
+    assert answer.code == 1
+    assert answer.err == f"stribeck: 3 of 9 points: {Outcome.PATH_LOST.value}\n"
+    assert opened(tmp_path / "curve.nc").attrs["complete"] == 0
+
+
+def test_an_unexpected_error_is_one_sentence_unless_debugging(capsys, monkeypatch):
+    def bug(*arguments, **options):
+        raise ZeroDivisionError("division\nby zero")
+
+    monkeypatch.setattr(cli, "solve", bug)
+    monkeypatch.delenv("STRIBECK_DEBUG", raising=False)
+    answer = call(capsys, "solve", *GROUPS)
+    assert answer.code == 1
+    assert re.fullmatch(r"stribeck: .*\(ZeroDivisionError: division by zero\.\) .*STRIBECK_DEBUG=1.*\n", answer.err)
+    monkeypatch.setenv("STRIBECK_DEBUG", "1")
+    with pytest.raises(ZeroDivisionError):
+        call(capsys, "solve", *GROUPS)
+
+
+def test_too_little_memory_is_one_sentence(capsys, monkeypatch):
+    def full(*arguments, **options):
+        raise MemoryError
+
+    monkeypatch.setattr(cli, "solve", full)
+    answer = call(capsys, "solve", *GROUPS)
+    assert answer.code == 1
+    assert re.fullmatch(r"stribeck: The memory of this machine .*\.\n", answer.err)
+
+
+@pytest.mark.parametrize(("library", "option"), [("xarray", "-o"), ("netCDF4", "-o"), ("matplotlib", "--plot")])
+def test_a_missing_extra_is_told_before_anything_is_solved(capsys, tmp_path, monkeypatch, library, option):
+    monkeypatch.setattr(cli.importlib.util, "find_spec", lambda name: None if name == library else True)
+    monkeypatch.setattr(cli, "stribeck_curve", failing(Outcome.STEP_LIMIT))
+    path = tmp_path / ("curve.png" if option == "--plot" else "curve.nc")
+    answer = call(capsys, "curve", *FAST, option, path)
+    assert answer.code == 2
+    assert f"needs {library}; install it with: pip install 'stribeck[" in answer.err
+
+
+def test_a_reader_that_has_enough_causes_no_traceback(tmp_path):
+    command = f"{SCRIPT} solve {' '.join(GROUPS)} --json | head -1"
+    run = subprocess.run(command, shell=True, capture_output=True, text=True, env=environment(), timeout=60)
+    assert run.stdout == "{\n"
+    assert run.stderr == ""
+
+
+def test_a_terminal_without_greek_and_micro_is_served(tmp_path):
+    answer = call_outside("solve", PDMS, PYTHONIOENCODING="ascii")
+    assert answer.code == 0
+    assert "roughness 1 ?m" in answer.out
+    assert answer.err == ""
+
+
+# --- help ---
+
+
+@pytest.mark.parametrize("command", [(), ("solve",), ("curve",), ("regimes",)])
+def test_every_help_has_an_example(capsys, command):
+    answer = call(capsys, *command, "--help")
+    assert answer.code == 0
+    assert f"Example: {' '.join(['stribeck', *command])}" in answer.out
+
+
+def test_the_examples_of_the_help_run(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "examples").symlink_to(EXAMPLES)
+    monkeypatch.setenv("COLUMNS", "300")
+    seen = 0
+    for command in ("solve", "curve", "regimes"):
+        help_ = call(capsys, command, "--help").out
+        for example in re.findall(r"Example: stribeck (.+)", help_):
+            few = ["--points", "3"] if command == "curve" else []
+            answer = call(capsys, *shlex.split(example), *few, *([] if command == "regimes" else ["--force"]))
+            assert (answer.code, answer.err) == (0, "")
+            seen += 1
+    assert seen == 6
+
+
+def test_the_version_is_that_of_the_package(capsys):
+    assert call(capsys, "--version").out == f"{version('stribeck')}\n"
+
+
+def test_without_arguments_the_help_is_shown(capsys):
+    answer = call(capsys)
+    assert answer.code == 0
+    assert "Usage: stribeck COMMAND" in answer.out
+
+
+def test_the_installed_command_and_the_module_are_the_same():
+    outside = call_outside("solve", *GROUPS, "--json")
+    code = "import runpy; runpy.run_module('stribeck', run_name='__main__', alter_sys=True)"
+    module = run_python(code, "solve", *GROUPS, "--json")
+    assert (outside.code, module.code) == (0, 0)
+    assert outside.out == module.out
+    assert outside.err == ""
+
+
+def test_help_loads_neither_plots_nor_datasets_nor_units():
+    code = """
+import sys
+from stribeck.cli import main
+main(["curve", "--help"])
+assert not {"matplotlib", "xarray", "netCDF4", "pandas", "pint", "pydantic"} & set(sys.modules)
+"""
+    answer = run_python(code)
+    assert answer.code == 0, answer.err
+
+
+def test_shell_completion_can_be_installed(tmp_path):
+    home = {"HOME": str(tmp_path), "SHELL": "/bin/bash", "XDG_DATA_HOME": str(tmp_path / "share")}
+    answer = call_outside("--install-completion", "--shell", "bash", **home)
+    assert answer.code == 0, answer.err
+    scripts = [path for path in tmp_path.rglob("*") if path.is_file() and "stribeck" in path.name]
+    assert scripts and "regimes" in scripts[0].read_text()
+
+
+# --- Ctrl-C and progress ---
+
+
+def start(*tokens, **pipes):
+    """Start the command as a shell's foreground job, in which Ctrl-C is not ignored."""
+
+    def heed():
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    return subprocess.Popen([SCRIPT, *map(str, tokens)], env=environment(TERM="xterm"), preexec_fn=heed, **pipes)
+
+
+def read_until(terminal, pattern, seconds=60):
+    """Read what a terminal shows until a pattern appears."""
+    shown, end = "", time.monotonic() + seconds
+    while not re.search(pattern, shown):
+        assert time.monotonic() < end, shown
+        if select.select([terminal], [], [], 0.2)[0]:
+            shown += os.read(terminal, 10_000).decode(errors="replace")
+    return shown
+
+
+def test_ctrl_c_keeps_the_finished_points_marked_incomplete(tmp_path):
+    ours, theirs = pty.openpty()
+    files = [tmp_path / "curve.nc", tmp_path / "curve.csv"]
+    arguments = ("curve", PDMS, "--points", "20000", "-o", files[0], "-o", files[1])
+    process = start(*arguments, stdout=subprocess.PIPE, stderr=theirs, stdin=subprocess.DEVNULL, text=True)
+    os.close(theirs)
+    try:
+        shown = read_until(ours, r"[1-9]\d+/20000")
+        process.send_signal(signal.SIGINT)
+        shown += read_until(ours, r"marked incomplete\.\r\n")
+        out = process.communicate(timeout=60)[0]
+    finally:
+        process.kill()
+        os.close(ours)
+    assert process.returncode == 130
+    found = opened(files[0])
+    points = found.sizes["speed"]
+    assert 1 < points < 20000
+    assert f"Interrupted after {points} of 20000 points" in shown
+    assert (found.attrs["complete"], found.attrs["requested_points"]) == (0, 20000)
+    assert np.isfinite(found.friction).all()
+    assert f"\n# points: {points}\n" in files[1].read_text()
+    assert f"{points} points, speed" in out
+    assert sorted(os.listdir(tmp_path)) == ["curve.csv", "curve.nc"]
+    assert "Traceback" not in shown
+
+
+AT_ONCE = """
+import os, signal, sys
+import stribeck.curve, stribeck.cli
+signal.signal(signal.SIGINT, signal.default_int_handler)
+whole = stribeck.curve.automatic_speeds
+def interrupted(*arguments):
+    os.kill(os.getpid(), signal.SIGINT)
+    return whole(*arguments)
+stribeck.curve.automatic_speeds = interrupted
+sys.exit(stribeck.cli.main(sys.argv[1:]))
+"""
+
+
+def test_ctrl_c_before_the_first_point_writes_nothing(tmp_path):
+    answer = run_python(AT_ONCE, "curve", PDMS, "-o", tmp_path / "curve.nc")
+    assert answer.code == 130
+    assert answer.err == "stribeck: Interrupted; nothing was written.\n"
+    assert answer.out == ""
+    assert os.listdir(tmp_path) == []
+
+
+def test_ctrl_c_takes_effect_after_the_present_point_and_at_once_the_second_time():
+    progress = cli._Progress()
+    with pytest.raises(KeyboardInterrupt):
+        progress.interrupt(signal.SIGINT, None)  # nothing to keep yet
+    progress = cli._Progress()
+    progress(1, 9)
+    progress.interrupt(signal.SIGINT, None)
+    with pytest.raises(KeyboardInterrupt):
+        progress(2, 9)
+    with pytest.raises(KeyboardInterrupt):
+        progress.interrupt(signal.SIGINT, None)
+
+
+def test_ctrl_c_after_the_last_point_does_not_stop_the_writing():
+    progress = cli._Progress()
+    progress(9, 9)
+    progress.interrupt(signal.SIGINT, None)
+    progress(9, 9)
+
+
+def test_a_failure_caused_by_ctrl_c_counts_as_interruption():
+    with pytest.raises(KeyboardInterrupt), cli._interruptible() as progress:
+        progress.wanted = True
+        raise sb.SolveError(Outcome.PATH_LOST, None, "lost")
+
+
+def test_the_handler_of_ctrl_c_is_put_back():
+    before = signal.getsignal(signal.SIGINT)
+    with cli._interruptible():
+        pass
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_progress_is_shown_on_a_terminal_only(tmp_path):
+    assert call_outside("curve", *FAST).err == ""
+    ours, theirs = pty.openpty()
+    process = start("curve", *FAST, stdout=subprocess.DEVNULL, stderr=theirs)
+    os.close(theirs)
+    try:
+        assert "solving" in read_until(ours, r"3/3")
+        process.wait(timeout=60)
+    finally:
+        process.kill()
+        os.close(ours)
+    assert process.returncode == 0
