@@ -63,9 +63,7 @@ def _refined_values(solution, extra_nodes=6, doublings=5):
     if shift:
         values[[NAMES.index(name) for name in ("central_gap", "minimum_gap", "offset")]] += shift
         shifted = root.x[:-2] + shift
-        values[NAMES.index("flux_gap")] = (
-            reynolds.flux_gap(shifted, mesh.weights) if shifted.min() > 0 else math.nan
-        )
+        values[NAMES.index("flux_gap")] = reynolds.flux_gap(shifted, mesh.weights) if shifted.min() > 0 else math.nan
     return values
 
 

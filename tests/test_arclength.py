@@ -220,9 +220,7 @@ def test_a_branch_that_ends_is_kept_to_its_end():
 
 
 def test_a_start_that_is_no_solution_is_named_as_newton_named_it():
-    nowhere = trace(
-        lambda x, p: x**2 + 1.0, lambda x, p: np.diag(2.0 * x), lambda x, p: np.zeros(1), [0.7], 0.0
-    )
+    nowhere = trace(lambda x, p: x**2 + 1.0, lambda x, p: np.diag(2.0 * x), lambda x, p: np.zeros(1), [0.7], 0.0)
     assert nowhere.outcome is Outcome.STEP_LIMIT
     assert nowhere.points.shape == (0, 1)
     assert nowhere.tangents.shape == (0, 2)

@@ -242,9 +242,7 @@ def test_an_interrupt_keeps_the_points_before_it(where):
             interrupt(s)
         return Plain(s)
 
-    path = march(
-        correct, 0.0, 3.0, on_point=lambda s, _: interrupt(s) if where == "on_point" else None, **LENGTHS
-    )
+    path = march(correct, 0.0, 3.0, on_point=lambda s, _: interrupt(s) if where == "on_point" else None, **LENGTHS)
     assert path.outcome is Outcome.INTERRUPTED
     assert len(path.states) == len(path.coordinates) >= 4
     assert (path.coordinates[-1] > 1.0) == (where == "on_point")

@@ -107,9 +107,7 @@ def test_the_error_left_is_below_the_tolerance(chord):
     for case in range(200):
         problem = Problem(n=4, curvature=10.0 ** rng.uniform(-1, 2), seed=case)
         tolerance = 10.0 ** rng.uniform(-12, -4)
-        root = root_find(
-            problem.residual, problem.jacobian, rng.normal(size=4) * 3.0, chord=chord, tolerance=tolerance
-        )
+        root = root_find(problem.residual, problem.jacobian, rng.normal(size=4) * 3.0, chord=chord, tolerance=tolerance)
         assert root.outcome.ok
         spared += root.factorisations < root.steps
         assert error(root, problem.root) <= tolerance * (1.0 + np.abs(problem.root).max())

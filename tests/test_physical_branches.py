@@ -134,10 +134,7 @@ def test_a_branch_has_no_fold_over_a_decade_and_a_half(problem, direction):
     assert branch.parameters[-1] == problem.parameter + direction * SPAN
     assert (direction * np.diff(branch.parameters) > 0.0).all()
     assert (direction * branch.tangents[:, -1] > 0.5).all()
-    signs = [
-        np.linalg.slogdet(problem.jacobian(y, p))[0]
-        for y, p in zip(branch.points, branch.parameters, strict=True)
-    ]
+    signs = [np.linalg.slogdet(problem.jacobian(y, p))[0] for y, p in zip(branch.points, branch.parameters, strict=True)]
     assert len(set(signs)) == 1
     # The gap that carries the flux grows with speed and roughness, and in Hertz units falls with the load.
     thickens = direction * (-1 if problem.name == "load" else 1)
@@ -176,9 +173,7 @@ def test_a_first_step_too_long_is_retried_shorter(problem, direction):
 def test_nothing_behind_a_step_that_failed_is_lost(problem, direction):
     # Steps grow until Newton does not converge in four, again and again along the branch.
     told = []
-    branch = problem.trace(
-        direction, step=0.1, max_step=100.0, max_steps=4, on_point=lambda s, point: told.append((s, point))
-    )
+    branch = problem.trace(direction, step=0.1, max_step=100.0, max_steps=4, on_point=lambda s, point: told.append((s, point)))
     assert branch.outcome.ok
     assert branch.failures > 1
     assert told[1][0] == 0.1  # so every failure had points behind it

@@ -51,9 +51,7 @@ MAY_IMPORT = {
     "observables": EQUATIONS | {"states"},
     "estimate": EQUATIONS | {"observables", "states"},
     "solution": {"mesh", "newton", "observables", "parameters", "units"},
-    "solve": EQUATIONS
-    | ALGORITHMS
-    | {"estimate", "hertz", "observables", "solution", "start", "states", "threads", "units"},
+    "solve": EQUATIONS | ALGORITHMS | {"estimate", "hertz", "observables", "solution", "start", "states", "threads", "units"},
     "regimes": RESULTS | {"asymptotics"},
     "curve": RESULTS | {"arclength", "continuation", "plotting", "regimes", "store"},
     "store": RESULTS | {"curve", "regimes"},
@@ -105,9 +103,7 @@ def test_the_walk_over_imports_sees_every_form(tmp_path, monkeypatch):
     for name in ("a.py", "b.py", "c.py", "d.py", "e.py", "sub/f.py"):
         (tmp_path / name).touch()
     probe = tmp_path / "probe.py"
-    probe.write_text(
-        "import os, stribeck.a\nfrom . import b, NAME\nfrom .c import x\ndef f():\n from stribeck.d import y"
-    )
+    probe.write_text("import os, stribeck.a\nfrom . import b, NAME\nfrom .c import x\ndef f():\n from stribeck.d import y")
     assert set(imported_tops(probe)) == {"a", "b", "c", "d", "__init__"}
     inner = tmp_path / "sub" / "probe.py"
     inner.write_text("from . import f\nfrom .f import x\nfrom ..e import y\nfrom .. import a")
@@ -218,9 +214,7 @@ def test_what_raises_says_so(thing):
 
 def test_the_examples_in_docstrings_are_right():
     names = [".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts) for path in FILES]
-    modules = [
-        importlib.import_module(name.removesuffix(".__init__")) for name in names if "__main__" not in name
-    ]
+    modules = [importlib.import_module(name.removesuffix(".__init__")) for name in names if "__main__" not in name]
     results = [doctest.testmod(module) for module in modules]
     assert sum(result.failed for result in results) == 0
     assert sum(result.attempted for result in results) > 0

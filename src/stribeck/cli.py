@@ -27,6 +27,7 @@ from .newton import Outcome
 from .output import MissingExtraError, check_output
 from .parameters import Groups
 from .regimes import friction_elasticities
+from .solution import coefficients
 from .solve import SolveError, solve
 from .units import InputError, show
 
@@ -167,11 +168,11 @@ def solve_command(
     loaded = _case(case, groups, mu0, beta)
     tolerance = _rtol(rtol, loaded)
     mu, b = _number("mu0", mu0), _number("beta", beta)
+    with _named("friction_coefficient", "mu0", loaded is None):
+        coefficients(loaded.contact if loaded else None, mu, b)
     pictures = _pictures(plot, force)
     problem = loaded.contact if loaded else Groups(*map(_group, ("speed", "load", "roughness"), groups or ()))
     solution = solve(problem, rtol=tolerance)
-    with _named("friction_coefficient", "mu0", loaded is None):
-        solution.friction(mu, b)  # refuses impossible coefficients before anything is written
     title = loaded.title if loaded else ""
     for picture in pictures:
         from .plotting import plot_profile

@@ -23,6 +23,10 @@ MAX_PANELS = 128
 """Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator."""
 
 
+LEAST_PART = 0.19
+"""Part of two panels together that the smaller must be for them to become one: of less, the nodes of the two see too little."""
+
+
 class MeshTooLargeError(Exception):
     """The fields need more than :data:`MAX_PANELS` panels."""
 
@@ -351,6 +355,8 @@ def _merged(edges: Array, unresolved: Callable[[Array], Flags], passes: int) -> 
     for trial in range(passes):
         inner = np.arange(1 + trial % 2, len(edges) - 1, 2)
         inner = inner[edges[inner] != 0.0]
+        left, right = edges[inner] - edges[inner - 1], edges[inner + 1] - edges[inner]
+        inner = inner[np.minimum(left, right) > LEAST_PART * (left + right)]
         unions = np.column_stack([edges[inner - 1], edges[inner + 1]])
         if len(unions):
             edges = np.delete(edges, inner[~unresolved(unions)])
