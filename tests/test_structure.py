@@ -50,12 +50,18 @@ MAY_IMPORT = {
     "start": EQUATIONS | ALGORITHMS | {"states"},
     "observables": EQUATIONS | {"states"},
     "estimate": EQUATIONS | {"observables", "states"},
+    "refine": EQUATIONS | ALGORITHMS | {"estimate", "observables", "states"},
+    "span": EQUATIONS | ALGORITHMS | {"observables", "start", "states"},
+    "follow": EQUATIONS | ALGORITHMS | {"estimate", "refine", "start", "states"},
+    "sensitivity": EQUATIONS | {"observables", "states"},
     "solution": {"mesh", "newton", "observables", "parameters", "units"},
-    "solve": EQUATIONS | ALGORITHMS | {"estimate", "hertz", "observables", "solution", "start", "states", "threads", "units"},
-    "regimes": RESULTS | {"asymptotics"},
-    "curve": RESULTS | {"arclength", "continuation", "plotting", "regimes", "store"},
-    "store": RESULTS | {"curve", "regimes"},
-    "plotting": RESULTS | {"curve", "regimes"},
+    "solve": {"hertz", "mesh", "newton", "observables", "parameters", "refine", "solution", "start", "threads", "units"},
+    "regimes": RESULTS | {"refine", "sensitivity", "start"},
+    "curve": RESULTS | {"asymptotics", "follow", "plotting", "refine", "regimes", "sensitivity", "span", "store"},
+    "output": {"units"},
+    "store": RESULTS | {"curve", "output", "regimes"},
+    "plotting": RESULTS | {"curve", "output", "regimes"},
+    "report": RESULTS | {"case", "curve", "regimes", "store"},
 }
 OPEN = {"__init__", "__main__", "app", "cli"}
 

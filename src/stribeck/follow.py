@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from .continuation import Path, march
 from .equations import Operators
 from .estimate import FineOperators
 from .mesh import MeshTooLargeError
+from .newton import Factors
 from .parameters import Groups
 from .refine import Point, converge, judge, mesh_tolerances_for, newton_tolerance, order_for, solvable
 from .start import cold_start
@@ -23,6 +25,9 @@ from .states import Guess, State, extrapolate, mesh_for, solve_state
 LONGEST_STEP = math.log(10.0)
 SHORTEST_STEP = 1e-3
 PREDICTOR_ORDER = 4
+
+MOST_STEPS = 12
+"""Newton and chord steps after which the present mesh is given up."""
 
 CHECK_EVERY = 25
 """Points between two looks at whether a coarser mesh would do."""
@@ -45,6 +50,7 @@ class Follower:
         self.rtol = rtol
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
+        self.factors: Factors | None = None
         self.since_check = 0
         self.tolerances = mesh_tolerances_for(rtol)
 
@@ -54,19 +60,18 @@ class Follower:
         if not history:
             path = cold_start(solvable(groups))
             return self._adopt(converge(path.states[-1], groups, self.rtol)) if path.outcome.ok else None
-        known = [(c, p.state) for c, p in history if p.state is not None]
-        guess = extrapolate(known, s)
-        point = self._on_present_mesh(guess, groups, history[-1][1].state)
+        guess = extrapolate([(c, p.state) for c, p in history if p.state is not None], s)
+        point = self._on_present_mesh(guess, groups)
         if point is not None and point.outcome.ok:
-            return point
+            return self._kept(point)
         better = guess if point is None or point.state is None else point.state
         return self._adopt(converge(better, groups, self.rtol, self.tolerances))
 
-    def _on_present_mesh(self, guess: Guess, groups: Groups, last: State | None) -> Point | None:
+    def _on_present_mesh(self, guess: Guess, groups: Groups) -> Point | None:
         if self.operators is None or self.fine is None:
             return None
-        factors = last.root.factors if last is not None and last.mesh is self.operators.mesh else None
-        state = solve_state(solvable(groups), self.operators, guess, newton_tolerance(self.rtol), 12, factors)
+        base, tolerance = solvable(groups), newton_tolerance(self.rtol)
+        state = solve_state(base, self.operators, guess, tolerance, MOST_STEPS, self.factors)
         if not state.outcome.ok:
             return None
         point = judge(state, groups, self.fine, self.rtol)
@@ -74,6 +79,14 @@ class Follower:
         if self.since_check >= CHECK_EVERY and point.outcome.ok:
             self._coarsen(state)
         return point
+
+    def _kept(self, point: Point) -> Point:
+        """Return the point with its factors kept here, for the next one, instead of there."""
+        if point.state is None:
+            return point
+        same_mesh = self.operators is not None and point.state.mesh is self.operators.mesh
+        self.factors = point.state.root.factors if same_mesh else None
+        return replace(point, state=point.state.without_factors())
 
     def _coarsen(self, state: State) -> None:
         """Try wider tolerances from now on, and at once where the mesh they make is clearly smaller than the present one."""
@@ -92,7 +105,7 @@ class Follower:
             self.operators, self.fine = point.state.equations.operators, point.fine
             self.tolerances = point.tolerances or self.tolerances
             self.since_check = 0
-        return point
+        return self._kept(point)
 
 
 def follow(

@@ -24,7 +24,7 @@ MAX_PANELS = 128
 
 
 LEAST_PART = 0.19
-"""Part of two panels together that the smaller must be for them to become one: of less, the nodes of the two see too little."""
+"""Part of two panels together that the smaller must be for them to become one: the nodes of both see less too little."""
 
 
 class MeshTooLargeError(Exception):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -111,6 +111,10 @@ class State:
     def outcome(self) -> Outcome:
         """Outcome of the Newton iteration; one stopped by rounding counts as converged, its error is estimated."""
         return Outcome.CONVERGED if self.root.outcome is Outcome.ROUNDING else self.root.outcome
+
+    def without_factors(self) -> State:
+        """Return the state without Newton's factors, which are as large as an operator and serve only its neighbour."""
+        return replace(self, root=replace(self.root, factors=None))
 
     @property
     def effort(self) -> float:

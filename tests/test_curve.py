@@ -1,0 +1,380 @@
+"""Stribeck curves: each point is a solved state, and landmarks lie where independent solves put them."""
+
+import math
+
+import numpy as np
+import pytest
+from command_line import run_python
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import brentq, minimize_scalar
+
+import stribeck as sb
+from stribeck import curve as curve_module
+from stribeck import span
+
+CONTACT = sb.LineContact(
+    radius="10 mm",
+    modulus="2.7 MPa",
+    load="30 N/m",
+    viscosity="50 mPa*s",
+    speed="1 mm/s",
+    roughness="1 um",
+    alpha=2.0,
+    beta=0.06,
+    friction_coefficient=0.7,
+)
+HEAVY = CONTACT.replace(beta=0.01)  # load group 3.5
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return sb.stribeck_curve(CONTACT, points=25)
+
+
+@pytest.fixture(scope="module")
+def balanced():
+    return sb.stribeck_curve(CONTACT, speed=("5 mm/s", "0.2 m/s"), points=9, definition="balanced")
+
+
+def friction(speed, definition="paper", rtol=1e-9):
+    """Friction of one state solved from cold."""
+    return sb.solve(CONTACT.replace(speed=speed), rtol=rtol).friction(definition=definition).total
+
+
+# --- the points ---
+
+
+def test_points_lie_exactly_where_they_are_asked_for():
+    wanted = [3e-4, 1e-3, 1.5e-3, 7e-3, 0.05]
+    curve = sb.stribeck_curve(CONTACT, speed=wanted, points=2)
+    assert curve.values.tolist() == wanted
+    for value, solution in zip(wanted, curve.solutions, strict=True):
+        assert solution.contact.speed == pytest.approx(value, rel=1e-14)
+        assert solution.groups.speed == pytest.approx(CONTACT.replace(speed=value).groups.speed, rel=1e-14)
+
+
+def test_a_pair_is_a_range_with_points_evenly_in_the_logarithm():
+    curve = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1e-1), points=5)
+    np.testing.assert_allclose(curve.values, np.geomspace(1e-3, 1e-1, 5), rtol=1e-14)
+    assert curve.requested == len(curve) == 5
+    assert curve.outcome is sb.Outcome.CONVERGED
+
+
+@pytest.mark.parametrize(
+    ("over", "ends"),
+    [
+        ("speed", ("0.3 mm/s", "0.1 m/s")),
+        ("load", ("8 N/m", "150 N/m")),
+        ("roughness", ("0.2 um", "5 um")),
+    ],
+)
+def test_every_point_is_the_state_that_a_single_solve_finds(over, ends):
+    curve = sb.stribeck_curve(CONTACT, **{over: ends}, points=4)
+    assert curve.over == over
+    for i, value in enumerate(curve.values):
+        alone = sb.solve(CONTACT.replace(**{over: float(value)}), rtol=1e-8)
+        single = alone.friction()
+        assert curve.friction[i] == pytest.approx(single.total, abs=2 * (curve.friction_error[i] + single.error))
+        for name in ("central_gap", "minimum_gap", "flux_gap", "contact_load_share"):
+            both = curve.rtol + alone.rtol
+            assert curve.observable(name)[i] == pytest.approx(getattr(alone, name), rel=2 * both, abs=2 * both)
+        assert curve.hersey_number[i] == pytest.approx(alone.hersey_number, rel=1e-12)
+
+
+def test_groups_and_a_contact_of_these_groups_give_the_same_curve():
+    of_contact = sb.stribeck_curve(CONTACT, speed=("1 mm/s", "50 mm/s"), points=3)
+    groups = of_contact.groups
+    of_groups = sb.stribeck_curve(
+        load=float(groups.load[0]), roughness=float(groups.roughness[0]), speed=groups.speed, mu0=0.7, beta=0.06
+    )
+    np.testing.assert_allclose(of_groups.friction, of_contact.friction, rtol=3e-6)
+    np.testing.assert_allclose(of_groups.hersey_number, of_contact.hersey_number, rtol=1e-12)
+
+
+def test_a_curve_over_the_load_changes_the_speed_group_too():
+    curve = sb.stribeck_curve(CONTACT, load=("10 N/m", "40 N/m"), points=3)
+    np.testing.assert_allclose(curve.groups.speed * curve.values**2, CONTACT.groups.speed * 30.0**2, rtol=1e-12)
+
+
+def test_the_parts_of_friction_add_up_and_the_error_covers_them(curve):
+    np.testing.assert_allclose(curve.friction_contact + curve.friction_viscous, curve.friction, rtol=1e-14)
+    assert (curve.friction_error > 0).all()
+    assert (curve.friction_error < 1e-5 * curve.friction).all()
+    assert curve.error_estimate <= curve.rtol
+
+
+def test_both_abscissas_are_those_of_the_paper(curve):
+    np.testing.assert_allclose(curve.hersey_number, 0.05 * curve.values / 30.0, rtol=1e-12)
+    fast = curve.friction_contact < 1e-6 * curve.friction
+    assert fast.sum() >= 3
+    # The law combines its two limits and is within 6 % of the truth between them.
+    np.testing.assert_allclose(curve.friction[fast], curve.hydrodynamic_friction[fast], rtol=0.07)
+
+
+def test_a_quasistatic_curve_over_the_load_is_the_dry_friction():
+    curve = sb.stribeck_curve(CONTACT.replace(speed=0), load=("5 N/m", "200 N/m"), points=3)
+    np.testing.assert_allclose(curve.friction, 0.7, rtol=1e-6)
+    assert set(curve.regimes) == {"boundary"}
+    assert curve.transitions == ()
+
+
+@given(exponents=st.lists(st.integers(-40, 0), min_size=3, max_size=6, unique=True))
+@settings(max_examples=8, deadline=None)
+def test_any_ascending_points_are_met_in_their_order(exponents):
+    wanted = np.sort(10.0 ** (0.1 * np.array(exponents)))
+    curve = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=wanted)
+    assert curve.values.tolist() == wanted.tolist()
+    np.testing.assert_allclose(curve.groups.speed, wanted, rtol=1e-13)
+    assert (np.diff(curve.observable("central_gap")) > 0).all()
+
+
+def test_progress_counts_every_point_once():
+    seen = []
+    sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-4, 1), points=4, on_point=lambda *n: seen.append(n))
+    assert seen == [(1, 4), (2, 4), (3, 4), (4, 4)]
+
+
+# --- the automatic range ---
+
+
+@pytest.mark.parametrize("definition", ["paper", "balanced"])
+def test_the_automatic_range_reaches_from_the_plateau_to_the_hydrodynamic_branch(definition):
+    curve = sb.stribeck_curve(CONTACT, points=13, definition=definition)
+    assert curve.friction[0] == pytest.approx(0.7, rel=1e-3)
+    assert curve.friction_contact[-1] < 1e-3 * curve.friction[-1]
+    assert curve.friction[-1] > 3 * curve.minimum.friction
+    assert [regime for regime, _, _ in curve.regime_ranges] == ["boundary", "mixed", "hydrodynamic"]
+
+
+def test_beyond_the_range_of_the_law_the_plateau_is_lower_and_found_too():
+    curve = sb.stribeck_curve(HEAVY, points=9)
+    slope = np.diff(np.log(curve.friction[:2])) / np.diff(np.log(curve.values[:2]))
+    assert abs(slope[0]) < 1e-2
+    assert curve.friction[0] < 0.7
+    assert curve.friction_contact[-1] < 1e-3 * curve.friction[-1]
+
+
+def test_a_smooth_contact_has_no_plateau_and_covers_ten_decades():
+    curve = sb.stribeck_curve(load=0.1, roughness=0, points=3)
+    np.testing.assert_allclose(curve.values, [1e-9, 1e-4, 10], rtol=1e-12)
+    assert (curve.friction_contact == 0).all()
+
+
+# --- minimum and transitions ---
+
+
+@pytest.mark.parametrize("definition", ["paper", "balanced"])
+def test_the_minimum_lies_where_the_slope_of_cold_solves_vanishes(curve, balanced, definition):
+    found = {"paper": curve, "balanced": balanced}[definition].minimum
+    step = 0.02
+
+    def slope(s):
+        f = [math.log(friction(math.exp(s + k * step), definition, 1e-10)) for k in (-2, -1, 1, 2)]
+        return (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step)
+
+    s = math.log(found.value)
+    # The straight line through two slopes at a small distance: its zero is that of the slope to second order in it.
+    low, high = slope(s - 1e-4), slope(s + 1e-4)
+    assert low < 0 < high
+    root = s - 1e-4 + 2e-4 * low / (low - high)
+    assert root == pytest.approx(s, abs=1e-6)
+
+
+def test_the_minimum_is_no_higher_than_golden_section_finds_it_on_cold_solves(curve):
+    s = math.log(curve.minimum.value)
+    best = minimize_scalar(
+        lambda s: friction(math.exp(s)), bracket=(s - 0.3, s + 0.1, s + 0.4), method="golden", tol=1e-4
+    )
+    assert curve.minimum.friction == pytest.approx(best.fun, rel=1e-7)
+    assert s == pytest.approx(best.x, abs=3e-4)
+    assert curve.minimum.friction < curve.friction.min()
+
+
+def test_the_minimum_does_not_depend_on_the_points_of_the_curve(curve):
+    # Among dense points their errors hide which is lowest.
+    for ends, points in ((("10 mm/s", "80 mm/s"), 4), (("27.8 mm/s", "27.95 mm/s"), 201)):
+        other = sb.stribeck_curve(CONTACT, speed=ends, points=points)
+        assert other.minimum.value == pytest.approx(curve.minimum.value, rel=1e-6)
+        assert other.minimum.friction == pytest.approx(curve.minimum.friction, rel=1e-7)
+
+
+def test_the_minimum_over_load_and_roughness_is_one_of_cold_solves_as_well():
+    contact = CONTACT.replace(speed=0.02)
+    curve = sb.stribeck_curve(contact, load=("1 N/m", "1000 N/m"), points=9)
+    if curve.minimum is not None:
+        here = sb.solve(contact.replace(load=curve.minimum.value), rtol=1e-8).friction().total
+        for factor in (0.98, 1.02):
+            beside = sb.solve(contact.replace(load=factor * curve.minimum.value), rtol=1e-8).friction().total
+            assert beside > here
+    rough = sb.stribeck_curve(contact, roughness=("0.1 um", "3 um"), points=5)
+    assert rough.minimum is None or rough.minimum.friction <= rough.friction.min()
+
+
+def test_a_range_without_minimum_has_none():
+    assert sb.stribeck_curve(CONTACT, speed=("0.1 m/s", "1 m/s"), points=4).minimum is None
+    assert sb.stribeck_curve(CONTACT, speed=("0.1 mm/s", "1 mm/s"), points=4).minimum is None
+    assert sb.stribeck_curve(CONTACT, speed=("20 mm/s", "40 mm/s"), points=2).minimum is None
+
+
+def test_transitions_lie_where_cold_solves_have_these_shares(curve):
+    marks = {mark.name: mark for mark in curve.transitions}
+    assert list(marks) == [
+        "fluid carries 5% of the load",
+        "fluid carries 50% of the load",
+        "minimum of friction",
+        "asperities cause 10% of the friction",
+    ]
+    assert [mark.value for mark in curve.transitions] == sorted(mark.value for mark in curve.transitions)
+    for name, share in (("fluid carries 5% of the load", 0.05), ("fluid carries 50% of the load", 0.5)):
+        alone = sb.solve(CONTACT.replace(speed=marks[name].value), rtol=1e-9)
+        assert alone.fluid_load_share == pytest.approx(share, abs=1e-7)
+        assert marks[name].friction == pytest.approx(alone.friction().total, rel=1e-7)
+    alone = sb.solve(CONTACT.replace(speed=marks["asperities cause 10% of the friction"].value), rtol=1e-9).friction()
+    assert alone.contact / alone.total == pytest.approx(0.1, abs=1e-7)
+
+
+def test_a_transition_agrees_with_the_root_that_cold_solves_have(curve):
+    mark = next(mark for mark in curve.transitions if "50%" in mark.name)
+    root = brentq(
+        lambda s: sb.solve(CONTACT.replace(speed=math.exp(s)), rtol=1e-8).fluid_load_share - 0.5,
+        math.log(2e-3),
+        math.log(4e-3),
+        xtol=1e-9,
+    )
+    assert math.log(mark.value) == pytest.approx(root, abs=1e-7)
+
+
+def test_regimes_follow_one_another_and_meet_at_the_transitions(curve):
+    ranges = curve.regime_ranges
+    assert [name for name, _, _ in ranges] == ["boundary", "mixed", "hydrodynamic"]
+    assert (ranges[0][1], ranges[-1][2]) == (curve.values[0], curve.values[-1])
+    assert [low for _, low, _ in ranges[1:]] == [high for _, _, high in ranges[:-1]]
+    marks = {mark.name: mark.value for mark in curve.transitions}
+    assert ranges[0][2] == marks["fluid carries 5% of the load"]
+    assert ranges[1][2] == marks["asperities cause 10% of the friction"]
+    for value, regime in zip(curve.values, curve.regimes, strict=True):
+        assert [name for name, low, high in ranges if low <= value <= high] == [regime]
+
+
+def test_regimes_of_a_curve_over_the_roughness_run_the_other_way():
+    curve = sb.stribeck_curve(CONTACT, roughness=("0.02 um", "10 um"), points=7)
+    assert [name for name, _, _ in curve.regime_ranges] == ["hydrodynamic", "mixed", "boundary"]
+
+
+# --- notes ---
+
+
+def test_notes_say_which_points_they_concern():
+    curve = sb.stribeck_curve(HEAVY, speed=("1 um/s", "10 m/s"), points=6)
+    load = [note for note in curve.notes if note.startswith("The load group is")]
+    assert len(load) == 1
+    assert load[0].endswith("(6 of 6 points, speed 1 µm/s to 10 m/s.)")
+    outside = next(note for note in curve.notes if "which ends at about" in note)
+    concerned = [s for s in curve.solutions if any("which ends at about" in note for note in s.notes)]
+    assert 0 < len(concerned) < 6
+    assert f"({len(concerned)} of 6 points, speed 1 µm/s to " in outside
+
+
+def test_each_kind_of_note_is_told_once(curve):
+    assert len(curve.notes) == 1
+
+
+# --- refused ---
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"points": 0}, "points = 0; it must be a whole number from 2 to 100000"),
+        ({"points": 1}, "points = 1; it must be a whole number"),
+        ({"points": 2.5}, r"points = 2\.5; it must be a whole number"),
+        ({"points": True}, "points = True; it must be a whole number"),
+        ({"speed": (1, 0.1)}, r"speed = \(1, 0\.1\); a range is two or more finite positive numbers that ascend"),
+        ({"speed": (1, 3, 2)}, r"speed = \(1, 3, 2\); a range is two or more"),
+        ({"speed": (1, 1)}, "a range is two or more"),
+        ({"speed": []}, r"speed = \[\]; a range"),
+        ({"speed": (0, 1)}, "finite positive numbers that ascend"),
+        ({"speed": (-1, 1)}, "finite positive numbers that ascend"),
+        ({"speed": (1, math.nan)}, "speed = nan is not a finite number"),
+        ({"speed": ("1 mm", "1 m")}, "speed = '1 mm' is a length"),
+        ({"load": ("1 N", "2 N")}, "load = '1 N' is a force"),
+        ({"speed": (1, 2), "load": (1, 2)}, "speed and load are both ranges"),
+        ({"rtol": 1e-20}, "rtol = 1e-20; it must be a number from 1e-11"),
+        ({"definition": "mine"}, "definition = 'mine'; it must be one of 'paper', 'balanced'"),
+        ({"mu0": -1}, "friction_coefficient = -1 must be zero or positive"),
+    ],
+)
+def test_arguments_that_cannot_be_are_refused(arguments, words):
+    with pytest.raises(sb.InputError, match=words):
+        sb.stribeck_curve(CONTACT, **arguments)
+
+
+def test_groups_that_are_missing_are_named():
+    with pytest.raises(sb.InputError, match="roughness missing; give a LineContact, or the groups that do not vary"):
+        sb.stribeck_curve(load=0.1)
+
+
+def test_the_dry_smooth_contact_has_no_curve():
+    with pytest.raises(sb.InputError, match="speed and roughness are both zero"):
+        sb.stribeck_curve(sb.Groups(0, 0.1, 0), load=(0.1, 1))
+
+
+# --- interrupted, lost ---
+
+
+def test_an_interrupted_curve_keeps_the_points_it_has():
+    def stop(done, total):
+        if done == 3:
+            raise KeyboardInterrupt
+
+    whole = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-4, 1), points=7)
+    part = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-4, 1), points=7, on_point=stop)
+    assert part.outcome is sb.Outcome.INTERRUPTED
+    assert (len(part), part.requested) == (3, 7)
+    assert part.values.tolist() == whole.values[-3:].tolist()
+    assert part.friction.tolist() == whole.friction[-3:].tolist()
+
+
+def test_ctrl_c_while_the_range_is_looked_for_is_not_taken_for_its_end(monkeypatch):
+    def interrupted(*arguments, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(span, "solve_state", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        sb.stribeck_curve(CONTACT, points=3)
+
+
+def test_a_lost_path_keeps_the_points_before_and_tells_why(monkeypatch):
+    whole = curve_module.follow
+
+    def lose(groups_at, coordinates, *arguments):
+        path = whole(groups_at, coordinates[:2], *arguments)
+        last = path.states[-1]
+        failure = type(last)(**{**vars(last), "outcome": sb.Outcome.ROUNDING})
+        return type(path)(path.coordinates, path.states, sb.Outcome.PATH_LOST, 1, failure)
+
+    monkeypatch.setattr(curve_module, "follow", lose)
+    curve = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-2, 1), points=5)
+    assert curve.outcome is sb.Outcome.ROUNDING
+    assert (len(curve), curve.requested) == (2, 5)
+    assert curve.values[-1] == 1
+
+
+# --- resources ---
+
+MEMORY = """
+import resource, sys
+import stribeck as sb
+curve = sb.stribeck_curve(load=0.1, roughness=1e-4, speed=(1e-9, 10), points=101)
+assert len(curve) == 101
+curve.to_dataset()
+curve.plot(sys.argv[1])
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+"""
+
+
+def test_a_curve_with_dataset_and_picture_stays_below_300_megabytes(tmp_path):
+    answer = run_python(MEMORY, tmp_path / "curve.png")
+    assert answer.code == 0, answer.err
+    assert float(answer.out) < 300
