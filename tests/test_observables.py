@@ -163,10 +163,10 @@ def test_a_least_gap_beyond_the_panel_of_the_least_node_is_found():
 
 def test_the_gap_between_the_nodes_is_interpolated_in_its_logarithm():
     mesh = Mesh(base_edges(0.25, 16.0), 16, 0.5)
-    x = np.concatenate([np.random.default_rng(SEED).uniform(-15, 15, 200), mesh.edges, [-1e3, 1e5]])
+    x = np.concatenate([np.random.default_rng(SEED).uniform(-15, 15, 200), mesh.edges])
 
     def gap(x):
-        return np.exp(8 * x / (1 + x * x) - 20 / (1 + x * x)) * (0.25 + x * x)
+        return np.exp(8 * x / (1 + x * x) - 20 / (1 + x * x)) * (0.25 + x * x) / 2
 
     assert np.abs(gap_at(mesh, gap(mesh.nodes), x) / gap(x) - 1).max() < 1e-10
 

@@ -24,10 +24,10 @@ LEAST_SPEED = 1e-12
 PLATEAU = 1e-3
 """Change of the fluid's share of the load over a decade of speed below which it is a plateau."""
 
-BRANCH = 1e-3
+BRANCH = 1e-2
 """Part of the friction from asperities below which the branch is hydrodynamic."""
 
-MARGIN = 30.0
+MARGIN = 10.0
 """Factor by which the curve goes on beyond plateau and branch."""
 
 
