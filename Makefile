@@ -8,14 +8,14 @@ TOOLS  := $(VENV)/.ready-tools
 # One BLAS thread for each test worker: two workers with two threads each slow each other down several times.
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 
-# $(call install,EXTRA): the package with an extra, bytecode compiled. uv takes the locked versions; where it is
-# missing or cannot reach the index of the lock file, pip takes the newest ones.
+# $(call install,EXTRA): the package with an extra at the versions of requirements.lock, bytecode compiled.
 define install
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 		|| { echo "stribeck needs Python 3.11 or newer; say which with make PYTHON=/path/to/python3"; exit 1; }
-	@if command -v uv >/dev/null && UV_PROJECT_ENVIRONMENT=$(VENV) \
-		uv sync --quiet --frozen --inexact --compile-bytecode --python "$(PYTHON)" --extra $(1); then :; else \
-		$(PYTHON) -m venv $(VENV) && $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[$(1)]'; fi
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@if command -v uv >/dev/null; then \
+		uv pip install --quiet --compile-bytecode --python $(BIN)/python -c requirements.lock --editable '.[$(1)]'; else \
+		$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock --editable '.[$(1)]'; fi
 	@touch $@
 endef
 
@@ -28,10 +28,10 @@ help:
 	@echo "make types      static types   make benchmark  the tables of the documentation"
 	@echo "make clean      remove what make made"
 
-$(READY): pyproject.toml uv.lock
+$(READY): pyproject.toml requirements.lock
 	$(call install,test)
 
-$(TOOLS): pyproject.toml uv.lock | $(READY)
+$(TOOLS): pyproject.toml requirements.lock | $(READY)
 	$(call install,dev)
 
 demo: $(READY)
@@ -60,3 +60,8 @@ benchmark: $(READY)
 clean:
 	rm -rf $(VENV) build dist curve.nc curve.png curve.csv .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find src tests benchmarks examples -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
+
+# The newest versions that go together, for requirements.lock; needs uv.
+.PHONY: lock
+lock:
+	uv pip compile --universal --quiet --all-extras --no-header --no-annotate pyproject.toml -o requirements.lock

@@ -12,7 +12,6 @@ for about ten seconds.
 from __future__ import annotations
 
 import argparse
-import importlib
 import math
 import platform
 import subprocess
@@ -25,12 +24,11 @@ import scipy
 import stribeck as sb
 from stribeck.equations import Operators
 from stribeck.estimate import FineOperators
-from stribeck.mesh import Mesh, MeshTooLarge
+from stribeck.mesh import Mesh, MeshTooLargeError
 from stribeck.observables import NAMES
+from stribeck.refine import judge
 from stribeck.start import cold_start
 from stribeck.states import State, mesh_for, solve_state
-
-judge = importlib.import_module("stribeck.solve").judge  # the name stribeck.solve is the function
 
 STATES = {
     "mixed": (1e-5, 0.1, 1e-4),
@@ -96,7 +94,7 @@ def by_tolerance(groups: sb.Groups, guess: State, truth: np.ndarray, order: int)
     for tolerance in TOLERANCES:
         try:
             mesh = mesh_for(guess, groups, guess.equations.law, order, tolerance, 0.1 * tolerance)
-        except MeshTooLarge:
+        except MeshTooLargeError:
             return
         if mesh.size == seen:
             continue

@@ -269,7 +269,7 @@ WORDS = st.one_of(
 
 
 @given(tokens=st.lists(WORDS, max_size=7))
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_nonsense_gets_a_sentence_and_never_a_traceback(capsys, folder, tokens):
     before = contents(folder)
     answer = call(capsys, *tokens)
@@ -283,7 +283,7 @@ def test_nonsense_gets_a_sentence_and_never_a_traceback(capsys, folder, tokens):
 
 
 @given(value=st.one_of(st.text(max_size=12), st.floats(), st.integers(), st.booleans(), st.lists(st.integers())))
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_any_value_of_any_key_gets_a_sentence_and_never_a_traceback(capsys, folder, value):
     text = {True: "true", False: "false"}.get(value, repr(value)) if isinstance(value, bool) else repr(value)
     for table, key in (("contact", "radius"), ("contact", "alpha"), ("curve", "points"), ("solver", "rtol")):

@@ -1,6 +1,5 @@
 """The error estimate against the true error: what mesh, rounding and Newton's iteration leave."""
 
-import importlib
 from dataclasses import replace
 
 import numpy as np
@@ -9,12 +8,13 @@ import pytest
 import stribeck as sb
 from stribeck.equations import Operators
 from stribeck.estimate import FineOperators
+from stribeck.mesh import Mesh
 from stribeck.observables import NAMES
+from stribeck.refine import judge
 from stribeck.start import cold_start
 from stribeck.states import mesh_for, solve_state
 
 SEED = 17_903
-judge = importlib.import_module("stribeck.refine").judge  # the name stribeck.solve is the function
 
 STATES = {
     "mixed": (1e-5, 0.1, 1e-4),
@@ -133,12 +133,36 @@ def test_errors_of_load_shares_are_absolute_and_others_relative(solved):
     assert s.error_estimate == max(s.errors.values())
 
 
-@pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9])
-@pytest.mark.parametrize("name", STATES)
-def test_the_stated_error_covers_the_true_one(name, rtol, solved, true_errors):
-    s = solved(*STATES[name], rtol=rtol)
-    error = true_errors(s)
-    assert np.nanmax(error) <= max(s.error_estimate, 3e-11)
-    assert s.error_estimate <= rtol
-    each = np.maximum(s.relative_errors, 1e-11)
-    assert (error <= 10 * each).all(), dict(zip(NAMES, error / each, strict=True))
+def test_the_stated_errors_of_typical_states_cover_the_true_ones(solved, true_errors):
+    ratios, singles = {}, {}
+    for name, groups in STATES.items():
+        for rtol in (1e-3, 1e-6, 1e-9):
+            s = solved(*groups, rtol=rtol)
+            error = true_errors(s)
+            assert s.error_estimate <= rtol
+            assert error.max() <= rtol
+            ratios[name, rtol] = error.max() / s.error_estimate
+            singles[name, rtol] = (error / s.relative_errors).max()
+    assert np.mean([ratio <= 1 for ratio in ratios.values()]) >= 0.85, ratios
+    assert max(ratios.values()) < 10, ratios
+    assert max(singles.values()) < 30, singles
+
+
+@pytest.mark.parametrize("name", ["hydrodynamic", "boundary"])
+def test_more_nodes_a_panel_lower_the_error_exponentially_until_1e_10(name, solved):
+    groups = sb.Groups(*STATES[name])
+    exact = np.array([getattr(solved(*STATES[name], rtol=1e-11).observables, n) for n in NAMES])
+    guess = cold_start(groups).states[-1]
+    panels = mesh_for(guess, groups, guess.equations.law, 10, 1e-4).edges
+    far = panels[-1] * 2.0 ** np.arange(1, 4)  # the logarithm in the far gap is not what is measured here
+    edges = np.concatenate([-far[::-1], panels, far])
+    orders = np.arange(6, 13, 2)
+    errors = []
+    for order in orders:
+        mesh = Mesh(edges, int(order), guess.mesh.scale)
+        values, _, estimate = judged(solve_state(groups, Operators(mesh), guess, 1e-11))
+        errors.append((np.abs(values - exact) / estimate.scales).max())
+    rate, _ = -np.polyfit(orders, np.log(errors), 1)
+    assert rate > 1.5
+    assert np.diff(np.log(errors)).max() < -1.0
+    assert errors[-1] < 1e-10

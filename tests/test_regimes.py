@@ -46,8 +46,7 @@ def test_the_exponents_are_those_of_the_groups(name):
     np.testing.assert_allclose(slope, EXPONENTS[name], atol=1e-12)
 
 
-@pytest.mark.parametrize("definition", ["paper", "balanced"])
-@pytest.mark.parametrize("speed", [1e-3, 0.03])
+@pytest.mark.parametrize(("speed", "definition"), [(1e-3, "paper"), (0.03, "balanced")])
 def test_elasticities_agree_with_differences_of_cold_solves(speed, definition):
     contact = CONTACT.replace(speed=speed)
     solution, found = friction_elasticities(contact, rtol=1e-9, definition=definition)
