@@ -157,18 +157,12 @@ def document(number: int, seed: int) -> Iterator[str]:
     moving = [groups for groups in states if groups.speed > 0 and groups.roughness > 0]
     for side, one_sided in SIDES.items():
         for scale, moving_scale in SCALES.items():
-            yield (
-                f"| {side} | {scale} | "
-                + " | ".join(map(str, variant(moving, one_sided, moving_scale)))
-                + " |"
-            )
+            yield (f"| {side} | {scale} | " + " | ".join(map(str, variant(moving, one_sided, moving_scale))) + " |")
 
 
 def main() -> None:
     """Print the tables."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--number", type=int, default=200)
     parser.add_argument("--seed", type=int, default=20261121)
     arguments = parser.parse_args()

@@ -201,7 +201,7 @@ def _signs(size: int) -> Array:
 def error_estimate(state: State, observed: Observables, fine: FineOperators) -> ErrorEstimate:
     """Return the estimated errors of what was ``observed`` on a state.
 
-    At speed zero the values may be those of the same state under another load, see ``solve.quasistatic_shift``.
+    At speed zero the values may be those of the same state under another load, see ``refine.quasistatic_shift``.
     """
     changed = changes(state, observed, fine)
     effects = np.abs(gradients(state.equations, state.y, float(state.groups.load)) @ changed.unknowns.T)

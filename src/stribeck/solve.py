@@ -23,7 +23,7 @@ from .units import InputError, show
 RTOL_RANGE = (1e-11, 1e-2)
 """Tolerances that may be asked for; below, double precision reaches no state."""
 
-LEAST_ESTIMATE = 3e-2
+LEAST_ESTIMATE = 0.1
 """Part of the tolerance below which no error is stated: estimates so small were not checked."""
 
 
