@@ -23,8 +23,11 @@ from .units import InputError, show
 RTOL_RANGE = (1e-11, 1e-2)
 """Tolerances that may be asked for; below, double precision reaches no state."""
 
-LEAST_ESTIMATE = 0.1
-"""Part of the tolerance below which no error is stated: estimates so small were not checked."""
+LEAST_ESTIMATE = 0.03
+"""Part of the tolerance below which no error is stated, as estimates so small are not sure."""
+
+SURE_ESTIMATE = 1e-10
+"""Error from which estimates are sure also where the tolerance is smaller."""
 
 
 class SolveError(RuntimeError):
@@ -132,6 +135,11 @@ def finish(
     raise SolveError(point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}")
 
 
+def least_estimate(rtol: float) -> float:
+    """Return the smallest error that is stated for a tolerance."""
+    return max(LEAST_ESTIMATE * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
+
+
 def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solution | None:
     """Return the solution that a refined state is, or None where there is no state."""
     state, values, estimate = point.state, point.values, point.estimate
@@ -150,7 +158,7 @@ def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solut
         rtol=rtol,
         law=state.equations.law.name,
         observables=values,
-        relative_errors=np.maximum(estimate.relative, LEAST_ESTIMATE * rtol),
+        relative_errors=np.maximum(estimate.relative, least_estimate(rtol)),
         rounding_floor=estimate.floor,
         mesh=state.mesh,
         nodal_gap=state.gap,
