@@ -130,6 +130,9 @@ def test_errors_of_load_shares_are_absolute_and_others_relative(solved):
     assert set(s.errors) == set(NAMES)
     assert s.errors["fluid_load_share"] < 1e-6  # of a share that is itself far smaller
     assert s.fluid_load_share < 1e-6
+    values, _, estimate = judged(state_on(s.groups, 10, 1e-3))
+    assert np.array_equal(estimate.scales[:2], [1.0, 1.0])
+    assert np.array_equal(estimate.scales[2:], np.abs(values[2:]))
     assert s.error_estimate == max(s.errors.values())
 
 

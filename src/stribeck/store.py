@@ -308,7 +308,5 @@ def _landmark_attributes(curve: StribeckCurve) -> dict[str, Any]:
 
 
 def _text(value: Any) -> str:
-    """Return an attribute on lines of text without the sign that begins comments."""
-    if isinstance(value, np.ndarray):
-        return ", ".join(map(repr, value.tolist()))
-    return str(value).replace("#", "no. ")
+    """Return an attribute as text."""
+    return ", ".join(map(repr, value.tolist())) if isinstance(value, np.ndarray) else str(value)
