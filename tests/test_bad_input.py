@@ -187,14 +187,14 @@ BAD_ARGUMENTS = [
     ([*CURVE, "--range", "-1", "1"], "in range, speed = -1.0 must be zero or positive"),
     ([*CURVE, "--range", "1 mm/s"], "--range needs 2 values, 1 given"),
     ([*CURVE, "--over", "load"], "range is missing; a curve over load needs --range"),
-    ([*CURVE, "--over", "time"], 'Invalid value "time" for --over. Choose from: "speed", "load", "roughness"'),
+    ([*CURVE, "--over", "time"], "over = 'time' must be 'speed', 'load' or 'roughness'"),
     ([*OF_GROUPS, "--range", "1", "1e-3"], "speed = (1.0, 0.001); a range is two or more finite positive numbers"),
     ([*OF_GROUPS, "--range", "0", "1"], "speed = (0.0, 1.0); a range is two or more finite positive numbers"),
     ([*OF_GROUPS, "--range", "1", "x"], "speed = 'x' is not a number"),
     (["curve", "--groups", "1", "2", "3"], "--groups has more than 2 numbers: 1 2 3"),
     (["curve", "--groups", "0.1", "-1"], "roughness = -1.0 must be finite and zero or positive"),
     (["curve", "--groups", "0", "0", "--over", "load", "--range", "1e-3", "1"], "speed and roughness are both zero"),
-    ([*CURVE, "--jsno"], "Unknown option: --jsno. Did you mean --json?"),
+    ([*CURVE, "--jsno"], "--jsno"),
     (["sovle", "case.toml"], 'Unknown command "sovle". Did you mean "solve"?'),
     ([*CURVE, "-o", "old.nc"], "old.nc exists already and is kept; add --force"),
     ([*CURVE, "--plot", "old.png"], "old.png exists already and is kept; add --force"),
@@ -207,7 +207,7 @@ BAD_ARGUMENTS = [
     ([*CURVE, "-o", "new.xlsx"], "new.xlsx has the ending '.xlsx'; the name of this file must end in .nc or .csv"),
     ([*CURVE, "--plot", "new.bmp"], "new.bmp has the ending '.bmp'; the name of this file must end in .png, .svg"),
     ([*CURVE, "-o", "new.nc", "-o", "./new.nc"], "new.nc is named twice among the outputs"),
-    ([*CURVE, "-o"], "-o needs a value"),
+    ([*CURVE, "-o"], "needs a value, 0 given"),
 ]
 
 

@@ -208,7 +208,7 @@ def test_the_profile_is_the_elastic_gap_of_its_pressure(state):
     x = np.concatenate([[0.0], np.random.default_rng(SEED).uniform(-2, 2, 50), [-30.0, 500.0]])
     elastic = state.offset + x**2 / 2 + deflection_operator(mesh, x) @ fields.pressure
     gap = state.profile(x).gap
-    assert np.abs(gap / elastic - 1).max() < 1e-5  # between the nodes, where panels are coarser than the observables
+    assert np.abs(gap / elastic - 1).max() < 1e-7  # between the nodes, where panels are coarser than the observables
 
 
 def test_the_profile_obeys_the_contact_law(state):
@@ -628,7 +628,7 @@ def test_where_refinement_ends_early_the_solve_says_so_and_keeps_what_it_has(mon
     mesh_for = refine.mesh_for
     monkeypatch.setattr(refine, "mesh_for", lambda *arguments: mesh_for(*arguments[:4], 1e-2))
     groups = sb.Groups(1e-6, 0.1, 1e-5)
-    with pytest.raises(sb.SolveError, match="largest size") as caught:
+    with pytest.raises(sb.SolveError, match="Refining the mesh came to its end") as caught:
         sb.solve(groups, rtol=1e-9)
     assert caught.value.outcome is Outcome.REFINEMENT_LIMIT
     assert caught.value.solution.error_estimate > 1e-9

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, CycloptsError, MissingArgumentError, Parameter, UnusedCliTokensError
 
@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 __all__ = ["main"]
 
+AXES: tuple[Over, ...] = ("speed", "load", "roughness")
+
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 """Exit codes besides 0."""
 
@@ -49,15 +51,12 @@ Example: stribeck curve examples/pdms_cylinder.toml -o curve.nc --plot curve.png
 Exit codes: 0 done, 1 the solve failed, 2 bad input, 130 interrupted."""
 
 CaseFile = Annotated[Path | None, Parameter(name="CASE", show_default=False)]
+Word = Annotated[str | None, Parameter(show_default=False)]
 Number = Annotated[str | None, Parameter(allow_leading_hyphen=True, show_default=False)]
 Flag = Annotated[bool, Parameter(negative="", show_default=False)]
 File = Annotated[Path | None, Parameter(show_default=False)]
-Pair = Annotated[
-    tuple[str, str] | None, Parameter(allow_leading_hyphen=True, show_default=False, negative="")
-]
-Triple = Annotated[
-    tuple[str, str, str] | None, Parameter(allow_leading_hyphen=True, show_default=False, negative="")
-]
+Pair = Annotated[tuple[str, str] | None, Parameter(allow_leading_hyphen=True, show_default=False, negative="")]
+Triple = Annotated[tuple[str, str, str] | None, Parameter(allow_leading_hyphen=True, show_default=False, negative="")]
 
 
 def main(tokens: Sequence[str] | None = None) -> int:
@@ -100,9 +99,7 @@ def main(tokens: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except MemoryError:
-        return _complain(
-            "The memory of this machine does not suffice; ask for fewer points or a larger rtol.", FAILED
-        )
+        return _complain("The memory of this machine does not suffice; ask for fewer points or a larger rtol.", FAILED)
     except Exception as problem:
         if os.environ.get("STRIBECK_DEBUG"):
             raise
@@ -171,7 +168,7 @@ def solve_command(
     with _named("friction_coefficient", "mu0", loaded is None):
         coefficients(loaded.contact if loaded else None, mu, b)
     pictures = _pictures(plot, force)
-    problem = loaded.contact if loaded else Groups(*map(_group, ("speed", "load", "roughness"), groups or ()))
+    problem = loaded.contact if loaded else Groups(*map(_group, AXES, groups or ()))
     solution = solve(problem, rtol=tolerance)
     title = loaded.title if loaded else ""
     for picture in pictures:
@@ -194,11 +191,9 @@ def curve_command(
     case: CaseFile = None,
     /,
     *,
-    output: Annotated[
-        list[Path] | None, Parameter(name=["--output", "-o"], negative="", show_default=False)
-    ] = None,
+    output: Annotated[list[Path] | None, Parameter(name=["--output", "-o"], negative="", show_default=False)] = None,
     plot: File = None,
-    over: Annotated[Literal["speed", "load", "roughness"] | None, Parameter(show_default=False)] = None,
+    over: Word = None,
     range: Pair = None,
     points: Number = None,
     rtol: Number = None,
@@ -227,7 +222,7 @@ def curve_command(
     plot
         Draw the curve to this file (.png, .svg or .pdf).
     over
-        What varies; that of the case or speed if not given.
+        What varies: speed, load or roughness; that of the case or speed if not given.
     range
         Lowest and highest value of what varies, with units for a case; for speed found if not given.
     points
@@ -263,11 +258,7 @@ def curve_command(
     if problems:
         return _complain("\n".join(problems), BAD_INPUT)
     if curve.outcome is Outcome.INTERRUPTED:
-        kept = (
-            f"{' and '.join(written)} hold the points so far, marked incomplete"
-            if written
-            else "no file was asked for"
-        )
+        kept = f"{' and '.join(written)} hold the points so far, marked incomplete" if written else "no file was asked for"
         return _complain(f"Interrupted after {len(curve)} of {curve.requested} points; {kept}.", INTERRUPTED)
     if not curve.outcome.ok:
         return _complain(f"{len(curve)} of {curve.requested} points: {curve.outcome.value}", FAILED)
@@ -289,9 +280,7 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     if case is None:
         raise InputError("CASE is missing; give a case file, as in: stribeck regimes case.toml.")
     loaded = load_case(case)
-    solution, elasticities = friction_elasticities(
-        loaded.contact, rtol=loaded.rtol, definition=loaded.definition
-    )
+    solution, elasticities = friction_elasticities(loaded.contact, rtol=loaded.rtol, definition=loaded.definition)
     with _interruptible() as progress:
         curve = stribeck_curve(
             loaded.contact,
@@ -319,9 +308,7 @@ def _case(path: Path | None, groups: Sequence[str] | None, mu0: str | None, beta
     """Return the case, or None where groups are given instead."""
     if path is not None and groups is not None:
         if re.fullmatch(r"[-+0-9.eE]+", str(path)):
-            raise InputError(
-                f"--groups has more than {len(groups)} numbers: {' '.join(groups)} {path}; see --help."
-            )
+            raise InputError(f"--groups has more than {len(groups)} numbers: {' '.join(groups)} {path}; see --help.")
         raise InputError(f"{path} and --groups are both given; give a case file or groups.")
     if path is None and groups is None:
         raise InputError("CASE is missing; give a case file, or groups with --groups.")
@@ -361,7 +348,7 @@ def _rtol(text: str | None, case: Case | None) -> float:
 
 def _curve_arguments(
     case: Case | None,
-    over: Over | None,
+    over: str | None,
     ends: tuple[str, str] | None,
     points: str | None,
     rtol: str | None,
@@ -373,7 +360,7 @@ def _curve_arguments(
     from .case import CurveSettings
 
     settings = case.curve if case else CurveSettings()
-    varied: Over = over or settings.over
+    varied: Over = settings.over if over is None else _axis(over)
     found: dict[str, Any] = {
         "points": settings.points if points is None else _whole("points", points),
         "rtol": _rtol(rtol, case),
@@ -384,7 +371,7 @@ def _curve_arguments(
         if ends is not None:
             span = curve_range([_bare_or_text(end) for end in ends], varied)
     else:
-        fixed = [name for name in ("speed", "load", "roughness") if name != varied]
+        fixed = [name for name in AXES if name != varied]
         found |= {name: _group(name, text) for name, text in zip(fixed, groups or (), strict=True)}
         found |= {"mu0": _number("mu0", mu0), "beta": _number("beta", beta)}
         span = None
@@ -394,10 +381,15 @@ def _curve_arguments(
     if span is not None:
         found[varied] = span
     elif varied != "speed":
-        raise InputError(
-            f"range is missing; a curve over {varied} needs --range with the lowest and highest {varied}."
-        )
+        raise InputError(f"range is missing; a curve over {varied} needs --range with the lowest and highest {varied}.")
     return found
+
+
+def _axis(text: str) -> Over:
+    for axis in AXES:
+        if text == axis:
+            return axis
+    raise InputError(f"over = {show(text)} must be 'speed', 'load' or 'roughness'.")
 
 
 def _bare_or_text(text: str) -> float | str:
@@ -574,9 +566,8 @@ def _parsing(problem: CycloptsError) -> str:
     if isinstance(problem, MissingArgumentError) and problem.argument is not None:
         count = problem.argument.token_count()[0]
         wanted = f"{count} values" if count > 1 else "a value"
-        return (
-            f"{problem.keyword or problem.argument.name} needs {wanted}, {len(problem.tokens_so_far)} given."
-        )
+        name = getattr(problem, "keyword", None) or problem.argument.name
+        return f"{name} needs {wanted}, {len(problem.tokens_so_far)} given."
     return _line(problem)
 
 

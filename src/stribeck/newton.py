@@ -41,7 +41,7 @@ class Outcome(Enum):
     SINGULAR = "The Jacobian is singular here; near a fold use pseudo-arclength continuation."
     NOT_FINITE = "The residual or its Jacobian is not finite here; try a nearer guess."
     STALLED = "The damped Newton step became too small to make progress; try a nearer guess."
-    REFINEMENT_LIMIT = "The mesh reached its largest size before the tolerance held; ask for a larger rtol."
+    REFINEMENT_LIMIT = "Refining the mesh came to its end before the tolerance held; ask for a larger rtol."
     ROUNDING = (
         "Double precision bounds the error of this state above the asked rtol; "
         "ask for a larger rtol or use the value with its error estimate."

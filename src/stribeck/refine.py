@@ -81,11 +81,16 @@ class Point:
 
 
 def converge(
-    guess: Guess, groups: Groups, rtol: float, tolerances: tuple[float, float] | None = None
+    guess: Guess,
+    groups: Groups,
+    rtol: float,
+    tolerances: tuple[float, float] | None = None,
+    profile_tolerance: float = math.inf,
 ) -> Point:
     """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
 
     ``tolerances`` are the Legendre tails to start with, see :func:`states.mesh_for`; the point tells with which it ended.
+    ``profile_tolerance`` is the tail of the gap between the nodes, which no observable needs small.
     """
     base = solvable(groups)
     law = contact_law(base)
@@ -95,9 +100,10 @@ def converge(
     outcome = Outcome.REFINEMENT_LIMIT
     for _ in range(MAX_REFINEMENTS):
         try:
-            mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail)
+            mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail, profile_tolerance)
         except MeshTooLargeError:
-            tail *= 3.0
+            profile_tolerance *= 10.0
+            tail *= 3.0 if profile_tolerance > 10 * tail else 1.0
             continue
         state = solve_state(base, Operators(mesh), guess, newton_tolerance(rtol))
         if not state.outcome.ok:

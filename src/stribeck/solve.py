@@ -23,6 +23,9 @@ from .units import InputError, show
 RTOL_RANGE = (1e-11, 1e-2)
 """Tolerances that may be asked for; below, double precision reaches no state."""
 
+PROFILE_TAIL = 10.0
+"""Legendre tail left in the logarithm of the gap between the nodes of a single solution, in units of its tolerance."""
+
 LEAST_ESTIMATE = 0.03
 """Part of the tolerance below which no error is stated, as estimates so small are not sure."""
 
@@ -95,7 +98,7 @@ def solve(
     path = cold_start(solvable(groups))
     if not path.outcome.ok:
         raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
-    point = converge(path.states[-1], groups, rtol)
+    point = converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
     return finish(point, groups, contact, rtol, on_failure)
 
 

@@ -194,7 +194,13 @@ def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
 
 
 def mesh_for(
-    guess: Guess, groups: Groups, law: ContactLaw, order: int, tolerance: float, gap_tolerance: float = 1e-2
+    guess: Guess,
+    groups: Groups,
+    law: ContactLaw,
+    order: int,
+    tolerance: float,
+    gap_tolerance: float = 1e-2,
+    profile_tolerance: float = np.inf,
 ) -> Mesh:
     """Return the coarsest mesh that resolves a guess.
 
@@ -212,6 +218,8 @@ def mesh_for(
         Nodes a panel.
     tolerance : float
         Legendre tail allowed on each panel.
+    profile_tolerance : float
+        That of the logarithm of the gap on all other panels, where it is below ten times ``tolerance``.
     gap_tolerance : float
         That of the logarithm of the gap on the panels where the central and the least gap are read off.
 
@@ -239,7 +247,8 @@ def mesh_for(
         centres = x.mean(axis=1)
         read_off = (np.abs(centres) <= half_widths) | (np.abs(centres - guess.least_position) <= half_widths)
         read_off &= stretch[:, 0] == 1.0
-        shape = shape * np.where(read_off, max(0.1, tolerance / gap_tolerance), 0.1)[:, None]
+        weight = max(0.1, tolerance / profile_tolerance)
+        shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[:, None]
         shear = (np.exp(-found[0]) * central_gap).reshape(x.shape)
         return np.concatenate([stretch * pressures.reshape(2, *x.shape), shape[None], shear[None]])
 
