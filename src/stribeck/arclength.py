@@ -167,9 +167,7 @@ def trace(
     if direction not in (1, -1):
         raise ValueError(f"direction = {direction!r}; it must be 1 or -1")
     if not bounds[0] <= parameter <= bounds[1] or parameter == bounds[(1 + direction) // 2]:
-        raise ValueError(
-            f"parameter = {parameter!r}; it must lie within bounds = {bounds!r}, not at the end faced"
-        )
+        raise ValueError(f"parameter = {parameter!r}; it must lie within bounds = {bounds!r}, not at the end faced")
     x0 = np.array(start, dtype=np.float64)
     n = x0.size
 

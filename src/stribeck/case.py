@@ -157,9 +157,7 @@ def _read(path: Path) -> dict[str, Any]:
         # Some editors write a byte-order mark, which TOML does not know.
         table = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as problem:
-        raise InputError(
-            f"{path} is not text (byte {problem.start} is not UTF-8); a case file is a page of TOML."
-        ) from None
+        raise InputError(f"{path} is not text (byte {problem.start} is not UTF-8); a case file is a page of TOML.") from None
     except (ValueError, RecursionError) as problem:
         raise InputError(f"{path} is not valid TOML: {' '.join(str(problem).split())}.") from None
     if not table:
@@ -202,9 +200,9 @@ def _model() -> Any:
     class Curve(Table):
         over: Annotated[Axis, Field(description="'speed', 'load' or 'roughness'")] = CurveSettings.over
         range: Annotated[Any, BeforeValidator(check_range)] = None
-        points: Annotated[
-            int, Field(strict=True, ge=2, le=100_000, description="a whole number from 2 to 100000")
-        ] = CurveSettings.points
+        points: Annotated[int, Field(strict=True, ge=2, le=100_000, description="a whole number from 2 to 100000")] = (
+            CurveSettings.points
+        )
 
     class Solver(Table):
         rtol: Annotated[
@@ -244,9 +242,7 @@ def curve_range(value: Any, over: str) -> tuple[float, float]:
         Where these are no two positive values, the lowest first.
     """
     if not isinstance(value, list) or len(value) != 2:
-        raise InputError(
-            f"range = {show(value)} must be a list of two values, the lowest and the highest {over}."
-        )
+        raise InputError(f"range = {show(value)} must be a list of two values, the lowest and the highest {over}.")
     low, high = (_range_end(end, over) for end in value)
     if not low < high:
         raise InputError(f"range = {show(value)} must increase; write the lowest {over} first.")
@@ -259,9 +255,7 @@ def _range_end(value: Any, over: str) -> float:
     except InputError as problem:
         raise InputError(f"in range, {problem}") from None
     if result == 0:
-        raise InputError(
-            f"in range, {over} = {show(value)} must be positive, because the curve is logarithmic."
-        )
+        raise InputError(f"in range, {over} = {show(value)} must be positive, because the curve is logarithmic.")
     return result
 
 

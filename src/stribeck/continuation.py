@@ -156,18 +156,14 @@ def march(
     sign = 1.0 if stop >= start else -1.0
     ahead = sorted({*map(float, targets or ()), stop} - {start}, key=lambda s: sign * s)
     if ahead and not sign * start < sign * ahead[0] <= sign * ahead[-1] <= sign * stop:
-        raise ValueError(
-            f"targets reach from {ahead[0]!r} to {ahead[-1]!r}; they must lie in {start!r}..{stop!r}"
-        )
+        raise ValueError(f"targets reach from {ahead[0]!r} to {ahead[-1]!r}; they must lie in {start!r}..{stop!r}")
 
     points = list(history)
     failures, failure = 0, None
     length, may_grow = first_step, True
 
     def path(outcome: Outcome) -> Path[S]:
-        return Path(
-            tuple(s for s, _ in points), tuple(state for _, state in points), outcome, failures, failure
-        )
+        return Path(tuple(s for s, _ in points), tuple(state for _, state in points), outcome, failures, failure)
 
     try:
         if not points:

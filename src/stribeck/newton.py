@@ -257,9 +257,7 @@ def root_find(
         return root(Outcome.STEP_LIMIT)
 
 
-def _finite_trial(
-    residual: Callable[[Array], Array], x: Array, dx: Array, t: float
-) -> tuple[Array, Array, float] | None:
+def _finite_trial(residual: Callable[[Array], Array], x: Array, dx: Array, t: float) -> tuple[Array, Array, float] | None:
     """Return x + t dx, its residual and t, this halved until the residual is finite; None if it never is."""
     for _ in range(HALVINGS + 1):
         x_new = x + dx if t == 1.0 else x + t * dx

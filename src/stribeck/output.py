@@ -65,9 +65,7 @@ def check_output(path: PathLike, suffixes: Collection[str], *, force: bool = Fal
             if not os.access(target, os.W_OK):
                 raise InputError(f"{given} is protected against writing; choose another name.")
         if not target.parent.is_dir():
-            raise InputError(
-                f"{given} cannot be written, as there is no folder {given.parent}; make it first."
-            )
+            raise InputError(f"{given} cannot be written, as there is no folder {given.parent}; make it first.")
         probe = _beside(target)
         probe.touch(exist_ok=False)
         probe.unlink()
@@ -112,9 +110,7 @@ def replacing(path: PathLike, suffixes: Collection[str], *, force: bool = False)
         check_output(path, suffixes, force=force)  # the file may have come to exist meanwhile
         os.replace(temporary, target)
     except OSError as problem:
-        raise InputError(
-            f"{path} could not be written ({_reason(problem)}); it is as it was before."
-        ) from None
+        raise InputError(f"{path} could not be written ({_reason(problem)}); it is as it was before.") from None
     finally:
         temporary.unlink(missing_ok=True)
 

@@ -72,9 +72,7 @@ class Groups:
         try:
             _ = self.shape
         except ValueError:
-            shapes = ", ".join(
-                f"{name} {np.shape(getattr(self, name))}" for name in ("speed", "load", "roughness")
-            )
+            shapes = ", ".join(f"{name} {np.shape(getattr(self, name))}" for name in ("speed", "load", "roughness"))
             raise InputError(f"the shapes of the groups do not broadcast: {shapes}.") from None
 
     @property
@@ -291,9 +289,7 @@ class LineContact:
     ) -> None:
         check_modulus_choice(modulus, youngs_modulus, poisson_ratio)
         if modulus is None:
-            modulus = quantity("youngs_modulus", youngs_modulus) / (
-                1 - quantity("poisson_ratio", poisson_ratio) ** 2
-            )
+            modulus = quantity("youngs_modulus", youngs_modulus) / (1 - quantity("poisson_ratio", poisson_ratio) ** 2)
         given = {
             "radius": radius,
             "load": load,
@@ -325,9 +321,7 @@ class LineContact:
         """The Hertz scales, see :class:`HertzScales`."""
         R, E_star, F_N = self.radius, self.modulus, self.load
         a = math.sqrt(F_N / E_star) * math.sqrt(4 * R / math.pi)
-        return HertzScales(
-            half_width=a, indentation=4 * F_N / E_star / math.pi, pressure=2 * F_N / a / math.pi
-        )
+        return HertzScales(half_width=a, indentation=4 * F_N / E_star / math.pi, pressure=2 * F_N / a / math.pi)
 
     @property
     def hersey_number(self) -> float:
@@ -398,9 +392,7 @@ class LineContact:
             Where the groups hold more than one state, or a value is impossible.
         """
         if groups.shape != ():
-            raise InputError(
-                f"groups of shape {groups.shape} hold many states; from_groups takes one, without arrays."
-            )
+            raise InputError(f"groups of shape {groups.shape} hold many states; from_groups takes one, without arrays.")
         R, E_star = quantity("radius", radius), quantity("modulus", modulus)
         eta, beta, alpha = quantity("viscosity", viscosity), quantity("beta", beta), quantity("alpha", alpha)
         F_N = math.pi * beta * beta * R * E_star * float(groups.load)
@@ -423,8 +415,7 @@ class LineContact:
         except (InputError, ZeroDivisionError):
             values = ", ".join(f"{name} = {getattr(self, name):g}" for name in self.__dataclass_fields__)
             raise InputError(
-                "the dimensionless groups of this contact leave the range of double precision; "
-                f"check {values} (all in SI)."
+                f"the dimensionless groups of this contact leave the range of double precision; check {values} (all in SI)."
             ) from None
 
 
@@ -480,13 +471,9 @@ def check_modulus_choice(modulus: Any, youngs_modulus: Any, poisson_ratio: Any) 
             "give either modulus, or youngs_modulus and poisson_ratio."
         )
     if modulus is None and not given:
-        raise InputError(
-            "modulus (which is E*) is missing; give it, or youngs_modulus and poisson_ratio together."
-        )
+        raise InputError("modulus (which is E*) is missing; give it, or youngs_modulus and poisson_ratio together.")
     if modulus is None and missing:
-        raise InputError(
-            f"{missing[0]} is missing beside {given[0]}; give both, or modulus (which is E*) alone."
-        )
+        raise InputError(f"{missing[0]} is missing beside {given[0]}; give both, or modulus (which is E*) alone.")
 
 
 def _group(name: str, value: Any, positive: bool) -> float | Array:

@@ -63,9 +63,7 @@ LEGEND = 0.55
 """Heights of a line of the footer and of the legend [inch]."""
 
 
-def plot_curve(
-    curve: StribeckCurve, path: PathLike | None = None, *, force: bool = False, title: str = ""
-) -> Figure:
+def plot_curve(curve: StribeckCurve, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
     """Draw a Stribeck curve.
 
     The first panel shows friction and its parts against the Hersey number, or against what varies where that
@@ -145,9 +143,7 @@ def plot_curve(
     return _finish(figure, path, force)
 
 
-def plot_profile(
-    solution: Solution, path: PathLike | None = None, *, force: bool = False, title: str = ""
-) -> Figure:
+def plot_profile(solution: Solution, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
     """Draw gap and pressures along the contact, in SI units where the solution has a contact.
 
     Parameters
@@ -173,9 +169,7 @@ def plot_profile(
     MissingExtraError
         If matplotlib is not installed.
     """
-    figure, (above, below) = _figure(
-        (7.5, 6.0), _profile_footer(solution), rows=2, title=title or "Gap and pressure"
-    )
+    figure, (above, below) = _figure((7.5, 6.0), _profile_footer(solution), rows=2, title=title or "Gap and pressure")
     x = _positions(solution)
     fields = solution.profile(x)
     if solution.contact is None:
@@ -311,9 +305,7 @@ def _abscissa(curve: StribeckCurve) -> tuple[Array, str]:
     if curve.over == "speed":
         return curve.hersey_number, r"Hersey number $\eta U/F_N$"
     if curve.contact is None:
-        symbol = {"load": r"$F_N/(\pi\beta^2 R E^*)$", "roughness": r"$h_\mathrm{rms}/(4\alpha\beta^2 R)$"}[
-            curve.over
-        ]
+        symbol = {"load": r"$F_N/(\pi\beta^2 R E^*)$", "roughness": r"$h_\mathrm{rms}/(4\alpha\beta^2 R)$"}[curve.over]
         return curve.values, f"{curve.over} group {symbol}"
     unit = DIMENSIONS[QUANTITIES[curve.over].dimension].unit
     return curve.values, f"{curve.over} {SYMBOLS[curve.over]} ({unit})"
@@ -339,16 +331,10 @@ def _draw_friction(axes: Axes, curve: StribeckCurve, x: Array, *, parts: bool = 
         )
         axes.plot(x, curve.friction_viscous, color=FLUID, lw=1.5, ls="-.", zorder=5, label="from the fluid")
     if (error > 0.01 * total).any():
-        axes.fill_between(
-            x, total - error, total + error, color=INK, alpha=0.2, lw=0, zorder=3, label="its error"
-        )
+        axes.fill_between(x, total - error, total + error, color=INK, alpha=0.2, lw=0, zorder=3, label="its error")
     if (total > 0).any():
         low, high = total[total > 0].min(), total.max()
-        seen = [
-            part.max()
-            for part in (curve.friction_contact, curve.friction_viscous)
-            if part.max() > 1e-4 * high
-        ]
+        seen = [part.max() for part in (curve.friction_contact, curve.friction_viscous) if part.max() > 1e-4 * high]
         axes.set_ylim(min([low / 10**DECADES_BELOW, *(part / 5 for part in seen)]), high * 3)
     if len(curve) > 1:
         axes.set_xlim(x.min(), x.max())
@@ -435,11 +421,7 @@ def _si(value: float, name: str, digits: int) -> str:
 
 
 def _curve_footer(curve: StribeckCurve) -> list[tuple[str, str]]:
-    count = (
-        f"{len(curve)} points"
-        if len(curve) == curve.requested
-        else f"{len(curve)} of {curve.requested} points"
-    )
+    count = f"{len(curve)} points" if len(curve) == curve.requested else f"{len(curve)} of {curve.requested} points"
     law = curve.solutions[0].law if len(curve) else ""
     first = [*_inputs(curve.contact, None if curve.over != "speed" else "speed", curve.over)]
     if curve.contact is None:
@@ -462,9 +444,7 @@ def _curve_footer(curve: StribeckCurve) -> list[tuple[str, str]]:
 
 
 def _profile_footer(solution: Solution) -> list[tuple[str, str]]:
-    groups = [
-        f"{name} group {float(getattr(solution.groups, name)):.4g}" for name in ("speed", "load", "roughness")
-    ]
+    groups = [f"{name} group {float(getattr(solution.groups, name)):.4g}" for name in ("speed", "load", "roughness")]
     second = [
         solution.law + (" contact law" if solution.law == "exponential" else ""),
         f"rtol {solution.rtol:g}",
@@ -479,11 +459,7 @@ def _inputs(contact: LineContact | None, *without: str | None) -> list[str]:
     """Return the inputs of a contact in words, but for those that vary."""
     if contact is None:
         return []
-    return [
-        f"{symbol} = {_si(getattr(contact, name), name, 4)}"
-        for name, symbol in SYMBOLS.items()
-        if name not in without
-    ]
+    return [f"{symbol} = {_si(getattr(contact, name), name, 4)}" for name, symbol in SYMBOLS.items() if name not in without]
 
 
 def _lines(parts: Sequence[Sequence[str]], notes: Sequence[str], width: int) -> list[tuple[str, str]]:

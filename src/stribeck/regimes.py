@@ -114,6 +114,5 @@ def friction_elasticities(
     direct = {"friction_coefficient": friction.contact, "beta": friction.viscous}
     total = friction.total or math.nan
     return solution, {
-        name: (float(slopes @ np.array(exponents)) + direct.get(name, 0.0)) / total
-        for name, exponents in EXPONENTS.items()
+        name: (float(slopes @ np.array(exponents)) + direct.get(name, 0.0)) / total for name, exponents in EXPONENTS.items()
     }

@@ -157,9 +157,7 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[s
     }
 
 
-def regimes_json(
-    solution: Solution, elasticities: Elasticities, curve: StribeckCurve, title: str = ""
-) -> dict[str, Any]:
+def regimes_json(solution: Solution, elasticities: Elasticities, curve: StribeckCurve, title: str = "") -> dict[str, Any]:
     """Return the regime of a state, the transitions around it and what moves its friction.
 
     Parameters
@@ -192,8 +190,7 @@ def regimes_json(
         "friction_error": friction.error,
         "definition": curve.definition,
         "transitions": [
-            {**_landmark(mark), "factor": mark.value / speed if speed > 0 else math.inf}
-            for mark in curve.transitions
+            {**_landmark(mark), "factor": mark.value / speed if speed > 0 else math.inf} for mark in curve.transitions
         ],
         "regimes": [{"regime": name, "from": low, "to": high} for name, low, high in curve.regime_ranges],
         "elasticities": elasticities,
@@ -232,9 +229,7 @@ def print_solution(
     _print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes)
 
 
-def _solution_rows(
-    solution: Solution, mu0: float | None, beta: float | None
-) -> Iterator[tuple[str, str, str, str]]:
+def _solution_rows(solution: Solution, mu0: float | None, beta: float | None) -> Iterator[tuple[str, str, str, str]]:
     errors = solution.errors
     for definition in DEFINITIONS:
         f = solution.friction(mu0, beta, definition)
@@ -305,9 +300,7 @@ def print_curve(console: Console, curve: StribeckCurve, title: str, files: Seque
         _say(console, f"Written: {name}")
 
 
-def print_regimes(
-    console: Console, solution: Solution, elasticities: Elasticities, curve: StribeckCurve, title: str
-) -> None:
+def print_regimes(console: Console, solution: Solution, elasticities: Elasticities, curve: StribeckCurve, title: str) -> None:
     """Print in which regime a contact runs, where the transitions lie, and what moves its friction.
 
     Parameters
@@ -337,9 +330,7 @@ def print_regimes(
     if curve.transitions:
         table = _table("where", "speed", "from here", "friction", right=(1, 3))
         for mark in curve.transitions:
-            table.add_row(
-                mark.name, _place(curve, mark.value, 4), _way(mark, contact.speed), f"{mark.friction:.4g}"
-            )
+            table.add_row(mark.name, _place(curve, mark.value, 4), _way(mark, contact.speed), f"{mark.friction:.4g}")
         console.print(table)
     else:
         _say(
@@ -350,9 +341,7 @@ def print_regimes(
     for name in sorted(elasticities, key=lambda name: -abs(elasticities[name])):
         value, slope = getattr(contact, name), elasticities[name]
         text = format_si(value, QUANTITIES[name].dimension)
-        table.add_row(
-            LABELS.get(name, name), text, f"{slope:+.3f}", f"{100 * _change(1.1, slope):+.2g} % friction"
-        )
+        table.add_row(LABELS.get(name, name), text, f"{slope:+.3f}", f"{100 * _change(1.1, slope):+.2g} % friction")
     console.print(table)
     strongest = _strongest(elasticities)
     if strongest is not None:
@@ -364,14 +353,10 @@ def print_regimes(
             console,
             f"The {name} moves friction most: 10 % {way} of it lowers friction by {gain}, all else kept.",
         )
-    _print_outcome(
-        console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), solution.notes
-    )
+    _print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), solution.notes)
 
 
-def _print_head(
-    console: Console, title: str, contact: LineContact | None, groups: Groups, over: str | None = None
-) -> None:
+def _print_head(console: Console, title: str, contact: LineContact | None, groups: Groups, over: str | None = None) -> None:
     """Print the headline, the inputs and the groups, without those that vary."""
     if title:
         console.print(title, style="bold", markup=False, highlight=False)

@@ -227,9 +227,7 @@ class Solution:
         """Hersey number eta U/F_N [-]: of the contact, or for beta = 1 where only groups are known."""
         return float(self.groups.hersey_number() if self.contact is None else self.contact.hersey_number)
 
-    def friction(
-        self, mu0: float | None = None, beta: float | None = None, definition: Definition = "paper"
-    ) -> Friction:
+    def friction(self, mu0: float | None = None, beta: float | None = None, definition: Definition = "paper") -> Friction:
         r"""Return the friction coefficient.
 
         .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)

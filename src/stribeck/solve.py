@@ -53,9 +53,7 @@ class SolveError(RuntimeError):
 
 
 @one_blas_thread
-def solve(
-    problem: Groups | LineContact, *, rtol: float = 1e-6, on_failure: Literal["raise", "return"] = "raise"
-) -> Solution:
+def solve(problem: Groups | LineContact, *, rtol: float = 1e-6, on_failure: Literal["raise", "return"] = "raise") -> Solution:
     r"""Solve one state of the lubricated rough contact, from cold.
 
     The coupled equations are [BP] Appendix A: contact pressure exponential in the gap, Reynolds' equation, plane-strain
@@ -127,9 +125,7 @@ def describe(groups: Groups) -> str:
     return f"speed {float(groups.speed):.6g}, load {float(groups.load):.6g}, roughness {float(groups.roughness):.6g}"
 
 
-def finish(
-    point: Point, groups: Groups, contact: LineContact | None, rtol: float, on_failure: str = "raise"
-) -> Solution:
+def finish(point: Point, groups: Groups, contact: LineContact | None, rtol: float, on_failure: str = "raise") -> Solution:
     """Return the solution that a refined state is, or raise what its outcome asks for."""
     solution = solution_of(point, contact, rtol)
     if solution is not None and (point.outcome.ok or on_failure == "return"):

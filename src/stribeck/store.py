@@ -95,13 +95,8 @@ def curve_dataset(curve: StribeckCurve, title: str = "") -> xarray.Dataset:
     over = curve.over
     columns = _columns(curve)
     dataset = xarray.Dataset(
-        {
-            name: (over, values, {"units": unit, "long_name": label})
-            for name, (values, unit, label) in columns.items()
-        },
-        coords={
-            over: (over, curve.values, {"units": _unit_over(curve), "long_name": f"{over}, what varies"})
-        },
+        {name: (over, values, {"units": unit, "long_name": label}) for name, (values, unit, label) in columns.items()},
+        coords={over: (over, curve.values, {"units": _unit_over(curve), "long_name": f"{over}, what varies"})},
         attrs=_attributes(curve, title),
     )
     if curve.contact is None:

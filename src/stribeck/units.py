@@ -76,9 +76,7 @@ _NOUNS = {
 }
 
 # Bounded, because the number becomes an exact fraction and 1e999999999 would fill the memory.
-_NUMBER = re.compile(
-    r"\s*([+-]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][+-]?[0-9]{1,3})?)\s*(.*?)\s*", re.DOTALL
-)
+_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][+-]?[0-9]{1,3})?)\s*(.*?)\s*", re.DOTALL)
 _EXPONENT = re.compile(r"(?:\^|\*\*)\s*(?:[+-]?[0-9]|\(\s*[+-]?[0-9]\s*\))")
 _UNIT = re.compile(r"[A-Za-zµμÅ_#()*/ ]*", re.ASCII)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
@@ -121,9 +119,7 @@ def to_si(value: Any, dimension: str, name: str) -> float:
     except OverflowError:
         result = math.inf
     if not math.isfinite(result):
-        raise InputError(
-            f"{name} = {show(value)} is not a finite number in double precision; {_advice(kind)}."
-        )
+        raise InputError(f"{name} = {show(value)} is not a finite number in double precision; {_advice(kind)}.")
     return result
 
 
@@ -177,10 +173,7 @@ def _from_text(text: str, kind: Dimension, name: str) -> Fraction:
     if not kind.unit:
         raise InputError(f"{received} is text where a number belongs; {_advice(kind)}.")
     if "," in text:
-        raise InputError(
-            f"{received} has a comma; write a decimal point and no thousands separator, "
-            f"as in '{kind.example}'."
-        )
+        raise InputError(f"{received} has a comma; write a decimal point and no thousands separator, as in '{kind.example}'.")
     parts = _NUMBER.fullmatch(text.replace("\N{MINUS SIGN}", "-"))
     if parts is None:
         raise InputError(f"{received} does not begin with a number; {_advice(kind)}.")
@@ -219,9 +212,7 @@ def _factor(unit: str, kind: Dimension, received: str) -> Fraction:
     except Exception:  # pint's parser leaks errors of many kinds, and each means the same to the user
         raise InputError(f"{received} has a unit that cannot be read; {_advice(kind)}.") from None
     if base.dimensionality != registry.parse_units(kind.unit).dimensionality:
-        raise InputError(
-            f"{received} is {_noun(base, registry)}; {kind.noun} such as '{kind.example}' is wanted."
-        )
+        raise InputError(f"{received} is {_noun(base, registry)}; {kind.noun} such as '{kind.example}' is wanted.")
     return Fraction(factor)
 
 
@@ -234,8 +225,7 @@ def _refuse_plural_symbol(symbol: str, registry: Any, received: str) -> None:
     prefix, unit, _ = candidates[0]
     if singular == registry.get_symbol(prefix + unit) and singular != unit:
         raise InputError(
-            f"{received} has the unclear unit '{symbol}'; "
-            f"write '{singular}*s' for the product with seconds, or '{singular}'."
+            f"{received} has the unclear unit '{symbol}'; write '{singular}*s' for the product with seconds, or '{singular}'."
         )
 
 
