@@ -8,11 +8,9 @@ from typing import Literal
 import numpy as np
 
 from .parameters import LineContact
-from .refine import converge, solvable
 from .sensitivity import friction_slopes
 from .solution import Definition, Solution, check_definition
-from .solve import SolveError, check_rtol, describe, finish, solve
-from .start import cold_start
+from .solve import check_rtol, finish, solve, solved_point
 from .threads import one_blas_thread
 
 Regime = Literal["boundary", "mixed", "hydrodynamic"]
@@ -103,10 +101,7 @@ def friction_elasticities(
     if groups.speed == 0:
         solution, slopes = solve(contact, rtol=rtol), np.zeros(3)
     else:
-        path = cold_start(solvable(groups))
-        if not path.outcome.ok:
-            raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
-        point = converge(path.states[-1], groups, rtol)
+        point = solved_point(groups, rtol)
         solution = finish(point, groups, contact, rtol)
         assert point.state is not None
         slopes = friction_slopes(point.state, contact.friction_coefficient, contact.beta, definition)

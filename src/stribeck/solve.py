@@ -93,11 +93,15 @@ def solve(problem: Groups | LineContact, *, rtol: float = 1e-6, on_failure: Lite
         raise InputError(f"on_failure = {show(on_failure)}; it must be 'raise' or 'return'.")
     if groups.speed == 0 and groups.roughness == 0:
         return hertz_solution(groups, contact, rtol)
+    return finish(solved_point(groups, rtol), groups, contact, rtol, on_failure)
+
+
+def solved_point(groups: Groups, rtol: float) -> Point:
+    """Return the refined state of ``groups`` from cold; raise where no path leads there."""
     path = cold_start(solvable(groups))
     if not path.outcome.ok:
         raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
-    point = converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
-    return finish(point, groups, contact, rtol, on_failure)
+    return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
 
 
 def as_groups(problem: Groups | LineContact) -> tuple[Groups, LineContact | None]:
