@@ -269,3 +269,17 @@ def test_drawing_needs_neither_pyplot_nor_a_display(tmp_path):
     """
     answer = run_python(textwrap.dedent(code), tmp_path / "curve.png", DISPLAY="", MPLBACKEND="TkAgg")
     assert answer.code == 0, answer.err
+
+
+@pytest.mark.parametrize("title", ["costs $5", r"$\frac{1$", "a # b % c & d"])
+def test_a_title_is_taken_by_the_letter(curve, tmp_path, title):
+    figure = plot_curve(curve, tmp_path / "curve.png", title=title)
+    assert title in words(figure)
+
+
+def test_a_long_title_is_cut_to_the_width_of_the_picture(curve, solution):
+    for figure in (plot_curve(curve, title=60 * "very long "), plot_profile(solution, title=60 * "very\nlong ")):
+        figure.canvas.draw()
+        [title] = [text for text in figure.texts if text.get_text().startswith("very long")]
+        assert title.get_text().endswith("…")
+        assert 0.5 < title.get_window_extent().x1 / figure.bbox.x1 < 1

@@ -546,7 +546,7 @@ def _bar(progress: _Progress) -> Iterator[None]:
 
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        progress.bar, progress.task = bar, bar.add_task("looking for the range", total=None)
+        progress.bar, progress.task = bar, bar.add_task("starting", total=None)
         yield
 
 

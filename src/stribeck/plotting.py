@@ -265,7 +265,9 @@ def _figure(
         ax.tick_params(which="both", direction="in", top=True, right=True, colors=INK, labelsize=9)
         ax.xaxis.label.set(color=INK, size=10.5)
         ax.yaxis.label.set(color=INK, size=10.5)
-    figure.text(0.8 / width, 1 - 0.16 / height, title, size=14, weight="bold", color=INK, va="top")
+    headline = textwrap.shorten(title, int(7.3 * width), placeholder=" …")
+    place = 0.8 / width, 1 - 0.16 / height
+    figure.text(*place, headline, size=14, weight="bold", color=INK, va="top", parse_math=False)
     for i, (line, colour) in enumerate(reversed(footer)):
         figure.text(0.8 / width, (0.14 + LINE * i) / height, line, size=8, color=colour, va="bottom")
     return figure, axes
