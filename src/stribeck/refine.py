@@ -119,6 +119,7 @@ def converge(
         if best.outcome.ok:
             return best
         if estimate.total <= 3 * estimate.floor:
+            outcome = Outcome.ROUNDING
             break
         tail *= shrink(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
         between = shrink(rtol / (estimate.between_nodes + 1e-300))
