@@ -28,3 +28,12 @@ __all__ = [
     "solve",
     "stribeck_curve",
 ]
+
+
+def __getattr__(name: str) -> str:
+    """Return the version, read from the installed package only when asked for."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("stribeck")
+    raise AttributeError(f"module 'stribeck' has no attribute {name!r}")
