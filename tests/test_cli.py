@@ -342,6 +342,24 @@ def test_a_curve_whose_path_is_lost_keeps_its_points_and_exits_with_1(capsys, tm
     assert opened(tmp_path / "curve.nc").attrs["complete"] == 0
 
 
+def test_a_curve_that_rounding_ends_is_refused_and_not_written(capsys, tmp_path, monkeypatch):
+    whole = sb.stribeck_curve
+
+    def rounded(*arguments, **options):
+        curve = whole(*arguments, **options)
+        object.__setattr__(curve, "outcome", Outcome.ROUNDING)
+        return curve
+
+    monkeypatch.setattr(cli, "stribeck_curve", rounded)
+    answer = call(capsys, "curve", PDMS, *FEW, "-o", tmp_path / "curve.nc")
+    assert answer.code == 2
+    assert answer.err == (
+        "stribeck: rtol = 1e-06 cannot be reached: double precision bounds the error of the states of which the speed "
+        "is below 300 µm/s above it; ask for a larger rtol.\n"
+    )
+    assert os.listdir(tmp_path) == []
+
+
 def test_an_unexpected_error_is_one_sentence_unless_debugging(capsys, monkeypatch):
     def bug(*arguments, **options):
         raise ZeroDivisionError("division\nby zero")

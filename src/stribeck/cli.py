@@ -25,11 +25,11 @@ from .case import Case, curve_range, load_case
 from .curve import Over, StribeckCurve, stribeck_curve
 from .newton import Outcome
 from .output import MissingExtraError, check_output
-from .parameters import Groups
+from .parameters import QUANTITIES, Groups
 from .regimes import friction_elasticities
 from .solution import coefficients
 from .solve import SolveError, solve
-from .units import InputError, show
+from .units import InputError, format_si, show
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -464,10 +464,16 @@ def _write(
 
 
 def _too_small(curve: StribeckCurve) -> str:
-    where = f" at {curve.over} below {curve.values[0]:.3g}" if len(curve) else ""
-    return f"rtol = {curve.rtol:g}: {Outcome.ROUNDING.value[0].lower()}{Outcome.ROUNDING.value[1:]}".replace(
-        "this state", f"the states{where}"
+    where = f"the states of which the {curve.over} is below {_si(curve)}" if len(curve) else "these states"
+    return (
+        f"rtol = {curve.rtol:g} cannot be reached: double precision bounds the error of {where} above it; "
+        "ask for a larger rtol."
     )
+
+
+def _si(curve: StribeckCurve) -> str:
+    value = float(curve.values[0])
+    return f"{value:.3g}" if curve.contact is None else format_si(value, QUANTITIES[curve.over].dimension)
 
 
 def _console() -> Console:
