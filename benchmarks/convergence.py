@@ -49,7 +49,7 @@ def head() -> str:
     except (OSError, subprocess.CalledProcessError):
         commit = "unknown"
     versions = f"Python {platform.python_version()}, NumPy {np.__version__}, SciPy {scipy.__version__}"
-    return f"Made by `benchmarks/convergence.py` on {f"{platform.system()} {platform.machine()}"}; {versions}; commit {commit}."
+    return f"Made by `benchmarks/convergence.py` on {platform.system()} {platform.machine()}; {versions}; commit {commit}."
 
 
 def observed(state: State) -> tuple[np.ndarray, float, np.ndarray]:
