@@ -1,0 +1,190 @@
+"""What a formula is: a function of the groups that knows its range, the order of its error, and its source.
+
+Nothing here is physics.  Used outside its range a formula still answers, and says so by an :class:`OutOfRangeWarning`;
+where it has no value it answers nan, and says so too.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Concatenate, Generic, Literal, ParamSpec
+
+import numpy as np
+
+from .._types import Array, Flags
+from ..parameters import Groups
+from .constants import FILM_CONSTANT
+
+Value = float | Array
+Arguments = ParamSpec("Arguments")
+Plane = Literal["smooth", "rest", "mixed"]
+
+
+class OutOfRangeWarning(UserWarning):
+    """A formula was used outside its range, or has no value there."""
+
+
+def _inverse(value: Value) -> Value:
+    with np.errstate(divide="ignore"):
+        return np.divide(1.0, value)
+
+
+def _ratio(numerator: Value, denominator: Value) -> Value:
+    """Return a quotient, infinite where the denominator is zero."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(np.equal(denominator, 0), np.inf, np.divide(numerator, denominator))
+
+
+PARAMETERS: dict[str, Callable[[Groups], Value]] = {
+    "speed": lambda g: g.speed,
+    "load": lambda g: g.load,
+    "relative_roughness": lambda g: g.relative_roughness,
+    "1/speed": lambda g: _inverse(g.speed),
+    "1/relative_roughness": lambda g: _inverse(g.relative_roughness),
+    "fluid_number": lambda g: _ratio(g.speed, np.square(g.relative_roughness)),
+    "film_ratio": lambda g: _ratio(FILM_CONSTANT * g.speed**0.6, g.relative_roughness),
+}
+r"""Parameters in which ranges and errors are stated: the groups, kappa, the fluid number lambda/kappa**2 (lubrication pressure
+on the scale of the roughness over Hertz pressure), and the film ratio c lambda**(3/5)/kappa (smooth film over h_rms/alpha)."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Closed interval of one parameter.
+
+    Attributes
+    ----------
+    parameter : str
+        Key of :data:`PARAMETERS`.
+    low, high : float
+        Ends of the interval.
+    """
+
+    parameter: str
+    low: float = 0.0
+    high: float = math.inf
+
+    def holds(self, groups: Groups) -> Flags:
+        """Return where the parameter lies in the interval."""
+        value = PARAMETERS[self.parameter](groups)
+        return np.asarray((self.low <= value) & (value <= self.high))
+
+    def __str__(self) -> str:
+        """Return the interval in words."""
+        name = self.parameter.replace("_", " ")
+        if math.isinf(self.high):
+            return f"{name} from {self.low:g}"
+        return f"{name} {self.low:g} to {self.high:g}"
+
+
+@dataclass(frozen=True, eq=False)
+class Formula(Generic[Arguments]):
+    r"""A formula: call it with :class:`~stribeck.Groups`, of floats or of arrays that broadcast.
+
+    Attributes
+    ----------
+    function : callable
+        The formula without any check of its range.
+    predicts : str
+        What the solver is asked for to judge it: a key of :data:`stribeck.validity.MEASURED`.
+    plane : {"smooth", "rest", "mixed"}
+        Whether it is about the smooth contact (roughness 0, whatever the groups say), the contact at rest (speed 0), or both.
+    limits : tuple of Limit
+        Its range.
+    worst : float
+        Largest relative error in this range, measured.
+    small : str
+        The parameter in which its error vanishes, key of :data:`PARAMETERS`; empty for a formula that fits everywhere.
+    error_order : float
+        The relative error goes as ``small**error_order``.
+    approach : callable or None
+        ``approach(small)`` returns the groups along which the tests follow the error.
+    steps : tuple of float
+        Values of ``small`` at which they do.
+    interval : callable or None
+        For a field, ``interval(groups)`` returns the positions [a] between which it is judged.
+    source : str
+        Where it comes from.
+    """
+
+    function: Callable[Concatenate[Groups, Arguments], Value]
+    predicts: str
+    plane: Plane
+    limits: tuple[Limit, ...]
+    worst: float
+    small: str
+    error_order: float
+    approach: Callable[[float], Groups] | None
+    steps: tuple[float, ...]
+    interval: Callable[[Groups], tuple[float, float]] | None
+    source: str
+
+    @property
+    def name(self) -> str:
+        """Module and name, such as ``hydrodynamic.friction``."""
+        return f"{self.function.__module__.rpartition('.')[2]}.{self.function.__name__}"
+
+    @property
+    def range(self) -> str:
+        """The range in words."""
+        return ", ".join(map(str, self.limits)) or "everywhere"
+
+    def valid(self, groups: Groups) -> Flags:
+        """Return where all limits hold.
+
+        Parameters
+        ----------
+        groups : Groups
+            States.
+
+        Returns
+        -------
+        ndarray of bool
+            Of the shape of the groups.
+        """
+        found = np.ones(groups.shape, dtype=bool)
+        for limit in self.limits:
+            found = found & limit.holds(groups)
+        return found
+
+    def __call__(self, groups: Groups, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Value:
+        """Return the value, and warn where it is outside the range or missing."""
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
+            value = self.function(groups, *args, **kwargs)
+        if np.isnan(value).any():
+            self._warn("has no value, and is nan,")
+        elif not np.all(self.valid(groups)):
+            self._warn("is used")
+        return value
+
+    def _warn(self, what: str) -> None:
+        # One text for all values, so that Python's default filter shows it once.
+        warnings.warn(f"{self.name} {what} outside its range: {self.range}.", OutOfRangeWarning, stacklevel=3)
+
+
+def formula(
+    *,
+    predicts: str,
+    plane: Plane,
+    limits: tuple[Limit, ...],
+    worst: float,
+    small: str = "",
+    error_order: float = 0.0,
+    approach: Callable[[float], Groups] | None = None,
+    steps: tuple[float, ...] = (),
+    interval: Callable[[Groups], tuple[float, float]] | None = None,
+    source: str,
+) -> Callable[[Callable[Concatenate[Groups, Arguments], Value]], Formula[Arguments]]:
+    """Return the decorator that makes a function a :class:`Formula`; arguments as its attributes."""
+
+    def decorate(function: Callable[Concatenate[Groups, Arguments], Value]) -> Formula[Arguments]:
+        made = Formula(function, predicts, plane, limits, worst, small, error_order, approach, steps, interval, source)
+        kept: dict[str, object] = {name: getattr(function, name) for name in functools.WRAPPER_ASSIGNMENTS}
+        vars(made).update(kept, __wrapped__=function)
+        return made
+
+    return decorate
