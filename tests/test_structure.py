@@ -42,7 +42,7 @@ MAY_IMPORT = {
     "continuation": {"newton"},
     "arclength": {"continuation", "newton"},
     "contact_laws": {"parameters"},
-    "asymptotics": {"elasticity", "hertz", "mesh", "newton", "parameters", "units"},
+    "asymptotics": {"elasticity", "hertz", "mesh", "newton", "parameters", "threads", "units"},
     "elasticity": {"mesh", "parameters"},
     "reynolds": {"mesh", "parameters"},
     "equations": {"contact_laws", "elasticity", "mesh", "parameters", "reynolds"},
@@ -62,7 +62,13 @@ MAY_IMPORT = {
     "output": {"units"},
     "store": RESULTS | {"curve", "output", "regimes"},
     "plotting": RESULTS | {"curve", "output", "regimes"},
-    "report": RESULTS | {"case", "curve", "regimes", "store"},
+    "figures": RESULTS | {"asymptotics", "curve", "hertz", "output", "plotting", "regimes", "store", "validity"},
+    "report": RESULTS | {"case", "curve", "distances", "regimes", "store"},
+    "distances": RESULTS | {"curve", "regimes"},
+    "merging": RESULTS | {"follow", "refine", "sensitivity", "span"},
+    "phase_diagram": RESULTS | {"curve", "merging", "phase_dataset", "regimes", "span"},
+    "phase_dataset": RESULTS | {"asymptotics", "output", "phase_diagram", "store"},
+    "plot_phase": RESULTS | {"output", "plotting"},
 }
 OPEN = {"__init__", "__main__", "app", "cli"}
 

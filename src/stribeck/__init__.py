@@ -5,6 +5,7 @@ from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .newton import Outcome
 from .parameters import Groups, HertzScales, InputError, LineContact
+from .phase_diagram import phase_diagram
 from .regimes import regime_of
 from .solution import Friction, Profile, Solution
 from .solve import SolveError, solve
@@ -24,6 +25,7 @@ __all__ = [
     "StribeckCurve",
     "asymptotics",
     "load_case",
+    "phase_diagram",
     "regime_of",
     "solve",
     "stribeck_curve",

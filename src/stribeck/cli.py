@@ -23,6 +23,7 @@ from cyclopts import App, CycloptsError, MissingArgumentError, Parameter, Unused
 
 from .case import Case, curve_range, load_case
 from .curve import Over, StribeckCurve, stribeck_curve
+from .distances import transition_distances
 from .newton import Outcome
 from .output import MissingExtraError, check_output
 from .parameters import QUANTITIES, Groups
@@ -119,7 +120,7 @@ def make_app() -> App:
         help_format="plaintext",
         suppress_keyboard_interrupt=False,
     )
-    for command in (solve_command, curve_command, regimes_command):
+    for command in (solve_command, curve_command, regimes_command, figures_command):
         app.command(command, name=command.__name__.removesuffix("_command"))
     app.register_install_completion_command()
     return app
@@ -266,7 +267,7 @@ def curve_command(
 
 
 def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
-    """Tell the lubrication regime of a contact, the transition speeds, and what moves its friction.
+    """Tell the lubrication regime of a contact, how far the next ones are, and what moves its friction.
 
     Example: stribeck regimes examples/pdms_cylinder.toml
 
@@ -290,15 +291,70 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
             on_point=progress,
         )
         _ = curve.transitions
-    if curve.outcome is Outcome.INTERRUPTED:
-        raise KeyboardInterrupt
+        if curve.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        distances = transition_distances(
+            loaded.contact, rtol=loaded.rtol, definition=loaded.definition, on_point=progress
+        )
     from . import report
 
     if json:
-        print(report.dump(report.regimes_json(solution, elasticities, curve, loaded.title)))
+        print(report.dump(report.regimes_json(solution, elasticities, curve, distances, loaded.title)))
     else:
-        report.print_regimes(_console(), solution, elasticities, curve, loaded.title)
+        report.print_regimes(_console(), solution, elasticities, curve, distances, loaded.title)
     return 0 if curve.outcome.ok else _complain(curve.outcome.value, FAILED)
+
+
+def figures_command(
+    names: Annotated[list[str] | None, Parameter(name="FIGURE", negative="", show_default=False)] = None,
+    /,
+    *,
+    out: Annotated[Path, Parameter(name="--out")] = Path("figures"),
+    force: Flag = False,
+) -> int:
+    """Make figures of the paper from our own solves: PNG, SVG and the data as NetCDF for each.
+
+    Example: stribeck figures
+
+    Example: stribeck figures 3 5b S1 --out pictures
+
+    Data in the folder are used again as long as the sources that they come from are the same.
+
+    After Ctrl-C the figures that are finished stay; the exit code is then 130.
+
+    Parameters
+    ----------
+    names
+        Figures: 3 to 11 and S1; all of them if none is given.
+    out
+        Folder to write to; made if the folder above it exists.
+    force
+        Solve again what the folder already holds, and replace files that are not of this command.
+    """
+    from .figures import make_figures
+
+    with _interruptible() as progress:
+        made = make_figures(
+            names or (),
+            out,
+            force=force,
+            on_progress=lambda name, done, steps: progress(done, steps, f"figure {name}"),
+        )
+    console = _console()
+    for each in made:
+        if each.files:
+            kept = ", kept data" if each.outcome == "reused" else ""
+            names_of_files = ", ".join(map(str, each.files))
+            console.print(f"Figure {each.name}{kept}: {names_of_files}", markup=False, highlight=False, soft_wrap=True)
+    for each in made:
+        if each.outcome in ("failed", "unwritten"):
+            _complain(each.message, FAILED)
+    outcomes = {each.outcome for each in made}
+    if "interrupted" in outcomes:
+        finished = ", ".join(each.name for each in made if each.files)
+        kept = f"finished and kept in {out}: {finished}" if finished else "none was finished"
+        return _complain(f"{made[-1].message.rstrip('.')}; {kept}.", INTERRUPTED)
+    return FAILED if "failed" in outcomes else BAD_INPUT if "unwritten" in outcomes else 0
 
 
 # --- arguments ---
@@ -505,11 +561,11 @@ class _Progress:
         self.bar: Any = None
         self.task: Any = None
 
-    def __call__(self, done: int, total: int) -> None:
+    def __call__(self, done: int, total: int, what: str = "solving") -> None:
         """Take note of a finished point."""
         self.started = True
         if self.bar is not None:
-            self.bar.update(self.task, completed=done, total=total, description="solving")
+            self.bar.update(self.task, completed=done, total=total, description=what)
         if self.wanted and done < total:
             raise KeyboardInterrupt
 
@@ -583,7 +639,7 @@ def _line(problem: BaseException) -> str:
 
 
 def _command(tokens: Sequence[str]) -> str:
-    known = ("solve", "curve", "regimes")
+    known = ("solve", "curve", "regimes", "figures")
     return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .curve import Landmark, StribeckCurve
+from .distances import Crossing, Distance, TransitionDistances
 from .parameters import QUANTITIES, Groups, LineContact
 from .regimes import regime_of
 from .solution import DEFINITIONS, Definition, Solution
@@ -157,7 +158,9 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[s
     }
 
 
-def regimes_json(solution: Solution, elasticities: Elasticities, curve: StribeckCurve, title: str = "") -> dict[str, Any]:
+def regimes_json(
+    solution: Solution, elasticities: Elasticities, curve: StribeckCurve, distances: TransitionDistances, title: str = ""
+) -> dict[str, Any]:
     """Return the regime of a state, the transitions around it and what moves its friction.
 
     Parameters
@@ -168,6 +171,8 @@ def regimes_json(solution: Solution, elasticities: Elasticities, curve: Stribeck
         Those of its friction.
     curve : StribeckCurve
         The curve over the speed through it.
+    distances : TransitionDistances
+        The way to the next regimes.
     title : str
         Headline.
 
@@ -193,6 +198,7 @@ def regimes_json(solution: Solution, elasticities: Elasticities, curve: Stribeck
             {**_landmark(mark), "factor": mark.value / speed if speed > 0 else math.inf} for mark in curve.transitions
         ],
         "regimes": [{"regime": name, "from": low, "to": high} for name, low, high in curve.regime_ranges],
+        "distances": {distance.name: _distance(distance) for distance in distances.distances},
         "elasticities": elasticities,
         "moves_friction_most": _strongest(elasticities),
         "inputs": _inputs(solution.contact),
@@ -200,7 +206,7 @@ def regimes_json(solution: Solution, elasticities: Elasticities, curve: Stribeck
         "error_estimate": max(solution.error_estimate, curve.error_estimate),
         "outcome": curve.outcome.name,
         "message": curve.outcome.value,
-        "notes": list(solution.notes),
+        "notes": [*solution.notes, *distances.notes],
     }
 
 
@@ -300,7 +306,14 @@ def print_curve(console: Console, curve: StribeckCurve, title: str, files: Seque
         _say(console, f"Written: {name}")
 
 
-def print_regimes(console: Console, solution: Solution, elasticities: Elasticities, curve: StribeckCurve, title: str) -> None:
+def print_regimes(
+    console: Console,
+    solution: Solution,
+    elasticities: Elasticities,
+    curve: StribeckCurve,
+    distances: TransitionDistances,
+    title: str,
+) -> None:
     """Print in which regime a contact runs, where the transitions lie, and what moves its friction.
 
     Parameters
@@ -313,6 +326,8 @@ def print_regimes(console: Console, solution: Solution, elasticities: Elasticiti
         Those of its friction.
     curve : StribeckCurve
         The curve over the speed through it.
+    distances : TransitionDistances
+        The way to the next regimes.
     title : str
         Headline.
     """
@@ -327,6 +342,8 @@ def print_regimes(console: Console, solution: Solution, elasticities: Elasticiti
         f"{_percent(solution.fluid_load_share)} of the load, asperities cause "
         f"{_percent(_contact_part(friction))} of the friction coefficient {friction.total:.4g}.",
     )
+    for line in _ways(distances):
+        _say(console, line)
     if curve.transitions:
         table = _table("where", "speed", "from here", "friction", right=(1, 3))
         for mark in curve.transitions:
@@ -353,7 +370,54 @@ def print_regimes(console: Console, solution: Solution, elasticities: Elasticiti
             console,
             f"The {name} moves friction most: 10 % {way} of it lowers friction by {gain}, all else kept.",
         )
-    _print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), solution.notes)
+    notes = [*solution.notes, *distances.notes]
+    _print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), notes)
+
+
+def _ways(distances: TransitionDistances) -> Iterator[str]:
+    """Yield a sentence for each regime that is near: what it takes of each input, and what leads nowhere."""
+    for regime in distances.targets:
+        found = [(distance, distance.towards(regime)) for distance in distances.distances]
+        ways = [f"{distance.name} {_step(distance.name, mark)}" for distance, mark in found if mark is not None]
+        barren = [_searched(distance) for distance, mark in found if mark is None]
+        if not ways:
+            yield f"To reach {regime}: nothing within reach, by {', '.join(barren)}."
+            continue
+        rest = f"; none within reach by {', '.join(barren)}" if barren else ""
+        yield f"To reach {regime}: {', or '.join(ways)}{rest}."
+    if any(distance.name == "viscosity" and (distance.less or distance.more) for distance in distances.distances):
+        yield "Speed and viscosity count as their product, so that their factors are the same."
+
+
+def _step(name: str, mark: Crossing) -> str:
+    """Return how far an input is to be changed, as ``x 3.1 (0.31 m/s)``."""
+    if mark.value == 0:
+        return "of any size"
+    value = format_si(mark.value, QUANTITIES[name].dimension, 4)
+    if math.isinf(mark.factor):
+        return f"from zero to {value}"
+    return f"x {mark.factor:.3g} ({value})" if mark.factor >= 1 else f"/ {1 / mark.factor:.3g} ({value})"
+
+
+def _searched(distance: Distance) -> str:
+    low, high = distance.searched
+    if low == high:  # it cannot lead anywhere, and a note says why
+        return distance.name
+    ends = (format_si(value, QUANTITIES[distance.name].dimension) for value in (low, high))
+    return f"{distance.name} (range searched {' to '.join(ends)})"
+
+
+def _distance(distance: Distance) -> dict[str, Any]:
+    return {
+        "less": None if distance.less is None else _crossing(distance.less),
+        "more": None if distance.more is None else _crossing(distance.more),
+        "searched": list(distance.searched),
+        "unit": unit_of(distance.name),
+    }
+
+
+def _crossing(mark: Crossing) -> dict[str, Any]:
+    return {"regime": mark.regime, "value": mark.value, "factor": mark.factor}
 
 
 def _print_head(console: Console, title: str, contact: LineContact | None, groups: Groups, over: str | None = None) -> None:

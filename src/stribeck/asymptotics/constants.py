@@ -1,10 +1,23 @@
-"""Universal constants of the limits, each computed by this package; ``tests`` compute them again.
+"""Universal constants of the limits, each computed by this package; ``tests/test_layers.py`` computes them again.
 
-Source: the similarity problems of :mod:`stribeck.asymptotics.film_layers` and :mod:`stribeck.asymptotics.edge_layer`.
+All digits that stand here are right.  Source: the similarity problems of :mod:`stribeck.asymptotics.film_layers` and
+:mod:`stribeck.asymptotics.edge_layer`.
 """
 
-FILM_CONSTANT = 0.44583
-r"""Central film over u_Hz lambda**(3/5) as lambda -> 0; [BP] print 0.44."""
+FILM_CONSTANT = 0.445830450
+"""Central film over u_Hz lambda**(3/5) as lambda -> 0, selected by the inlet; [BP] print 0.44."""
 
 PRINTED_FILM_CONSTANT = 0.44
 """The same as [BP] print it, for the printed forms of formulas."""
+
+MINIMUM_CONSTANT = 0.33794396
+"""Least film over u_Hz lambda**(3/5) as lambda -> 0, in the outlet: 0.75801004 of the central film."""
+
+MINIMUM_POSITION = 0.40117
+"""Where that is: (x - 1)/lambda**(2/5)."""
+
+EDGE_GAP = -0.00219080859
+"""H(0) of a rough contact at rest as kappa -> 0: h = kappa (-ln(F)/2 - ln(kappa)/3 + H(0)) at the edge, x = 1 - kappa."""
+
+EDGE_PRESSURE = 1.00219321
+"""Pressure there over p_Hz kappa**(1/3), exp(-H(0))."""

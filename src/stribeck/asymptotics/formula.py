@@ -39,6 +39,13 @@ def _ratio(numerator: Value, denominator: Value) -> Value:
         return np.where(np.equal(denominator, 0), np.inf, np.divide(numerator, denominator))
 
 
+def _paper_fluid_share(groups: Groups) -> Value:
+    """Return the part of the load on the fluid as [BP] estimate it, infinite from load 1 on."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        number = _ratio(groups.speed, np.square(groups.relative_roughness))
+        return _ratio(0.5 * np.square(number), np.maximum(-np.log(groups.load), 0) ** 5)
+
+
 PARAMETERS: dict[str, Callable[[Groups], Value]] = {
     "speed": lambda g: g.speed,
     "load": lambda g: g.load,
@@ -46,10 +53,12 @@ PARAMETERS: dict[str, Callable[[Groups], Value]] = {
     "1/speed": lambda g: _inverse(g.speed),
     "1/relative_roughness": lambda g: _inverse(g.relative_roughness),
     "fluid_number": lambda g: _ratio(g.speed, np.square(g.relative_roughness)),
+    "paper_fluid_share": _paper_fluid_share,
     "film_ratio": lambda g: _ratio(FILM_CONSTANT * g.speed**0.6, g.relative_roughness),
 }
 r"""Parameters in which ranges and errors are stated: the groups, kappa, the fluid number lambda/kappa**2 (lubrication pressure
-on the scale of the roughness over Hertz pressure), and the film ratio c lambda**(3/5)/kappa (smooth film over h_rms/alpha)."""
+on the scale of the roughness over Hertz pressure), the fluid's load share at slow speed as [BP] estimate it,
+(lambda**2/kappa**4)/(2 (-ln F)**5), and the film ratio c lambda**(3/5)/kappa (smooth film over h_rms/alpha)."""
 
 
 @dataclass(frozen=True)

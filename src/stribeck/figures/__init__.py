@@ -1,0 +1,9 @@
+"""The figures of the paper from our own solves: a picture as PNG and SVG, and its data as NetCDF beside them.
+
+One module for each figure, ``figure_3`` to ``figure_s1``; :func:`make_figures` makes and keeps them.
+"""
+
+from .making import Made, make_figures
+from .paper_figure import FIGURES, PaperFigure, figure_names, load_figure
+
+__all__ = ["FIGURES", "Made", "PaperFigure", "figure_names", "load_figure", "make_figures"]

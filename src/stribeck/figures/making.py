@@ -1,0 +1,202 @@
+"""Figures made into a folder: solved where no file beside the picture holds their data, whole or not at all.
+
+The NetCDF file of a figure is also its memory. It holds a fingerprint of the sources that its numbers come from, and is
+used again as long as these are the same.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from ..output import MissingExtraError, PathLike, check_output, replacing
+from ..solve import SolveError
+from ..store import NETCDF, write_netcdf
+from ..units import InputError
+from . import style
+from .paper_figure import PaperFigure, figure_names, load_figure
+
+if TYPE_CHECKING:
+    import xarray
+
+PICTURES = (".png", ".svg")
+"""Endings of the pictures."""
+
+SHOWING = ("__main__.py", "app.py", "case.py", "cli.py", "plotting.py", "report.py", "figures/making.py", "figures/style.py")
+"""Sources that change no number."""
+
+OnProgress = Callable[[str, int, int], object]
+"""``on_progress(name, done, steps)`` is called at the start of each figure and after each step of its work."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """What became of one figure.
+
+    Attributes
+    ----------
+    name : str
+        Its name in the paper.
+    outcome : {"solved", "reused", "failed", "unwritten", "interrupted"}
+        Whether its data were solved or taken from the file; else why there is no figure: a solve failed, a file could not be
+        written, or Ctrl-C came.
+    files : tuple of pathlib.Path
+        What was written or, for data that are used again, found.
+    message : str
+        A sentence where there is no figure.
+    """
+
+    name: str
+    outcome: Literal["solved", "reused", "failed", "unwritten", "interrupted"]
+    files: tuple[Path, ...] = ()
+    message: str = ""
+
+
+def make_figures(
+    names: Iterable[str] = (),
+    folder: PathLike = "figures",
+    *,
+    force: bool = False,
+    on_progress: OnProgress = lambda name, done, steps: None,
+) -> list[Made]:
+    """Make figures of the paper: for each a PNG, an SVG and the data as NetCDF, such as ``figure_3.png``.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Figures, such as ``"3"`` or ``"S1"``; all of them by default.
+    folder : str or path-like
+        Where to write; it is made if the folder above it exists.
+    force : bool
+        Whether to solve again what the files already hold, and to replace files that are not of this command.
+    on_progress : callable
+        ``on_progress(name, done, steps)`` is called at the start of each figure and after each step of its work; when
+        it raises KeyboardInterrupt the figures that are finished stay.
+
+    Returns
+    -------
+    list of Made
+        What became of each figure, in the order of the paper; after Ctrl-C up to the one that was interrupted.
+
+    Raises
+    ------
+    InputError
+        If a name is not known, the folder cannot be written, or a file in the way is not of this command.
+    MissingExtraError
+        If matplotlib, xarray or netCDF4 is not installed.
+    """
+    figures = [load_figure(name) for name in figure_names(names)]
+    _need_extras()
+    place = _folder(folder)
+    for figure in figures:
+        _check_files(figure, place, force)
+    made: list[Made] = []
+    for figure in figures:
+        try:
+            on_progress(figure.name, 0, 1)
+            made.append(_make(figure, place, force, on_progress))
+        except SolveError as problem:
+            made.append(Made(figure.name, "failed", message=f"Figure {figure.name} was not made: {problem}"))
+        except InputError as problem:
+            made.append(Made(figure.name, "unwritten", message=f"Figure {figure.name} was not made: {problem}"))
+        except KeyboardInterrupt:
+            made.append(Made(figure.name, "interrupted", message=f"Interrupted at figure {figure.name}."))
+            break
+    return made
+
+
+def fingerprint(figure: PaperFigure) -> str:
+    """Return what changes when the numbers of a figure may change.
+
+    Parameters
+    ----------
+    figure : PaperFigure
+        The figure.
+
+    Returns
+    -------
+    str
+        Hash of the sources of this package without those that only show results and without the other figures.
+    """
+    package = Path(__file__).parents[1]
+    found = hashlib.sha256(version("stribeck").encode())
+    for path in sorted(package.rglob("*.py")):
+        name = path.relative_to(package).as_posix()
+        of_another = name.startswith("figures/figure_") and path.stem != figure.stem
+        if name not in SHOWING and not of_another:
+            found.update(name.encode() + b"\0" + path.read_bytes())
+    return found.hexdigest()[:16]
+
+
+def _make(figure: PaperFigure, place: Path, force: bool, on_progress: OnProgress) -> Made:
+    stem = place / figure.stem
+    file, mark = stem.with_suffix(".nc"), fingerprint(figure)
+    data = None if force else _read(figure, file)
+    reused = data is not None and data.attrs.get("fingerprint") == mark
+    if data is None or not reused:
+        data = figure.data(lambda done, steps: on_progress(figure.name, done, steps))
+        data = data.assign_attrs(fingerprint=mark)
+        # Before the pictures: it is the sign that they may be replaced.
+        write_netcdf(data, file, force=True)
+    picture = figure.draw(data)
+    for ending in PICTURES:
+        with replacing(stem.with_suffix(ending), PICTURES, force=True) as temporary:
+            style.save(picture, temporary)
+    files = tuple(stem.with_suffix(ending) for ending in (*PICTURES, *NETCDF))
+    return Made(figure.name, "reused" if reused else "solved", files)
+
+
+def _read(figure: PaperFigure, file: Path) -> xarray.Dataset | None:
+    """Return the data of a figure from its file, or None where the file is not of this command."""
+    import xarray
+
+    if not file.is_file():
+        return None
+    try:
+        with xarray.open_dataset(file, engine="netcdf4", decode_times=False) as found:
+            data = found.load()
+    except (OSError, ValueError):
+        return None
+    return data if data.attrs.get("figure") == figure.name and "fingerprint" in data.attrs else None
+
+
+def _need_extras() -> None:
+    for purpose, extra, library in (
+        ("a figure", "plot", "matplotlib"),
+        ("the data of a figure", "data", "xarray"),
+        ("the data of a figure", "data", "netCDF4"),
+    ):
+        try:
+            __import__(library)
+        except ImportError:
+            raise MissingExtraError(purpose, extra, library) from None
+
+
+def _folder(folder: PathLike) -> Path:
+    """Return the folder, made where it was missing."""
+    place = Path(folder)
+    try:
+        if place.exists() and not place.is_dir():
+            raise InputError(f"{place} is a file; give the name of a folder.")
+        if not place.exists() and not place.parent.is_dir():
+            raise InputError(f"{place} cannot be made, as there is no folder {place.parent}; make it first.")
+        place.mkdir(exist_ok=True)
+    except OSError as problem:
+        reason = problem.strerror or str(problem)
+        raise InputError(f"{place} cannot be made ({reason}); choose another place.") from None
+    if not os.access(place, os.W_OK | os.X_OK):
+        raise InputError(f"{place} is protected against writing; choose another folder.")
+    return place
+
+
+def _check_files(figure: PaperFigure, place: Path, force: bool) -> None:
+    """Refuse to replace files that this command has not made."""
+    stem = place / figure.stem
+    ours = force or _read(figure, stem.with_suffix(".nc")) is not None
+    for ending in (*PICTURES, *NETCDF):
+        check_output(stem.with_suffix(ending), (ending,), force=ours)

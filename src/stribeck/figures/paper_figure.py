@@ -1,0 +1,117 @@
+"""What a figure of the paper is: states to solve, numbers to draw, and the sentence that they support.
+
+The drawing sees the numbers only, never the solver, so that a dataset from a file draws the same picture.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.metadata import version
+from typing import TYPE_CHECKING
+
+from ..units import InputError, show
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+Report = Callable[[int, int], object]
+"""``report(done, steps)`` is called after each step of a figure's work; it may raise KeyboardInterrupt to end it."""
+
+FIGURES = ("3", "4", "5", "6", "7", "8", "9", "10", "11", "S1")
+"""Names of the figures that hold results, in the order of the paper."""
+
+NAME = re.compile(r"(?:fig(?:ure)?s?[\s._-]*)?(s?[0-9]+)[\s._-]*\(?[a-f]?\)?", re.IGNORECASE)
+"""How people write the name of a figure: 3, 3a, S1, figure_3, Fig. 3(a); a panel means its figure."""
+
+
+@dataclass(frozen=True)
+class PaperFigure:
+    """A figure of the paper.
+
+    Attributes
+    ----------
+    name : str
+        Its name there, one of :data:`FIGURES`.
+    title : str
+        Headline.
+    claim : str
+        What the paper says that it shows, in one sentence.
+    compute : callable
+        ``compute(report)`` solves all states and returns what is drawn as one Dataset. Each variable and coordinate has
+        the attributes ``units`` and ``long_name``; the dataset has ``finding``, one sentence with numbers measured on
+        it that answers the claim, and what :attr:`Work.attributes` gives.
+    draw : callable
+        ``draw(dataset)`` returns the picture, from the dataset alone.
+    """
+
+    name: str
+    title: str
+    claim: str
+    compute: Callable[[Report], xarray.Dataset]
+    draw: Callable[[xarray.Dataset], Figure]
+
+    @property
+    def stem(self) -> str:
+        """Name of its files without their endings."""
+        return f"figure_{self.name.lower()}"
+
+    def data(self, report: Report = lambda done, steps: None) -> xarray.Dataset:
+        """Solve the figure and return its numbers with their provenance.
+
+        Parameters
+        ----------
+        report : callable
+            Called after each step of the work, for progress.
+
+        Returns
+        -------
+        xarray.Dataset
+            What :attr:`compute` gives, with ``figure``, ``title``, ``claim`` and ``source`` as attributes.
+        """
+        provenance = {
+            "figure": self.name,
+            "title": self.title,
+            "claim": self.claim,
+            "source": f"stribeck {version('stribeck')}",
+        }
+        found = self.compute(report)
+        return found.assign_attrs(provenance | found.attrs)
+
+
+def load_figure(name: str) -> PaperFigure:
+    """Return a figure by its name in :data:`FIGURES`."""
+    figure = import_module(f".figure_{name.lower()}", __package__).FIGURE
+    assert isinstance(figure, PaperFigure) and figure.name == name
+    return figure
+
+
+def figure_names(texts: Iterable[str]) -> tuple[str, ...]:
+    """Return the figures that are meant, each once, in the order of the paper.
+
+    Parameters
+    ----------
+    texts : iterable of str
+        Names as people write them, such as ``"3"``, ``"s1"``, ``"figure_4"`` or ``"Fig. 5(b)"``; none means all.
+
+    Returns
+    -------
+    tuple of str
+        Names of :data:`FIGURES`.
+
+    Raises
+    ------
+    InputError
+        If a name is not known.
+    """
+    wanted = set()
+    for text in texts:
+        match = NAME.fullmatch(text.strip())
+        name = match[1].upper() if match else ""
+        if name not in FIGURES:
+            raise InputError(f"figure {show(text)} is not one of {', '.join(FIGURES)}; 1 and 2 of the paper hold no results.")
+        wanted.add(name)
+    return tuple(name for name in FIGURES if name in wanted or not wanted)

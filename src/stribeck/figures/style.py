@@ -1,0 +1,253 @@
+"""The one style of all figures: panels with letters, colours for the steps of a parameter, and a foot that says whose numbers.
+
+matplotlib is imported on first use, and pyplot never, so that no display is needed and no setting of the caller changes.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..output import MissingExtraError
+from ..plotting import CONTACT, FLUID, GREY, INK, MARK, TINTS
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = [
+    "CONTACT",
+    "DASHED",
+    "DOTTED",
+    "FLUID",
+    "GREEN",
+    "GREY",
+    "INK",
+    "MARK",
+    "TINTS",
+    "legend",
+    "letter",
+    "new_figure",
+    "panels",
+    "power",
+    "save",
+    "sequence",
+    "slope",
+]
+
+GREEN = "#009e73"
+"""The fourth of the strong colours of Okabe and Ito, beside CONTACT, FLUID and MARK."""
+
+DASHED: Any = (0, (5, 2.5))
+DOTTED: Any = (0, (1.2, 1.6))
+"""Dashes of lines that formulas give; states of the solver are full lines or dots."""
+
+DPI = 150
+LINE = 0.17
+"""Height of a line of the foot [inch]."""
+
+LETTERS_PER_INCH = 17.0
+"""Letters of the foot that fit into an inch."""
+
+
+def new_figure(data: xarray.Dataset, width: float, height: float) -> Figure:
+    """Return an empty figure with the title, and a foot of claim, finding and source of the data.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        What :meth:`PaperFigure.data` returns; its attributes fill title and foot.
+    width, height : float
+        Size of the room for panels [inch].
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure; :func:`panels` fills it.
+
+    Raises
+    ------
+    MissingExtraError
+        If matplotlib is not installed.
+    """
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingExtraError("a picture", "plot", "matplotlib") from None
+    foot = _foot(data, int(LETTERS_PER_INCH * (width - 0.3)))
+    head, low = 0.45, LINE * len(foot) + 0.22
+    whole = height + head + low
+    figure = Figure(figsize=(width, whole), dpi=DPI, facecolor="white", layout="constrained")
+    FigureCanvasAgg(figure)
+    engine: Any = figure.get_layout_engine()
+    engine.set(rect=(0.005, low / whole, 0.99, height / whole), w_pad=0.06, h_pad=0.06, wspace=0.03, hspace=0.04)
+    headline = f"Figure {data.attrs['figure']}: {data.attrs['title']}"
+    figure.text(0.15 / width, 1 - 0.13 / whole, headline, size=13, weight="bold", color=INK, va="top", parse_math=False)
+    for i, (text, colour) in enumerate(reversed(foot)):
+        figure.text(0.15 / width, (0.1 + LINE * i) / whole, text, size=8, color=colour, va="bottom", parse_math=False)
+    return figure
+
+
+def panels(figure: Figure, rows: int, columns: int, **options: Any) -> list[Axes]:
+    """Return the axes of a grid of panels, row by row, each in house style.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        What :func:`new_figure` returned.
+    rows, columns : int
+        Size of the grid.
+    **options
+        As ``Figure.add_gridspec`` takes them, such as ``height_ratios``.
+
+    Returns
+    -------
+    list of matplotlib.axes.Axes
+        The panels.
+    """
+    grid = figure.add_gridspec(rows, columns, **options)
+    found = [figure.add_subplot(grid[i, j]) for i in range(rows) for j in range(columns)]
+    for axes in found:
+        house_style(axes)
+    return found
+
+
+def house_style(axes: Axes) -> None:
+    """Give axes the colours and sizes of the house."""
+    for side in axes.spines.values():
+        side.set(color=GREY, linewidth=0.8)
+    axes.tick_params(which="both", direction="in", top=True, right=True, colors=INK, labelsize=8.5)
+    axes.xaxis.label.set(color=INK, size=10)
+    axes.yaxis.label.set(color=INK, size=10)
+
+
+def letter(axes: Axes, which: str, text: str = "") -> None:
+    """Write the letter of a panel over it, and what it shows.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The panel.
+    which : str
+        Its letter, such as ``"a"``; a panel that the paper does not have is ``"+"``.
+    text : str
+        A few words.
+    """
+    label = "(+)" if which == "+" else f"({which})"
+    axes.set_title(f"{label} {text}".strip(), loc="left", size=9.5, color=INK, weight="semibold" if not text else "normal")
+
+
+def legend(axes: Axes, **options: Any) -> None:
+    """Put the legend of a panel inside it, small and without frame.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The panel.
+    **options
+        As ``Axes.legend`` takes them.
+    """
+    small: dict[str, Any] = {"frameon": False, "fontsize": 8, "labelcolor": INK, "handlelength": 2.2, "title_fontsize": 8.5}
+    axes.legend(**small | options)
+
+
+def sequence(count: int) -> list[str]:
+    """Return colours for the ascending steps of a parameter, dark to light, told apart by colour-blind readers.
+
+    Parameters
+    ----------
+    count : int
+        Number of steps.
+
+    Returns
+    -------
+    list of str
+        Colours of viridis without its palest end.
+    """
+    from matplotlib import colormaps
+    from matplotlib.colors import to_hex
+
+    viridis = colormaps["viridis"]
+    return [to_hex(viridis(0.88 * i / max(1, count - 1))) for i in range(count)]
+
+
+def power(value: float) -> str:
+    r"""Return a number as text for labels, powers of ten as such.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+
+    Returns
+    -------
+    str
+        Such as ``$10^{-3}$``, ``$3\times10^{-3}$`` or ``0.5``.
+    """
+    if value == 0 or 0.01 < abs(value) < 1000:
+        return f"{value:.3g}"
+    exponent = math.floor(math.log10(abs(value)) + 1e-9)
+    factor = f"{value / 10.0**exponent:.3g}"
+    return f"$10^{{{exponent}}}$" if factor == "1" else rf"${factor}\times10^{{{exponent}}}$"
+
+
+def slope(axes: Axes, x: float, y: float, exponent: float, text: str, decades: float = 1.0) -> None:
+    """Draw a triangle that shows the slope of a power law on logarithmic axes.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The panel.
+    x, y : float
+        Its lower left corner, in the data.
+    exponent : float
+        The slope.
+    text : str
+        What to write beside it.
+    decades : float
+        Its length.
+    """
+    far, high = x * 10**decades, y * 10 ** (decades * exponent)
+    axes.plot([x, far, far, x], [y, y, high, y], color=GREY, lw=0.9, zorder=1)
+    axes.annotate(
+        text, (far, math.sqrt(y * high)), (4, 0), textcoords="offset points", size=8, color=GREY, va="center", zorder=1
+    )
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a picture; the same figure gives the same bytes.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    path : pathlib.Path
+        The file, ending in ``.png`` or ``.svg``.
+    """
+    from matplotlib import rc_context
+
+    metadata: dict[str, Any] = {"Date": None} if path.suffix == ".svg" else {"Software": None}
+    with rc_context({"svg.hashsalt": "stribeck"}):
+        figure.savefig(path, metadata=metadata)
+
+
+def _foot(data: xarray.Dataset, width: int) -> list[tuple[str, str]]:
+    """Return the lines of the foot with their colours."""
+    numbers = [f"{name} {data.attrs[key]:.1g}" for name, key in (("rtol", "rtol"), ("estimated error", "error_estimate"))]
+    parts: Sequence[tuple[str, str]] = (
+        (f"The paper: {data.attrs['claim']}", GREY),
+        (f"Found: {data.attrs['finding']}", INK),
+        (f"All numbers by {data.attrs['source']}, {', '.join(numbers)}.", GREY),
+    )
+    return [(line, colour) for text, colour in parts for line in textwrap.wrap(_tidy(text), width)]
+
+
+def _tidy(text: str) -> str:
+    """Return text with shorter powers of ten, and with signs of per cent that stay beside their number."""
+    return re.sub(r"e-0(\d)\b", r"e-\1", text).replace(" %", "\N{NO-BREAK SPACE}%")

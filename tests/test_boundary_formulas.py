@@ -1,0 +1,449 @@
+"""The laws of dry contact, of the rough contact at rest, and of slow speed, against the solver and against themselves."""
+
+import itertools
+import math
+import time
+
+import numpy as np
+import pytest
+from numpydoc.docscrape import get_doc_object
+from scipy.integrate import quad
+
+import stribeck as sb
+from stribeck.asymptotics import boundary, hertz, perturbation, rest, slow_contact
+from stribeck.asymptotics.formula import Formula, OutOfRangeWarning
+from stribeck.units import InputError
+from stribeck.validity import relative_error
+
+MODULES = (hertz, rest, perturbation, boundary)
+FORMULAS = [
+    found
+    for module in MODULES
+    for found in vars(module).values()
+    if isinstance(found, Formula) and found.__module__ == module.__name__
+]
+POSITIONS = np.linspace(-0.9, 0.9, 181)
+
+
+def orders(steps, errors):
+    return np.diff(np.log(np.abs(errors))) / np.diff(np.log(steps))
+
+
+def slow(load, kappa, share):
+    """Return the state in which the fluid should carry ``share`` of the load."""
+    return sb.Groups(float(kappa**2 * np.sqrt(share / perturbation.phi(load))), load, kappa * load)
+
+
+def states_in_range(formula, random=4):
+    """Yield the corners of the range of a formula and random states within it."""
+    limits = {limit.parameter: limit for limit in formula.limits}
+    inverse, estimate = limits.get("1/relative_roughness"), limits.get("paper_fluid_share")
+    speed, roughness, load = (limits.get(name) for name in ("speed", "relative_roughness", "load"))
+    loads = (load.low, load.high) if load else (1e-4, 0.9)
+    kappas = (1 / inverse.high, 1e5) if inverse else (1e-6, roughness.high)
+    speeds = (1e-8, estimate.high) if estimate else (1e-12, speed.high) if speed else (1.0, 1.0)
+    corners = np.array(list(itertools.product((0.0, 1.0), repeat=3)))
+    inside = np.random.default_rng(20261).uniform(size=(random, 3))
+    for places in np.concatenate([corners, inside]):
+        F, kappa, s = (low * (high / low) ** place for (low, high), place in zip((loads, kappas, speeds), places, strict=True))
+        F = min(max(F, loads[0] * (1 + 1e-12)), loads[1] * (1 - 1e-12))
+        U = kappa**2 * math.sqrt(2 * s * (1 - 1e-9)) * (-math.log(F)) ** 2.5 if estimate else s if speed else 0.0
+        yield sb.Groups(U, F, kappa * F * (1 - 1e-12 if not inverse else 1 + 1e-12))
+
+
+# --- every formula ---
+
+
+@pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
+def test_the_error_of_a_formula_falls_with_the_order_stated(formula):
+    errors = [relative_error(formula, formula.approach(small)) for small in formula.steps]
+    assert len(errors) == 3
+    assert np.polyfit(np.log(formula.steps), np.log(np.abs(errors)), 1)[0] == pytest.approx(formula.error_order, abs=0.1)
+
+
+@pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
+def test_the_worst_error_of_a_formula_in_its_range_is_the_one_stated(formula):
+    states = list(states_in_range(formula))
+    assert all(formula.valid(state) for state in states)
+    worst = max(abs(relative_error(formula, state)) for state in states)
+    assert 0.6 * formula.worst < worst < formula.worst
+
+
+@pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
+def test_a_formula_is_described_and_has_its_source(formula):
+    document = get_doc_object(formula.function)
+    described = {name.strip() for entry in document["Parameters"] for name in entry.name.split(",")}
+    code = formula.function.__code__
+    assert described == set(code.co_varnames[: code.co_argcount])
+    assert document["Returns"]
+    assert ".. math::" in formula.__doc__
+    assert "Source:" in formula.__doc__
+    assert formula.source
+
+
+def test_the_formulas_have_names_of_their_own():
+    assert len({formula.name for formula in FORMULAS}) == len(FORMULAS) == 18
+    assert all(hasattr(boundary, name) for name in boundary.__all__)
+
+
+@pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
+def test_arrays_of_states_and_positions_give_what_each_of_them_gives(formula):
+    speed, load, kappa = np.array([[1e-13], [3e-12]]), np.array([0.02, 0.2, 0.4]), 1e-5
+    groups = sb.Groups(speed, load, kappa * load)
+    field = (np.array([-0.3, 0.0, 0.7]),) if formula.interval else ()
+    found = np.broadcast_to(formula.function(groups, *field), (2, 3))
+    for i, j in np.ndindex(2, 3):
+        one = sb.Groups(float(speed[i, 0]), float(load[j]), float(kappa * load[j]))
+        at = (float(field[0][j]),) if field else ()
+        assert np.ndim(formula.function(one, *at)) == 0
+        assert found[i, j] == pytest.approx(formula.function(one, *at), rel=1e-13, abs=1e-18)
+
+
+# --- dry contact ---
+
+
+@pytest.mark.parametrize(("formula", "order"), [(hertz.pressure, 0.2), (hertz.gap, 0.6), (hertz.offset, 0.6)])
+def test_smooth_contacts_tend_to_hertz_with_the_powers_of_their_film_and_its_edge(formula, order):
+    speeds = (1e-6, 1e-8, 1e-10)
+    errors = [relative_error(formula, sb.Groups(speed, 0.1, 0.0)) for speed in speeds]
+    assert orders(speeds, errors) == pytest.approx(order, abs=0.01)
+
+
+def test_within_the_contact_the_rough_pressure_tends_to_hertz_as_kappa():
+    kappas = (1e-3, 1e-4)
+    states = [sb.solve(sb.Groups(0.0, 0.1, 0.1 * kappa), rtol=1e-9) for kappa in kappas]
+    excess = [state.profile(POSITIONS).pressure - hertz.pressure.function(state.groups, POSITIONS) for state in states]
+    root = np.sqrt(1 - POSITIONS**2)
+    # The next order is -kappa/(1 - x**2)**(1/2), which the second term of the gap states.
+    assert np.abs(excess[0] * root / kappas[0] + 1).max() < 0.07
+    assert np.abs(excess[1] * root / kappas[1] + 1).max() < 0.007
+
+
+# --- at rest ---
+
+
+@pytest.mark.parametrize("kappa", [1e-4, 1e-2, 1.0, 100.0])
+def test_the_second_moment_of_the_pressure_at_rest_is_exact(kappa):
+    # From the change of the energy under a stretch of x at fixed load.
+    state = sb.solve(sb.Groups(0.0, 0.01, 0.01 * kappa), rtol=1e-9)
+    moment = state.mesh.weights @ (state.mesh.nodes**2 * state.nodal_pressures()[0])
+    assert moment == pytest.approx(math.pi / 8 * (1 + 4 * kappa), rel=1e-10)
+
+
+@pytest.mark.parametrize(("formula", "order"), [(rest.gap, 2.0), (rest.central_gap, 3.0), (rest.offset, 4.0)])
+def test_the_second_terms_at_rest_are_right(formula, order):
+    kappas = (4e-3, 2e-3, 1e-3)
+    x = POSITIONS[20:-20]
+    field = (x,) if formula.interval else ()
+    errors = []
+    for kappa in kappas:
+        state = sb.solve(sb.Groups(0.0, 0.1, 0.1 * kappa), rtol=1e-10)
+        right = state.profile(x).gap if field else getattr(state, formula.predicts)
+        found = [formula.function(state.groups, *field, terms=terms) for terms in (1, 2)]
+        first, second = (np.abs(value - right).max() for value in found)
+        assert second < 0.1 * first
+        errors.append(second / np.abs(right).max())
+    assert orders(kappas, errors) == pytest.approx(order, abs=0.1)
+
+
+def test_the_second_term_of_small_indentation_is_right():
+    inverses = (1e-1, 1e-2, 1e-3)
+    law = rest.central_gap_small_indentation
+    errors = [relative_error(law, law.approach(inverse), terms=2) for inverse in inverses]
+    assert orders(inverses, errors) == pytest.approx(2, abs=0.05)
+    assert abs(errors[0]) < 1e-4
+
+
+def test_the_gap_of_small_indentation_is_the_printed_one():
+    groups = sb.Groups(0.0, 1e-3, 0.05)
+    printed = -0.5 * 50 * math.log(math.pi * groups.load**2 / (8 * groups.roughness))
+    assert rest.central_gap_small_indentation(groups) == pytest.approx(printed, rel=1e-14)
+    assert rest.gap_small_indentation(groups, 3.0) == pytest.approx(printed + 4.5, rel=1e-14)
+
+
+def test_the_gaussian_carries_the_load_and_the_printed_one_pulls():
+    groups = sb.Groups(0.0, 1e-3, 0.02)
+    law = rest.contact_pressure_small_indentation
+    assert quad(lambda x: law(groups, x), -60, 60, points=[0])[0] == pytest.approx(math.pi / 2, rel=1e-10)
+    assert law(groups, 1.0, printed=True) == -law(groups, 1.0)
+    # The pressure is that of its gap.
+    assert law(groups, 2.0) == pytest.approx(groups.load**-0.5 * math.exp(-rest.gap_small_indentation(groups, 2.0) / 20))
+
+
+# --- phi ---
+
+
+def nested_phi(load):
+    """Return phi by two nested adaptive integrals in artanh(x)."""
+    A = -0.5 * math.log(load)
+    # Beyond, ln cosh u is u - ln 2 and all decays with exp(-u).
+    points = [min(1.0, math.sqrt(2 * A)), 4.0]
+
+    def g(u):
+        return math.log1p(2 * math.sinh(u / 2) ** 2)
+
+    def integral(f, low):
+        edges = [low, *(point for point in points if point > low), max(low, 4.0) + 18]
+        return sum(quad(f, a, b, epsabs=0, epsrel=3e-13, limit=200)[0] for a, b in itertools.pairwise(edges))
+
+    first, second = (integral(lambda u, k=k: g(u) ** k / (A + g(u)) ** 3 / math.cosh(u) ** 2, 0.0) for k in (0, 1))
+    excess = second / first
+
+    def pressure(u):
+        return -integral(lambda v: (g(v) - excess) / (A + g(v)) ** 3 / math.cosh(v) ** 2, u)
+
+    def integrand(u):
+        return math.tanh(u) / math.cosh(u) * (A + 3 * excess - 2 * g(u)) / (A + g(u)) ** 4 * pressure(u)
+
+    edges = [0.0, *points, 22.0]
+    found = sum(quad(integrand, a, b, epsabs=0, epsrel=1e-11, limit=100)[0] for a, b in itertools.pairwise(edges))
+    return -4 / math.pi * found
+
+
+@pytest.mark.filterwarnings("ignore::scipy.integrate.IntegrationWarning")
+@pytest.mark.parametrize("load", [1e-300, 1e-8, 0.1, 0.7, 0.99])
+def test_phi_has_ten_digits(load):
+    assert perturbation.phi(load) == pytest.approx(nested_phi(load), rel=2e-11)
+
+
+def test_phi_does_not_depend_on_its_nodes(monkeypatch):
+    loads = np.append(np.geomspace(1e-300, 0.99, 61), [0.9999, 0.999999])
+    found = perturbation.phi(loads)
+    monkeypatch.setattr(slow_contact, "ORDER", 23)
+    monkeypatch.setattr(slow_contact, "PANELS", 25)
+    assert np.abs(perturbation.phi(loads) / found - 1).max() < 1e-12
+
+
+def test_phi_takes_less_than_a_millisecond_per_load():
+    loads = np.geomspace(1e-12, 0.7, 301)
+    perturbation.phi(loads)
+    began = time.perf_counter()
+    perturbation.phi(loads)
+    assert time.perf_counter() - began < 0.3
+
+
+def test_phi_of_many_loads_is_phi_of_each(monkeypatch):
+    loads = np.array([[0.1, 0.3, 0.1], [1e-5, 0.3, 0.9]])
+    single = np.array([[perturbation.phi(load) for load in row] for row in loads])
+    monkeypatch.setattr(slow_contact, "LOADS_AT_ONCE", 3)
+    assert np.abs(perturbation.phi(loads) / single - 1).max() < 1e-14
+    assert perturbation.phi([]).shape == (0,)
+    assert isinstance(perturbation.phi(0.1), float)
+
+
+def test_phi_tends_to_its_asymptote_as_slowly_as_one_over_the_logarithm():
+    L = np.array([172.5, 345.0, 690.0])
+    ratio = perturbation.phi(np.exp(-L)) * L**6 / (96 - 128 * math.log(2))
+    assert ratio[-1] == pytest.approx(0.98352, abs=1e-5)
+    # Richardson's extrapolation in 1/L, once and twice.
+    assert 2 * ratio[2] - ratio[1] == pytest.approx(1, abs=5e-4)
+    assert (8 * ratio[2] - 6 * ratio[1] + ratio[0]) / 3 == pytest.approx(1, abs=5e-5)
+
+
+def test_phi_diverges_as_the_load_tends_to_one():
+    L = np.array([1e-2, 1e-3, 1e-4])
+    error = perturbation.phi(np.exp(-L)) * L**3.5 * 1.5 - 1
+    assert orders(L, error) == pytest.approx(1, abs=0.06)
+    assert abs(error[-1]) < 4e-4
+
+
+def test_the_closed_form_is_good_to_a_third_of_a_percent_at_every_load():
+    loads = np.concatenate([np.geomspace(1e-300, 1e-12, 150), np.geomspace(1e-12, 0.7, 150), 1 - np.geomspace(0.3, 1e-5, 80)])
+    error = perturbation.phi(loads, "closed") / perturbation.phi(loads) - 1
+    assert 0.0028 < np.abs(error).max() < 0.0033
+
+
+def test_the_other_forms_are_as_good_as_they_say():
+    def ratio(load, form):
+        return perturbation.phi(load, form) / perturbation.phi(load)
+
+    found = [ratio(load, "asymptote") for load in (1e-4, 1e-12, 1e-300)]
+    assert found == pytest.approx([2.515, 1.4457, 1.01674], rel=2e-4)
+    loads = np.geomspace(1e-5, 1e-1, 101)
+    power = ratio(loads, "power")
+    assert np.exp(np.log(power).mean()) == pytest.approx(1, abs=2e-3)  # the least-squares fit of the prefactor
+    assert -0.06 < power.min() - 1 < 0 < power.max() - 1 < 0.12
+    assert ratio(1e-12, "power") == pytest.approx(1.784, abs=1e-3)
+    # The printed prefactor is that of the fit without 2/pi; the printed power has the wrong sign.
+    assert perturbation.POWER * math.pi / 2 == pytest.approx(0.510095, abs=1e-3)
+    assert perturbation.phi(0.1, "printed") == pytest.approx(32.4, abs=0.1)
+    assert perturbation.phi(0.1) == pytest.approx(4.65924393e-3, rel=1e-8)
+
+
+def test_minus_five_is_the_slope_of_phi_at_one_load_only():
+    L = np.array([1.0, 2.0, -math.log(0.01), 7.0, 300.0])
+    slope = np.log(perturbation.phi(np.exp(-1.001 * L)) / perturbation.phi(np.exp(-0.999 * L))) / math.log(1.001 / 0.999)
+    assert slope == pytest.approx([-4.284, -4.578, -4.973, -5.168, -5.963], abs=2e-3)
+
+
+# --- slow speed ---
+
+
+def test_the_pressure_of_first_order_vanishes_at_both_ends_and_the_printed_one_does_not():
+    groups = sb.Groups(1e-12, 0.1, 1e-6)
+    law, ends = perturbation.fluid_pressure_first, np.array([-1.0, 0.0, 1.0])
+    largest = np.abs(law(groups, POSITIONS)).max()
+    assert np.abs(law(groups, ends)).max() < 1e-12 * largest
+    printed = law(groups, np.array([-2.0, -1.0, 1.0, 2.0]), printed=True)
+    assert printed == pytest.approx(groups.speed * np.array([0, 0, 0.1255806, 0.1255806]), rel=1e-6)
+
+
+def test_the_slope_of_the_pressure_of_first_order_is_that_of_the_thin_film_equation():
+    groups = sb.Groups(1e-3, 0.2, 0.02)
+    x, step = np.array([-0.95, -0.4, 0.1, 0.7]), 1e-5
+    h, h_star = rest.gap.function(groups, x), perturbation.flux_gap.function(groups)
+    for printed, power in ((False, 3), (True, 1)):
+        right, left = (perturbation.fluid_pressure_first.function(groups, x + s, printed=printed) for s in (step, -step))
+        assert (right - left) / (2 * step) == pytest.approx(groups.speed * (h - h_star) / h**power, rel=1e-6)
+
+
+def test_the_slope_of_the_pressure_of_second_order_is_that_of_the_thin_film_equation():
+    # The exact slope for the gap to first order, of which the even part is of second order.
+    x, step, change = np.array([0.2, 0.5, 0.9]), 1e-5, 1e-4
+    groups = sb.Groups(change, 0.2, 0.2)  # kappa = 1
+
+    def even_slope(law):
+        # Of an even function; the odd part of its slope.
+        return sum(sign * (law(sign * x + step) - law(sign * x - step)) for sign in (1, -1)) / (4 * step)
+
+    found = even_slope(lambda y: perturbation.fluid_pressure_second.function(groups, y))
+    h_star = perturbation.flux_gap.function(groups)
+    h = np.array([perturbation.gap_first.function(groups, y) for y in (x, -x)])
+    slope = change * (h - h_star) / h**3
+    assert found == pytest.approx((slope[0] - slope[1]) / 2, rel=1e-3)
+
+
+def test_phi_is_the_load_of_the_pressure_of_second_order():
+    groups = sb.Groups(1.0, 0.3, 0.3)
+    t, w = np.polynomial.legendre.leggauss(60)
+    x = np.sin(t * math.pi / 2)
+    dx = w * math.pi / 2 * np.cos(t * math.pi / 2)
+    load = 2 / math.pi * dx @ perturbation.fluid_pressure_second.function(groups, x)
+    assert load == pytest.approx(perturbation.phi(0.3), rel=1e-7)
+    first = perturbation.fluid_pressure_first.function(groups, x)
+    assert -(dx * x) @ first == pytest.approx(perturbation.pressure_moment(0.3), rel=1e-7)
+    H = rest.gap.function(groups, x)
+    shear = dx @ (1 / H + 3 * (H - perturbation.flux_gap.function(groups)) / H**2)
+    assert shear == pytest.approx(perturbation.shear(0.3), rel=1e-5)
+
+
+def parts(field):
+    """Return the odd and the even part in x of a field on symmetric positions."""
+    return (field - field[::-1]) / 2, (field + field[::-1]) / 2
+
+
+def test_the_fields_of_first_and_second_order_are_those_of_the_solver():
+    kappas, errors = (1e-3, 1e-4, 1e-5), []
+    for kappa in kappas:
+        groups = slow(1e-3, kappa, 1e-6)
+        profile = sb.solve(groups, rtol=1e-8).profile(POSITIONS)
+        first = perturbation.fluid_pressure_first.function(groups, POSITIONS)
+        second = perturbation.fluid_pressure_second.function(groups, POSITIONS)
+        gap = perturbation.gap_first.function(groups, POSITIONS)
+        pairs = (
+            (first, parts(profile.fluid_pressure)[0]),
+            (parts(second)[1], parts(profile.fluid_pressure)[1]),
+            (parts(gap)[0], parts(profile.gap)[0]),
+        )
+        errors.append([np.abs(found - right).max() / np.abs(right).max() for found, right in pairs])
+    rates = -np.diff(np.log10(errors), axis=0)
+    assert rates.mean(axis=0) == pytest.approx(2 / 3, abs=0.05)
+    assert np.all(np.array(errors)[-1] < [0.0092, 0.0079, 0.0158])
+
+
+def test_the_fluid_share_of_the_solver_over_the_law_tends_to_one():
+    found = [1 / (1 + relative_error(boundary.fluid_load_share, slow(0.1, kappa, 1e-6))) for kappa in (1e-2, 1e-3, 1e-4)]
+    assert found == pytest.approx([1.135, 1.030, 1.006], abs=6e-4)
+
+
+def test_the_printed_fluid_share_is_far_off():
+    groups = slow(0.1, 1e-4, 1e-4)
+    law = boundary.fluid_load_share
+    true = law(groups)
+    assert true == pytest.approx(1e-4, rel=1e-9)
+    # pi**2 from 6 pi eta U a, pi/2 from the phi without 2/pi, and the power of the wrong sign.
+    assert law(groups, printed=True) / true == pytest.approx(math.pi**3 / 2, rel=1e-12)
+    assert law(groups, form="printed") / true == pytest.approx(6946, abs=1)
+    assert law(groups, form="printed", printed=True) / true == pytest.approx(6946 * math.pi**2, rel=2e-4)
+    assert law(groups, form="closed") / true == pytest.approx(1, abs=4e-3)
+    assert boundary.contact_load_share(groups) == 1 - true
+
+
+@pytest.mark.parametrize("definition", ["paper", "balanced"])
+def test_the_viscous_friction_is_that_of_each_definition(definition):
+    kappas, errors = (1e-3, 1e-4, 1e-5), []
+    for kappa in kappas:
+        groups = slow(1e-3, kappa, 1e-6)
+        right = sb.solve(groups, rtol=1e-8).friction(beta=1.0, definition=definition).viscous
+        errors.append(boundary.viscous_friction.function(groups, 1.0, definition) / right - 1)
+    assert np.polyfit(np.log(kappas), np.log(np.abs(errors)), 1)[0] == pytest.approx(2 / 3, abs=0.06)
+    assert abs(errors[-1]) < 0.011
+
+
+def test_the_printed_viscous_friction_is_larger_by_a_number_over_kappa():
+    kappa = 1e-5
+    paper, balanced = (boundary.viscous_friction(slow(0.1, kappa, 1e-6), 0.3, name) for name in ("paper", "balanced"))
+    assert (paper / balanced - 1) * kappa == pytest.approx(0.07015, abs=1e-5)
+    assert paper == pytest.approx(0.3 * boundary.viscous_friction(slow(0.1, kappa, 1e-6)), rel=1e-14)
+
+
+def test_the_viscous_part_makes_the_friction_right_to_the_next_order():
+    groups = slow(0.1, 1e-4, 1e-2)
+    error = {name: abs(relative_error(boundary.friction, groups, viscous=name)) for name in ("paper", "neglected")}
+    assert error["neglected"] > 0.01
+    assert error["paper"] < 2e-4
+    share = boundary.fluid_load_share.function(groups)
+    assert boundary.friction.function(groups, 0.2, 5.0, viscous="neglected") == pytest.approx(0.2 * (1 - share), rel=1e-14)
+    printed = boundary.friction.function(groups, 0.2, 5.0, printed=True)
+    assert printed == pytest.approx(0.2 * (1 - math.pi**3 / 2 * share), rel=1e-12)
+
+
+# --- out of range ---
+
+
+def test_loads_from_one_on_are_nan_and_said_so():
+    groups = sb.Groups(1e-12, [0.1, 1.0, 3.0], 1e-6)
+    with pytest.warns(OutOfRangeWarning, match="load 1 on"):
+        found = perturbation.phi(groups.load)
+    assert np.isnan(found).tolist() == [False, True, True]
+    laws = (boundary.fluid_load_share, boundary.contact_load_share, boundary.viscous_friction, boundary.friction)
+    for law in (*laws, perturbation.flux_gap):
+        with pytest.warns(OutOfRangeWarning, match=f"{law.name} has no value"):
+            assert np.isnan(law(groups)).tolist() == [False, True, True]
+    for law in (perturbation.fluid_pressure_first, perturbation.fluid_pressure_second, perturbation.gap_first):
+        with pytest.warns(OutOfRangeWarning, match=f"{law.name} has no value"):
+            assert np.isnan(law(groups, 0.3)).tolist() == [False, True, True]
+
+
+@pytest.mark.parametrize("groups", [sb.Groups(1e-8, 0.1, 0.0), sb.Groups(0.0, 0.1, 0.0), sb.Groups(1.0, 0.1, 100.0)], ids=str)
+def test_outside_its_range_a_formula_answers_and_says_so(groups):
+    for law in FORMULAS:
+        if not law.valid(groups):
+            with pytest.warns(OutOfRangeWarning, match=law.name):
+                law(groups, *((0.3,) if law.interval else ()))
+
+
+def test_from_the_edge_outwards_the_contact_has_no_gap():
+    groups = sb.Groups(1e-14, 0.1, 1e-6)
+    for law in (rest.gap, perturbation.gap_first):
+        with pytest.warns(OutOfRangeWarning, match="has no value"):
+            assert np.isnan(law(groups, np.array([-1.5, -1.0, 0.0, 1.0]))).tolist() == [True, True, False, True]
+
+
+@pytest.mark.parametrize("load", [0.0, -0.1, math.nan, math.inf, "0.1", None, [0.1, -1.0]])
+def test_phi_refuses_what_is_no_load(load):
+    with pytest.raises(InputError, match="load"):
+        perturbation.phi(load)
+
+
+def test_unknown_forms_are_refused_by_name():
+    groups = sb.Groups(1e-14, 0.1, 1e-6)
+    with pytest.raises(InputError, match="'quadrature', 'closed'"):
+        perturbation.phi(0.1, "best")
+    with pytest.raises(InputError, match="form = 'best'"):
+        boundary.friction(groups, form="best")
+    with pytest.raises(InputError, match="viscous = 'none'.*'neglected'"):
+        boundary.viscous_friction(groups, viscous="none")
+    for law in (rest.central_gap, rest.offset, rest.central_gap_small_indentation):
+        with pytest.raises(InputError, match="terms = 3; it must be 1 or 2"):
+            law(groups, terms=3)

@@ -1,0 +1,463 @@
+"""The making of figures: which are meant, what is written, kept, solved again and refused, and that each can be read."""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from command_line import SCRIPT, call, call_outside, environment, run_python
+from figure_data import data_of, picture_of
+
+import stribeck as sb
+from stribeck.figures import FIGURES, PaperFigure, figure_names, load_figure, make_figures, making, style
+from stribeck.figures.states import Work, column, dataset
+
+PANELS = {
+    "3": "ab",
+    "4": "abcd",
+    "5": "ab",
+    "6": "abcd",
+    "7": "ab",
+    "8": "abcd",
+    "9": "abc",
+    "10": "ab",
+    "11": "",
+    "S1": "abc",
+}
+"""Panels of the paper that hold results of its own model."""
+
+
+def opened(path):
+    with xr.open_dataset(path, engine="netcdf4", decode_times=False) as found:
+        return found.load()
+
+
+# --- names ---
+
+
+@pytest.mark.parametrize(
+    ("texts", "names"),
+    [
+        (["3"], ("3",)),
+        (["3a", "3(b)", "3"], ("3",)),
+        (["s1", "S1c"], ("S1",)),
+        (["figure_4", "Fig. 5(b)", "fig6", "FIGURE 10"], ("4", "5", "6", "10")),
+        (["S1", "11", "3"], ("3", "11", "S1")),
+        ([], FIGURES),
+    ],
+)
+def test_figures_are_named_as_people_name_them_and_come_in_the_order_of_the_paper(texts, names):
+    assert figure_names(texts) == names
+
+
+@pytest.mark.parametrize("text", ["2", "12", "3g", "", "S", "s2", "figure", "3 4", "../3", "-3"])
+def test_an_unknown_figure_is_refused_with_those_that_are_known(text):
+    with pytest.raises(sb.InputError, match=re.escape(f"figure {text!r} is not one of 3, 4, 5, 6, 7, 8, 9, 10, 11, S1;")):
+        figure_names(["3", text])
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_each_figure_has_its_module_its_name_and_full_sentences(name):
+    figure = load_figure(name)
+    assert (figure.name, figure.stem) == (name, f"figure_{name.lower()}")
+    assert figure.claim.endswith(".") and not figure.title.endswith(".")
+    assert len(Path(sys.modules[figure.compute.__module__].__file__).read_text().splitlines()) < 200
+
+
+# --- every figure ---
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_the_data_of_each_figure_are_described_and_converged(name):
+    data = data_of(name)
+    assert data.attrs["figure"] == name
+    assert data.attrs["source"] == f"stribeck {sb.__version__}"
+    assert data.attrs["finding"].endswith(".") and any(letter.isdigit() for letter in data.attrs["finding"])
+    assert 0 < data.attrs["error_estimate"] <= data.attrs["rtol"] <= 1e-6
+    for variable in data.variables.values():
+        assert variable.attrs["units"] and len(variable.attrs["long_name"]) > 5
+        assert variable.size > 0
+        if variable.dtype.kind == "f":
+            assert not np.isinf(variable.values).any()
+            assert np.isfinite(variable.values).any()
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_each_figure_comes_back_from_its_file_as_it_was(name, tmp_path):
+    from stribeck.store import write_netcdf
+
+    write_netcdf(data_of(name), tmp_path / "data.nc")
+    found = opened(tmp_path / "data.nc")
+    xr.testing.assert_identical(found, data_of(name))
+    assert found.attrs == data_of(name).attrs
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_each_figure_shows_the_panels_of_the_paper_and_its_provenance(name):
+    figure = picture_of(name)
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    letters = {title[1] for title in titles if title.startswith("(")}
+    assert set(PANELS[name]) <= letters
+    words = "".join(text.get_text() for text in figure.texts).replace("\N{NO-BREAK SPACE}", "").replace(" ", "")
+    for part in (f"Figure {name}: ", load_figure(name).title, f"stribeck {sb.__version__}, rtol 1e-"):
+        assert part.replace(" ", "") in words
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_nothing_of_a_figure_is_cut_off_by_its_edge(name):
+    figure = picture_of(name)
+    box, (width, height) = figure.get_tightbbox(figure.canvas.get_renderer()), figure.get_size_inches()
+    assert box.x0 > 0 and box.x1 < width
+    assert box.y0 > 0 and box.y1 < height
+
+
+def test_the_same_numbers_give_the_same_bytes_also_from_the_file(tmp_path):
+    from stribeck.store import write_netcdf
+
+    data = data_of("5")
+    write_netcdf(data, tmp_path / "data.nc")
+    for i, source in enumerate((data, opened(tmp_path / "data.nc"))):
+        for ending in (".png", ".svg"):
+            style.save(load_figure("5").draw(source), tmp_path / f"{i}{ending}")
+    for ending in (".png", ".svg"):
+        assert len({(tmp_path / f"{i}{ending}").read_bytes() for i in range(2)}) == 1
+    assert b"<dc:date>" not in (tmp_path / "0.svg").read_bytes()
+
+
+# --- files and memory ---
+
+
+class Fakes:
+    """Figures that are made in a moment, and count how often they are computed."""
+
+    def __init__(self):
+        self.computed = []
+        self.problems = {}
+
+    def figure(self, name):
+        def compute(report):
+            self.computed.append(name)
+            report(1, 2)
+            if name in self.problems:
+                raise self.problems[name]
+            report(2, 2)
+            variables = {
+                "y": column("x", [1.0, np.nan, 3.0], "what is drawn"),
+                "words": column("x", ["a", "bc", "d"], "names"),
+            }
+            coords = {"x": column("x", [0.1, 0.2, 0.3], "where", "s")}
+            return dataset(variables, coords, finding="It is 3.", rtol=1e-7, error_estimate=1e-8)
+
+        def draw(data):
+            figure = style.new_figure(data, 4.0, 2.0)
+            (axes,) = style.panels(figure, 1, 1)
+            axes.plot(data.x, data.y)
+            return figure
+
+        return PaperFigure(name, "Fake", "it is 4.", compute, draw)
+
+
+@pytest.fixture
+def fakes(monkeypatch):
+    found = Fakes()
+    monkeypatch.setattr(making, "load_figure", found.figure)
+    return found
+
+
+def outcomes(made):
+    return [(each.name, each.outcome) for each in made]
+
+
+def test_a_figure_is_a_png_an_svg_and_its_data(fakes, tmp_path):
+    (made,) = make_figures(["s1"], tmp_path / "new")
+    assert made.outcome == "solved"
+    assert [path.name for path in made.files] == ["figure_s1.png", "figure_s1.svg", "figure_s1.nc"]
+    assert sorted(os.listdir(tmp_path / "new")) == sorted(path.name for path in made.files)
+    assert made.files[0].read_bytes().startswith(b"\x89PNG") and made.files[1].read_bytes().startswith(b"<?xml")
+    data = opened(made.files[2])
+    assert (data.attrs["claim"], data.attrs["finding"]) == ("it is 4.", "It is 3.")
+    assert data.x.attrs == {"units": "s", "long_name": "where"}
+    np.testing.assert_array_equal(data.y, [1.0, np.nan, 3.0])
+    assert data.words.values.tolist() == ["a", "bc", "d"]
+
+
+def test_data_in_the_folder_are_used_again_and_lost_pictures_drawn_from_them(fakes, tmp_path):
+    (first,) = make_figures(["3"], tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    (tmp_path / "figure_3.svg").unlink()
+    (second,) = make_figures(["3"], tmp_path)
+    assert fakes.computed == ["3"]
+    assert (first.outcome, second.outcome) == ("solved", "reused")
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_force_solves_again(fakes, tmp_path):
+    make_figures(["3"], tmp_path)
+    (made,) = make_figures(["3"], tmp_path, force=True)
+    assert (made.outcome, fakes.computed) == ("solved", ["3", "3"])
+
+
+def test_data_from_other_sources_are_solved_again(fakes, tmp_path, monkeypatch):
+    make_figures(["3"], tmp_path)
+    monkeypatch.setattr(making, "fingerprint", lambda figure: "another")
+    (made,) = make_figures(["3"], tmp_path)
+    assert (made.outcome, fakes.computed) == ("solved", ["3", "3"])
+    assert opened(tmp_path / "figure_3.nc").attrs["fingerprint"] == "another"
+
+
+@pytest.mark.parametrize(
+    ("changed", "of_3", "of_4"),
+    [
+        ("newton.py", True, True),
+        ("asymptotics/hydrodynamic.py", True, True),
+        ("figures/states.py", True, True),
+        ("figures/figure_3.py", True, False),
+        ("figures/figure_4.py", False, True),
+        ("figures/style.py", False, False),
+        ("cli.py", False, False),
+    ],
+)
+def test_the_fingerprint_changes_with_every_source_of_the_numbers(tmp_path, monkeypatch, changed, of_3, of_4):
+    package = Path(making.__file__).parents[1]
+    shutil.copytree(package, tmp_path / "stribeck", ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(making, "__file__", str(tmp_path / "stribeck" / "figures" / "making.py"))
+    figures = [Fakes().figure(name) for name in ("3", "4")]
+    before = [making.fingerprint(figure) for figure in figures]
+    assert before[0] != before[1]
+    with (tmp_path / "stribeck" / changed).open("a") as file:
+        file.write("\n# another word\n")
+    after = [making.fingerprint(figure) for figure in figures]
+    assert [a != b for a, b in zip(after, before, strict=True)] == [of_3, of_4]
+
+
+def test_ctrl_c_keeps_what_is_finished(fakes, tmp_path):
+    fakes.problems["4"] = KeyboardInterrupt()
+    made = make_figures(["3", "4", "5"], tmp_path)
+    assert outcomes(made) == [("3", "solved"), ("4", "interrupted")]
+    assert made[1].message == "Interrupted at figure 4." and made[1].files == ()
+    assert sorted(os.listdir(tmp_path)) == ["figure_3.nc", "figure_3.png", "figure_3.svg"]
+    del fakes.problems["4"]
+    assert outcomes(make_figures(["3", "4"], tmp_path)) == [("3", "reused"), ("4", "solved")]
+
+
+def test_ctrl_c_in_the_middle_of_a_picture_leaves_whole_files_only(fakes, tmp_path, monkeypatch):
+    save = style.save
+
+    def interrupted(figure, path):
+        save(figure, path)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(style, "save", interrupted)
+    assert outcomes(make_figures(["3"], tmp_path)) == [("3", "interrupted")]
+    assert os.listdir(tmp_path) == ["figure_3.nc"]
+    monkeypatch.undo()
+    monkeypatch.setattr(making, "load_figure", fakes.figure)
+    assert outcomes(make_figures(["3"], tmp_path)) == [("3", "reused")]
+    assert fakes.computed == ["3"]
+
+
+def test_a_figure_that_cannot_be_solved_leaves_no_file_and_does_not_stop_the_others(fakes, tmp_path):
+    fakes.problems["4"] = sb.SolveError(sb.Outcome.STEP_LIMIT, None, "speed 1: too far.")
+    made = make_figures(["3", "4", "5"], tmp_path)
+    assert outcomes(made) == [("3", "solved"), ("4", "failed"), ("5", "solved")]
+    assert made[1].message == "Figure 4 was not made: speed 1: too far."
+    assert not [path for path in tmp_path.iterdir() if "4" in path.stem]
+
+
+def test_a_full_disk_stops_one_figure_with_a_sentence(fakes, tmp_path, monkeypatch):
+    def full(figure, path):
+        path.touch()
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(style, "save", full)
+    (made,) = make_figures(["3"], tmp_path)
+    assert made.outcome == "unwritten"
+    assert "figure_3.png could not be written (No space left on device)" in made.message
+    assert os.listdir(tmp_path) == ["figure_3.nc"]
+
+
+@pytest.mark.parametrize("ending", [".png", ".svg", ".nc"])
+def test_a_file_of_somebody_else_is_kept_unless_forced(fakes, tmp_path, ending):
+    theirs = tmp_path / f"figure_4{ending}"
+    theirs.write_text("precious")
+    with pytest.raises(sb.InputError, match=re.escape(f"figure_4{ending} exists already and is kept; add --force")):
+        make_figures(["3", "4"], tmp_path)
+    assert fakes.computed == [] and os.listdir(tmp_path) == [theirs.name]
+    assert theirs.read_text() == "precious"
+    assert outcomes(make_figures(["4"], tmp_path, force=True)) == [("4", "solved")]
+    assert b"precious" not in theirs.read_bytes()
+
+
+def test_the_data_of_another_figure_are_nobody_s_licence(fakes, tmp_path):
+    make_figures(["3"], tmp_path)
+    shutil.copy(tmp_path / "figure_3.nc", tmp_path / "figure_4.nc")
+    with pytest.raises(sb.InputError, match="figure_4.nc exists already"):
+        make_figures(["4"], tmp_path)
+
+
+def test_a_folder_is_made_but_not_the_folders_above_it(fakes, tmp_path):
+    with pytest.raises(sb.InputError, match="there is no folder .*/a; make it first"):
+        make_figures(["3"], tmp_path / "a" / "b")
+    assert os.listdir(tmp_path) == []
+    (tmp_path / "file").touch()
+    with pytest.raises(sb.InputError, match="file is a file; give the name of a folder"):
+        make_figures(["3"], tmp_path / "file")
+    with pytest.raises(sb.InputError, match="cannot be made"):
+        make_figures(["3"], tmp_path / "file" / "below")
+    with pytest.raises(sb.InputError, match="File name too long"):
+        make_figures(["3"], tmp_path / ("n" * 300))
+    assert fakes.computed == []
+
+
+def test_a_protected_folder_is_refused_before_any_work(fakes, tmp_path, monkeypatch):
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    with pytest.raises(sb.InputError, match="is protected against writing; choose another folder"):
+        make_figures(["3"], tmp_path)
+    assert fakes.computed == []
+
+
+@pytest.mark.parametrize(("library", "extra"), [("matplotlib", "plot"), ("xarray", "data"), ("netCDF4", "data")])
+def test_a_missing_library_is_named_with_the_extra_that_brings_it(fakes, tmp_path, monkeypatch, library, extra):
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(ImportError, match=re.escape(f"needs {library}; install it with: pip install 'stribeck[{extra}]'.")):
+        make_figures(["3"], tmp_path / "new")
+    assert os.listdir(tmp_path) == []
+
+
+def test_progress_is_reported_for_each_figure_and_each_step(fakes, tmp_path):
+    seen = []
+    make_figures(["3", "4"], tmp_path, on_progress=lambda *step: seen.append(step))
+    assert seen == [("3", 0, 1), ("3", 1, 2), ("3", 2, 2), ("4", 0, 1), ("4", 1, 2), ("4", 2, 2)]
+
+
+def test_importing_the_figures_leaves_heavy_libraries_alone():
+    code = """
+import sys
+from stribeck.figures import FIGURES, load_figure
+for name in FIGURES:
+    load_figure(name)
+print(sorted({"matplotlib", "xarray", "netCDF4", "pandas"} & set(sys.modules)))
+"""
+    answer = run_python(code)
+    assert (answer.out, answer.err) == ("[]\n", "")
+
+
+# --- the work of a figure ---
+
+
+def test_work_reports_each_solve_and_keeps_the_largest_error():
+    seen = []
+    work = Work(lambda *step: seen.append(step), steps=2, rtol=1e-5)
+    state = work.solve(0.0, 0.1, 0.01)
+    assert work.attributes == {"rtol": 1e-5, "error_estimate": state.error_estimate}
+    curve = work.curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=3)
+    assert work.error_estimate == max(state.error_estimate, curve.error_estimate)
+    assert seen == [(1, 2), (1, 2), (1, 2), (1, 2), (2, 2)]
+    assert curve.rtol == state.rtol == 1e-5
+
+
+def test_no_state_is_given_that_did_not_converge():
+    work = Work(lambda *step: None, steps=1, rtol=1e-11)
+    with pytest.raises(sb.SolveError):
+        work.solve(1e-9, 0.1, 0.0)
+    with pytest.raises(sb.SolveError):
+        work.curve(load=0.1, roughness=0.0, speed=(1e-9, 1e-3), points=3)
+    assert work.done == 0
+
+
+def test_ctrl_c_inside_a_curve_ends_the_figure():
+    def report(done, steps):
+        raise KeyboardInterrupt
+
+    for points in (2, 5):
+        with pytest.raises(KeyboardInterrupt):
+            Work(report, steps=1, rtol=1e-5).curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=points)
+
+
+# --- the command ---
+
+
+def test_the_command_names_what_it_wrote_and_what_it_kept(fakes, tmp_path, capsys):
+    answer = call(capsys, "figures", "3b", "S1", "--out", tmp_path)
+    files = [", ".join(str(tmp_path / f"figure_{name}{end}") for end in (".png", ".svg", ".nc")) for name in ("3", "s1")]
+    assert answer.code == 0 and answer.err == ""
+    assert answer.out.splitlines() == [f"Figure 3: {files[0]}", f"Figure S1: {files[1]}"]
+    answer = call(capsys, "figures", "3", "--out", tmp_path)
+    assert answer.out == f"Figure 3, kept data: {files[0]}\n"
+    assert call(capsys, "figures", "3", "--out", tmp_path, "--force").out == f"Figure 3: {files[0]}\n"
+
+
+def test_the_command_makes_all_figures_into_the_folder_figures(fakes, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert call(capsys, "figures").code == 0
+    assert fakes.computed == list(FIGURES)
+    assert len(os.listdir(tmp_path / "figures")) == 3 * len(FIGURES)
+
+
+@pytest.mark.parametrize(
+    ("tokens", "sentence"),
+    [
+        (("12",), "figure '12' is not one of 3, 4, 5, 6, 7, 8, 9, 10, 11, S1; 1 and 2 of the paper hold no results."),
+        (("3", "--out", "no/such"), "no/such cannot be made, as there is no folder no; make it first."),
+        (("3", "--out", "file"), "file is a file; give the name of a folder."),
+    ],
+)
+def test_the_command_refuses_in_one_sentence(fakes, tmp_path, capsys, monkeypatch, tokens, sentence):
+    monkeypatch.chdir(tmp_path)
+    Path("file").touch()
+    answer = call(capsys, "figures", *tokens)
+    assert (answer.code, answer.out, answer.err) == (2, "", f"stribeck: {sentence}\n")
+    assert os.listdir(tmp_path) == ["file"]
+
+
+def test_the_exit_code_of_the_command_says_what_went_wrong(fakes, tmp_path, capsys, monkeypatch):
+    fakes.problems["4"] = sb.SolveError(sb.Outcome.STEP_LIMIT, None, "speed 1: too far.")
+    answer = call(capsys, "figures", "3", "4", "--out", tmp_path)
+    assert (answer.code, answer.err) == (1, "stribeck: Figure 4 was not made: speed 1: too far.\n")
+    assert answer.out.startswith("Figure 3: ")
+    fakes.problems["4"] = sb.InputError("the disk is full.")
+    answer = call(capsys, "figures", "3", "4", "--out", tmp_path)
+    assert (answer.code, answer.err) == (2, "stribeck: Figure 4 was not made: the disk is full.\n")
+    fakes.problems["4"] = KeyboardInterrupt()
+    answer = call(capsys, "figures", "3", "4", "5", "--out", tmp_path)
+    assert answer.code == 130
+    assert answer.err == f"stribeck: Interrupted at figure 4; finished and kept in {tmp_path}: 3.\n"
+    answer = call(capsys, "figures", "4", "--out", tmp_path)
+    assert (answer.code, answer.err) == (130, "stribeck: Interrupted at figure 4; none was finished.\n")
+
+
+def test_ctrl_c_keeps_the_figures_that_are_finished(tmp_path):
+    def heed():
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    tokens = [SCRIPT, "figures", "4", "3", "5", "6", "--out", tmp_path]
+    process = subprocess.Popen(
+        tokens, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(), preexec_fn=heed
+    )
+    try:
+        until = time.monotonic() + 60
+        while not (tmp_path / "figure_3.svg").exists() and time.monotonic() < until:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == 130, err
+    match = re.fullmatch(rf"stribeck: Interrupted at figure ([456]); finished and kept in {tmp_path}: (3.*)\.\n", err)
+    names = match[2].split(", ")
+    assert match[1] not in names
+    assert sorted(os.listdir(tmp_path)) == sorted(f"figure_{name}{end}" for name in names for end in (".nc", ".png", ".svg"))
+    assert out.splitlines()[0].startswith("Figure 3: ")
+
+
+def test_the_command_works_outside_this_process_without_a_word_on_stderr(tmp_path):
+    answer = call_outside("figures", "figure_6", "--out", "here", cwd=tmp_path)
+    assert (answer.code, answer.err) == (0, "")
+    assert sorted(os.listdir(tmp_path / "here")) == ["figure_6.nc", "figure_6.png", "figure_6.svg"]

@@ -1,0 +1,258 @@
+"""The boundary layers at the edges of the contact: their own solutions, and the collapse of the solver onto them."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import minimize_scalar
+
+import stribeck as sb
+from stribeck.asymptotics import constants, edge_layer, film_layers
+from stribeck.asymptotics.formula import OutOfRangeWarning
+from stribeck.validity import relative_error
+
+LAYERS = {"edge": edge_layer.layer, "inlet": film_layers.inlet, "outlet": film_layers.outlet}
+EVERY_LAYER = pytest.mark.parametrize("name", LAYERS)
+FIELDS = (
+    edge_layer.gap,
+    edge_layer.contact_pressure,
+    film_layers.gap_inlet,
+    film_layers.gap_outlet,
+    film_layers.fluid_pressure_inlet,
+    film_layers.fluid_pressure_outlet,
+)
+EVERY_FIELD = pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.name)
+
+
+def at(function, position):
+    """Return one value of a function of arrays."""
+    return float(function(np.array([position]))[0])
+
+
+def slope(function, position, step=1e-3):
+    """Return the derivative at one position, to fourth order in the step."""
+    f = function(position + step * np.array([-2.0, -1.0, 1.0, 2.0]))
+    return float((f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
+
+
+def least_gap(layer):
+    """Return the least gap of the outlet and its position."""
+    found = minimize_scalar(lambda xi: at(layer.gap, xi), bounds=(0.0, 1.0), method="bounded", options={"xatol": 1e-8})
+    return found.fun, found.x
+
+
+# --- constants ---
+
+
+def test_the_inlet_selects_the_film_constant():
+    assert abs(film_layers.inlet().constant - constants.FILM_CONSTANT) < 0.5e-9
+
+
+def test_the_outlet_has_the_least_gap_of_the_constants():
+    gap, position = least_gap(film_layers.outlet())
+    assert abs(gap - constants.MINIMUM_CONSTANT) < 0.5e-8
+    assert abs(position - constants.MINIMUM_POSITION) < 0.5e-5
+    assert abs(gap / film_layers.inlet().constant - 0.75801004) < 0.5e-8
+
+
+def test_the_edge_has_the_gap_and_the_pressure_of_the_constants():
+    layer = edge_layer.layer()
+    assert abs(at(layer.gap, 0.0) - constants.EDGE_GAP) < 0.5e-10
+    assert abs(at(layer.pressure, 0.0) - constants.EDGE_PRESSURE) < 0.5e-8
+
+
+def test_the_film_constant_is_that_of_slow_films_of_the_solver(solved):
+    # Differences of order speed**0.4 taken out between two speeds.
+    fast, slow = (solved(speed, 0.1, 0.0, 1e-8).central_gap / speed**0.6 for speed in (1e-7, 1e-8))
+    assert abs(slow - (fast - slow) / (10**0.4 - 1) - constants.FILM_CONSTANT) < 1e-6
+
+
+def test_the_minimum_is_that_of_slow_films_of_the_solver(solved):
+    fast, slow = (solved(speed, 0.1, 0.0, 1e-8) for speed in (1e-7, 1e-8))
+    gaps = [state.minimum_gap / state.groups.speed**0.6 for state in (fast, slow)]
+    places = [(state.minimum_position - 1) / state.groups.speed**0.4 for state in (fast, slow)]
+    assert abs(gaps[1] - (gaps[0] - gaps[1]) / (10**0.4 - 1) - constants.MINIMUM_CONSTANT) < 1e-6
+    assert abs(places[1] - (places[0] - places[1]) / (10**0.4 - 1) - constants.MINIMUM_POSITION) < 1e-4
+
+
+# --- convergence ---
+
+
+def test_the_edge_converges_with_the_reach():
+    values = [at(edge_layer.layer(reach).gap, 0.0) for reach in (1e3, 1e4, 1e5, 1e6)]
+    errors = np.abs(np.diff(values))
+    assert errors[1] < errors[0] / 100 and errors[2] < errors[1] / 50
+    assert errors[2] < 2e-11
+
+
+def test_the_film_converges_with_the_reach():
+    values = [film_layers.inlet(reach).constant for reach in (1e3, 1e4, 1e5, 1e6)]
+    errors = np.abs(np.diff(values))
+    assert errors[1] < errors[0] / 100 and errors[2] < errors[1] / 50
+    assert errors[2] < 1e-11
+
+
+@EVERY_LAYER
+@pytest.mark.parametrize("finer", [{"width": 0.125}, {"order": 16}])
+def test_finer_panels_change_nothing(name, finer):
+    solve = LAYERS[name]
+    xi = np.linspace(-6, 6, 97)
+    coarse, fine = solve(1e4), solve(1e4, **finer)
+    bound = {"edge": 2e-8, "inlet": 1e-7, "outlet": 1e-7}[name]
+    assert np.abs(coarse.gap(xi) / fine.gap(xi) - 1).max() < bound
+    assert np.abs(coarse.pressure(xi) - fine.pressure(xi)).max() < bound
+    if name == "outlet":
+        assert abs(least_gap(coarse)[0] - least_gap(fine)[0]) < 1e-9
+    if name == "inlet":
+        assert abs(coarse.constant - fine.constant) < 1e-11
+
+
+# --- equations ---
+
+
+def principal_value(layer, xi):
+    """Return PV int P'(eta)/(xi - eta) d eta by adaptive quadrature, far field as of Hertz."""
+
+    def gradient(eta):
+        return slope(layer.pressure, eta)
+
+    inner = -quad(gradient, xi - 3, xi + 3, weight="cauchy", wvar=xi, epsabs=1e-7)[0]
+    edges = xi + 3 * 2.0 ** np.arange(11)
+    outer = sum(
+        quad(lambda eta: gradient(eta) / (xi - eta), *ends, epsabs=1e-7)[0]
+        for a, b in zip(edges[:-1], edges[1:], strict=True)
+        for ends in ((a, b), (2 * xi - b, 2 * xi - a))
+    )
+    far = quad(lambda v: -np.sqrt(2) / (1 + xi * v * v), 0, (edges[-1] - 2 * xi) ** -0.5, epsabs=1e-12)[0]  # s = v**-2
+    return inner + outer + far
+
+
+@EVERY_LAYER
+@pytest.mark.parametrize("xi", [-2.3, -0.4, 0.3, 1.7])
+def test_the_curvature_of_the_gap_is_the_principal_value(name, xi):
+    layer = LAYERS[name]()
+    curvature = slope(lambda points: np.array([slope(layer.gap, point, 1e-2) for point in points]), xi, 1e-2)
+    assert abs(curvature + principal_value(layer, xi) / np.pi) < 1e-5 * max(1.0, abs(curvature))
+
+
+def test_the_edge_obeys_the_contact_law():
+    layer, xi = edge_layer.layer(), np.linspace(-40, 10, 137)
+    assert np.abs(layer.pressure(xi) - np.exp(-layer.gap(xi))).max() < 1e-8
+
+
+@pytest.mark.parametrize(("name", "sign"), [("inlet", -1), ("outlet", 1)])
+def test_the_films_obey_reynolds(name, sign):
+    layer = LAYERS[name]()
+    for xi in np.linspace(-20, 20, 43):
+        gap = at(layer.gap, xi)
+        assert abs(slope(layer.pressure, xi) - sign * (gap - layer.constant) / gap**3) < 1e-5
+
+
+# --- far fields ---
+
+
+@pytest.mark.parametrize(("name", "load"), [("edge", np.pi / 2), ("inlet", 0.0), ("outlet", 0.0)])
+def test_the_layer_carries_its_load_beside_that_of_hertz(name, load):
+    # Beyond the box P - P_H is of order |xi|**(-3/2) ln|xi|.
+    line, layer = LAYERS[name]().line, LAYERS[name]()
+    assert abs(line.weights @ layer.excess - load) < 0.02
+    narrow = LAYERS[name](1e4)
+    assert abs(line.weights @ layer.excess - load) < 0.2 * abs(narrow.line.weights @ narrow.excess - load)
+
+
+def test_the_edge_joins_the_logarithmic_gap_and_that_of_hertz():
+    layer = edge_layer.layer()
+    assert abs(at(layer.gap, -1e3) + 0.5 * np.log(2e3)) < 1e-9
+    outside = 2 * np.sqrt(2) / 3 * 1e4**1.5 - 0.5 * np.log(2e4)
+    assert abs(at(layer.gap, 1e4) - outside) < 1e-3
+    beyond = -np.array([3e5, 3e7])
+    assert np.abs(layer.gap(beyond) + 0.5 * np.log(-2 * beyond)).max() < 1e-8
+
+
+def test_the_pressure_at_the_edge_departs_from_that_of_hertz_as_stated():
+    s = np.array([1e2, 1e3])
+    found = (np.exp(-edge_layer.layer().gap(-s)) - np.sqrt(2 * s)) * s**2.5
+    assert np.abs(found / (5 / (8 * np.sqrt(2))) - 1).max() < 1e-4
+
+
+@pytest.mark.parametrize(("name", "sign"), [("inlet", 1), ("outlet", -1)])
+def test_the_films_join_the_uniform_film_and_the_gap_of_hertz(name, sign):
+    layer, c = LAYERS[name](), film_layers.inlet().constant
+    s = 1e5
+    assert abs((at(layer.gap, -s) - c) * np.sqrt(2 * s) / (sign * c**3) - 1) < 3e-3
+    assert abs(at(layer.gap, s) / (2 * np.sqrt(2) / 3 * s**1.5) - 1) < 1e-6
+    assert abs(at(layer.pressure, 1e4) * 1e8 / (sign * 9 / 16) - 1) < 1e-3
+
+
+@pytest.mark.parametrize(("name", "sign"), [("inlet", 1), ("outlet", -1)])
+def test_the_pressure_inside_has_the_logarithm_that_the_film_asks_for(name, sign):
+    # P - P_H = (q0 + q1 ln s) s**(-3/2) + O(s**-2) with q1 = -+ c**3/(2 sqrt2 pi): slopes over decades, extrapolated.
+    layer = LAYERS[name](1e8)
+    s = np.array([1e3, 1e4, 1e5])
+    slopes = np.diff((layer.pressure(-s) - np.sqrt(2 * s)) * s**1.5) / np.log(10)
+    found = slopes[1] + (slopes[1] - slopes[0]) / (np.sqrt(10) - 1)
+    assert abs(found / (-sign * layer.constant**3 / (2 * np.sqrt(2) * np.pi)) - 1) < 0.04
+
+
+@pytest.mark.parametrize("film", [0.35, 0.55])
+def test_an_outlet_takes_any_film(film):
+    errors = []
+    for reach in (1e3, 1e5):
+        layer = film_layers.outlet(reach, film=film)
+        errors.append(abs(layer.excess[0]) + abs(at(layer.gap, -0.1 * reach) - film))
+    assert errors[1] < 0.2 * errors[0] < 0.02
+
+
+# --- collapse of the solver ---
+
+
+@EVERY_FIELD
+def test_the_solver_collapses_onto_the_layer(field):
+    errors = [relative_error(field, field.approach(small)) for small in field.steps]
+    order = np.polyfit(np.log(field.steps), np.log(errors), 1)[0]
+    assert abs(order - field.error_order) < 0.025
+    assert errors[-1] < 1e-3
+
+
+@pytest.mark.parametrize("field", FIELDS[:2], ids=lambda field: field.name)
+def test_with_the_printed_edge_the_collapse_is_of_order_one_third(field):
+    steps = (1e-4, 1e-5, 1e-6)
+    errors = [relative_error(field, field.approach(small), printed=True) for small in steps]
+    assert abs(np.log10(errors[-2] / errors[-1]) - 1 / 3) < 0.035
+    shifted = [relative_error(field, field.approach(small)) for small in steps]
+    assert all(ours < 0.35 * printed for ours, printed in zip(shifted, errors, strict=True))
+
+
+@EVERY_FIELD
+def test_the_worst_error_is_at_the_rough_or_fast_end_and_as_stated(field):
+    ends = [limit.high for limit in field.limits if limit.parameter == field.small]
+    loads = (1e-4, 0.5) if field.plane == "rest" else (0.1,)
+    errors = []
+    for load in loads:
+        groups = field.approach(ends[0])
+        errors.append(relative_error(field, sb.Groups(groups.speed, load, groups.relative_roughness * load)))
+    assert 0.85 * field.worst < max(errors) <= field.worst
+
+
+def test_the_edges_of_a_contact_at_rest_are_mirror_images():
+    groups, x = sb.Groups(0.0, 0.2, 2e-5), np.linspace(0.97, 1.05, 17)
+    assert np.array_equal(edge_layer.gap(groups, x), edge_layer.gap(groups, -x))
+    assert np.array_equal(edge_layer.contact_pressure(groups, x), edge_layer.contact_pressure(groups, -x))
+
+
+def test_gap_and_contact_pressure_at_the_edge_obey_the_law_in_any_shape():
+    load, kappa = np.array([[0.03], [0.3]]), np.array([1e-5, 1e-4, 1e-3])
+    groups, x = sb.Groups(0.0, load, kappa * load), 0.995
+    law = load**-0.5 * np.exp(-edge_layer.gap(groups, x) / kappa)
+    assert law.shape == (2, 3)
+    assert np.allclose(edge_layer.contact_pressure(groups, x) * np.ones((2, 1)), law, rtol=1e-10)
+
+
+@pytest.mark.parametrize(("field", "x"), [(field, 0.9) for field in FIELDS])
+def test_without_roughness_or_speed_a_layer_has_no_value_and_says_so(field, x):
+    with pytest.warns(OutOfRangeWarning, match="nan"):
+        assert np.isnan(field(sb.Groups(0.0, 0.1, 0.0), x))
+
+
+@EVERY_LAYER
+def test_a_layer_is_solved_once(name):
+    assert LAYERS[name]() is LAYERS[name]()

@@ -1,0 +1,414 @@
+"""The phase diagram: its states are those of single solves, its transitions are where they claim to be, and it says what it lacks."""
+
+import importlib
+import math
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck import store
+from stribeck.asymptotics import transitions
+from stribeck.merging import merging_roughness, weakening
+from stribeck.newton import Outcome
+
+pytest.importorskip("xarray")
+
+diagrams = importlib.import_module("stribeck.phase_diagram")
+
+LOADS, ROUGHNESSES, SPEEDS = (0.02, 0.2), (3e-5, 3e-3), (1e-8, 10.0)
+POINTS = {"load": 2, "roughness": 3, "speed": 15}
+MU0, BETA = 0.8, 0.7
+
+
+def made(**changes):
+    settings = {"load": LOADS, "roughness": ROUGHNESSES, "speed": SPEEDS, "points": POINTS, "mu0": MU0, "beta": BETA}
+    return sb.phase_diagram(**settings | changes)
+
+
+@pytest.fixture(scope="module")
+def diagram():
+    return made()
+
+
+@pytest.fixture(scope="module")
+def si_diagram():
+    contact = contact_of(sb.Groups(1.0, 0.02, 1e-3))
+    ends = [contact_of(sb.Groups(1.0, load, rough)) for load, rough in zip(LOADS, ROUGHNESSES, strict=True)]
+    speed = contact_of(sb.Groups(1e-3, 0.02, 1e-3)).speed
+    return sb.phase_diagram(
+        contact,
+        load=[end.load for end in ends],
+        roughness=[end.roughness for end in ends],
+        speed=(1e-4 * speed, 1e4 * speed),
+        points=POINTS,
+    )
+
+
+def contact_of(groups):
+    return sb.LineContact.from_groups(
+        groups, radius="8 mm", modulus="3 MPa", viscosity="20 mPa*s", alpha=1.9, beta=BETA, friction_coefficient=MU0
+    )
+
+
+def solved(speed, load, roughness):
+    state = sb.solve(sb.Groups(float(speed), float(load), float(roughness)), rtol=1e-9)
+    return state, state.friction(MU0, BETA)
+
+
+# --- states ---
+
+
+def test_points_are_those_of_cold_solves(diagram):
+    rng = np.random.default_rng(90211)
+    for i, j, k in zip(*(rng.integers(0, n, 8) for n in diagram.regime.shape), strict=True):
+        point = diagram.isel(load=i, roughness=j, speed=k)
+        state, friction = solved(point["speed"], point["load"], point["roughness"])
+        assert float(point["friction"]) == pytest.approx(friction.total, rel=1e-4)
+        assert abs(point["fluid_load_share"] - state.fluid_load_share) <= point["error_estimate"]
+        assert float(point["central_gap"]) == pytest.approx(state.central_gap, rel=float(point["error_estimate"]))
+        assert float(point["lambda_ratio"]) == pytest.approx(state.lambda_ratio, rel=float(point["error_estimate"]))
+        regime = sb.regime_of(state.fluid_load_share, friction.contact / friction.total)
+        assert diagrams.REGIMES[int(point["regime"])] == regime
+    assert (diagram.error_estimate <= 1e-4).all()
+    assert (diagram.friction_error <= 1e-4 * np.maximum(diagram.friction, MU0)).all()
+    assert {0, 1, 2} == set(diagram.regime.values.ravel().tolist())
+
+
+def test_every_variable_has_unit_and_name_and_the_file_holds_them(diagram, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("netCDF4")
+    for variable in diagram.variables.values():
+        assert variable.attrs["units"]
+        assert variable.attrs["long_name"]
+    assert diagram.attrs["source"].startswith("stribeck ")
+    assert (diagram.attrs["mu0"], diagram.attrs["beta"], diagram.attrs["complete"]) == (MU0, BETA, 1)
+    assert diagram.regime.attrs["flag_meanings"] == "unknown boundary mixed hydrodynamic"
+    store.write_netcdf(diagram, tmp_path / "phase.nc")
+    with xarray.open_dataset(tmp_path / "phase.nc") as read:
+        assert read.regime.values.tolist() == diagram.regime.values.tolist()
+        assert read.message.values.tolist() == diagram.message.values.tolist()
+
+
+def test_without_speeds_the_grid_covers_every_transition():
+    found = sb.phase_diagram(load=0.1, roughness=(1e-4, 1e-2), points={"roughness": 2, "speed": 7})
+    for name in diagrams.MARKS:
+        assert ((found.speed[0] < found[name]) & (found[name] < found.speed[-1])).all()
+
+
+def test_zero_speed_is_the_dry_plateau_and_zero_roughness_the_smooth_film():
+    found = sb.phase_diagram(load=0.1, roughness=[0.0, 1e-3, 2e-3], speed=[0.0, 1e-3, 1.0])
+    rest = found.isel(load=0, speed=0)
+    assert rest.contact_friction_share.values.tolist() == [1.0, 1.0, 1.0]
+    assert rest.friction.values == pytest.approx(1.0, rel=1e-6)
+    smooth = found.isel(load=0, roughness=0)
+    assert smooth.regime.values.tolist() == [0, 2, 2]
+    assert np.isnan(smooth.speed_at_minimum)
+    assert np.isnan(smooth.formula_speed_at_minimum)
+    assert smooth.velocity_weakening == 0
+
+
+def test_from_load_one_on_there_is_no_boundary_lubrication():
+    found = sb.phase_diagram(load=3.0, roughness=0.6, speed=(1e-6, 10.0), points=5)
+    assert 0 not in found.regime
+    assert found.complete == 1
+    assert np.isnan(found.speed_at_5_percent_fluid)
+
+
+# --- transitions ---
+
+
+def test_transitions_lie_where_their_shares_are_passed(diagram):
+    for i, load in enumerate(LOADS):
+        for j in (0, 2):
+            row = diagram.isel(load=i, roughness=j)
+            for name, share in (("speed_at_5_percent_fluid", 0.05), ("speed_at_half_fluid", 0.5)):
+                state, _ = solved(row[name], load, row["roughness"])
+                assert state.fluid_load_share == pytest.approx(share, abs=1e-7)
+            _, friction = solved(row["speed_at_10_percent_contact_friction"], load, row["roughness"])
+            assert friction.contact / friction.total == pytest.approx(0.1, abs=1e-7)
+
+
+def test_at_the_minimum_friction_is_stationary_and_least(diagram):
+    step = 5e-3
+    for i, load in enumerate(LOADS):
+        for j in (0, 2):
+            row = diagram.isel(load=i, roughness=j)
+            speed = float(row["speed_at_minimum"])
+            low, middle, high = (solved(speed * math.exp(s), load, row["roughness"])[1].total for s in (-step, 0, step))
+            assert middle == pytest.approx(float(row["friction_at_minimum"]), rel=1e-7)
+            vertex = 0.5 * step * (low - high) / (low - 2 * middle + high)
+            assert abs(vertex) < 2e-5
+            assert middle < min(low, high)
+            assert row["velocity_weakening"] == 1
+
+
+def test_transitions_outside_the_speeds_of_the_grid_are_found_all_the_same(diagram):
+    narrow = made(load=LOADS[0], roughness=ROUGHNESSES[0], speed=1e-6)
+    for name in diagrams.LINES:
+        assert float(narrow[name].squeeze()) == pytest.approx(float(diagram[name][0, 0]), rel=1e-6)
+
+
+def test_a_minimum_above_the_plateau_is_found():
+    # The least friction of these curves is that of the plateau; the minimum is local.
+    found = sb.phase_diagram(load=0.1, roughness=0.014, speed=(1e-4, 10.0), points=9)
+    assert found.velocity_weakening == 1
+    assert found.friction_at_minimum > 1.0
+    speed = float(found.speed_at_minimum.squeeze())
+    frictions = [sb.solve(sb.Groups(speed * math.exp(s), 0.1, 0.014)).friction().total for s in (-0.1, 0, 0.1)]
+    assert frictions[1] < min(frictions[0], frictions[2])
+
+
+def test_beyond_the_merging_there_is_no_minimum():
+    found = sb.phase_diagram(load=0.1, roughness=0.03, speed=(1e-4, 10.0), points=9)
+    assert found.velocity_weakening == 0
+    assert np.isnan(found.speed_at_minimum)
+    assert (np.diff(found.friction.values.squeeze()) > 0).all()
+
+
+def test_formulas_stand_beside_the_solved_transitions(diagram):
+    for i, load in enumerate(LOADS):
+        for j in (0, 2):
+            row = diagram.isel(load=i, roughness=j)
+            groups = sb.Groups(1.0, load, float(row["roughness"]))
+            speed = transitions.speed_at_minimum.function(groups, mu0=MU0, beta=BETA)
+            assert float(row["formula_speed_at_minimum"]) == pytest.approx(float(speed), rel=1e-12)
+            right, printed = (transitions.speed_boundary_to_mixed.function(groups, printed=p) for p in (False, True))
+            assert float(row["formula_speed_boundary_to_mixed"]) == pytest.approx(float(right), rel=1e-12)
+            assert float(row["printed_speed_boundary_to_mixed"]) == pytest.approx(float(printed), rel=1e-12)
+            assert printed != pytest.approx(right, rel=0.5)
+        found = float(diagram["formula_merging_roughness"][i])
+        assert found == pytest.approx(float(transitions.merging_roughness(load, MU0, BETA)), rel=1e-12)
+    assert (diagram.formula_velocity_weakening == np.isfinite(diagram.formula_speed_at_minimum)).all()
+
+
+# --- the merging ---
+
+
+@pytest.mark.parametrize(("load", "ratio"), [(0.1, 1.0), (0.01, 20.0)])
+def test_the_merging_roughness_parts_curves_with_a_minimum_from_those_without(load, ratio):
+    merging = merging_roughness(load, mu0=ratio)
+    for factor, falls in ((0.98, True), (1.02, False)):
+        place = weakening(sb.Groups(1.0, load, factor * merging), mu0=ratio)
+        speeds = (place.speed / 30, place.speed * 30)
+        curve = sb.stribeck_curve(load=load, roughness=factor * merging, speed=speeds, points=121, rtol=1e-9, mu0=ratio)
+        assert (np.diff(curve.friction).min() < 0) == falls
+        assert place.present == falls
+
+
+def test_the_minimum_passes_the_plateau_before_it_disappears():
+    plateau, slope = (merging_roughness(0.1, criterion=criterion) for criterion in ("plateau", "slope"))
+    assert plateau == pytest.approx(0.0122053, rel=1e-5)
+    assert slope == pytest.approx(0.0159905, rel=1e-5)
+    found = weakening(sb.Groups(1.0, 0.1, plateau))
+    assert found.minimum_friction == pytest.approx(1.0, rel=1e-5)
+    curve = sb.stribeck_curve(load=0.1, roughness=0.999 * plateau)
+    assert curve.minimum.friction == pytest.approx(1.0, rel=2e-3)
+
+
+def test_only_the_quotient_of_the_friction_coefficients_moves_the_merging():
+    found = weakening(sb.Groups(1.0, 0.1, 0.01), 0.6, 0.2), weakening(sb.Groups(1.0, 0.1, 0.01), 3.0, 1.0)
+    assert found[0].slope == pytest.approx(found[1].slope, rel=1e-5)
+    assert found[0].minimum_speed == pytest.approx(found[1].minimum_speed, rel=1e-6)
+    assert found[0].minimum_friction == pytest.approx(0.2 * found[1].minimum_friction, rel=1e-6)
+
+
+def test_without_dry_friction_no_roughness_makes_a_minimum():
+    assert merging_roughness(0.1, mu0=0) == 0
+
+
+def test_a_merging_beyond_the_range_is_no_number(monkeypatch):
+    monkeypatch.setattr("stribeck.merging.KAPPA_RANGE", (0.25, 0.5))
+    assert math.isnan(merging_roughness(0.1))
+
+
+@pytest.mark.parametrize("arguments", [{"criterion": "mine"}, {"load": -1.0}, {"rtol": 0.0}, {"definition": "x"}, {"mu0": -1}])
+def test_bad_input_to_the_merging_is_refused(arguments):
+    with pytest.raises(sb.InputError):
+        merging_roughness(**{"load": 0.1} | arguments)
+
+
+def test_the_diagram_holds_the_merging_line_where_asked(si_diagram):
+    assert "merging_roughness" not in si_diagram
+    contact = contact_of(sb.Groups(1.0, 0.1, 1e-3))
+    found = sb.phase_diagram(contact, speed="1 mm/s", merging=True)
+    groups = contact.replace(roughness=float(found.merging_roughness.squeeze())).groups
+    assert groups.roughness == pytest.approx(merging_roughness(0.1, MU0, BETA), rel=1e-6)
+
+
+# --- units ---
+
+
+def test_diagrams_in_si_and_in_groups_agree(si_diagram):
+    for i, load in enumerate(LOADS):
+        row = si_diagram.isel(load=i)
+        assert float(row["load_group"]) == pytest.approx(load)
+        if i == 0:
+            continue
+        groups = made(load=load, speed=row["speed_group"].values, roughness=row["roughness_group"].values)
+        np.testing.assert_array_equal(groups.regime[0], row["regime"])
+        np.testing.assert_allclose(groups.friction[0], row["friction"], rtol=1e-6)
+        unit = float((row["speed_group"] / row["speed"])[0])
+        for name in (*diagrams.MARKS, "speed_at_minimum", "formula_speed_at_minimum", "printed_speed_boundary_to_mixed"):
+            np.testing.assert_allclose(groups[name][0], row[name] * unit, rtol=1e-6)
+    assert [si_diagram[name].attrs["units"] for name in diagrams.AXES] == ["N/m", "m", "m/s"]
+    assert si_diagram.speed_at_minimum.attrs["units"] == si_diagram.speed.attrs["units"]
+    assert si_diagram.attrs["input_radius"] == 8e-3
+
+
+# --- what is missing ---
+
+
+def test_after_an_interruption_what_is_finished_stays():
+    calls = []
+
+    def stop(done, points):
+        calls.append(done)
+        if done >= 20:
+            raise KeyboardInterrupt
+
+    found = made(on_point=stop)
+    assert found.complete == 0
+    assert found.outcome[0, 0].values.tolist() == ["CONVERGED"] * 15
+    assert np.isfinite(found.speed_at_minimum[0, 0])
+    missing = found.outcome == Outcome.INTERRUPTED.name
+    assert int(missing.sum()) > 60
+    assert (found.regime.where(missing, -1) == -1).all()
+    assert np.isnan(found.friction.where(missing)).all()
+    assert np.isfinite(found.friction.values[~missing.values]).all()
+    assert found.message[1, 2] == Outcome.INTERRUPTED.value
+    assert found.velocity_weakening[1, 2] == -1
+    assert calls == sorted(calls)
+
+
+def test_progress_counts_the_points_of_the_grid():
+    calls = []
+    made(load=0.1, roughness=1e-3, speed=(1e-5, 1e-3), points=4, on_point=lambda done, points: calls.append((done, points)))
+    assert calls[-1] == (4, 4)
+    assert {points for _, points in calls} == {4}
+
+
+def test_a_row_that_fails_keeps_its_reason_and_leaves_the_others(monkeypatch):
+    right = sb.stribeck_curve
+
+    def sometimes(problem, **settings):
+        if problem.roughness == 1e-3:
+            raise sb.SolveError(Outcome.STEP_LIMIT, None, "this one does not converge")
+        return right(problem, **settings)
+
+    monkeypatch.setattr(diagrams, "stribeck_curve", sometimes)
+    found = sb.phase_diagram(load=0.1, roughness=[5e-4, 1e-3, 2e-3], speed=(1e-5, 1e-3), points=3)
+    assert found.outcome[0, 1].values.tolist() == ["STEP_LIMIT"] * 3
+    assert found.message.values.tolist() == [["", "this one does not converge", ""]]
+    assert np.isnan(found.friction[0, 1]).all()
+    assert (found.outcome[0, ::2] == "CONVERGED").all()
+    assert found.complete == 0
+
+
+# --- bad input ---
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"load": None}, "load missing"),
+        ({"load": None, "roughness": None}, "load and roughness missing"),
+        ({"load": (0.0, 0.1)}, "load = (0.0, 0.1)"),
+        ({"speed": (10.0, 1.0)}, "ascending"),
+        ({"roughness": [1e-3, 1e-3, 1e-2]}, "ascending"),
+        ({"roughness": []}, "roughness = []"),
+        ({"speed": "1 mm/s"}, "for units give a LineContact"),
+        ({"speed": math.nan}, "finite"),
+        ({"points": 1}, "points of load = 1"),
+        ({"points": True}, "points of load = True"),
+        ({"points": {"sped": 3}}, "'sped'"),
+        ({"rtol": 1.0}, "rtol"),
+        ({"definition": "mine"}, "definition"),
+        ({"beta": 0.0}, "beta"),
+        ({"problem": 7}, "problem = 7"),
+    ],
+)
+def test_bad_input_is_refused_with_a_sentence(changes, words):
+    with pytest.raises(sb.InputError) as caught:
+        made(**changes)
+    assert words in str(caught.value)
+    assert str(caught.value).endswith(".")
+
+
+# --- pictures ---
+
+
+@pytest.fixture
+def plot():
+    pytest.importorskip("matplotlib")
+    return importlib.import_module("stribeck.plot_phase")
+
+
+def texts(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+@pytest.mark.parametrize("which", ["diagram", "si_diagram"])
+def test_the_plane_shows_regions_solved_lines_and_formulas(plot, which, request, tmp_path):
+    dataset = request.getfixturevalue(which)
+    figure = plot.plot_phase_diagram(dataset, tmp_path / "phase.png", load=float(dataset["load"][1]))
+    assert (tmp_path / "phase.png").stat().st_size > 20_000
+    (axes,) = figure.axes
+    assert set(texts(figure)) == {style[0] for style in (plot.SOLVED | plot.FORMULAS).values()}
+    assert {text.get_text() for text in axes.texts} == {"boundary", "mixed", "hydrodynamic"}
+    assert axes.get_xlabel() == (r"speed group $\lambda$" if which == "diagram" else "speed $U$ (m/s)")
+    drawn = {line.get_label(): line for line in axes.lines}
+    x, y = drawn["minimum of friction"].get_data()
+    np.testing.assert_allclose(x, dataset.speed_at_minimum[1])
+    np.testing.assert_allclose(y, dataset.roughness * (1 if which == "diagram" else 1e6))
+    assert drawn["minimum of friction"].get_linestyle() == "-"
+    assert drawn["minimum, formula"].get_linestyle() == "--"
+
+
+def test_the_regions_are_those_of_the_states(plot, diagram):
+    plane = diagram.isel(load=0)
+    for name, (left, right) in plot._regions(plane).items():
+        inside = (left[:, None] <= plane.speed.values) & (plane.speed.values < right[:, None])
+        assert (inside == (plane.regime.values == diagrams.REGIMES.index(name))).all()
+
+
+def test_the_merging_is_drawn_where_it_lies_in_the_picture(plot, diagram):
+    label = "above: no minimum of friction"
+    for height, seen in ((1e-3, True), (0.5, False)):
+        figure = plot.plot_phase_diagram(diagram.assign(merging_roughness=("load", [height, height])))
+        assert (label in texts(figure)) == seen
+        if seen:
+            (line,) = [line for line in figure.axes[0].lines if line.get_label() == label]
+            assert set(line.get_ydata()) == {height}
+
+
+@pytest.mark.parametrize("which", ["diagram", "si_diagram"])
+def test_the_space_shows_planes_surfaces_and_lines(plot, which, request, tmp_path):
+    dataset = request.getfixturevalue(which)
+    figure = plot.plot_phase_space(dataset, tmp_path / "space.svg")
+    assert (tmp_path / "space.svg").stat().st_size > 20_000
+    (axes,) = figure.axes
+    assert set(texts(figure)) == {style[0] for style in plot.IN_SPACE.values()}
+    assert len(axes.collections) == 2 + 6
+    front, back = axes.get_ylim()
+    assert front == pytest.approx(math.log10(dataset["load"][1]))
+    assert back == pytest.approx(math.log10(dataset["load"][0]))
+    assert "roughness" in axes.get_zlabel()
+
+
+def test_pictures_that_cannot_be_are_refused(plot, diagram, tmp_path):
+    with pytest.raises(sb.InputError, match="two or more"):
+        plot.plot_phase_space(diagram.isel(load=[0]))
+    with pytest.raises(sb.InputError, match="two or more"):
+        plot.plot_phase_diagram(diagram.isel(speed=[0]))
+    (tmp_path / "there.png").touch()
+    with pytest.raises(sb.InputError, match="exists already"):
+        plot.plot_phase_diagram(diagram, tmp_path / "there.png")
+
+
+def test_rows_without_states_stay_white(plot):
+    found = made(on_point=lambda done, points: (_ for _ in ()).throw(KeyboardInterrupt()) if done > 40 else None)
+    figure = plot.plot_phase_diagram(found, load=LOADS[1])
+    assert found.attrs["outcome"] in [text.get_text() for text in figure.texts]
+    (_, (left, right), _) = plot._regions(found.isel(load=1)).values()
+    assert np.isfinite(left * right).tolist() == [False, False, False]

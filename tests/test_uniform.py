@@ -1,0 +1,143 @@
+"""The laws for every speed: load sharing and friction against solved states, and their limits."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.asymptotics import hydrodynamic, load_sharing, perturbation, uniform
+from stribeck.asymptotics.formula import OutOfRangeWarning
+
+STATES = 120
+SPEEDS = np.geomspace(1e-9, 1e2, 12)
+
+
+@pytest.fixture(scope="module")
+def solved():
+    """Groups and solutions over the box of the laws, on states they were not fitted to."""
+    rng = np.random.default_rng(70321)
+    solutions = []
+    for _ in range(STATES // len(SPEEDS)):
+        load, kappa = np.exp(rng.uniform(np.log([1e-4, 1e-4]), np.log([0.7, 1e-1])))
+        speeds = SPEEDS * np.exp(rng.uniform(0, 2, len(SPEEDS)))
+        speeds = np.sort(np.minimum(speeds, 99.0))
+        curve = sb.stribeck_curve(load=load, roughness=kappa * load, speed=speeds, rtol=1e-6)
+        solutions += curve.solutions
+    groups = sb.Groups(*(np.array([getattr(s.groups, name) for s in solutions]) for name in ("speed", "load", "roughness")))
+    return groups, solutions
+
+
+@pytest.mark.parametrize("beta", [1.0, 0.03])
+@pytest.mark.parametrize("definition", ["paper", "balanced"])
+def test_friction_is_within_three_percent_in_the_median_and_the_stated_worst(solved, beta, definition):
+    groups, solutions = solved
+    right = np.array([s.friction(1.0, beta, definition).total for s in solutions])
+    error = np.abs(uniform.friction(groups, 1.0, beta, definition) / right - 1)
+    assert np.median(error) < 0.003
+    assert np.quantile(error, 0.9) < 0.02
+    assert error.max() < uniform.friction.worst
+
+
+def test_the_contact_share_is_good_to_the_stated_error_down_to_a_millionth(solved):
+    groups, solutions = solved
+    share = np.array([s.contact_load_share for s in solutions])
+    counts = share > 1e-6
+    assert counts.sum() > 60
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutOfRangeWarning)  # where nothing is left of the share
+        found = load_sharing.contact_load_share(groups)
+    assert np.abs(found[counts] / share[counts] - 1).max() < load_sharing.contact_load_share.worst
+    assert (found[~counts] < 2e-6).all()
+
+
+@pytest.mark.parametrize(("load", "kappa"), [(3e-4, 2e-2), (0.02, 3e-4), (0.1, 1e-3), (0.5, 5e-3)])
+def test_the_speeds_of_half_and_of_five_percent_on_the_fluid_are_those_of_the_solver(load, kappa):
+    groups = sb.Groups(1.0, load, kappa * load)
+    curve = sb.stribeck_curve(load=load, roughness=kappa * load, points=31)
+    marks = {mark.name: mark.value for mark in curve.transitions}
+    for share, name, worst in ((0.5, "50%", 0.075), (0.05, "5%", 0.05)):
+        found = load_sharing.speed_at_fluid_share(groups, share)
+        assert abs(found / marks[f"fluid carries {name} of the load"] - 1) < worst
+        # The paper's extrapolation to all of the load misses half of it by far more.
+        paper = kappa**2 * perturbation.phi(load) ** -0.5
+        assert share != 0.5 or abs(found / paper - 1) > 0.3
+
+
+def test_speed_and_share_are_inverse_to_each_other():
+    shares = np.array([1e-9, 1e-3, 0.05, 0.5, 0.95, 0.9999])
+    base = sb.Groups(np.ones(6), 0.03, 0.03 * 2e-3)
+    speeds = load_sharing.speed_at_fluid_share(base, shares)
+    assert (np.diff(speeds) > 0).all()
+    contact = load_sharing.contact_load_share(sb.Groups(speeds, 0.03, 0.03 * 2e-3))
+    assert contact == pytest.approx(1 - shares, rel=1e-9)
+
+
+@pytest.mark.parametrize("load", [1e-4, 0.1, 0.69])
+def test_slow_contacts_share_the_load_as_the_perturbation_says(load):
+    # The law has phi in closed form, good to 0.33 %, and a correction of order kappa**(2/3).
+    kappa, errors = np.array([1e-6, 1e-9, 1e-12]), []
+    for k in kappa:
+        speed = 1e-3 * k**2 * perturbation.phi(load) ** -0.5
+        odds = load_sharing.log_odds(sb.Groups(speed, load, k * load))
+        errors.append(np.exp(odds) / 1e-6 - 1)
+    assert abs(errors[-1]) < 0.01
+    assert abs(errors[0] - errors[-1]) < 0.02
+
+
+def test_fast_contacts_have_the_friction_of_the_smooth_film():
+    groups = sb.Groups([1.0, 10.0, 100.0], 0.1, 1e-4)
+    for definition in ("paper", "balanced"):
+        assert uniform.friction(groups, definition=definition) == pytest.approx(
+            hydrodynamic.friction_uniform(groups), rel=1e-9
+        )
+
+
+def test_the_speed_of_the_film_inverts_the_smooth_film():
+    speeds = np.geomspace(1e-9, 1e5, 29)
+    film = np.array([sb.solve(sb.Groups(s, 0.1, 0.0)).central_gap for s in speeds[::4]])
+    found = np.exp(load_sharing._log_film_speed(film))
+    assert np.abs(found / speeds[::4] - 1).max() < 0.0025
+
+
+def test_contacts_at_rest_and_without_roughness_are_exact():
+    groups = sb.Groups([0.0, 1e-3, 1e-3], [0.1, 0.1, 0.1], [1e-4, 0.0, 1e-4])
+    with pytest.warns(OutOfRangeWarning):
+        share = load_sharing.contact_load_share(groups)
+    assert share[0] == 1.0 and share[1] == 0.0 and 0 < share[2] < 1
+    with pytest.warns(OutOfRangeWarning):
+        friction = uniform.friction(groups, mu0=0.7)
+    assert friction[0] == 0.7
+    assert friction[1] == hydrodynamic.friction_uniform(sb.Groups(1e-3, 0.1, 0.0))
+
+
+def test_loads_from_one_on_have_no_value_and_say_so():
+    for law in (
+        load_sharing.contact_load_share,
+        load_sharing.speed_at_fluid_share,
+        uniform.friction,
+        uniform.viscous_friction,
+    ):
+        with pytest.warns(OutOfRangeWarning, match="has no value, and is nan, outside its range"):
+            found = law(sb.Groups([1e-5, 1e-5], [0.1, 1.0], [1e-4, 1e-4]))
+        assert np.isfinite(found).tolist() == [True, False]
+
+
+@pytest.mark.parametrize("share", [0.0, 1.0, -0.1, float("nan"), [0.5, 2.0]])
+def test_a_share_that_is_none_is_refused(share):
+    with pytest.raises(sb.InputError, match="a part of the load lies between 0 and 1"):
+        load_sharing.speed_at_fluid_share(sb.Groups(1.0, 0.1, 1e-4), share)
+
+
+@pytest.mark.parametrize("law", [uniform.friction, uniform.viscous_friction])
+def test_an_unknown_definition_is_refused(law):
+    with pytest.raises(sb.InputError, match="it must be 'paper' or 'balanced'"):
+        law(sb.Groups(1e-5, 0.1, 1e-4), definition="printed")
+
+
+def test_states_broadcast():
+    grid = sb.Groups(np.geomspace(1e-6, 1e-3, 4)[:, None], [0.01, 0.1], 1e-5)
+    found = uniform.friction(grid)
+    assert found.shape == (4, 2)
+    one = uniform.friction(sb.Groups(grid.speed[2, 0], 0.1, 1e-5))
+    assert np.ndim(one) == 0 and one == pytest.approx(found[2, 1], rel=1e-12)
