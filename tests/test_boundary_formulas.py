@@ -285,7 +285,7 @@ def test_the_pressure_of_first_order_vanishes_at_both_ends_and_the_printed_one_d
     largest = np.abs(law(groups, POSITIONS)).max()
     assert np.abs(law(groups, ends)).max() < 1e-12 * largest
     printed = law(groups, np.array([-2.0, -1.0, 1.0, 2.0]), printed=True)
-    assert printed == pytest.approx(groups.speed * np.array([0, 0, 0.1255806, 0.1255806]), rel=1e-6)
+    assert printed / groups.speed == pytest.approx(np.array([0, 0, 0.1255806, 0.1255806]), rel=1e-6)
 
 
 def test_the_slope_of_the_pressure_of_first_order_is_that_of_the_thin_film_equation():
@@ -299,7 +299,7 @@ def test_the_slope_of_the_pressure_of_first_order_is_that_of_the_thin_film_equat
 
 def test_the_slope_of_the_pressure_of_second_order_is_that_of_the_thin_film_equation():
     # The exact slope for the gap to first order, of which the even part is of second order.
-    x, step, change = np.array([0.2, 0.5, 0.9]), 1e-5, 1e-4
+    x, step, change = np.array([0.2, 0.5, 0.9]), 1e-5, 1e-3
     groups = sb.Groups(change, 0.2, 0.2)  # kappa = 1
 
     def even_slope(law):
@@ -310,7 +310,7 @@ def test_the_slope_of_the_pressure_of_second_order_is_that_of_the_thin_film_equa
     h_star = perturbation.flux_gap.function(groups)
     h = np.array([perturbation.gap_first.function(groups, y) for y in (x, -x)])
     slope = change * (h - h_star) / h**3
-    assert found == pytest.approx((slope[0] - slope[1]) / 2, rel=1e-3)
+    assert found == pytest.approx((slope[0] - slope[1]) / 2, rel=1e-3, abs=0)
 
 
 def test_phi_is_the_load_of_the_pressure_of_second_order():

@@ -1,5 +1,6 @@
 """The making of figures: which are meant, what is written, kept, solved again and refused, and that each can be read."""
 
+import dataclasses
 import os
 import re
 import shutil
@@ -363,13 +364,18 @@ def test_work_reports_each_solve_and_keeps_the_largest_error():
     assert curve.rtol == state.rtol == 1e-5
 
 
-def test_no_state_is_given_that_did_not_converge():
-    work = Work(lambda *step: None, steps=1, rtol=1e-11)
+def test_no_state_is_given_that_did_not_converge(monkeypatch):
+    work = Work(lambda *step: None, steps=3, rtol=1e-11)
     with pytest.raises(sb.SolveError):
-        work.solve(1e-9, 0.1, 0.0)
-    with pytest.raises(sb.SolveError):
-        work.curve(load=0.1, roughness=0.0, speed=(1e-9, 1e-3), points=3)
-    assert work.done == 0
+        work.solve(1e-6, 0.1, 1e-7)
+    whole = sb.stribeck_curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=3)
+    few = {"solutions": whole.solutions[1:], "values": whole.values[1:]}
+    for changes in ({"outcome": sb.Outcome.PATH_LOST}, few):
+        broken = dataclasses.replace(whole, **changes)
+        monkeypatch.setattr("stribeck.figures.states.stribeck_curve", lambda broken=broken, **arguments: broken)
+        with pytest.raises(sb.SolveError, match="of 3 points"):
+            work.curve(load=0.1, roughness=0.01)
+    assert (work.done, work.error_estimate) == (0, 0.0)
 
 
 def test_ctrl_c_inside_a_curve_ends_the_figure():
@@ -379,6 +385,20 @@ def test_ctrl_c_inside_a_curve_ends_the_figure():
     for points in (2, 5):
         with pytest.raises(KeyboardInterrupt):
             Work(report, steps=1, rtol=1e-5).curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=points)
+
+
+def test_a_curve_that_is_lost_because_of_ctrl_c_counts_as_interrupted(monkeypatch):
+    def report(done, steps):
+        raise KeyboardInterrupt
+
+    def lost(on_point, **arguments):
+        with pytest.raises(KeyboardInterrupt):
+            on_point(1, 3)
+        raise sb.SolveError(sb.Outcome.PATH_LOST, None, "lost.")
+
+    monkeypatch.setattr("stribeck.figures.states.stribeck_curve", lost)
+    with pytest.raises(KeyboardInterrupt):
+        Work(report, steps=1).curve(load=0.1, roughness=0.01)
 
 
 # --- the command ---

@@ -1,4 +1,4 @@
-"""The phase diagram: its states are those of single solves, its transitions are where they claim to be, and it says what it lacks."""
+"""The phase diagram: its states are those of single solves, its transitions lie where they claim to, it says what it lacks."""
 
 import importlib
 import math
@@ -8,13 +8,14 @@ import pytest
 
 import stribeck as sb
 from stribeck import store
-from stribeck.asymptotics import transitions
+from stribeck.asymptotics import load_sharing, transitions
 from stribeck.merging import merging_roughness, weakening
 from stribeck.newton import Outcome
 
 pytest.importorskip("xarray")
 
 diagrams = importlib.import_module("stribeck.phase_diagram")
+grid = importlib.import_module("stribeck.phase_grid")
 
 LOADS, ROUGHNESSES, SPEEDS = (0.02, 0.2), (3e-5, 3e-3), (1e-8, 10.0)
 POINTS = {"load": 2, "roughness": 3, "speed": 15}
@@ -69,7 +70,7 @@ def test_points_are_those_of_cold_solves(diagram):
         assert float(point["central_gap"]) == pytest.approx(state.central_gap, rel=float(point["error_estimate"]))
         assert float(point["lambda_ratio"]) == pytest.approx(state.lambda_ratio, rel=float(point["error_estimate"]))
         regime = sb.regime_of(state.fluid_load_share, friction.contact / friction.total)
-        assert diagrams.REGIMES[int(point["regime"])] == regime
+        assert grid.REGIMES[int(point["regime"])] == regime
     assert (diagram.error_estimate <= 1e-4).all()
     assert (diagram.friction_error <= 1e-4 * np.maximum(diagram.friction, MU0)).all()
     assert {0, 1, 2} == set(diagram.regime.values.ravel().tolist())
@@ -92,7 +93,7 @@ def test_every_variable_has_unit_and_name_and_the_file_holds_them(diagram, tmp_p
 
 def test_without_speeds_the_grid_covers_every_transition():
     found = sb.phase_diagram(load=0.1, roughness=(1e-4, 1e-2), points={"roughness": 2, "speed": 7})
-    for name in diagrams.MARKS:
+    for name in grid.MARKS:
         assert ((found.speed[0] < found[name]) & (found[name] < found.speed[-1])).all()
 
 
@@ -145,7 +146,7 @@ def test_at_the_minimum_friction_is_stationary_and_least(diagram):
 
 def test_transitions_outside_the_speeds_of_the_grid_are_found_all_the_same(diagram):
     narrow = made(load=LOADS[0], roughness=ROUGHNESSES[0], speed=1e-6)
-    for name in diagrams.LINES:
+    for name in grid.LINES:
         assert float(narrow[name].squeeze()) == pytest.approx(float(diagram[name][0, 0]), rel=1e-6)
 
 
@@ -173,6 +174,10 @@ def test_formulas_stand_beside_the_solved_transitions(diagram):
             groups = sb.Groups(1.0, load, float(row["roughness"]))
             speed = transitions.speed_at_minimum.function(groups, mu0=MU0, beta=BETA)
             assert float(row["formula_speed_at_minimum"]) == pytest.approx(float(speed), rel=1e-12)
+            for name, share in (("formula_speed_at_5_percent_fluid", 0.05), ("formula_speed_at_half_fluid", 0.5)):
+                speed = load_sharing.speed_at_fluid_share.function(groups, share)
+                assert float(row[name]) == pytest.approx(float(speed), rel=1e-12)
+                assert float(row[name]) == pytest.approx(float(row[name.removeprefix("formula_")]), rel=0.2)
             right, printed = (transitions.speed_boundary_to_mixed.function(groups, printed=p) for p in (False, True))
             assert float(row["formula_speed_boundary_to_mixed"]) == pytest.approx(float(right), rel=1e-12)
             assert float(row["printed_speed_boundary_to_mixed"]) == pytest.approx(float(printed), rel=1e-12)
@@ -249,9 +254,9 @@ def test_diagrams_in_si_and_in_groups_agree(si_diagram):
         np.testing.assert_array_equal(groups.regime[0], row["regime"])
         np.testing.assert_allclose(groups.friction[0], row["friction"], rtol=1e-6)
         unit = float((row["speed_group"] / row["speed"])[0])
-        for name in (*diagrams.MARKS, "speed_at_minimum", "formula_speed_at_minimum", "printed_speed_boundary_to_mixed"):
+        for name in (*grid.MARKS, "speed_at_minimum", "formula_speed_at_minimum", "printed_speed_boundary_to_mixed"):
             np.testing.assert_allclose(groups[name][0], row[name] * unit, rtol=1e-6)
-    assert [si_diagram[name].attrs["units"] for name in diagrams.AXES] == ["N/m", "m", "m/s"]
+    assert [si_diagram[name].attrs["units"] for name in grid.AXES] == ["N/m", "m", "m/s"]
     assert si_diagram.speed_at_minimum.attrs["units"] == si_diagram.speed.attrs["units"]
     assert si_diagram.attrs["input_radius"] == 8e-3
 
@@ -362,14 +367,14 @@ def test_the_plane_shows_regions_solved_lines_and_formulas(plot, which, request,
     np.testing.assert_allclose(x, dataset.speed_at_minimum[1])
     np.testing.assert_allclose(y, dataset.roughness * (1 if which == "diagram" else 1e6))
     assert drawn["minimum of friction"].get_linestyle() == "-"
-    assert drawn["minimum, formula"].get_linestyle() == "--"
+    assert drawn["the same by our formulas"].get_linestyle() == "--"
 
 
 def test_the_regions_are_those_of_the_states(plot, diagram):
     plane = diagram.isel(load=0)
     for name, (left, right) in plot._regions(plane).items():
         inside = (left[:, None] <= plane.speed.values) & (plane.speed.values < right[:, None])
-        assert (inside == (plane.regime.values == diagrams.REGIMES.index(name))).all()
+        assert (inside == (plane.regime.values == grid.REGIMES.index(name))).all()
 
 
 def test_the_merging_is_drawn_where_it_lies_in_the_picture(plot, diagram):

@@ -66,8 +66,9 @@ MAY_IMPORT = {
     "report": RESULTS | {"case", "curve", "distances", "regimes", "store"},
     "distances": RESULTS | {"curve", "regimes"},
     "merging": RESULTS | {"follow", "refine", "sensitivity", "span"},
-    "phase_diagram": RESULTS | {"curve", "merging", "phase_dataset", "regimes", "span"},
-    "phase_dataset": RESULTS | {"asymptotics", "output", "phase_diagram", "store"},
+    "phase_grid": RESULTS | {"regimes", "span"},
+    "phase_dataset": RESULTS | {"asymptotics", "output", "phase_grid", "regimes", "store"},
+    "phase_diagram": RESULTS | {"curve", "merging", "phase_dataset", "phase_grid", "regimes", "span"},
     "plot_phase": RESULTS | {"output", "plotting"},
 }
 OPEN = {"__init__", "__main__", "app", "cli"}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.asymptotics import hydrodynamic, load_sharing, perturbation, uniform
+from stribeck.asymptotics import hydrodynamic, load_sharing, perturbation, uniform, wedge
 from stribeck.asymptotics.formula import OutOfRangeWarning
 
 STATES = 120
@@ -141,3 +141,45 @@ def test_states_broadcast():
     assert found.shape == (4, 2)
     one = uniform.friction(sb.Groups(grid.speed[2, 0], 0.1, 1e-5))
     assert np.ndim(one) == 0 and one == pytest.approx(found[2, 1], rel=1e-12)
+
+
+# --- the limit of small roughness at a fixed fluid number ---
+
+
+@pytest.mark.parametrize(("load", "number"), [(1e-4, 300.0), (0.1, 10.0), (0.7, 1.0)])
+def test_the_wedge_obeys_its_equations(load, number):
+    state = wedge.wedge(load, number)
+    x, h = state.x, state.gap
+    contact = load**-0.5 * np.exp(-h)
+    assert contact + state.fluid_pressure == pytest.approx(np.sqrt((1 - x) * (1 + x)), abs=1e-7)
+    inside = np.abs(x) < 0.9
+    slope = np.gradient(state.fluid_pressure[inside], x[inside], edge_order=2)[1:-1]
+    right = (number * (h - state.flux_gap) / h**3)[inside][1:-1]
+    assert np.abs(slope - right).max() < 0.01 * np.abs(right).max()
+    assert np.abs(state.fluid_pressure[[0, -1]]).max() < 1e-9
+
+
+@pytest.mark.parametrize("load", [1e-4, 0.1, 0.7])
+def test_a_slow_wedge_carries_what_the_perturbation_says(load):
+    share = np.array([1e-4, 1e-5])
+    numbers = np.sqrt(share / perturbation.phi(load))
+    found = np.array([1 - wedge.wedge(load, float(n)).contact_load_share for n in numbers])
+    error = np.abs(found / share - 1)
+    assert error[1] < 0.2 * error[0] + 1e-6
+    assert error[0] < 0.01
+
+
+def test_the_law_of_load_sharing_follows_the_wedge_where_roughness_is_small():
+    for load in (1e-4, 1e-2, 0.1, 0.6):
+        for share in (0.9, 0.5, 0.2):
+            speed = load_sharing.speed_at_fluid_share.function(sb.Groups(1.0, load, 1e-12 * load), 1 - share)
+            assert abs(wedge.wedge(load, float(speed) / 1e-24).contact_load_share / share - 1) < 0.06
+
+
+@pytest.mark.parametrize(
+    ("load", "number", "name"),
+    [(1.0, 1.0, "load"), (0.0, 1.0, "load"), (0.1, -1.0, "fluid_number"), (0.1, np.inf, "fluid_number")],
+)
+def test_a_wedge_that_does_not_exist_is_refused(load, number, name):
+    with pytest.raises(sb.InputError, match=f"{name} = "):
+        wedge.wedge(load, number)

@@ -293,9 +293,7 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
         _ = curve.transitions
         if curve.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
-        distances = transition_distances(
-            loaded.contact, rtol=loaded.rtol, definition=loaded.definition, on_point=progress
-        )
+        distances = transition_distances(loaded.contact, rtol=loaded.rtol, definition=loaded.definition, on_point=progress)
     from . import report
 
     if json:

@@ -10,7 +10,8 @@ import numpy as np
 from ._types import Array
 from .output import MissingExtraError
 from .parameters import Groups
-from .phase_diagram import AXES, MARKS, REGIMES, Diagram
+from .phase_grid import AXES, MARKS, REGIMES, Diagram
+from .regimes import BOUNDARY_FLUID_SHARE
 from .store import GROUPS, INPUTS, OBSERVABLES, unit_of
 
 if TYPE_CHECKING:
@@ -33,9 +34,11 @@ LABELS = {
     **{variable: f"speed at which {name}, on solved states" for variable, name in MARKS.items()},
     "speed_at_minimum": "speed of the minimum of friction, on solved states",
     "friction_at_minimum": "friction coefficient there",
-    "formula_speed_boundary_to_mixed": "speed at which the fluid carries all load by its law at low speed",
+    "formula_speed_at_5_percent_fluid": f"speed at which {MARKS['speed_at_5_percent_fluid']}, by the law of load sharing",
+    "formula_speed_at_half_fluid": f"speed at which {MARKS['speed_at_half_fluid']}, by the law of load sharing",
+    "formula_speed_boundary_to_mixed": "speed at which the law of [BP] for low speed, corrected, gives all load to the fluid",
     "formula_speed_at_minimum": "speed of the minimum of friction by the law of mixed friction",
-    "printed_speed_boundary_to_mixed": "the boundary-to-mixed speed as [BP] print it",
+    "printed_speed_boundary_to_mixed": "the same as [BP] print it",
     "printed_speed_at_minimum": "the speed of the minimum as [BP] print it",
     "merging_roughness": "roughness at which the minimum of friction disappears, on solved states",
     "formula_merging_roughness": "the same by the law of mixed friction",
@@ -137,16 +140,19 @@ def _row_groups(diagram: Diagram) -> tuple[Groups, Array]:
 
 def _formula_speeds(diagram: Diagram) -> dict[str, Array]:
     """Return the transitions that the formulas give, in the units of the axis; nan where they have none."""
-    from .asymptotics import transitions
+    from .asymptotics import load_sharing, transitions
 
     groups, unit = _row_groups(diagram)
-    friction = {"mu0": diagram.mu0, "beta": diagram.beta}
+    mu0, beta = diagram.mu0, diagram.beta
     with np.errstate(all="ignore"):
+        shares = load_sharing.speed_at_fluid_share.function
         found = {
+            "formula_speed_at_5_percent_fluid": shares(groups, BOUNDARY_FLUID_SHARE),
+            "formula_speed_at_half_fluid": shares(groups, 0.5),
             "formula_speed_boundary_to_mixed": transitions.speed_boundary_to_mixed.function(groups),
-            "formula_speed_at_minimum": transitions.speed_at_minimum.function(groups, **friction),
+            "formula_speed_at_minimum": transitions.speed_at_minimum.function(groups, mu0, beta),
             "printed_speed_boundary_to_mixed": transitions.speed_boundary_to_mixed.function(groups, printed=True),
-            "printed_speed_at_minimum": transitions.speed_at_minimum.function(groups, **friction, printed=True),
+            "printed_speed_at_minimum": transitions.speed_at_minimum.function(groups, mu0, beta, printed=True),
         }
         smooth = np.asarray(groups.roughness) == 0
         return {name: np.where(smooth, np.nan, np.broadcast_to(values, unit.shape) / unit) for name, values in found.items()}
@@ -156,7 +162,8 @@ def _formula_merging(diagram: Diagram) -> Array:
     from .asymptotics import transitions
 
     groups, _ = _row_groups(diagram)
-    line = np.array([float(transitions.merging_roughness(load, diagram.mu0, diagram.beta)) for load in np.asarray(groups.load)[:, 0]])
+    loads = np.asarray(groups.load)[:, 0]
+    line = np.asarray(transitions.merging_roughness(loads, diagram.mu0, diagram.beta))
     if diagram.contact is None:
         return line
     return line / float(diagram.contact.replace(roughness=1.0).groups.roughness)

@@ -1,6 +1,7 @@
 """Pictures of phase diagrams: the plane of speed and roughness at one load, and the space of several loads.
 
-Regions and solid lines come from solved states, dashed lines from the formulas, dotted ones from those that [BP] print.
+Regions and solid lines come from solved states, dashed lines from our formulas, dash-dotted and dotted ones
+from those of [BP], corrected and as printed.
 """
 
 from __future__ import annotations
@@ -32,11 +33,15 @@ SOLVED = {
 }
 """Solved lines: label, colour and width."""
 
+OURS = "the same by our formulas"
+
 FORMULAS = {
-    "formula_speed_boundary_to_mixed": ("fluid carries all load, formula", CONTACT, (0, (5, 2))),
-    "formula_speed_at_minimum": ("minimum, formula", MARK, (0, (5, 2))),
-    "printed_speed_boundary_to_mixed": ("fluid carries all load, as printed", CONTACT, (0, (1, 1.6))),
-    "printed_speed_at_minimum": ("minimum, as printed", MARK, (0, (1, 1.6))),
+    "formula_speed_at_5_percent_fluid": (OURS, INK, (0, (5, 3))),
+    "formula_speed_at_half_fluid": (OURS, INK, (0, (5, 3))),
+    "formula_speed_at_minimum": (OURS, INK, (0, (5, 3))),
+    "formula_speed_boundary_to_mixed": ("end of boundary [BP], corrected", CONTACT, (0, (4, 1.5, 1, 1.5))),
+    "printed_speed_boundary_to_mixed": ("end of boundary [BP], as printed", CONTACT, (0, (1, 1.6))),
+    "printed_speed_at_minimum": ("minimum [BP], as printed", MARK, (0, (1, 1.6))),
 }
 """Lines of formulas: label, colour and dashes."""
 
@@ -45,7 +50,7 @@ OUTSIDE = 1e30
 
 IN_SPACE = {
     **{name: (*style[:2], "-", style[2]) for name, style in SOLVED.items() if name != "speed_at_half_fluid"},
-    **{name: (*style, 1.4) for name, style in FORMULAS.items() if name.startswith("formula")},
+    **{name: (*FORMULAS[name], 1.4) for name in ("formula_speed_at_5_percent_fluid", "formula_speed_at_minimum")},
 }
 """Lines of the planes in space: label, colour, dashes and width."""
 
@@ -87,7 +92,9 @@ def plot_phase_diagram(
         If matplotlib is not installed.
     """
     plane = _plane(dataset, load)
-    figure, (axes,) = _figure((9.0, 5.6), _footer(dataset, [float(plane["load"])]), title=title or "Phase diagram")
+    # An empty line leaves room for a legend of four rows.
+    footer = [("", GREY), *_footer(dataset, [float(plane["load"])])]
+    figure, (axes,) = _figure((9.0, 5.6), footer, title=title or "Phase diagram")
     draw_phase_diagram(axes, dataset, load)
     _legend(figure, [axes], columns=3)
     return _finish(figure, path, force)
@@ -158,7 +165,7 @@ def draw_phase_diagram(axes: Axes, dataset: xarray.Dataset, load: float | None =
     for name, (label, colour, width) in SOLVED.items():
         axes.plot(speed(plane[name].values), y, color=colour, lw=width, label=label, zorder=4)
     for name, (label, colour, dashes) in FORMULAS.items():
-        axes.plot(speed(plane[name].values), y, color=colour, lw=1.4, ls=dashes, label=label, zorder=3)
+        axes.plot(speed(plane[name].values), y, color=colour, lw=1.2, ls=dashes, label=label, zorder=4.5)
     merging = plane.get("merging_roughness")
     if merging is not None and y[0] <= (height := float(_scaled(plane, "roughness")[0](merging.values))) <= y[-1]:
         axes.axhline(height, color=INK, lw=0.9, ls=(0, (7, 3, 1, 3)), label="above: no minimum of friction", zorder=2)

@@ -115,7 +115,8 @@ def friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, definition: De
     Notes
     -----
     For mu0 = 1 and beta = 1, 0.1 and 0.01 the error is 0.1 % in the median over the box, 0.5 % over those states where both
-    parts of the friction count, and 7.1 % at worst (at relative roughness 0.1 and the least load).
+    parts of the friction count, and 7.2 % at worst (at relative roughness 0.1 and the least load, and at 1e-4 and the
+    largest).
 
     Source: :func:`viscous_friction` and :func:`load_sharing.contact_load_share`.
     """

@@ -122,9 +122,8 @@ def _draw_curves(axes: Axes, data: xarray.Dataset, x: str, minimum: str, labels:
     for i, look, label in drawn_cases(data):
         axes.loglog(data[x][i], data.friction[i], markevery=2, label=label if labels else None, **look)
         if np.isfinite(data[minimum].values[i]):
-            axes.plot(data[minimum][i], data.minimum_friction[i], "v", color=style.MARK, ms=5, zorder=5)
-    if not labels:
-        axes.lines[-1].set_label("least friction")
+            words = "least friction" if i == 0 and not labels else None
+            axes.plot(data[minimum][i], data.minimum_friction[i], "v", color=style.MARK, ms=5, zorder=5, label=words, ls="")
 
 
 def _draw_ratios(axes: Axes, data: xarray.Dataset) -> None:
