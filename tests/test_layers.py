@@ -1,5 +1,7 @@
 """The boundary layers at the edges of the contact: their own solutions, and the collapse of the solver onto them."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -8,6 +10,7 @@ from scipy.optimize import minimize_scalar
 import stribeck as sb
 from stribeck.asymptotics import constants, edge_layer, film_layers
 from stribeck.asymptotics.formula import OutOfRangeWarning
+from stribeck.newton import root_find
 from stribeck.validity import relative_error
 
 LAYERS = {"edge": edge_layer.layer, "inlet": film_layers.inlet, "outlet": film_layers.outlet}
@@ -179,6 +182,8 @@ def test_the_films_join_the_uniform_film_and_the_gap_of_hertz(name, sign):
     layer, c = LAYERS[name](), film_layers.inlet().constant
     s = 1e5
     assert abs((at(layer.gap, -s) - c) * np.sqrt(2 * s) / (sign * c**3) - 1) < 3e-3
+    beyond = 10 * layer.line.reach
+    assert abs((at(layer.gap, -beyond) - c) * np.sqrt(2 * beyond) / (sign * c**3) - 1) < 1e-2
     assert abs(at(layer.gap, s) / (2 * np.sqrt(2) / 3 * s**1.5) - 1) < 1e-6
     assert abs(at(layer.pressure, 1e4) * 1e8 / (sign * 9 / 16) - 1) < 1e-3
 
@@ -251,6 +256,14 @@ def test_gap_and_contact_pressure_at_the_edge_obey_the_law_in_any_shape():
 def test_without_roughness_or_speed_a_layer_has_no_value_and_says_so(field, x):
     with pytest.warns(OutOfRangeWarning, match="nan"):
         assert np.isnan(field(sb.Groups(0.0, 0.1, 0.0), x))
+
+
+@EVERY_LAYER
+def test_a_solve_that_fails_says_so(name, monkeypatch):
+    for module in (edge_layer, film_layers):
+        monkeypatch.setattr(module, "root_find", partial(root_find, max_steps=1))
+    with pytest.raises(RuntimeError, match=r"layer with reach = 1234, .*largest number of steps"):
+        LAYERS[name](1234.0)
 
 
 @EVERY_LAYER

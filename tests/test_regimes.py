@@ -1,11 +1,15 @@
-"""Regimes and what moves friction: boundaries of the names, elasticities against finite differences of solves."""
+"""Regimes, the way to the next ones, and what moves friction: judged by cold solves beside them."""
 
+import json
 import math
+import re
 
 import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck import cli
+from stribeck.distances import BOX, transition_distances
 from stribeck.regimes import EXPONENTS, friction_elasticities
 
 CONTACT = sb.LineContact(
@@ -92,3 +96,225 @@ def test_where_there_is_no_friction_elasticities_are_no_number():
 def test_bad_settings_are_refused(arguments):
     with pytest.raises(sb.InputError):
         friction_elasticities(CONTACT, **arguments)
+
+
+# --- the way to the next regime ---
+
+
+def shares(contact, definition="paper"):
+    """Return regime, the fluid's share of the load and the asperities' share of the friction."""
+    solution = sb.solve(contact, rtol=1e-9)
+    friction = solution.friction(definition=definition)
+    part = friction.contact / friction.total
+    return sb.regime_of(solution.fluid_load_share, part), solution.fluid_load_share, part
+
+
+def crossings(found):
+    """Yield input, its present distance and each crossing."""
+    for distance in found.distances:
+        for mark in (distance.less, distance.more):
+            if mark is not None:
+                yield distance.name, mark
+
+
+@pytest.fixture(scope="module")
+def mixed():
+    return transition_distances(CONTACT)
+
+
+@pytest.mark.parametrize(
+    ("changes", "definition"),
+    [({}, "paper"), ({"speed": 1e-5}, "paper"), ({"speed": 1.0}, "paper"), ({"load": 2.0, "speed": 1e-2}, "balanced")],
+)
+def test_at_a_crossing_the_named_regime_begins(changes, definition):
+    contact = CONTACT.replace(**changes)
+    found = transition_distances(contact, definition=definition)
+    assert found.regime == shares(contact, definition)[0]
+    seen = list(crossings(found))
+    assert len(seen) >= 3
+    for name, mark in seen:
+        value = getattr(contact, name)
+        assert mark.factor == pytest.approx(mark.value / value, rel=1e-12)
+        regime, fluid, part = shares(contact.replace(**{name: mark.value}), definition)
+        bound = abs(part - 0.1) if "hydrodynamic" in (found.regime, mark.regime) else abs(fluid - 0.05)
+        assert bound < 1e-7
+        beyond = math.copysign(1e-4, mark.factor - 1)
+        names = [shares(contact.replace(**{name: mark.value * math.exp(s)}), definition)[0] for s in (-beyond, beyond)]
+        assert names == [found.regime, mark.regime]
+
+
+def test_a_crossing_is_the_nearest(mixed):
+    for name, mark in crossings(mixed):
+        for part in np.linspace(0.05, 0.95, 5):
+            nearer = CONTACT.replace(**{name: getattr(CONTACT, name) * mark.factor**part})
+            assert shares(nearer)[0] == "mixed"
+
+
+def test_a_mixed_contact_has_two_neighbours(mixed):
+    assert mixed.regime == "mixed"
+    assert mixed.targets == ("boundary", "hydrodynamic")
+    speed, load, roughness, viscosity = mixed.distances
+    assert [distance.name for distance in mixed.distances] == ["speed", "load", "roughness", "viscosity"]
+    assert (speed.less.regime, speed.more.regime) == ("boundary", "hydrodynamic")
+    assert (roughness.less.regime, roughness.more.regime) == ("hydrodynamic", "boundary")
+    assert speed.towards("boundary") is speed.less
+    assert load.towards("boundary") is None
+    assert viscosity.more.factor == speed.more.factor
+    assert viscosity.less.value == pytest.approx(speed.less.factor * CONTACT.viscosity)
+
+
+def test_where_no_load_leads_on_the_range_searched_ends_at_load_group_one(mixed):
+    load = mixed.distances[1]
+    assert load.more is None
+    assert CONTACT.replace(load=load.searched[1]).groups.load == pytest.approx(BOX["load"][1])
+    assert load.searched[0] == pytest.approx(load.less.value)
+
+
+def test_a_hydrodynamic_contact_stays_so_however_fast():
+    contact = CONTACT.replace(speed=1.0)
+    speed = transition_distances(contact).distances[0]
+    assert (speed.less.regime, speed.more) == ("mixed", None)
+    assert speed.searched[1] == pytest.approx(1.0 * BOX["speed"][1] / contact.groups.speed)
+
+
+def test_a_contact_on_the_threshold_is_said_to_stand_there(mixed):
+    there = CONTACT.replace(speed=mixed.distances[0].more.value)
+    for factor in (1 - 1e-9, 1, 1 + 1e-9):
+        found = transition_distances(there.replace(speed=factor * there.speed))
+        other = {"mixed": "hydrodynamic", "hydrodynamic": "mixed"}[found.regime]
+        assert found.notes == (f"The contact stands at the threshold to {other} lubrication.",)
+        assert found.distances[0].towards(other).factor == pytest.approx(1, abs=1e-6)
+    assert mixed.notes == ()
+
+
+def test_at_rest_only_speed_leads_on():
+    found = transition_distances(CONTACT.replace(speed=0))
+    speed, *others = found.distances
+    assert found.regime == "boundary"
+    assert (speed.less, speed.more.regime, speed.more.factor) == (None, "mixed", math.inf)
+    assert shares(CONTACT.replace(speed=speed.more.value))[1] == pytest.approx(0.05, abs=1e-7)
+    assert all(distance.less is distance.more is None for distance in others)
+    assert any("At rest" in note for note in found.notes)
+
+
+def test_smooth_surfaces_are_never_boundary_lubricated():
+    found = transition_distances(CONTACT.replace(roughness=0))
+    speed, load, roughness, _ = found.distances
+    assert found.regime == "hydrodynamic"
+    assert speed.less is speed.more is load.less is load.more is None
+    assert roughness.more.regime == "mixed"
+    assert shares(CONTACT.replace(roughness=roughness.more.value))[2] == pytest.approx(0.1, abs=1e-7)
+    assert any("no boundary" in note for note in found.notes)
+
+
+def test_a_smooth_contact_at_rest_is_hydrodynamic_as_soon_as_it_moves():
+    speed = transition_distances(CONTACT.replace(speed=0, roughness=0)).distances[0]
+    assert (speed.more.regime, speed.more.value) == ("hydrodynamic", 0.0)
+    assert shares(CONTACT.replace(speed=1e-9, roughness=0))[0] == "hydrodynamic"
+
+
+def test_a_saturated_contact_at_rest_leaves_boundary_lubrication_as_soon_as_it_moves():
+    # From load group 1 on asperities cannot carry the load at a positive gap.
+    contact = CONTACT.replace(load=1200.0, speed=0, roughness=1e-5)
+    found = transition_distances(contact)
+    assert (found.distances[0].more.regime, found.distances[0].more.value) == ("mixed", 0.0)
+    assert any("load group 1" in note for note in found.notes)
+    assert shares(contact.replace(speed=1e-5))[0] == "mixed"
+
+
+def test_without_dry_friction_nothing_leads_on():
+    found = transition_distances(CONTACT.replace(friction_coefficient=0))
+    assert found.regime == "hydrodynamic"
+    assert list(crossings(found)) == []
+    assert any("Without dry friction" in note for note in found.notes)
+
+
+def test_a_path_that_the_solver_loses_ends_the_search(monkeypatch):
+    right = sb.stribeck_curve
+
+    def fails_far_out(contact, **settings):
+        if "roughness" in settings and max(settings["roughness"]) > 1.2e-6:
+            raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "lost")
+        return right(contact, **settings)
+
+    monkeypatch.setattr("stribeck.distances.stribeck_curve", fails_far_out)
+    roughness = transition_distances(CONTACT).distances[2]
+    assert roughness.more is None
+    assert roughness.searched[1] == CONTACT.roughness
+    assert roughness.less is not None
+
+
+def test_an_interruption_of_the_search_is_passed_on():
+    def stop(done, scans):
+        if done == 1:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        transition_distances(CONTACT, on_point=stop)
+
+
+@pytest.mark.parametrize(
+    ("contact", "settings"),
+    [(CONTACT.groups, {}), (CONTACT, {"rtol": 1.0}), (CONTACT, {"definition": "mine"})],
+)
+def test_distances_refuse_bad_input(contact, settings):
+    with pytest.raises(sb.InputError):
+        transition_distances(contact, **settings)
+
+
+# --- in words and as JSON ---
+
+
+def command(capsys, tmp_path, *options, **changes):
+    """Return what ``stribeck regimes`` prints for the contact above with some inputs changed."""
+    contact = CONTACT.replace(**changes)
+    names = ("radius", "modulus", "load", "viscosity", "speed", "roughness", "alpha", "beta", "friction_coefficient")
+    lines = "\n".join(f"{name} = {getattr(contact, name)!r}" for name in names)
+    (tmp_path / "case.toml").write_text(f"[contact]\n{lines}\n")
+    assert cli.main(["regimes", str(tmp_path / "case.toml"), *options]) == 0
+    return capsys.readouterr().out
+
+
+def test_the_command_says_what_it_takes_to_reach_each_neighbour(capsys, tmp_path, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    text = command(capsys, tmp_path)
+    assert (
+        "To reach boundary: speed / 2.72 (367.9 µm/s), or roughness x 1.68 (1.679 µm), or viscosity / 2.72 (18.39 mPa*s); "
+        "none within reach by load (range searched 7.99 mN/m to 305 N/m)." in text
+    )
+    assert "To reach hydrodynamic: speed x 30.4 (30.43 mm/s), or load / 3.75e+03 (7.995 mN/m), or roughness / 10.2" in text
+    assert "Speed and viscosity count as their product" in text
+    rows = {line.split("  ")[0].strip() for line in text.splitlines()}
+    assert {"speed", "load", "viscosity", "modulus", "radius", "roughness", "dry friction coefficient"} <= rows
+    assert {"alpha of the contact law", "beta of the contact law"} <= rows
+
+
+def test_the_command_gives_the_distances_as_json(capsys, tmp_path, mixed):
+    found = json.loads(command(capsys, tmp_path, "--json"))["distances"]
+    assert list(found) == ["speed", "load", "roughness", "viscosity"]
+    for distance in mixed.distances:
+        there = found[distance.name]
+        assert there["searched"] == pytest.approx(list(distance.searched))
+        for way in ("less", "more"):
+            mark = getattr(distance, way)
+            if mark is None:
+                assert there[way] is None
+            else:
+                assert there[way]["regime"] == mark.regime
+                assert there[way]["value"] == pytest.approx(mark.value)
+    assert found["viscosity"]["unit"] == "Pa s"
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"speed": 0.0}, "To reach mixed: speed from zero to 367.9 µm/s; none within reach by load, roughness, viscosity."),
+        ({"roughness": 0.0}, "To reach mixed: roughness from zero to 97.74 nm; none within reach by speed, load, viscosity."),
+        ({"speed": 0.0, "roughness": 0.0}, "To reach hydrodynamic: speed of any size"),
+        ({"friction_coefficient": 0.0}, "To reach mixed: nothing within reach, by speed, load, roughness, viscosity."),
+    ],
+)
+def test_the_command_has_words_for_the_corners(capsys, tmp_path, changes, sentence):
+    text = command(capsys, tmp_path, **changes)
+    assert sentence in text
+    assert ("Speed and viscosity" in text) == bool(re.search("viscosity [x/]", text))

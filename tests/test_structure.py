@@ -62,7 +62,8 @@ MAY_IMPORT = {
     "output": {"units"},
     "store": RESULTS | {"curve", "output", "regimes"},
     "plotting": RESULTS | {"curve", "output", "regimes"},
-    "figures": RESULTS | {"asymptotics", "curve", "hertz", "output", "plotting", "regimes", "store", "validity"},
+    "figures": RESULTS
+    | {"asymptotics", "curve", "hertz", "output", "phase_diagram", "plot_phase", "plotting", "regimes", "store", "validity"},
     "report": RESULTS | {"case", "curve", "distances", "regimes", "store"},
     "distances": RESULTS | {"curve", "regimes"},
     "merging": RESULTS | {"follow", "refine", "sensitivity", "span"},

@@ -257,14 +257,19 @@ class StribeckCurve:
         """
         follower = Follower(self._path.groups_at, min(self.rtol, 1e-8))
         solved: dict[float, Point] = {}
+        found: dict[float, float] = {}
 
         def at(s: float) -> float:
+            # The search asks for its ends twice, where another prediction would round otherwise and may turn a sign.
+            if s in found:
+                return found[s]
             nearest = sorted(known, key=lambda pair: -abs(pair[0] - s))
             point = follower(s, nearest[-3:])
             if point is None or point.state is None:
                 raise SolveError(Outcome.PATH_LOST, None, f"{describe(self._path.groups_at(s))}: {Outcome.PATH_LOST.value}")
             solved[s] = point
-            return function(point)
+            found[s] = function(point)
+            return found[s]
 
         for wider in WIDENINGS:
             ends = max(0, first - wider), min(len(self) - 1, last + wider)

@@ -92,7 +92,7 @@ def plot_phase_diagram(
         If matplotlib is not installed.
     """
     plane = _plane(dataset, load)
-    # An empty line leaves room for a legend of four rows.
+    # An empty line leaves room for the third row of the legend.
     footer = [("", GREY), *_footer(dataset, [float(plane["load"])])]
     figure, (axes,) = _figure((9.0, 5.6), footer, title=title or "Phase diagram")
     draw_phase_diagram(axes, dataset, load)

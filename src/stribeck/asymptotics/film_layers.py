@@ -16,7 +16,7 @@ In the contact both equations are linear for small disturbances, :math:`\delta H
 and in the other in the outlet, so that the inlet has one condition more than the outlet: it has a solution for one c only, the
 film that it lets in, and the outlet has one for any c.
 
-Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013), doi:10.1063/1.4826981; theory.md, section 7.
+Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner, Phys. Fluids 25, 101705 (2013); theory.md, section 7.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def gap_inlet(groups: Groups, x: Value) -> Value:
 
     Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
     """
-    return groups.speed**0.6 * inlet().gap(np.divide(-(x + 1.0), groups.speed**0.4))
+    return groups.speed**0.6 * inlet().gap(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
 
 
 @formula(
@@ -129,7 +129,7 @@ def gap_outlet(groups: Groups, x: Value) -> Value:
 
     Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
     """
-    return groups.speed**0.6 * outlet().gap(np.divide(x - 1.0, groups.speed**0.4))
+    return groups.speed**0.6 * outlet().gap(np.divide(np.subtract(x, 1.0), groups.speed**0.4))
 
 
 @formula(
@@ -168,7 +168,7 @@ def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
 
     Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
     """
-    return groups.speed**0.2 * inlet().pressure(np.divide(-(x + 1.0), groups.speed**0.4))
+    return groups.speed**0.2 * inlet().pressure(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
 
 
 @formula(
@@ -207,7 +207,7 @@ def fluid_pressure_outlet(groups: Groups, x: Value) -> Value:
 
     Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
     """
-    return groups.speed**0.2 * outlet().pressure(np.divide(x - 1.0, groups.speed**0.4))
+    return groups.speed**0.2 * outlet().pressure(np.divide(np.subtract(x, 1.0), groups.speed**0.4))
 
 
 @lru_cache(maxsize=4)

@@ -184,7 +184,7 @@ class Layer:
         return Base(xi).gap + self.constant + logarithm + self._between(nodal, xi, -0.5)
 
     def pressure(self, xi: Array) -> Array:
-        """Return the pressure P at any positions."""
+        """Return the pressure P at any positions; to 1e-12 only beyond the panels on the free side."""
         return Base(xi).pressure + self._between(self.excess, xi, -1.5)
 
     def _between(self, nodal: Array, xi: Array, power: float) -> Array:

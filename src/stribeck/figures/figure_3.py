@@ -64,8 +64,8 @@ def _compute(report: Report) -> xarray.Dataset:
     excess = float(curve.friction.max()) - 1
     finding = (
         f"boundary up to a Hersey number of {hersey * marks['boundary_end'][0]:.2g}, mixed up to "
-        f"{hersey * marks['hydrodynamic_begin'][0]:.2g}; least friction {marks['minimum'][1]:.4f} at "
-        f"{hersey * marks['minimum'][0]:.3g} (force balance: {fair['minimum'][1]:.4f} at {hersey * fair['minimum'][0]:.3g}). "
+        f"{hersey * marks['hydrodynamic_begin'][0]:.2g}; least friction {marks['minimum'][1]:.5f} at "
+        f"{hersey * marks['minimum'][0]:.3g} (force balance: {fair['minimum'][1]:.5f} at {hersey * fair['minimum'][0]:.3g}). "
         f"The printed friction exceeds mu_0 by {100 * excess:.1f} % before it falls, since its fluid part is up to "
         f"{float((curve.friction_viscous / balanced.friction_viscous).max()):.0f} times that of the force balance."
     )

@@ -58,9 +58,9 @@ def _compute(report: Report) -> xarray.Dataset:
     between = float(np.maximum(errors["film_large"], errors["film_small"]).min())
     ours = max(float(np.abs(errors[name]).max()) for name in ("film_uniform", "friction_uniform"))
     finding = (
-        f"the better of both laws of the film is up to {-100 * between:.0f} % low between them, and the printed constant 0.44 "
-        f"{-100 * printed:.1f} % low at {SPEEDS[0]:g}. The slow law of friction is {-100 * early:.0f} % low already at 1e-4, "
-        f"the root of squares up to {-100 * squares[place]:.1f} % low (at {curve.values[place]:.1g}) and "
+        f"the better of both laws of the film is up to {-100 * between:.0f} % low between them, and the film by the printed "
+        f"constant 0.44 {-100 * printed:.1f} % low at {SPEEDS[0]:g}. The slow law of friction is {-100 * early:.0f} % "
+        f"low already at 1e-4, the root of squares up to {-100 * squares[place]:.1f} % low (at {curve.values[place]:.1g}) and "
         f"{100 * squares.max():.1f} % high. Our uniform formulas are within {100 * ours:.2g} %."
     )
     variables = {

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._types import Array
+from .._types import Array, Flags
 from ..asymptotics import hydrodynamic, transitions
 from ..parameters import Groups
 from . import style
@@ -89,7 +89,7 @@ def _compute(report: Report) -> xarray.Dataset:
     return dataset(variables | report_variables(), coords, finding=finding, reports=reports, **work.attributes)
 
 
-def _spread(hersey: Array, friction: Array, fluid_film: Array) -> float:
+def _spread(hersey: Array, friction: Array, fluid_film: Flags) -> float:
     """Return the largest ratio of the frictions of both loads, smoothest case of each, where both are hydrodynamic."""
     heavy, light = 0, len(ROUGHNESSES)
     x, y = np.log(hersey[light][fluid_film[light]]), np.log(friction[light][fluid_film[light]])

@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._types import Array
+from .._types import Array, Flags
 from ..asymptotics import mixed, transitions
 from ..asymptotics.constants import FILM_CONSTANT
 from ..curve import Landmark
+from ..newton import Outcome
 from ..parameters import Groups
+from ..solve import SolveError
 from .mixed_panels import LARGEST_KAPPA, LEAST_FILM, draw
 from .paper_figure import PaperFigure, Report
 from .states import Work, column, dataset
@@ -37,7 +39,7 @@ WINDOW = 0.5, 2.0
 NUMBERS = 1e-9, 0.49
 """Values of k over which Lambda is compared with the reported ranges."""
 
-FORMS = ("exact", "expansion", "uniform")
+FORMS: tuple[transitions.Form, ...] = ("exact", "expansion", "uniform")
 """Laws of Lambda at the minimum: by Lambert's W, its expansion, and ours."""
 
 
@@ -49,7 +51,8 @@ def _compute(report: Report) -> xarray.Dataset:
         "law_large": np.array([mixed.friction.function(curve.groups, film="large") for curve in curves]),
         "law_uniform": np.array([mixed.friction.function(curve.groups, film="uniform") for curve in curves]),
     }
-    film = np.array([FILM_CONSTANT * curve.values**0.6 / float(curve.groups.relative_roughness[0]) for curve in curves])
+    relative = np.array([[roughness / load] for load, roughness in CASES])
+    film = FILM_CONSTANT * over(curves, "values") ** 0.6 / relative
     kappa, loads = np.array(KAPPAS), np.array(LOADS)[:, None]
     at = Groups(1.0, loads, loads * kappa)
     expected = np.asarray(transitions.speed_at_minimum.function(at))
@@ -58,20 +61,21 @@ def _compute(report: Report) -> xarray.Dataset:
     ratio = np.array([[mark.solution.lambda_ratio for mark in row] for row in found])
     least = np.array([[mark.friction for mark in row] for row in found])
     film_ratio = FILM_CONSTANT * speeds**0.6 / kappa
-    ratios = {form: np.asarray(transitions.lambda_ratio_at_minimum.function(at, form=form)) for form in FORMS}
+    ratios: dict[str, Array] = {
+        form: np.asarray(transitions.lambda_ratio_at_minimum.function(at, form=form)) for form in FORMS
+    }
     minima = {
-        "friction_exact": transitions.friction_at_minimum.function(at, form="exact"),
-        "friction_leading": transitions.friction_at_minimum.function(at, form="leading"),
-        "friction_printed": transitions.friction_at_minimum.function(at, printed=True),
-        "friction_uniform": transitions.friction_at_minimum.function(at),
+        "friction_exact": np.asarray(transitions.friction_at_minimum.function(at, form="exact")),
+        "friction_leading": np.asarray(transitions.friction_at_minimum.function(at, form="leading")),
+        "friction_printed": np.asarray(transitions.friction_at_minimum.function(at, printed=True)),
+        "friction_uniform": np.asarray(transitions.friction_at_minimum.function(at)),
     }
     numbers = np.geomspace(*NUMBERS, 121)
     # At load 1, beta = mu_0 = 1 the number k stands for the roughness alone.
     alone = (numbers / float(transitions.weakening_number(Groups(1.0, 1.0, 1.0)))) ** 1.5
     against = transitions.lambda_ratio_at_minimum.function(Groups(1.0, 1.0, alone), form="exact")
     errors = {f"{name.removeprefix('law_')}_error": law / friction - 1 for name, law in laws.items()}
-    smooth = np.array([roughness <= LARGEST_KAPPA * load for load, roughness in CASES])[:, None]
-    near = (film > LEAST_FILM) & smooth
+    near = (film > LEAST_FILM) & (relative <= LARGEST_KAPPA)
     finding = _finding(errors, near, ratio, ratios, least, minima)
     grid, map_ = ("case", "speed"), ("minimum_load", "kappa")
     variables = {
@@ -109,12 +113,14 @@ def _compute(report: Report) -> xarray.Dataset:
 def _minimum(work: Work, load: float, kappa: float, speed: float) -> Landmark:
     low, high = WINDOW
     found = work.curve(load=load, roughness=kappa * load, speed=(low * speed, high * speed), points=5).minimum
-    assert found is not None, f"no minimum of friction at load {load:g}, relative roughness {kappa:g} near speed {speed:g}"
+    if found is None:
+        where = f"load {load:g}, relative roughness {kappa:g}, speed {low * speed:.3g} to {high * speed:.3g}"
+        raise SolveError(Outcome.PATH_LOST, None, f"No minimum of friction was found at {where}.")
     return found
 
 
 def _finding(
-    errors: dict[str, Array], near: Array, ratio: Array, ratios: dict[str, Array], least: Array, minima: dict[str, Array]
+    errors: dict[str, Array], near: Flags, ratio: Array, ratios: dict[str, Array], least: Array, minima: dict[str, Array]
 ) -> str:
     worst = {name: 100 * np.abs(error[near]).max() for name, error in errors.items()}
     exact, expansion, ours = (100 * np.abs(ratios[form] / ratio - 1).max(axis=0) for form in FORMS)

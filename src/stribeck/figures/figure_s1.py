@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._types import Array
+from .._types import Array, Flags
 from ..asymptotics import perturbation
 from ..parameters import Groups
 from ..solution import Solution
@@ -95,7 +95,7 @@ def _parts(solution: Solution, x: Array) -> Array:
     )
 
 
-def _laws(groups: Groups, x: Array, near: Array) -> Array:
+def _laws(groups: Groups, x: Array, near: Flags) -> Array:
     """Return the formulas of the same, taken apart into odd and even parts, nan at the edge and beyond."""
     speed = float(groups.speed)
     inside = x[near]

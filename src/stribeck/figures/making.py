@@ -27,7 +27,17 @@ if TYPE_CHECKING:
 PICTURES = (".png", ".svg")
 """Endings of the pictures."""
 
-SHOWING = ("__main__.py", "app.py", "case.py", "cli.py", "plotting.py", "report.py", "figures/making.py", "figures/style.py")
+SHOWING = (
+    "__main__.py",
+    "app.py",
+    "case.py",
+    "cli.py",
+    "plot_phase.py",
+    "plotting.py",
+    "report.py",
+    "figures/making.py",
+    "figures/style.py",
+)
 """Sources that change no number."""
 
 OnProgress = Callable[[str, int, int], object]

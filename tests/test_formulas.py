@@ -1,0 +1,192 @@
+"""All formulas of the table: order and size of the error against the solver, range, printed forms, docstrings."""
+
+import importlib
+import inspect
+import math
+import pkgutil
+import warnings
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from numpydoc.validate import validate
+
+import stribeck as sb
+from stribeck import asymptotics
+from stribeck.asymptotics import FORMULAS, Formula, OutOfRangeWarning
+from stribeck.asymptotics.formula import PARAMETERS
+from stribeck.validity import FIELDS, MEASURED, relative_error
+
+SEED = 60913
+STATES = 6
+LANDMARK_STATES = 3
+"""States in range at which a formula is judged; few for what needs a whole curve over the speed."""
+
+SPAN = {"speed": (1e-10, 1e8), "load": (1e-8, 0.9), "relative_roughness": (1e-6, 1e3)}
+DEFAULT = {"speed": (1e-9, 1e4), "load": (1e-4, 0.7), "relative_roughness": (1e-4, 1e-1)}
+"""Where states are drawn, evenly in the logarithm, and where they lie as far as no limit says anything about it."""
+
+NOT_VECTORS: set[str] = set()
+SCANNED: dict[str, float] = {}
+
+NAMED = pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
+ORDERED = pytest.mark.parametrize(
+    "formula", [formula for formula in FORMULAS if formula.approach], ids=lambda formula: formula.name
+)
+
+
+def in_box(formula, groups):
+    """Return where the groups without limits of their own lie in the default box."""
+    limited = " ".join(limit.parameter for limit in formula.limits)
+    inside = np.ones(groups.shape, dtype=bool)
+    for name, (low, high) in DEFAULT.items():
+        # A limit on a compound, such as the film ratio, binds the speed to the roughness, and both stay in the box.
+        if name not in limited:
+            value = getattr(groups, name)
+            inside &= (low <= value) & (value <= high)
+    return inside
+
+
+@cache
+def states(formula):
+    """Return random states in the range of a formula, the same for formulas of the same range."""
+    rng = np.random.default_rng(SEED)
+    drawn = {name: np.exp(rng.uniform(*np.log(ends), 400_000)) for name, ends in SPAN.items()}
+    many = sb.Groups(drawn["speed"], drawn["load"], drawn["load"] * drawn["relative_roughness"])
+    inside = np.nonzero(formula.valid(many) & in_box(formula, many))[0]
+    wanted = LANDMARK_STATES if formula.predicts.startswith(("speed_at", "friction_at", "lambda_ratio_at")) else STATES
+    assert len(inside) >= wanted, "no states in range: widen SPAN"
+    found = []
+    for i in inside[:wanted]:
+        one = sb.Groups(*(float(getattr(many, name)[i]) for name in ("speed", "load", "roughness")))
+        # What is solved does not depend on these; so that formulas share states.
+        found.append(replace(one, load=0.1, roughness=0.0) if formula.plane == "smooth" else one)
+    return tuple(found)
+
+
+def arguments(formula, groups):
+    """Return what a formula needs beside the groups: a position for a field."""
+    if formula.predicts not in FIELDS:
+        return ()
+    low, high = formula.interval(groups)
+    return (low + 0.3 * (high - low),)
+
+
+# --- the table ---
+
+
+def test_the_table_holds_every_formula_of_the_package_once():
+    found = {}
+    for module in pkgutil.iter_modules(asymptotics.__path__):
+        members = vars(importlib.import_module(f"stribeck.asymptotics.{module.name}")).values()
+        found |= {id(member): member.name for member in members if isinstance(member, Formula)}
+    assert sorted(found) == sorted(id(formula) for formula in FORMULAS), sorted(found.values())
+
+
+def test_names_of_formulas_are_unique_and_lead_to_them():
+    names = [formula.name for formula in FORMULAS]
+    assert len(set(names)) == len(names)
+    for formula in FORMULAS:
+        module, _, name = formula.name.partition(".")
+        assert getattr(getattr(asymptotics, module), name) is formula
+
+
+@NAMED
+def test_what_a_formula_says_of_itself_is_complete(formula):
+    assert formula.source
+    assert formula.predicts in MEASURED or formula.predicts in FIELDS
+    assert (formula.interval is None) == (formula.predicts not in FIELDS)
+    assert formula.plane in ("smooth", "rest", "mixed")
+    assert 0 < formula.worst < 1
+    assert {limit.parameter for limit in formula.limits} <= set(PARAMETERS)
+    assert bool(formula.small) == bool(formula.approach) == (len(formula.steps) >= 3) == (formula.error_order > 0)
+    assert not formula.small or formula.small in PARAMETERS
+
+
+@NAMED
+def test_the_docstring_of_a_formula_is_complete(formula):
+    name = f"{formula.function.__module__}.{formula.function.__name__}"
+    faults = {"GL08", "SS01", "SS03", "PR01", "PR02", "PR03", "PR04", "PR07", "RT01", "RT03", "YD01"}
+    assert [fault for fault in validate(name)["errors"] if fault[0] in faults] == []
+    text = inspect.getdoc(formula)
+    assert ".. math::" in text and "Notes\n-----" in text and "Source: " in text
+
+
+# --- the error ---
+
+
+@ORDERED
+def test_the_error_of_a_formula_vanishes_with_the_stated_order(formula):
+    small = np.sort(formula.steps)
+    approached = [formula.approach(float(value)) for value in small]
+    for groups, value in zip(approached, small, strict=True):
+        assert math.isclose(float(PARAMETERS[formula.small](groups)), value, rel_tol=1e-9)
+    errors = np.abs([relative_error(formula, groups) for groups in approached])
+    assert (np.diff(errors) > 0).all(), errors
+    slope = np.polyfit(np.log(small), np.log(errors), 1)[0]
+    assert abs(slope - formula.error_order) < 0.1, (slope, errors)
+
+
+@NAMED
+def test_the_error_of_a_formula_in_range_is_at_most_the_stated_one(formula):
+    errors = [relative_error(formula, groups) for groups in states(formula)]
+    assert np.abs(errors).max() <= 1.02 * formula.worst, errors
+
+
+@NAMED
+def test_the_stated_error_of_a_formula_is_not_much_larger_than_what_a_dense_scan_found(formula):
+    found = SCANNED[formula.name]
+    assert found <= 1.02 * formula.worst
+    assert formula.worst <= 3 * found
+
+
+def test_the_scan_knows_the_formulas_of_the_table_and_no_other():
+    assert set(SCANNED) == {formula.name for formula in FORMULAS}
+
+
+# --- the range ---
+
+SPEEDS = (0.0, 1e-12, 1e-4, 3.0, 1e9)
+LOADS = (1e-9, 0.1, 1.0, 30.0)
+KAPPAS = (0.0, 1e-7, 1e-3, 0.5, 1e4)
+ANYWHERE = [sb.Groups(speed, load, kappa * load) for speed in SPEEDS for load in LOADS for kappa in KAPPAS]
+
+
+@NAMED
+def test_a_formula_is_silent_in_its_range(formula):
+    for groups in states(formula):
+        assert np.isfinite(formula(groups, *arguments(formula, groups)))
+
+
+@NAMED
+def test_a_formula_outside_its_range_or_without_value_warns_once_and_is_never_complex(formula):
+    for groups in ANYWHERE:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            x = arguments(formula, groups) if not formula.interval or np.isfinite(formula.interval(groups)).all() else (0.3,)
+            caught.clear()
+            value = formula(groups, *x)
+        assert np.isrealobj(value) and np.ndim(value) == 0
+        expected = bool(np.isnan(value)) or not formula.valid(groups)
+        assert [w.category for w in caught] == [OutOfRangeWarning] * expected, (groups, [str(w.message) for w in caught])
+        if caught:
+            assert str(caught[0].message).startswith(formula.name)
+            assert caught[0].filename == __file__
+
+
+# --- the form ---
+
+
+@NAMED
+def test_a_formula_takes_arrays_that_broadcast_and_gives_what_it_gives_for_their_elements(formula):
+    if formula.name in NOT_VECTORS:
+        pytest.skip("takes one state")
+    some = states(formula)[:3]
+    one_by_one = [formula.function(groups, *arguments(formula, some[0])) for groups in some]
+    speed, load, roughness = (np.array([getattr(groups, name) for groups in some]) for name in ("speed", "load", "roughness"))
+    together = formula.function(sb.Groups(speed, load, roughness), *arguments(formula, some[0]))
+    np.testing.assert_allclose(together, one_by_one, rtol=1e-8)
+    grid = formula.function(sb.Groups(speed[:, None], load[0], roughness[0]), *arguments(formula, some[0]))
+    first = formula.function(some[0], *arguments(formula, some[0]))
+    np.testing.assert_allclose(np.broadcast_to(grid, (3, 1))[0, 0], first, rtol=1e-8)
