@@ -7,6 +7,7 @@ import pytest
 from figure_data import data_of, picture_of
 
 import stribeck as sb
+from stribeck.asymptotics.perturbation import phi
 from stribeck.figures import load_figure
 
 
@@ -205,12 +206,13 @@ def test_the_minima_are_those_of_the_curves(mixed, curves):
 
 def test_least_friction_goes_with_roughness_to_two_thirds_and_logarithms(mixed):
     steps = orders(mixed.minimum_roughness.values[1], mixed.least_friction.values[1])
-    assert 0.65 < steps[0] < 0.75 and (np.diff(steps) > 0).all()
+    # 2/3 (1 - 2/(3 Lambda)) = 0.633 at the smoothest, without what the asperities add to the film.
+    assert 0.63 < steps[0] < 0.66 and (np.diff(steps) > 0).all()
 
 
 def test_a_minimum_that_is_not_found_ends_the_figure_with_a_sentence(monkeypatch):
-    monkeypatch.setattr("stribeck.figures.figure_9.CASES", ())
-    monkeypatch.setattr("stribeck.figures.stribeck_cases.CASES", ((0.1, 1e-3),))
+    for module in ("figure_9", "stribeck_cases"):
+        monkeypatch.setattr(f"stribeck.figures.{module}.CASES", ((0.1, 1e-3),))
     monkeypatch.setattr("stribeck.figures.figure_9.WINDOW", (2.0, 4.0))
     with pytest.raises(sb.SolveError, match="No minimum of friction was found at load 0.1, relative roughness 1e-05"):
         load_figure("9").data()
@@ -325,7 +327,7 @@ PARTS = ("first_pressure", "first_gap", "second_pressure")
 def test_what_vanishes_with_the_speed_goes_as_its_first_and_second_power(expansion):
     for name, order in zip(PARTS, (1, 2, 2), strict=True):
         for change in expansion[f"{name}_change"].values:
-            assert abs(orders(expansion.number.values[1:4], change[1:4]) - order).max() < 0.1
+            assert abs(orders(expansion.number.values[2:5], change[2:5]) - order).max() < 0.1
 
 
 def test_what_stays_at_slow_speed_vanishes_with_the_relative_roughness(expansion):
@@ -339,7 +341,12 @@ def test_the_expansion_is_of_no_use_beyond_fluid_number_three(expansion):
     assert min(float(expansion[f"{name}_distance"].sel(number=10.0, method="nearest").min()) for name in PARTS) > 0.5
 
 
-def test_the_parts_have_the_symmetry_of_their_names(expansion):
-    odd, even = expansion.first_gap.values, expansion.second_pressure.values
-    np.testing.assert_allclose(odd, -odd[:, ::-1], rtol=1e-9, atol=1e-6)
-    np.testing.assert_allclose(even, even[:, ::-1], rtol=1e-9, atol=1e-3)
+def test_the_pressure_of_first_order_carries_no_load_and_that_of_second_order_phi(expansion):
+    slow, x = expansion.isel(number=0), expansion.x.values
+    first = slow.first_pressure.values
+    # What is left is twice the part of second order.
+    assert np.abs(first + first[::-1]).max() < 0.01 * first.max()
+    kappa = float(expansion.kappa[0])
+    load = 2 / np.pi * np.trapezoid(slow.second_pressure.values, x) * kappa**4
+    # The solver's share over phi is 1.03 at kappa = 1e-3.
+    assert 1.02 < load / float(phi(0.1)) < 1.04

@@ -27,8 +27,58 @@ SPAN = {"speed": (1e-10, 1e8), "load": (1e-8, 0.9), "relative_roughness": (1e-6,
 DEFAULT = {"speed": (1e-9, 1e4), "load": (1e-4, 0.7), "relative_roughness": (1e-4, 1e-1)}
 """Where states are drawn, evenly in the logarithm, and where they lie as far as no limit says anything about it."""
 
-NOT_VECTORS: set[str] = set()
-SCANNED: dict[str, float] = {}
+SCANNED = {
+    "hertz.pressure": 0.0453,
+    "hertz.gap": 0.000712,
+    "hertz.offset": 0.000882,
+    "large_deformation.central_gap_large": 0.015,
+    "large_deformation.flux_gap_large": 0.0148,
+    "large_deformation.minimum_gap_large": 0.0117,
+    "large_deformation.friction_large": 0.0827,
+    "small_deformation.central_gap_small": 0.0201,
+    "small_deformation.flux_gap_small": 0.002,
+    "small_deformation.gap_small": 0.0168,
+    "small_deformation.pressure_small": 0.091,
+    "small_deformation.friction_small": 0.000941,
+    "hydrodynamic.central_gap": 0.00266,
+    "hydrodynamic.flux_gap": 0.000395,
+    "hydrodynamic.friction": 0.0705,
+    "hydrodynamic.friction_uniform": 0.00225,
+    "film_layers.gap_inlet": 0.0369,
+    "film_layers.gap_outlet": 0.0502,
+    "film_layers.fluid_pressure_inlet": 0.0888,
+    "film_layers.fluid_pressure_outlet": 0.0915,
+    "rest.gap": 0.0233,
+    "rest.offset": 5.85e-05,
+    "rest.central_gap": 0.0277,
+    "rest.gap_small_indentation": 0.0102,
+    "rest.contact_pressure_small_indentation": 0.0173,
+    "rest.central_gap_small_indentation": 0.00859,
+    "rest.offset_small_indentation": 0.000252,
+    "edge_layer.gap": 0.024,
+    "edge_layer.contact_pressure": 0.0665,
+    "perturbation.flux_gap": 0.00839,
+    "perturbation.fluid_pressure_first": 0.0645,
+    "perturbation.gap_first": 0.0503,
+    "perturbation.fluid_pressure_second": 0.0635,
+    "boundary.fluid_load_share": 0.0632,
+    "boundary.contact_load_share": 0.0125,
+    "boundary.viscous_friction": 0.0689,
+    "boundary.friction": 0.0112,
+    "wedge.contact_load_share": 0.0163,
+    "mixed.contact_load_share": 0.0891,
+    "mixed.friction": 0.0525,
+    "transitions.speed_boundary_to_mixed": 0.716,
+    "transitions.lambda_ratio_at_minimum": 0.0215,
+    "transitions.speed_at_minimum": 0.0181,
+    "transitions.friction_at_minimum": 0.0101,
+    "load_sharing.speed_at_fluid_share": 0.0759,
+    "load_sharing.contact_load_share": 0.0272,
+    "uniform.viscous_friction": 0.606,
+    "uniform.friction": 0.0303,
+}
+"""Largest relative error of 60 random states and of the corners of the range (12 random ones where each is a curve),
+rounded up."""
 
 NAMED = pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
 ORDERED = pytest.mark.parametrize(
@@ -147,9 +197,9 @@ def test_the_scan_knows_the_formulas_of_the_table_and_no_other():
 
 # --- the range ---
 
-SPEEDS = (0.0, 1e-12, 1e-4, 3.0, 1e9)
-LOADS = (1e-9, 0.1, 1.0, 30.0)
-KAPPAS = (0.0, 1e-7, 1e-3, 0.5, 1e4)
+SPEEDS = (0.0, 1e-12, 1e-2, 3.0, 1e9)
+LOADS = (1e-5, 0.1, 1.0, 30.0)
+KAPPAS = (0.0, 1e-9, 1e-3, 0.5, 1e4)
 ANYWHERE = [sb.Groups(speed, load, kappa * load) for speed in SPEEDS for load in LOADS for kappa in KAPPAS]
 
 
@@ -180,8 +230,6 @@ def test_a_formula_outside_its_range_or_without_value_warns_once_and_is_never_co
 
 @NAMED
 def test_a_formula_takes_arrays_that_broadcast_and_gives_what_it_gives_for_their_elements(formula):
-    if formula.name in NOT_VECTORS:
-        pytest.skip("takes one state")
     some = states(formula)[:3]
     one_by_one = [formula.function(groups, *arguments(formula, some[0])) for groups in some]
     speed, load, roughness = (np.array([getattr(groups, name) for groups in some]) for name in ("speed", "load", "roughness"))

@@ -105,7 +105,8 @@ def test_zero_speed_is_the_dry_plateau_and_zero_roughness_the_smooth_film():
     smooth = found.isel(load=0, roughness=0)
     assert smooth.regime.values.tolist() == [0, 2, 2]
     assert np.isnan(smooth.speed_at_minimum)
-    assert np.isnan(smooth.formula_speed_at_minimum)
+    for name in ("formula_speed_at_minimum", "formula_speed_boundary_to_mixed", "printed_speed_boundary_to_mixed"):
+        assert np.isnan(smooth[name])
     assert smooth.velocity_weakening == 0
 
 
@@ -145,9 +146,10 @@ def test_at_the_minimum_friction_is_stationary_and_least(diagram):
 
 
 def test_transitions_outside_the_speeds_of_the_grid_are_found_all_the_same(diagram):
-    narrow = made(load=LOADS[0], roughness=ROUGHNESSES[0], speed=1e-6)
-    for name in grid.LINES:
-        assert float(narrow[name].squeeze()) == pytest.approx(float(diagram[name][0, 0]), rel=1e-6)
+    for speed in (1e-6, 1.0):
+        narrow = made(load=LOADS[0], roughness=ROUGHNESSES[0], speed=speed)
+        for name in grid.LINES:
+            assert float(narrow[name].squeeze()) == pytest.approx(float(diagram[name][0, 0]), rel=1e-6)
 
 
 def test_a_minimum_above_the_plateau_is_found():
@@ -182,6 +184,9 @@ def test_formulas_stand_beside_the_solved_transitions(diagram):
             assert float(row["formula_speed_boundary_to_mixed"]) == pytest.approx(float(right), rel=1e-12)
             assert float(row["printed_speed_boundary_to_mixed"]) == pytest.approx(float(printed), rel=1e-12)
             assert printed != pytest.approx(right, rel=0.5)
+            printed = transitions.speed_at_minimum.function(groups, MU0, BETA, printed=True)
+            assert float(row["printed_speed_at_minimum"]) == pytest.approx(float(printed), rel=1e-12)
+            assert float(row["printed_speed_at_minimum"]) != pytest.approx(float(row["formula_speed_at_minimum"]), rel=1e-3)
         found = float(diagram["formula_merging_roughness"][i])
         assert found == pytest.approx(float(transitions.merging_roughness(load, MU0, BETA)), rel=1e-12)
     assert (diagram.formula_velocity_weakening == np.isfinite(diagram.formula_speed_at_minimum)).all()
@@ -245,17 +250,14 @@ def test_the_diagram_holds_the_merging_line_where_asked(si_diagram):
 
 
 def test_diagrams_in_si_and_in_groups_agree(si_diagram):
-    for i, load in enumerate(LOADS):
-        row = si_diagram.isel(load=i)
-        assert float(row["load_group"]) == pytest.approx(load)
-        if i == 0:
-            continue
-        groups = made(load=load, speed=row["speed_group"].values, roughness=row["roughness_group"].values)
-        np.testing.assert_array_equal(groups.regime[0], row["regime"])
-        np.testing.assert_allclose(groups.friction[0], row["friction"], rtol=1e-6)
-        unit = float((row["speed_group"] / row["speed"])[0])
-        for name in (*grid.MARKS, "speed_at_minimum", "formula_speed_at_minimum", "printed_speed_boundary_to_mixed"):
-            np.testing.assert_allclose(groups[name][0], row[name] * unit, rtol=1e-6)
+    load, row = LOADS[1], si_diagram.isel(load=1)
+    np.testing.assert_allclose(si_diagram.load_group, LOADS)
+    groups = made(load=load, speed=row["speed_group"].values, roughness=row["roughness_group"].values)
+    np.testing.assert_array_equal(groups.regime[0], row["regime"])
+    np.testing.assert_allclose(groups.friction[0], row["friction"], rtol=1e-6)
+    unit = float((row["speed_group"] / row["speed"])[0])
+    for name in (*grid.MARKS, "speed_at_minimum", "formula_speed_at_minimum", "printed_speed_boundary_to_mixed"):
+        np.testing.assert_allclose(groups[name][0], row[name] * unit, rtol=1e-6)
     assert [si_diagram[name].attrs["units"] for name in grid.AXES] == ["N/m", "m", "m/s"]
     assert si_diagram.speed_at_minimum.attrs["units"] == si_diagram.speed.attrs["units"]
     assert si_diagram.attrs["input_radius"] == 8e-3

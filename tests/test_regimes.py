@@ -172,8 +172,11 @@ def test_where_no_load_leads_on_the_range_searched_ends_at_load_group_one(mixed)
 
 def test_a_hydrodynamic_contact_stays_so_however_fast():
     contact = CONTACT.replace(speed=1.0)
-    speed = transition_distances(contact).distances[0]
+    speed, load, *_ = transition_distances(contact).distances
     assert (speed.less.regime, speed.more) == ("mixed", None)
+    # Less load raises the speed group as its square.
+    assert load.less is None
+    assert contact.replace(load=load.searched[0]).groups.speed == pytest.approx(BOX["speed"][1])
     assert speed.searched[1] == pytest.approx(1.0 * BOX["speed"][1] / contact.groups.speed)
 
 

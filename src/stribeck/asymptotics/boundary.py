@@ -129,7 +129,9 @@ def contact_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bo
     ----------
     groups : Groups
         Uses all three groups [-]; arrays broadcast.
-    form, printed
+    form : {"quadrature", "closed", "asymptote", "power", "printed"}
+        As in :func:`fluid_load_share`.
+    printed : bool
         As in :func:`fluid_load_share`.
 
     Returns
@@ -239,7 +241,9 @@ def friction(
         Coefficient of the contact law [-].
     viscous : {"paper", "balanced", "neglected"}
         Definition of the viscous part, as in :func:`viscous_friction`.
-    form, printed
+    form : {"quadrature", "closed", "asymptote", "power", "printed"}
+        As in :func:`fluid_load_share`.
+    printed : bool
         As in :func:`fluid_load_share`; what is printed has the viscous part neglected too.
 
     Returns

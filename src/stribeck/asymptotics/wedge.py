@@ -26,6 +26,7 @@ from .._types import Array
 from ..mesh import reference
 from ..newton import root_find
 from ..parameters import Groups
+from ..threads import one_blas_thread
 from ..units import InputError, show
 from .formula import Limit, Value, formula
 
@@ -39,6 +40,9 @@ FIRST_NUMBER = 1e-3
 
 STEP = math.log(3.0)
 """Steps from there in ln n."""
+
+LARGEST_NUMBER = 1e3
+"""Fluid number up to which :func:`contact_load_share` answers; beyond, the film of the inlet is long the thicker one."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,7 @@ class Wedge:
 
 
 @lru_cache(maxsize=256)
+@one_blas_thread
 def wedge(load: float, fluid_number: float) -> Wedge:
     """Solve the limit at one load and fluid number.
 
@@ -129,7 +134,7 @@ def contact_load_share(groups: Groups) -> Value:
     Returns
     -------
     float or ndarray
-        S [-]; nan from load 1 on, and without roughness at a speed.
+        S [-]; nan from load 1 on, and from fluid number 1e3 on.
 
     Notes
     -----
@@ -138,7 +143,7 @@ def contact_load_share(groups: Groups) -> Value:
     lambda_, F, kappa = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
     number = np.where(lambda_ > 0, lambda_ / kappa**2, 0.0)
     states = zip(F.ravel().tolist(), number.ravel().tolist(), strict=True)
-    found = [wedge(load, n).contact_load_share if load < 1 and math.isfinite(n) else math.nan for load, n in states]
+    found = [wedge(load, n).contact_load_share if load < 1 and n <= LARGEST_NUMBER else math.nan for load, n in states]
     return np.array(found).reshape(F.shape)[()]
 
 

@@ -1,0 +1,279 @@
+"""Mixed lubrication by formulas: contact share, friction and its minimum, the transitions and where they merge."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.asymptotics import OutOfRangeWarning, mixed, transitions
+from stribeck.asymptotics.constants import FILM_CONSTANT, PRINTED_FILM_CONSTANT
+from stribeck.asymptotics.perturbation import phi
+from stribeck.merging import merging_roughness
+
+C = FILM_CONSTANT
+
+
+def state(film_ratio, kappa, load):
+    """Return the groups of a state by its film ratio."""
+    return sb.Groups((film_ratio * kappa / C) ** (5 / 3), load, kappa * load)
+
+
+@cache
+def minimum(kappa, load):
+    return sb.stribeck_curve(load=load, roughness=kappa * load, points=41, rtol=1e-6).minimum
+
+
+# --- contact share and friction with a film ---
+
+
+@pytest.mark.parametrize("film_ratio", [3, 5, 8])
+@pytest.mark.parametrize("kappa", [3e-4, 1e-2])
+@pytest.mark.parametrize("load", [2e-3, 0.2])
+def test_our_contact_share_and_friction_know_outlet_and_thickened_film(film_ratio, kappa, load):
+    groups = state(film_ratio, kappa, load)
+    solved = sb.solve(groups)
+    share, friction = solved.contact_load_share, solved.friction(mu0=1, beta=1).total
+    ours = mixed.contact_load_share(groups) / share - 1
+    paper = mixed.contact_load_share(groups, "large") / share - 1
+    assert abs(ours) < 0.09
+    assert abs(mixed.friction(groups) / friction - 1) < 0.09
+    if film_ratio == 3:
+        assert paper > 0.2 and abs(ours) < 0.2 * paper
+    # The better central film alone loses what the outlet adds.
+    assert mixed.contact_load_share(groups, "central") < mixed.contact_load_share(groups, "large")
+
+
+def test_the_film_with_asperities_is_the_law_of_the_paper_where_both_are_small():
+    # Neither outlet nor inlet count for a thin, strong film, but both vanish slowly.
+    thin = sb.Groups(1e-22, 0.5, 0.5 * C * 1e-22**0.6 / 14)
+    ours = mixed.contact_load_share.function(thin)
+    assert ours == pytest.approx(mixed.contact_load_share.function(thin, "large"), rel=0.02)
+    assert ours == pytest.approx(4 / math.pi * 0.5**-0.5 * math.exp(-14), rel=0.02)
+
+
+def test_the_contact_share_solves_its_implicit_equation():
+    groups = state(4, 1e-3, 1e-2)
+    share = mixed.contact_load_share(groups)
+    unsaturated = (share**-mixed.SATURATION - 1) ** (-1 / mixed.SATURATION)
+    central = mixed.contact_load_share(groups, "central")
+    ratio = -math.log(central * math.pi / 4 * groups.load**0.5)
+    u = groups.speed**0.4
+    outlet = 1 + mixed.OUTLET[0] * u**1.5 + mixed.OUTLET[1] * u * ratio ** (8 / 3)
+    assert unsaturated == pytest.approx(
+        central * outlet * math.exp(-mixed.FEEDBACK * unsaturated / groups.speed**0.2), rel=1e-9
+    )
+
+
+def test_the_friction_of_the_paper_is_the_printed_equation_with_its_constant():
+    groups = sb.Groups(3e-5, 0.05, 0.05 * 3e-4)
+    for c, printed in ((0.44, True), (C, False)):
+        by_hand = 4 * 0.3 / math.pi * 0.05**-0.5 * math.exp(-c * 3e-5**0.6 / 3e-4)
+        by_hand += 4 * 0.07 / (c * 3 * math.pi) * 3e-5**0.4 * 0.05**0.5
+        assert mixed.friction.function(groups, 0.3, 0.07, "large", printed=printed) == pytest.approx(by_hand, rel=1e-12)
+    assert mixed.friction.function(groups, printed=True) != mixed.friction.function(groups, film="large")
+
+
+def test_the_lean_of_the_contact_pressure_is_what_the_two_definitions_differ_by():
+    groups = state(6, 1e-3, 0.1)
+    solved = sb.solve(groups, rtol=1e-8)
+    paper, balanced = (solved.friction(mu0=1, beta=1, definition=d).viscous for d in ("paper", "balanced"))
+    lean = mixed.friction(groups, 0.0, 1.0) - mixed.friction(groups, 0.0, 1.0, "central")
+    assert lean == pytest.approx(paper - balanced, rel=0.1)
+
+
+def test_an_unknown_film_is_refused_by_name():
+    with pytest.raises(sb.InputError, match="'uniform', 'central' or 'large'"):
+        mixed.friction(sb.Groups(1e-4, 0.1, 1e-4), film="thick")
+
+
+def test_a_dry_smooth_contact_has_no_contact_share_by_formula():
+    with pytest.warns(OutOfRangeWarning, match="has no value"):
+        assert math.isnan(mixed.contact_load_share(sb.Groups(0.0, 0.1, 0.0)))
+    with pytest.warns(OutOfRangeWarning, match="is used outside"):
+        assert mixed.contact_load_share(sb.Groups(1e-3, 0.1, 0.0)) == 0
+
+
+# --- the minimum ---
+
+
+def test_lambert_w_gives_the_ratio_at_which_the_slope_vanishes():
+    groups = sb.Groups(1.0, 0.1, np.array([1e-7, 1e-4, 3e-2]))
+    k = transitions.weakening_number(groups, 0.5, 2.0)
+    by_hand = 2 / (9 * C ** (5 / 3)) * 4 * groups.roughness ** (2 / 3) * 0.1 ** (1 / 3)
+    np.testing.assert_allclose(k, by_hand, rtol=1e-12)
+    ratio = transitions.lambda_ratio_at_minimum.function(groups, 0.5, 2.0, "exact")
+    np.testing.assert_allclose(ratio ** (1 / 3) * np.exp(-ratio), k, rtol=1e-12)
+    assert (ratio > 1 / 3).all()
+    for near in (0.999, 1.001):
+        speed = (near * groups.relative_roughness * ratio / C) ** (5 / 3)
+        there = mixed.friction.function(sb.Groups(speed, 0.1, groups.roughness), 0.5, 2.0, "large")
+        assert (there > transitions.friction_at_minimum.function(groups, 0.5, 2.0, "exact")).all()
+    speed = transitions.speed_at_minimum.function(groups, 0.5, 2.0, "exact")
+    least = mixed.friction.function(sb.Groups(speed, 0.1, groups.roughness), 0.5, 2.0, "large")
+    np.testing.assert_allclose(transitions.friction_at_minimum.function(groups, 0.5, 2.0, "exact"), least, rtol=1e-12)
+
+
+def test_the_expansion_of_lambert_w_nears_it_as_roughness_vanishes():
+    groups = sb.Groups(1.0, 0.1, np.array([1e-12, 1e-8, 1e-4]))
+    exact, expansion, leading = (
+        transitions.lambda_ratio_at_minimum.function(groups, form=form) for form in ("exact", "expansion", "leading")
+    )
+    error = 1 - expansion / exact
+    # The next term is ln(-ln k)/(9 (-ln k)), a ninth of the square of the first one's over that.
+    np.testing.assert_allclose(error * exact, np.log(leading) / (9 * leading), rtol=0.25)
+    assert (np.abs(1 - leading / exact) > 5 * error).all()
+
+
+def test_beyond_the_branch_of_lambert_w_there_is_no_minimum():
+    limit = transitions.LARGEST_WEAKENING
+    assert limit == pytest.approx(0.4968, abs=5e-5)
+    edge = transitions.merging_roughness(0.1, criterion="weakening")
+    for factor, present in ((0.999, True), (1.001, False)):
+        groups = sb.Groups(1.0, 0.1, factor * edge)
+        assert transitions.has_minimum(groups, form="exact") == present
+        ratio = transitions.lambda_ratio_at_minimum.function(groups, form="exact")
+        assert np.isreal(ratio) and (ratio > 1 / 3 if present else math.isnan(ratio))
+        speeds = np.geomspace(1e-3, 1e5, 4001)
+        friction = mixed.friction.function(sb.Groups(speeds, 0.1, factor * edge), film="large")
+        assert (np.diff(friction) < 0).any() == present
+    with pytest.warns(OutOfRangeWarning, match="has no value"):
+        assert math.isnan(transitions.speed_at_minimum(sb.Groups(1.0, 0.1, 1.001 * edge), form="exact"))
+
+
+@pytest.mark.parametrize(("load", "kappa"), [(1e-3, 1e-4), (1e-3, 1e-2), (0.1, 1e-3), (0.5, 1e-4), (0.5, 1e-2)])
+def test_our_minimum_is_that_of_the_solver(load, kappa):
+    found = minimum(kappa, load)
+    groups = sb.Groups(1.0, load, kappa * load)
+    assert transitions.friction_at_minimum(groups) == pytest.approx(found.friction, rel=0.0105)
+    assert transitions.speed_at_minimum(groups) == pytest.approx(found.value, rel=0.019)
+    assert transitions.lambda_ratio_at_minimum(groups) == pytest.approx(found.solution.lambda_ratio, rel=0.022)
+    assert transitions.has_minimum(groups)
+
+
+def test_our_minimum_is_stationary():
+    groups = sb.Groups(1.0, 0.05, np.array([[1e-6], [1e-4]]))
+    speed = transitions.speed_at_minimum(groups, 0.4, 0.7)
+    assert np.shape(speed) == (2, 1)
+    beside = [mixed.friction.function(sb.Groups(f * speed, 0.05, groups.roughness), 0.4, 0.7) for f in (1 / 1.001, 1, 1.001)]
+    assert (beside[0] > beside[1]).all() and (beside[2] > beside[1]).all()
+
+
+def test_the_least_friction_of_the_paper_is_exact_only_for_vanishing_roughness():
+    errors = []
+    for kappa in (1e-4, 1e-3, 1e-2):
+        groups = sb.Groups(1.0, 0.1, 0.1 * kappa)
+        errors.append(1 - transitions.friction_at_minimum(groups, form="exact") / minimum(kappa, 0.1).friction)
+    assert errors == pytest.approx([0.061, 0.182, 0.403], abs=0.003)
+
+
+def test_the_printed_least_friction_has_the_wrong_sign_in_an_exponent():
+    groups = sb.Groups(1.0, 0.1, 1e-4)
+    solver = minimum(1e-3, 0.1).friction
+    law = transitions.friction_at_minimum
+    assert [round(law(groups, printed=True), 4), round(law(groups, form="leading"), 4)] == [0.0033, 0.0208]
+    assert [round(law(groups, form="exact"), 4), round(law(groups), 4), round(solver, 4)] == [0.0219, 0.0268, 0.0268]
+    k = transitions.weakening_number(groups, printed=True)
+    scale = 4 * 1e-4 ** (2 / 3) * 0.1 ** (-1 / 6) / (3 * math.pi * PRINTED_FILM_CONSTANT ** (5 / 3))
+    by_hand = scale * (2 / 3 * (-math.log(k)) ** (-1 / 3) + (-math.log(k)) ** (-2 / 3))
+    assert law(groups, printed=True) == pytest.approx(by_hand, rel=1e-12)
+
+
+def test_printed_speed_and_ratio_of_the_minimum_are_the_equations_of_the_paper():
+    groups = sb.Groups(1.0, 0.1, 1e-4)
+    k = 2 / (9 * 0.44 ** (5 / 3)) * 1e-4 ** (2 / 3) * 0.1 ** (1 / 3)
+    ratio = -math.log(k) + math.log(-math.log(k)) / 3
+    assert transitions.lambda_ratio_at_minimum(groups, printed=True) == pytest.approx(ratio, rel=1e-12)
+    speed = (1e-3 * -math.log(k) / 0.44) ** (5 / 3)
+    assert transitions.speed_at_minimum(groups, printed=True) == pytest.approx(speed, rel=1e-12)
+
+
+def test_an_unknown_form_is_refused_by_name():
+    for call in (transitions.lambda_ratio_at_minimum, transitions.friction_at_minimum, transitions.has_minimum):
+        with pytest.raises(sb.InputError, match="'uniform', 'exact', 'expansion' or 'leading'"):
+            call(sb.Groups(1.0, 0.1, 1e-4), form="Lambert")
+
+
+def test_a_smooth_contact_has_no_minimum():
+    smooth = sb.Groups(1.0, 0.1, 0.0)
+    assert not transitions.has_minimum(smooth)
+    with pytest.warns(OutOfRangeWarning, match="has no value"):
+        assert math.isnan(transitions.friction_at_minimum(smooth))
+
+
+# --- from boundary to mixed ---
+
+
+def test_the_speed_from_boundary_to_mixed_is_where_the_slow_law_gives_all_load_to_the_fluid():
+    groups = sb.Groups(1.0, np.array([1e-3, 0.1]), 1e-5)
+    speed = transitions.speed_boundary_to_mixed.function(groups)
+    np.testing.assert_allclose(speed**2 / groups.relative_roughness**4 * phi(groups.load), 1, rtol=1e-12)
+    there = sb.solve(sb.Groups(float(speed[1]), 0.1, 1e-5))
+    assert 0.2 < there.fluid_load_share < 0.5
+
+
+def test_the_printed_speed_from_boundary_to_mixed_falls_where_it_should_grow():
+    groups = sb.Groups(1.0, np.array([1e-3, 1e-2]), np.array([1e-7, 1e-6]))
+    L = -np.log(groups.load)
+    printed = transitions.speed_boundary_to_mixed.function(groups, printed=True)
+    np.testing.assert_allclose(printed, 1e-8 / np.sqrt(0.5 * L**5), rtol=1e-12)
+    ours = transitions.speed_boundary_to_mixed.function(groups)
+    assert printed[0] < printed[1] and ours[0] > ours[1]
+    # With -5 for 5 it is of the right size: 0.325 for phi fits best, [BP] have 1/2.
+    np.testing.assert_allclose(1e-8 * np.sqrt(2 * L**5), ours, rtol=0.3)
+
+
+def test_from_load_one_there_is_no_speed_from_boundary_to_mixed():
+    with pytest.warns(OutOfRangeWarning, match="has no value"):
+        found = transitions.speed_boundary_to_mixed(sb.Groups(1.0, np.array([0.1, 1.0, 3.0]), 1e-5))
+    assert np.isnan(found).tolist() == [False, True, True]
+
+
+# --- where the transitions merge ---
+
+
+def test_the_plateau_is_reached_where_merging_says():
+    load = np.array([1e-3, 0.1, 0.5])
+    edge = transitions.merging_roughness(load, 0.3, 0.2, "plateau")
+    least = transitions.friction_at_minimum.function(sb.Groups(1.0, load, edge), 0.3, 0.2, "exact")
+    np.testing.assert_allclose(least, 0.3, rtol=1e-10)
+
+
+def test_the_lines_meet_where_merging_says():
+    load = np.array([1e-3, 0.1, 0.5])
+    edge = transitions.merging_roughness(load, 0.3, 0.2, "lines")
+    groups = sb.Groups(1.0, load, edge)
+    np.testing.assert_allclose(
+        transitions.speed_at_minimum.function(groups, 0.3, 0.2, "exact"),
+        transitions.speed_boundary_to_mixed.function(groups),
+        rtol=1e-10,
+    )
+
+
+def test_our_minimum_disappears_where_merging_says():
+    for load in (1e-2, 0.1):
+        edge = transitions.merging_roughness(load)
+        assert transitions.has_minimum(sb.Groups(1.0, load, 0.999 * edge))
+        assert not transitions.has_minimum(sb.Groups(1.0, load, 1.001 * edge))
+
+
+def test_which_criterion_of_merging_is_near_the_solver():
+    # Relative roughness at which the solved curve loses its minimum, and what the formulas say of it.
+    solved = np.array([merging_roughness(load, 1.0, 1.0, rtol=1e-5) for load in (1e-2, 0.1)])
+    np.testing.assert_allclose(solved / [1e-2, 0.1], [0.343, 0.160], atol=1e-3)
+    over = {
+        name: transitions.merging_roughness(np.array([1e-2, 0.1]), criterion=name) / solved
+        for name in ("uniform", "plateau", "lines", "weakening")
+    }
+    np.testing.assert_allclose(over["uniform"], [0.87, 0.72], atol=0.01)
+    np.testing.assert_allclose(over["plateau"], [7.84, 4.03], atol=0.03)
+    np.testing.assert_allclose(over["lines"], [1.96, 9.95], atol=0.05)
+    np.testing.assert_allclose(over["weakening"], [1294, 87.7], rtol=0.01)
+
+
+def test_an_unknown_criterion_is_refused_by_name_and_what_is_never_met_is_nan():
+    with pytest.raises(sb.InputError, match="'uniform', 'plateau', 'lines' or 'weakening'"):
+        transitions.merging_roughness(0.1, criterion="slope")
+    assert np.isnan(transitions.merging_roughness(np.array([2.0, 3.0]), criterion="lines")).all()
+    assert math.isnan(transitions.merging_roughness(5.0, criterion="plateau"))
