@@ -40,11 +40,12 @@ def draw(data: xarray.Dataset) -> Figure:
         a.loglog(x, data.friction[i], markevery=2, label=label, **look)
         shown = data.film_ratio[i] > LEAST_FILM
         a.plot(x.where(shown), data.law_large[i].where(shown), color=style.INK, ls=style.DASHED, lw=1.0, zorder=4)
+        a.plot(x.where(shown), data.law_uniform[i].where(shown), color=style.MARK, ls=style.DOTTED, lw=1.6, zorder=5)
         if float(data["roughness"][i] / data["load"][i]) <= LARGEST_KAPPA:
             for name, dashes in (("large_error", style.DASHED), ("uniform_error", "-")):
                 errors.semilogx(data.film_ratio[i], 100 * data[name][i], color=look["color"], ls=dashes, lw=1.3)
     a.set(xlabel=r"$\mu_{f,\mathrm{th}}$", ylabel=r"friction coefficient $\mu$", xlim=(5e-4, 10), ylim=(2e-4, 10))
-    style.letter(a, "a", "dashed: the paper's formula, film of slow speed")
+    style.letter(a, "a", "dashed: the paper's formula; dotted: ours")
     style.legend(a, loc="lower right", title=r"$\bar F_N$,  $\bar h_\mathrm{rms}$", fontsize=7.5, ncols=2)
     errors.axhline(0.0, color=style.GREY, lw=0.8)
     errors.set(
