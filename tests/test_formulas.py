@@ -221,11 +221,27 @@ def test_a_formula_outside_its_range_or_without_value_warns_once_and_is_never_co
         expected = bool(np.isnan(value)) or not formula.valid(groups)
         assert [w.category for w in caught] == [OutOfRangeWarning] * expected, (groups, [str(w.message) for w in caught])
         if caught:
-            assert str(caught[0].message).startswith(formula.name)
+            what = "has no value, and is nan," if np.isnan(value) else "is used"
+            assert str(caught[0].message).startswith(f"{formula.name} {what} outside its range: {formula.range}")
             assert caught[0].filename == __file__
 
 
 # --- the form ---
+
+PRINTED = [formula for formula in FORMULAS if "printed" in inspect.signature(formula.function).parameters]
+
+
+@pytest.mark.parametrize("formula", PRINTED, ids=lambda formula: formula.name)
+def test_the_printed_form_of_a_formula_is_another_one(formula):
+    def value(groups, printed):
+        return formula.function(groups, *arguments(formula, groups), printed=printed)
+
+    assert max(abs(value(groups, True) / value(groups, False) - 1) for groups in states(formula)) > 1e-3
+    assert inspect.signature(formula.function).parameters["printed"].default is False
+
+
+def test_formulas_with_a_printed_form_are_on_the_table():
+    assert len(PRINTED) >= 10
 
 
 @NAMED

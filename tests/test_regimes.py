@@ -124,7 +124,7 @@ def mixed():
 
 @pytest.mark.parametrize(
     ("changes", "definition"),
-    [({}, "paper"), ({"speed": 1e-5}, "paper"), ({"load": 0.05, "speed": 1.0}, "balanced")],
+    [({}, "paper"), ({"speed": 1e-5}, "paper"), ({"load": 2.0, "speed": 1e-2}, "balanced")],
 )
 def test_at_a_crossing_the_named_regime_begins(changes, definition):
     contact = CONTACT.replace(**changes)

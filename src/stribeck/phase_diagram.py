@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from itertools import product
+from itertools import pairwise, product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 __all__ = ["phase_diagram"]
 
-EXTENSION = 4
-"""Points per decade by which a row goes on beyond the grid, to plateau and hydrodynamic branch."""
+DENSITY = 4
+"""States per decade that a row has at least, so that its transitions are seen and soon located."""
 
 
 @one_blas_thread
@@ -127,7 +127,7 @@ def _fill_row(diagram: Diagram, i: int, j: int, report: Callable[[float], None])
     wanted = {float(value): k for k, value in enumerate(speeds)}
     if 0.0 in wanted:
         _fill_rest(diagram, problem, (i, j, wanted.pop(0.0)))
-    values = _extended(np.array(list(wanted)), groups, unit, diagram)
+    values = _filled(np.array(list(wanted)), groups, unit, diagram)
     settings: dict[str, Any] = {
         "mu0": diagram.mu0,
         "beta": diagram.beta,
@@ -192,24 +192,14 @@ def _enter_lines(diagram: Diagram, place: tuple[int, int], curve: StribeckCurve,
     diagram.velocity_weakening[place] = int(math.isfinite(found[0]))
 
 
-def _extended(speeds: Array, groups: Groups, unit: float, diagram: Diagram) -> Array:
-    """Return the speeds of a row: those of the grid, and beyond them as far as its transitions may lie."""
+def _filled(speeds: Array, groups: Groups, unit: float, diagram: Diagram) -> Array:
+    """Return the speeds of a row: those of the grid, what lies in wide gaps, and as far out as its transitions may lie."""
     if len(speeds) > 1 and groups.roughness == 0:  # smooth surfaces have no transitions
         return speeds
     low, high = (end / unit for end in automatic_speeds(groups, diagram.mu0, diagram.beta, diagram.definition))
-    if not len(speeds):
-        return np.geomspace(low, high, _count(high / low))
-    parts = [speeds]
-    if low < speeds[0]:
-        parts.insert(0, np.geomspace(low, speeds[0], _count(speeds[0] / low))[:-1])
-    if high > speeds[-1]:
-        parts.append(np.geomspace(speeds[-1], high, _count(high / speeds[-1]))[1:])
-    values = np.concatenate(parts)
-    return values if len(values) > 1 else np.append(values, 10 * values)
-
-
-def _count(ratio: float) -> int:
-    return 2 + math.ceil(EXTENSION * math.log10(ratio))
+    ends = sorted({*speeds.tolist(), low, high} if len(speeds) else {low, high})
+    pieces = [np.geomspace(*pair, 1 + max(1, round(DENSITY * math.log10(pair[1] / pair[0]))))[:-1] for pair in pairwise(ends)]
+    return np.concatenate([*pieces, ends[-1:]])
 
 
 def _merging_line(diagram: Diagram) -> Array:

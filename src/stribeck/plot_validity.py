@@ -11,7 +11,7 @@ import numpy as np
 
 from ._types import Array
 from .asymptotics.formula import Formula
-from .figures.style import DASHED, house_style, legend, power, save, sequence
+from .figures.style import DASHED, house_style, power, save, sequence
 from .output import MissingExtraError, PathLike, replacing
 from .parameters import Groups
 from .plotting import CONTACT, GREY, INK, PICTURES, TINTS
@@ -28,8 +28,8 @@ COLUMNS = 3
 """Panels beside one another."""
 
 PANEL = (3.15, 2.15)
-HEAD, LEGEND = 0.42, 0.75
-"""Width and height of a panel, height of the title, and of the scale of colours with what explains the maps [inch]."""
+HEAD, LEGEND, SCALED = 0.42, 0.32, 0.75
+"""Width and height of a panel, height of the title, of the legend, and of that with a scale of colours [inch]."""
 
 SCALE = (1e-4, 1.0)
 """Errors between which colours differ."""
@@ -39,6 +39,9 @@ CONTOURS = {0.01: "white", 0.1: INK}
 
 LEAST = 1e-7
 """Error below which nothing is told apart: the tolerance of the solved states."""
+
+MOST = 1e6
+"""Error from which on, likewise."""
 
 NOTHING, HATCH = "#f4f4f4", "#b8bec5"
 
@@ -101,7 +104,7 @@ def plot_error_maps(
         raise InputError("there is nothing to draw; give maps of more than one speed or roughness.")
     mapped = bool(over_speed or over_load)
     figure, axes = _new_figure(len(rows), max(map(len, rows)), title, mapped)
-    image, legended = None, False
+    image = None
     for i, (row, panels) in enumerate(zip(rows, axes, strict=True)):
         last = i + 1 == len(rows) or _two(rows[i + 1][0][1]) != _two(row[0][1])
         for j, (panel, ax) in enumerate(zip_longest(row, panels)):
@@ -113,11 +116,7 @@ def plot_error_maps(
                 image = _draw_map(ax, *panel, left=j == 0, bottom=last)
             else:
                 _draw_lines(ax, *panel, left=j == 0)
-                if not legended and ax.get_legend_handles_labels()[0]:
-                    legend(ax, title="load", fontsize=7.5, title_fontsize=7.5, handlelength=1.4, loc="best")
-                    legended = True
-    if image is not None:
-        _explain(figure, image)
+    _explain(figure, image, lines)
     if path is not None:
         with replacing(path, PICTURES, force=force) as temporary:
             save(figure, temporary)
@@ -136,7 +135,8 @@ def _two(data: xarray.Dataset) -> list[str]:
 
 
 def _in_rows(panels: Sequence[Any]) -> list[list[Any]]:
-    return [list(panels[i : i + COLUMNS]) for i in range(0, len(panels), COLUMNS)]
+    columns = 2 if len(panels) == 4 else COLUMNS
+    return [list(panels[i : i + columns]) for i in range(0, len(panels), columns)]
 
 
 def _new_figure(rows: int, columns: int, title: str, mapped: bool) -> tuple[Figure, list[list[Axes]]]:
@@ -146,9 +146,9 @@ def _new_figure(rows: int, columns: int, title: str, mapped: bool) -> tuple[Figu
         from matplotlib.figure import Figure
     except ImportError:
         raise MissingExtraError("a picture", "plot", "matplotlib") from None
-    low = LEGEND if mapped else 0.05
-    # Narrower pictures have no room for the headline and what explains the maps.
-    width, height = PANEL[0] * max(columns, 2 if mapped else 1) + 0.3, PANEL[1] * rows + HEAD + low
+    low = SCALED if mapped else LEGEND
+    # Narrower pictures have no room for the legend.
+    width, height = PANEL[0] * max(columns, 2) + 0.3, PANEL[1] * rows + HEAD + low
     figure = Figure(figsize=(width, height), dpi=100, facecolor="white", layout="constrained")
     FigureCanvasAgg(figure)
     engine: Any = figure.get_layout_engine()
@@ -170,6 +170,13 @@ def _states(name: str, x: Array, kappa: Any, load: float) -> Groups:
     return Groups(1.0, x, x * kappa) if name == "load" else Groups(1.0, load, load * x)
 
 
+def _edges(values: Array) -> Array:
+    """Return the edges of cells around points of a logarithmic axis."""
+    logs = np.log(values)
+    inner = 0.5 * (logs[1:] + logs[:-1])
+    return np.asarray(np.exp(np.concatenate([[2 * logs[0] - inner[0]], inner, [2 * logs[-1] - inner[-1]]])))
+
+
 def _draw_map(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left: bool, bottom: bool) -> Any:
     """Draw one map, with labels where it stands at the left or at the bottom; return what the scale of colours belongs to."""
     from matplotlib.colors import LogNorm
@@ -181,15 +188,15 @@ def _draw_map(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left: 
     error = np.ma.masked_invalid(np.abs(data["error"].transpose("relative_roughness", name).values))
     axes.patch.set(facecolor=NOTHING, edgecolor=HATCH, hatch="////", linewidth=0)
     axes.set(xscale="log", yscale="log")
-    error = np.ma.clip(error, LEAST, None)
-    image = axes.pcolormesh(x, y, error, cmap="cividis", norm=LogNorm(*SCALE), shading="nearest")
-    smooth = np.ma.array(median_filter(error.filled(np.inf), 3, mode="nearest"), mask=error.mask)
+    error = np.ma.clip(error, LEAST, MOST)
+    edges = [_edges(values) for values in (x, y)]
+    image = axes.pcolormesh(*edges, error, cmap="cividis", norm=LogNorm(*SCALE))
+    smooth = np.ma.array(median_filter(error.filled(MOST), 3, mode="nearest"), mask=error.mask)
     for level, colour in CONTOURS.items():
         if smooth.count() and smooth.min() < level < smooth.max():
-            logs = np.log(np.ma.masked_invalid(smooth) / level)
+            logs = np.log(smooth / level)
             axes.contour(x, y, logs, [0.0], colors=colour, linewidths=1.0, linestyles="solid")
-    # Beyond the ends by half a step, as far as the cells reach.
-    ends = [(values[0] ** 1.5 / values[1] ** 0.5, values[-1] ** 1.5 / values[-2] ** 0.5) for values in (x, y)]
+    ends = [(values[0], values[-1]) for values in edges]
     axes.set(xlim=ends[0], ylim=ends[1])
     fine_x, fine_y = (_fine(np.asarray(pair)) for pair in ends)
     inside = np.broadcast_to(formula.valid(_states(name, fine_x, fine_y[:, None], load)), (FINE, FINE))
@@ -197,8 +204,11 @@ def _draw_map(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left: 
     if inside.any():
         for colour, width in (("white", 3.2), (CONTACT, 1.8)):
             axes.contour(*frame, np.pad(inside.astype(float), 1), [0.5], colors=colour, linewidths=width)
-    title = str(data.attrs["title"])
-    axes.set_title(title if name == "load" else f"{title if left else ''}\nload {load:g}", loc="left", size=9, color=INK)
+    if name == "speed":
+        title = f"{data.attrs['title'] if left else ''}\nload {load:g}"
+    else:
+        title = f"{data.attrs['title']}\nagainst {data.attrs['predicts']}"
+    axes.set_title(title, loc="left", size=9, color=INK)
     _decades(axes.xaxis, ends[0])
     _decades(axes.yaxis, ends[1])
     axes.tick_params(labelbottom=bottom, labelleft=left, color=GREY)
@@ -224,8 +234,7 @@ def _draw_lines(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left
     for load, colour, values, flags in zip(loads, colours, size, inside, strict=True):
         valid |= np.broadcast_to(formula.valid(_states(name, fine, 0.0, load)), FINE)
         axes.plot(x, values, color=colour, lw=0.9, alpha=0.75)
-        label = power(load) if len(loads) > 1 else None
-        axes.plot(x, np.where(flags, values, np.nan), color=colour, lw=2.0, label=label)
+        axes.plot(x, np.where(flags, values, np.nan), color=colour, lw=2.0)
     axes.set(xscale="log", yscale="log", xlim=(x[0], x[-1]))
     where = valid.tolist()
     across = axes.get_xaxis_transform()
@@ -258,31 +267,39 @@ def _decades(axis: Any, ends: Sequence[float]) -> None:
     axis.set_minor_locator(NullLocator())
 
 
-def _explain(figure: Figure, image: Any) -> None:
-    """Draw the scale of colours under the panels, and beside it what lines and hatching mean."""
+def _explain(figure: Figure, image: Any, lines: Sequence[tuple[Formula[Any], xarray.Dataset]]) -> None:
+    """Draw the scale of colours under the panels, and beside it what lines, shades and hatching mean."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     width, height = figure.get_size_inches()
-    scale = figure.add_axes((0.65 / width, 0.36 / height, 2.6 / width, 0.14 / height))
-    bar = figure.colorbar(image, cax=scale, orientation="horizontal", extend="both")
-    bar.set_ticks([1e-4, 1e-3, 1e-2, 1e-1, 1.0])
-    bar.ax.xaxis.set_major_formatter(_percent)
-    bar.ax.minorticks_off()
-    bar.ax.tick_params(labelsize=8, colors=INK)
-    bar.ax.axvline(0.01, color=CONTOURS[0.01], lw=1.0)
-    bar.ax.axvline(0.1, color=CONTOURS[0.1], lw=1.0)
-    bar.outline.set_edgecolor(GREY)
-    marks = [
-        Line2D([], [], color=CONTACT, lw=1.8, label="range of the formula"),
-        Patch(facecolor=NOTHING, edgecolor=HATCH, hatch="////", lw=0, label="no value"),
-    ]
+    marks: list[Any] = []
+    if image is not None:
+        scale = figure.add_axes((0.65 / width, 0.42 / height, 2.5 / width, 0.14 / height))
+        bar = figure.colorbar(image, cax=scale, orientation="horizontal", extend="both")
+        bar.set_ticks([1e-4, 1e-3, 1e-2, 1e-1, 1.0])
+        bar.ax.xaxis.set_major_formatter(_percent)
+        bar.ax.minorticks_off()
+        bar.ax.tick_params(labelsize=8, colors=INK)
+        for level, colour in CONTOURS.items():
+            bar.ax.axvline(level, color=colour, lw=1.0)
+        bar.outline.set_edgecolor(GREY)
+        marks.append(Line2D([], [], color=CONTACT, lw=1.8, label="range of the formula"))
+        marks.append(Patch(facecolor=NOTHING, edgecolor=HATCH, hatch="////", lw=0, label="no value"))
+    if lines:
+        loads: list[float] = next((data["load"].values.tolist() for _, data in lines if data.sizes.get("load", 1) > 1), [])
+        colours = sequence(len(loads))
+        marks.append(Line2D([], [], color=GREY, lw=1.2, ls=DASHED, label="stated worst error"))
+        marks.append(Patch(facecolor=TINTS["hydrodynamic"], lw=0, label="range" if image is None else "range, of lines"))
+        marks += [Line2D([], [], color=c, lw=2.0, label=f"load {power(load)}") for load, c in zip(loads, colours, strict=True)]
     figure.legend(
         handles=marks,
         loc="center left",
-        bbox_to_anchor=(3.5 / width, 0.36 / height),
-        ncols=len(marks),
+        bbox_to_anchor=((0.55 if image is None else 3.5) / width, (0.17 if image is None else 0.42) / height),
+        ncols=len(marks) if image is None else math.ceil(len(marks) / 2),
         frameon=False,
         fontsize=8.5,
         labelcolor=INK,
+        handlelength=1.8,
+        columnspacing=1.4,
     )

@@ -11,11 +11,8 @@ from __future__ import annotations
 import math
 
 from ..parameters import Groups
-from .constants import FILM_CONSTANT, PRINTED_FILM_CONSTANT
+from .constants import FILM_CONSTANT, MINIMUM_CONSTANT, PRINTED_FILM_CONSTANT
 from .formula import Limit, Value, formula
-
-MINIMUM_TO_CENTRAL = 0.75801
-"""Least over central gap as lambda -> 0."""
 
 RANGE = (Limit("speed", 0.0, 1e-3),)
 
@@ -110,7 +107,7 @@ def flux_gap_large(groups: Groups) -> Value:
 def minimum_gap_large(groups: Groups) -> Value:
     r"""Return the least gap, at the outlet, at large deformation, speed group -> 0.
 
-    .. math:: \min h = 0.75801 \, c \lambda^{3/5}
+    .. math:: \min h = 0.33794 \lambda^{3/5} = 0.75801 \, c \lambda^{3/5}
 
     Parameters
     ----------
@@ -128,7 +125,7 @@ def minimum_gap_large(groups: Groups) -> Value:
 
     Source: ours, from the solver; :mod:`stribeck.asymptotics.film_layers` solves the outlet by itself.
     """
-    return MINIMUM_TO_CENTRAL * FILM_CONSTANT * groups.speed**0.6
+    return MINIMUM_CONSTANT * groups.speed**0.6
 
 
 @formula(

@@ -13,7 +13,7 @@ from ..curve import Landmark
 from ..newton import Outcome
 from ..parameters import Groups
 from ..solve import SolveError
-from .mixed_panels import LARGEST_KAPPA, LEAST_FILM, draw
+from .mixed_panels import LARGEST_FILM, LARGEST_KAPPA, LEAST_FILM, draw
 from .paper_figure import PaperFigure, Report
 from .states import Work, column, dataset
 from .stribeck_cases import (
@@ -75,7 +75,7 @@ def _compute(report: Report) -> xarray.Dataset:
     alone = (numbers / float(transitions.weakening_number(Groups(1.0, 1.0, 1.0)))) ** 1.5
     against = transitions.lambda_ratio_at_minimum.function(Groups(1.0, 1.0, alone), form="exact")
     errors = {f"{name.removeprefix('law_')}_error": law / friction - 1 for name, law in laws.items()}
-    near = (film > LEAST_FILM) & (relative <= LARGEST_KAPPA)
+    near = (film > LEAST_FILM) & (film < LARGEST_FILM) & (relative <= LARGEST_KAPPA)
     finding = _finding(errors, near, ratio, ratios, least, minima)
     grid, map_ = ("case", "speed"), ("minimum_load", "kappa")
     variables = {
@@ -123,17 +123,18 @@ def _finding(
     errors: dict[str, Array], near: Flags, ratio: Array, ratios: dict[str, Array], least: Array, minima: dict[str, Array]
 ) -> str:
     worst = {name: 100 * np.abs(error[near]).max() for name, error in errors.items()}
+    smoothest = 100 * np.abs(errors["large_error"][0][near[0]]).max()
     exact, expansion, ours = (100 * np.abs(ratios[form] / ratio - 1).max(axis=0) for form in FORMS)
     corrected, printed, best = (minima[f"friction_{form}"] / least for form in ("exact", "printed", "uniform"))
     finding = (
-        f"for film ratios from {LEAST_FILM:g} on and kappa up to {LARGEST_KAPPA:g} the paper's friction is up to "
-        f"{worst['large_error']:.0f} % off, ours {worst['uniform_error']:.0f} %. Lambda grows from {ratio.min():.1f} to "
-        f"{ratio.max():.1f}; Lambert's W is within {exact[0]:.1f} % of it at kappa = {KAPPAS[0]:g}, {exact[4]:.0f} % at "
-        f"{KAPPAS[4]:g} and {exact[-1]:.0f} % at {KAPPAS[-1]:g}, its expansion within {expansion[0]:.1f}, {expansion[4]:.0f} "
-        f"and {expansion[-1]:.0f} %, ours within {ours.max():.0f} %. Least friction by the formula is "
-        f"{corrected[:, 0].min():.2f} of the solved at kappa = {KAPPAS[0]:g} and {corrected[:, 4].min():.2f} at "
-        f"{KAPPAS[4]:g}; with the printed power -2/3 it is {printed.min():.2f} to {printed.max():.2f} of it, and ours within "
-        f"{100 * np.abs(best - 1).max():.1g} %."
+        f"for film ratios {LEAST_FILM:g} to {LARGEST_FILM:g} and kappa up to {LARGEST_KAPPA:g} the paper's friction is up to "
+        f"{worst['large_error']:.0f} % off ({smoothest:.0f} % at kappa = {KAPPAS[2]:g}), ours {worst['uniform_error']:.0f} %. "
+        f"Lambda grows from {ratio.min():.1f} to {ratio.max():.1f}; Lambert's W is within {exact[0]:.1f} % of it at kappa = "
+        f"{KAPPAS[0]:g}, {exact[4]:.0f} % at {KAPPAS[4]:g} and {exact[-1]:.0f} % at {KAPPAS[-1]:g}, its expansion within "
+        f"{expansion[0]:.1f}, {expansion[4]:.0f} and {expansion[-1]:.0f} %, ours within {ours.max():.0f} %. Least friction by "
+        f"the formula is {corrected[:, 0].min():.2f} of the solved at kappa = {KAPPAS[0]:g} and {corrected[:, 4].min():.2f} "
+        f"at {KAPPAS[4]:g}; with the printed power -2/3 it is {printed.min():.2f} to {printed.max():.2f} of it, and ours "
+        f"within {100 * np.abs(best - 1).max():.1g} %."
     )
     return finding
 

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LEAST_FILM, LARGEST_KAPPA = 3.0, 0.1
-"""Film ratio and relative roughness within which the formulas for friction are compared."""
+LEAST_FILM, LARGEST_FILM, LARGEST_KAPPA = 3.0, 20.0, 0.1
+"""Film ratios and relative roughness within which the formulas for friction are compared."""
 
 FORMS = {
     "exact": (r"Lambert's $W$", style.DASHED),
