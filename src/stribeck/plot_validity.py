@@ -27,9 +27,9 @@ __all__ = ["plot_error_maps"]
 COLUMNS = 3
 """Panels beside one another."""
 
-PANEL = (3.15, 2.15)
+PANEL, WIDER = (3.15, 2.15), 3.8
 HEAD, LEGEND, SCALED = 0.42, 0.32, 0.75
-"""Width and height of a panel, height of the title, of the legend, and of that with a scale of colours [inch]."""
+"""Width and height of a panel, width where there are fewer than three, height of the title, of the legend, and of that with a scale of colours [inch]."""
 
 SCALE = (1e-4, 1.0)
 """Errors between which colours differ."""
@@ -148,7 +148,8 @@ def _new_figure(rows: int, columns: int, title: str, mapped: bool) -> tuple[Figu
         raise MissingExtraError("a picture", "plot", "matplotlib") from None
     low = SCALED if mapped else LEGEND
     # Narrower pictures have no room for the legend.
-    width, height = PANEL[0] * max(columns, 2) + 0.3, PANEL[1] * rows + HEAD + low
+    panel, height = PANEL[0] if columns == COLUMNS else WIDER, PANEL[1] * rows + HEAD + low
+    width = panel * max(columns, 2) + 0.3
     figure = Figure(figsize=(width, height), dpi=100, facecolor="white", layout="constrained")
     FigureCanvasAgg(figure)
     engine: Any = figure.get_layout_engine()

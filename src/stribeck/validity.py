@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +20,7 @@ from .asymptotics.formula import Formula
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .output import MissingExtraError
 from .parameters import Groups
-from .solution import Solution
+from .solution import DEFINITIONS, Definition, Solution
 from .solve import SolveError, solve
 from .units import InputError, show
 
@@ -48,16 +48,24 @@ def _state(groups: Groups) -> Solution:
 
 
 @lru_cache(maxsize=512)
-def _curve(groups: Groups) -> StribeckCurve:
-    return stribeck_curve(load=groups.load, roughness=groups.roughness, points=CURVE_POINTS, rtol=RTOL)
+def _curve(groups: Groups, mu0: float, beta: float, definition: Definition) -> StribeckCurve:
+    coefficients: dict[str, Any] = {"mu0": mu0, "beta": beta, "definition": definition}
+    return stribeck_curve(load=groups.load, roughness=groups.roughness, points=CURVE_POINTS, rtol=RTOL, **coefficients)
 
 
-def _minimum(groups: Groups) -> Landmark | None:
-    return _curve(replace(groups, speed=1.0)).minimum
+def _coefficients(options: dict[str, Any]) -> dict[str, Any]:
+    """Return what the options of a formula ask of the solver: 1 and the definition of the paper, where they do not say."""
+    definition = options.get("definition", options.get("viscous"))
+    known = definition if definition in DEFINITIONS else "paper"
+    return {"mu0": options.get("mu0", 1.0), "beta": options.get("beta", 1.0), "definition": known}
+
+
+def _minimum(groups: Groups, options: dict[str, Any]) -> Landmark | None:
+    return _curve(replace(groups, speed=1.0), **_coefficients(options)).minimum
 
 
 def _fluid_share(groups: Groups, share: str) -> Landmark | None:
-    marks = _curve(replace(groups, speed=1.0)).transitions
+    marks = _curve(replace(groups, speed=1.0), **_coefficients({})).transitions
     return next((mark for mark in marks if mark.name == f"fluid carries {share} of the load"), None)
 
 
@@ -65,34 +73,35 @@ def _of_landmark(mark: Landmark | None, value: Callable[[Landmark], float]) -> f
     return math.nan if mark is None else value(mark)
 
 
-OF_STATE: dict[str, Callable[[Solution], float]] = {
-    "central_gap": lambda s: s.central_gap,
-    "flux_gap": lambda s: s.flux_gap,
-    "minimum_gap": lambda s: s.minimum_gap,
-    "offset": lambda s: s.offset,
-    "contact_load_share": lambda s: s.contact_load_share,
-    "fluid_load_share": lambda s: s.fluid_load_share,
-    "viscous_friction": lambda s: s.friction(mu0=1.0, beta=1.0).viscous,
-    "friction": lambda s: s.friction(mu0=1.0, beta=1.0).total,
+OF_STATE: dict[str, Callable[[Solution, dict[str, Any]], float]] = {
+    "central_gap": lambda s, _: s.central_gap,
+    "flux_gap": lambda s, _: s.flux_gap,
+    "minimum_gap": lambda s, _: s.minimum_gap,
+    "offset": lambda s, _: s.offset,
+    "contact_load_share": lambda s, _: s.contact_load_share,
+    "fluid_load_share": lambda s, _: s.fluid_load_share,
+    "viscous_friction": lambda s, options: s.friction(**_coefficients(options)).viscous,
+    "friction": lambda s, options: s.friction(**_coefficients(options)).total,
 }
-"""Quantities of one state; friction as the paper defines it with mu0 = beta = 1."""
+"""Quantities of one state, with the options of the formula."""
 
-LOCATED: dict[str, Callable[[Groups], float]] = {
-    "speed_at_minimum": lambda g: _of_landmark(_minimum(g), lambda mark: mark.value),
-    "friction_at_minimum": lambda g: _of_landmark(_minimum(g), lambda mark: mark.friction),
-    "lambda_ratio_at_minimum": lambda g: _of_landmark(_minimum(g), lambda mark: mark.solution.lambda_ratio),
-    "speed_at_5_percent_fluid": lambda g: _of_landmark(_fluid_share(g, "5%"), lambda mark: mark.value),
-    "speed_at_half_fluid": lambda g: _of_landmark(_fluid_share(g, "50%"), lambda mark: mark.value),
+LOCATED: dict[str, Callable[[Groups, dict[str, Any]], float]] = {
+    "speed_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.value),
+    "friction_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.friction),
+    "lambda_ratio_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.solution.lambda_ratio),
+    "speed_at_5_percent_fluid": lambda g, _: _of_landmark(_fluid_share(g, "5%"), lambda mark: mark.value),
+    "speed_at_half_fluid": lambda g, _: _of_landmark(_fluid_share(g, "50%"), lambda mark: mark.value),
 }
 """Quantities located on a curve over the speed, which the speed of the groups does not touch."""
 
 
-def _of_one_state(value: Callable[[Solution], float]) -> Callable[[Groups], float]:
-    return lambda groups: value(_state(groups))
+def _measured(name: str, groups: Groups, **options: Any) -> float:
+    return LOCATED[name](groups, options) if name in LOCATED else OF_STATE[name](_state(groups), options)
 
 
-MEASURED: dict[str, Callable[[Groups], float]] = {name: _of_one_state(value) for name, value in OF_STATE.items()} | LOCATED
-"""What the solver gives for each quantity that a formula predicts."""
+MEASURED: dict[str, Callable[..., float]] = {name: partial(_measured, name) for name in (*OF_STATE, *LOCATED)}
+"""What the solver gives for each quantity that a formula predicts, as a function of the groups, and of mu0, beta (1 by default)
+and definition (that of the paper) for friction."""
 
 AXES: dict[str, dict[str, tuple[float, ...]]] = {
     "smooth": {"speed": (-12, 8, 4)},
@@ -103,6 +112,8 @@ AXES: dict[str, dict[str, tuple[float, ...]]] = {
 """What the error depends on for each kind of formula, and where it is mapped: loads, or decades and points in each of them."""
 
 LABELS = {"load": "load group", "relative_roughness": "relative roughness h_rms/F_N", "speed": "speed group"}
+
+ROUNDING = 1e-12
 
 SMOOTH_LOAD = 0.1
 """Load at which smooth contacts are solved; their relative errors do not depend on it."""
@@ -140,7 +151,7 @@ def relative_error(formula: Formula[Any], groups: Groups, **options: Any) -> flo
     groups : Groups
         One state.
     **options
-        Arguments of the formula beside the groups.
+        Arguments of the formula beside the groups; mu0, beta and definition hold for the solver too.
 
     Returns
     -------
@@ -151,7 +162,7 @@ def relative_error(formula: Formula[Any], groups: Groups, **options: Any) -> flo
     if formula.predicts in FIELDS:
         return _field_error(formula, groups, _state(state), options)
     found = float(formula.function(groups, **options))
-    right = MEASURED[formula.predicts](state)
+    right = MEASURED[formula.predicts](state, **options)
     return (found - right) / right
 
 
@@ -205,7 +216,7 @@ def error_map(
     predicts : str, optional
         Key of :data:`MEASURED` to judge by, where the options make the formula predict something else.
     **options
-        Arguments of the formula beside the groups.
+        Arguments of the formula beside the groups; mu0, beta and definition hold for the solver too.
 
     Returns
     -------
@@ -301,11 +312,11 @@ def _maps(
         for j, kappa in enumerate(kappas.tolist()):
             base = Groups(1.0, load, kappa * load)
             for name in wanted & set(LOCATED):
-                right[name][i, j, 0] = LOCATED[name](base)
+                right[name][i, j, 0] = LOCATED[name](base, options)
             for k, state in _row(base, speeds) if kind != "located" else ():
                 estimate = max(estimate, state.error_estimate)
                 for name in wanted:
-                    right[name][i, j, k] = OF_STATE[name](state)
+                    right[name][i, j, k] = OF_STATE[name](state, options)
                 for formula in fields:
                     groups = replace(base, speed=float(speeds[k]))
                     errors[formula.name][i, j, k] = _field_error(formula, groups, state, options)
@@ -316,9 +327,15 @@ def _maps(
             with np.errstate(all="ignore"):
                 values = np.broadcast_to(formula.function(groups, **options), shape)
                 errors[formula.name] = (values - right[formula.predicts]) / right[formula.predicts]
-        valid = np.broadcast_to(formula.valid(groups), shape)
+        valid = np.broadcast_to(_valid(formula, groups), shape)
         found[formula.name] = _dataset(formula, options, axes, errors[formula.name], valid, estimate)
     return found
+
+
+def _valid(formula: Formula[Any], groups: Groups) -> Flags:
+    """Return where a formula is in its range, whose ends belong to it although the relative roughness is a rounded quotient."""
+    nearly = [replace(groups, roughness=groups.roughness * (1 + step)) for step in (-ROUNDING, ROUNDING)]
+    return np.asarray(formula.valid(nearly[0]) | formula.valid(nearly[1]))
 
 
 def _row(base: Groups, speeds: Array) -> list[tuple[int, Solution]]:
