@@ -471,12 +471,14 @@ def test_the_power_of_phi_is_for_large_logarithms():
 
 def test_the_law_of_slow_speed_reaches_one_where_the_fluid_carries_an_eighth_to_a_half():
     """[BP] Eq. (boundary-to-mixed): where lambda**2 phi/kappa**4 = 1 "the fluid load becomes comparable" to the load."""
-    for load, share in ((1e-3, 0.455), (0.01, 0.360), (0.1, 0.252), (0.3, 0.178), (0.5, 0.129)):
+    found = ((1e-3, 0.455, 1.12), (0.01, 0.360, 1.57), (0.1, 0.252, 2.92), (0.3, 0.178, 6.03), (0.5, 0.129, 13.03))
+    for load, share, factor in found:
         speed = slow(load, KAPPA, 1.0)
         groups = sb.Groups(speed, load, KAPPA * load)
         assert transitions.speed_boundary_to_mixed(groups) == pytest.approx(speed, rel=1e-12)
         assert state(speed, load).fluid_load_share == pytest.approx(share, abs=1e-3)
         half = float(load_sharing.speed_at_fluid_share(groups, 0.5))
+        assert half / speed == pytest.approx(factor, abs=0.01)
         assert state(half, load).fluid_load_share == pytest.approx(0.5, abs=0.02)
 
 

@@ -29,7 +29,8 @@ COLUMNS = 3
 
 PANEL, WIDER = (3.15, 2.15), 3.8
 HEAD, LEGEND, SCALED = 0.42, 0.32, 0.75
-"""Width and height of a panel, width where there are fewer than three, height of the title, of the legend, and of that with a scale of colours [inch]."""
+"""Width and height of a panel, width where there are fewer than three; height of the title, of the legend, and of that with a
+scale of colours [inch]."""
 
 SCALE = (1e-4, 1.0)
 """Errors between which colours differ."""

@@ -100,8 +100,8 @@ def _measured(name: str, groups: Groups, **options: Any) -> float:
 
 
 MEASURED: dict[str, Callable[..., float]] = {name: partial(_measured, name) for name in (*OF_STATE, *LOCATED)}
-"""What the solver gives for each quantity that a formula predicts, as a function of the groups, and of mu0, beta (1 by default)
-and definition (that of the paper) for friction."""
+"""What the solver gives for each quantity that a formula predicts, as a function of the groups, for friction also of mu0, beta
+(1 by default) and definition (that of the paper)."""
 
 AXES: dict[str, dict[str, tuple[float, ...]]] = {
     "smooth": {"speed": (-12, 8, 4)},
@@ -333,9 +333,10 @@ def _maps(
 
 
 def _valid(formula: Formula[Any], groups: Groups) -> Flags:
-    """Return where a formula is in its range, whose ends belong to it although the relative roughness is a rounded quotient."""
-    nearly = [replace(groups, roughness=groups.roughness * (1 + step)) for step in (-ROUNDING, ROUNDING)]
-    return np.asarray(formula.valid(nearly[0]) | formula.valid(nearly[1]))
+    """Return where a formula is in its range, to which its ends belong although the grid is rounded."""
+    steps = 1 - ROUNDING, 1 + ROUNDING
+    near = [replace(groups, speed=groups.speed * i, roughness=groups.roughness * j) for i in steps for j in steps]
+    return np.asarray(np.logical_or.reduce([formula.valid(state) for state in near]))
 
 
 def _row(base: Groups, speeds: Array) -> list[tuple[int, Solution]]:
