@@ -80,7 +80,7 @@ def formula_table() -> str:
     for formula in FORMULAS:
         order = Fraction(formula.error_order).limit_denominator(12)
         small = formula.small.replace("_", " ")
-        vanishes = f"({small})<sup>{order}</sup>" if formula.small and order != 1 else small or "fitted or bounded"
+        vanishes = f"({small})<sup>{order}</sup>" if formula.small and order != 1 else small or "no small parameter"
         limits = re.sub(r"[0-9.]+e-\d+|\b0\.00\d*", lambda found: short(float(found[0])), formula.range)
         worst = percent(formula.worst)
         rows.append([f"`{formula.name}`", ABOUT[kind_of(formula)], limits, worst, vanishes, formula.source.replace("|", "/")])

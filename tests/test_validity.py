@@ -1,0 +1,283 @@
+"""Maps of the errors of formulas: they are the errors at their states, and the page that shows them is up to date."""
+
+import importlib.util
+import math
+import re
+import struct
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.asymptotics import (
+    FORMULAS,
+    Limit,
+    boundary,
+    hertz,
+    hydrodynamic,
+    load_sharing,
+    mixed,
+    rest,
+    transitions,
+    uniform,
+)
+from stribeck.validity import AXES, MEASURED, error_map, error_maps, kind_of, relative_error
+
+pytest.importorskip("xarray")
+
+DOCS = Path(__file__).parents[1] / "docs"
+PAGE = (DOCS / "validity.md").read_text()
+NAMED = pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
+
+
+@pytest.fixture(scope="module")
+def script():
+    """Return the script that makes the page, as a module."""
+    spec = importlib.util.spec_from_file_location("validity_script", DOCS / "validity.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def blocks(script):
+    """Return what the script wrote into the page."""
+    return script.blocks_of(PAGE)
+
+
+def rows(block):
+    """Return the cells of a table by the name in its first column."""
+    lines = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in block.splitlines()[2:]]
+    return {cells[0].strip("` "): cells[1:] for cells in lines}
+
+
+# --- the maps ---
+
+GRID = {"load": [1e-3, 0.3], "relative_roughness": [1e-4, 3e-3], "speed": [1e-8, 1e-5, 1e-2]}
+
+
+@pytest.fixture(scope="module")
+def maps():
+    return error_maps([hertz.pressure, hydrodynamic.friction, rest.gap, uniform.friction, boundary.fluid_load_share], **GRID)
+
+
+@pytest.mark.parametrize("formula", [uniform.friction, boundary.fluid_load_share], ids=lambda formula: formula.name)
+def test_a_map_holds_the_signed_error_of_every_state(maps, formula):
+    data = maps[formula.name]
+    assert data["error"].dims == ("load", "relative_roughness", "speed")
+    for i, load in enumerate(GRID["load"]):
+        for j, kappa in enumerate(GRID["relative_roughness"]):
+            for k, speed in enumerate(GRID["speed"]):
+                right = relative_error(formula, sb.Groups(speed, load, kappa * load))
+                assert math.isclose(data["error"].values[i, j, k], right, rel_tol=1e-4, abs_tol=1e-6)
+
+
+def test_a_map_of_a_field_holds_its_largest_error(maps):
+    for index, groups in (((0, 1, 2), sb.Groups(1e-2, 1e-3, 3e-6)), ((1, 0, 0), sb.Groups(1e-8, 0.3, 3e-5))):
+        right = relative_error(hertz.pressure, groups)
+        assert right > 0.01
+        assert math.isclose(maps["hertz.pressure"]["error"].values[index], right, rel_tol=1e-3)
+
+
+def test_the_map_of_a_formula_for_smooth_contacts_is_a_line_over_the_speed(maps):
+    data = maps["hydrodynamic.friction"]
+    assert data["error"].dims == ("speed",)
+    right = [relative_error(hydrodynamic.friction, sb.Groups(speed, 7.0, 0.2)) for speed in GRID["speed"]]
+    np.testing.assert_allclose(data["error"].values, right, rtol=1e-4, atol=1e-6)
+
+
+def test_the_map_of_a_formula_for_contacts_at_rest_does_not_know_the_speed(maps):
+    data = maps["rest.gap"]
+    assert data["error"].dims == ("load", "relative_roughness")
+    right = relative_error(rest.gap, sb.Groups(5.0, 0.3, 3e-3 * 0.3))
+    assert math.isclose(data["error"].values[1, 1], right, rel_tol=1e-9)
+
+
+def test_a_map_says_what_it_is(maps):
+    data = maps["uniform.friction"]
+    for variable in data.variables.values():
+        assert variable.attrs["units"] == "1" and variable.attrs["long_name"]
+    assert data.attrs["formula"] == "uniform.friction"
+    assert data.attrs["range"] == uniform.friction.range and data.attrs["worst_stated"] == uniform.friction.worst
+    assert 0 < data.attrs["error_estimate"] < 1e-6 == 10 * data.attrs["rtol"]
+
+
+def test_the_ends_of_a_range_are_in_it_though_the_relative_roughness_is_rounded():
+    # 1e-5 is 9.999999999999999e-06 after the division of the roughness by this load.
+    groups = sb.Groups(1.0, 0.1, 1e-5 * 0.1)
+    assert groups.relative_roughness < 1e-5
+    formula = replace(rest.central_gap, limits=(Limit("relative_roughness", 1e-5, 1e-3),))
+    data = error_map(formula, load=0.1, relative_roughness=[9e-6, 1e-5, 1e-3, 1.1e-3])
+    assert data["valid"].values.tolist() == [[False, True, True, False]]
+
+
+def test_coefficients_given_to_a_formula_hold_for_the_solver_too():
+    grid = {"load": 0.1, "relative_roughness": 0.01, "speed": [1e-6, 1e-4, 1e-2]}
+    data = error_map(uniform.friction, **grid, mu0=0.3, beta=0.02, definition="balanced")
+    for speed, error in zip(grid["speed"], data["error"].values.ravel(), strict=True):
+        groups = sb.Groups(speed, 0.1, 1e-3)
+        right = sb.solve(groups).friction(mu0=0.3, beta=0.02, definition="balanced").total
+        found = uniform.friction(groups, mu0=0.3, beta=0.02, definition="balanced")
+        assert math.isclose(error, found / right - 1, rel_tol=1e-3, abs_tol=1e-6)
+    assert data.attrs["title"] == "uniform.friction(mu0=0.3, beta=0.02, definition='balanced')"
+    least = error_map(transitions.friction_at_minimum, load=0.1, relative_roughness=1e-3, beta=0.02)
+    assert abs(float(least["error"].values[0, 0])) < 0.01
+
+
+def test_a_formula_that_options_turn_to_another_quantity_is_judged_by_that():
+    law = load_sharing.speed_at_fluid_share
+    data = error_map(law, load=0.01, relative_roughness=1e-3, share=0.05, predicts="speed_at_5_percent_fluid")
+    curve = sb.stribeck_curve(load=0.01, roughness=1e-5)
+    [speed] = [mark.value for mark in curve.transitions if mark.name == "fluid carries 5% of the load"]
+    found = law(sb.Groups(1.0, 0.01, 1e-5), share=0.05)
+    assert math.isclose(data["error"].values[0, 0], found / speed - 1, rel_tol=1e-3)
+    assert abs(float(error_map(law, load=0.01, relative_roughness=1e-3, share=0.05)["error"].values[0, 0])) > 0.5
+
+
+def test_speed_zero_and_single_states_have_a_place_on_a_map():
+    data = error_map(mixed.friction, load=0.1, relative_roughness=1e-3, speed=[0.0, 1e-3])
+    assert np.isfinite(data["error"].values).all()
+    both = error_map(mixed.friction, load=0.1, relative_roughness=1e-3, speed=[1e-3, 1e-2])
+    assert math.isclose(data["error"].values[0, 0, 1], both["error"].values[0, 0, 0], rel_tol=1e-4, abs_tol=1e-7)
+
+
+def test_where_a_formula_has_no_value_the_map_has_none():
+    data = error_map(transitions.speed_boundary_to_mixed, load=[0.5, 2.0], relative_roughness=1e-2)
+    assert np.isnan(data["error"].values).ravel().tolist() == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("axis", "value"),
+    [("load", 0.0), ("load", [0.2, 0.1]), ("relative_roughness", math.inf), ("speed", [-1.0, 1.0]), ("speed", [[1.0]])],
+)
+def test_a_grid_that_is_none_is_refused(axis, value):
+    with pytest.raises(sb.InputError, match=f"^{axis} = .*positive numbers that ascend"):
+        error_map(uniform.friction, **(GRID | {axis: value}))
+
+
+def test_an_unknown_quantity_is_refused_with_the_known_ones():
+    with pytest.raises(sb.InputError, match="'speed_at_rest'; it must be one of central_gap, .*speed_at_half_fluid"):
+        error_map(uniform.friction, **GRID, predicts="speed_at_rest")
+
+
+# --- the picture ---
+
+
+def test_a_picture_has_a_panel_for_each_load_of_a_map_and_one_for_each_line(maps, tmp_path):
+    from stribeck.plot_validity import plot_error_maps
+
+    pairs = [(formula, maps[formula.name]) for formula in (uniform.friction, hydrodynamic.friction, rest.gap)]
+    first, second = tmp_path / "a.png", tmp_path / "b.png"
+    figure = plot_error_maps(pairs, first, title="Errors")
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    assert titles[:4] == ["uniform.friction\nload 0.001", "\nload 0.3", "hydrodynamic.friction", "rest.gap"]
+    drawn = figure.axes[0].collections[0].get_array()
+    np.testing.assert_allclose(np.ravel(drawn), np.abs(maps["uniform.friction"]["error"].values[0]).ravel())
+    smooth = next(line for line in figure.axes[2].lines if len(line.get_xdata()) == 3)
+    np.testing.assert_allclose(smooth.get_ydata(), np.abs(maps["hydrodynamic.friction"]["error"].values))
+    plot_error_maps(pairs, second, title="Errors")
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_what_has_no_two_points_is_not_drawn():
+    from stribeck.plot_validity import plot_error_maps
+
+    data = error_map(rest.gap, load=[1e-3, 0.1], relative_roughness=1e-3)
+    with pytest.raises(sb.InputError, match="nothing to draw"):
+        plot_error_maps([(rest.gap, data)])
+
+
+# --- the page ---
+
+
+def test_the_table_of_the_page_is_what_the_formulas_say_of_themselves(script, blocks):
+    assert blocks["formulas"] == script.formula_table()
+    assert set(rows(blocks["formulas"])) == {formula.name for formula in FORMULAS}
+
+
+def test_every_module_of_formulas_has_a_picture_and_a_table_on_the_page(script, blocks):
+    for module in script.modules():
+        assert f"](images/validity_{module}.png)" in PAGE
+        assert set(rows(blocks[module])) == {formula.name for formula in script.of_module(module)}
+    assert set(blocks) == {"formulas", "shares", "box", *script.modules()}
+
+
+def test_the_pictures_of_the_page_are_small_and_no_others_are_left():
+    named = set(re.findall(r"images/(validity_\w+\.png)", PAGE))
+    assert named == {path.name for path in (DOCS / "images").glob("validity_*.png")}
+    for name in named:
+        data = (DOCS / "images" / name).read_bytes()
+        width, height = struct.unpack(">II", data[16:24])
+        assert len(data) < 200_000 and 500 < width <= 1000 and 200 < height <= 1200
+
+
+def test_every_kind_of_formula_is_explained(script):
+    assert {kind_of(formula) for formula in FORMULAS} <= set(script.ABOUT) == set(AXES)
+    for word in script.ABOUT.values():
+        assert f"\n| {word} | " in PAGE.split("## All formulas")[0]
+
+
+@NAMED
+def test_the_worst_error_on_the_page_is_the_one_there_and_within_the_stated_one(formula, blocks):
+    states, _, worst, where = rows(blocks[formula.name.partition(".")[0]])[formula.name]
+    shown = float(worst.removesuffix(" %")) / 100
+    at = {name: float(value) for name, value in (part.rsplit(" ", 1) for part in where.split(", "))}
+    groups = sb.Groups(at.get("speed", 1.0), at.get("load", 0.1), at.get("kappa", 0.0) * at.get("load", 0.1))
+    assert int(states) >= 5
+    assert math.isclose(abs(relative_error(formula, groups)), shown, rel_tol=0.02)
+    assert shown <= 1.02 * formula.worst
+
+
+def test_a_coarser_map_finds_no_worse_error_than_the_page(blocks):
+    for kind, step in (("smooth", 11), ("rest", 5), ("mixed", 5)):
+        formulas = [formula for formula in FORMULAS if kind_of(formula) == kind]
+        grid = {}
+        for name, (low, high, each) in AXES[kind].items():
+            grid[name] = (
+                [low, high, each] if name == "load" else np.logspace(low, high, round((high - low) * each) + 1)[1::step]
+            )
+        for name, data in error_maps(formulas, **grid).items():
+            errors = np.abs(data["error"].values)[data["valid"].values]
+            shown = float(rows(blocks[name.partition(".")[0]])[name][2].removesuffix(" %")) / 100
+            assert errors.size and errors.max() <= 1.01 * shown, name
+
+
+def test_the_uniform_law_of_friction_is_as_good_over_its_box_as_the_page_says(blocks):
+    shown = rows(blocks["box"])
+    rng = np.random.default_rng(71503)
+    for _ in range(8):
+        load, kappa = np.exp(rng.uniform(np.log([1e-4, 1e-4]), np.log([0.7, 1e-1])))
+        curve = sb.stribeck_curve(load=load, roughness=kappa * load, speed=(1e-9, 1e2), points=12)
+        for beta in (1.0, 0.1, 0.01):
+            right = np.array([state.friction(mu0=1.0, beta=beta).total for state in curve.solutions])
+            error = np.abs(uniform.friction(curve.groups, 1.0, beta) / right - 1)
+            assert error.max() <= 0.072
+            assert np.median(error) < 0.005
+    assert {float(cells[3 - 1].removesuffix(" %")) > 85 for cells in shown.values()} == {True}
+    assert max(float(cells[4].removesuffix(" %")) for cells in shown.values()) <= 7.2
+
+
+def test_new_text_replaces_what_stands_between_marks_and_a_new_module_gets_a_section(script):
+    page = "a\n<!-- begin x -->\nold\n<!-- end x -->\nb\n"
+    text = script.filled(page, {"x": r"new \1", "y": "more"})
+    assert text.startswith("a\n<!-- begin x -->\nnew \\1\n<!-- end x -->\nb\n")
+    assert "## `y`\n\n![Errors of y](images/validity_y.png)\n\n<!-- begin y -->\nmore\n<!-- end y -->\n" in text
+    assert script.blocks_of(text) == {"x": r"new \1", "y": "more"}
+
+
+def test_numbers_are_short_and_true(script):
+    assert [script.short(value) for value in (1e-7, 4.6416e-5, 0.05, 1000.0, 1e5)] == [
+        "1e-7",
+        "4.642e-5",
+        "0.05",
+        "1000",
+        "1e5",
+    ]
+    assert [script.percent(value) for value in (2e-4, 0.02128, -0.976, 3.0946)] == ["0.02 %", "2.13 %", "-97.6 %", "309 %"]
+
+
+def test_every_quantity_that_a_formula_predicts_is_measured():
+    groups = sb.Groups(1e-4, 0.1, 1e-4)
+    assert all(math.isfinite(measure(groups)) for measure in MEASURED.values())
