@@ -139,8 +139,7 @@ def test_the_table_of_symbols_names_every_observable():
 def test_the_shown_formulas_are_numbered_as_docstrings_cite_them():
     theory = TEXT[ROOT / "docs" / "theory.md"]
     numbers = [int(number) for number in re.findall(r"\\tag\{(\d+)\}", theory)]
-    assert numbers == list(range(1, len(numbers) + 1))
-    assert numbers[-1] == 25
+    assert numbers and numbers == list(range(1, len(numbers) + 1))
     cited = {
         int(number)
         for path in (ROOT / "src").rglob("*.py")

@@ -174,7 +174,7 @@ def test_a_picture_has_a_panel_for_each_load_of_a_map_and_one_for_each_line(maps
     titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert titles[:4] == ["uniform.friction\nload 0.001", "\nload 0.3", "hydrodynamic.friction", "rest.gap"]
     drawn = figure.axes[0].collections[0].get_array()
-    np.testing.assert_allclose(np.ravel(drawn), np.abs(maps["uniform.friction"]["error"].values[0]).ravel())
+    np.testing.assert_allclose(np.ravel(drawn), np.maximum(np.abs(maps["uniform.friction"]["error"].values[0]), 1e-7).ravel())
     smooth = next(line for line in figure.axes[2].lines if len(line.get_xdata()) == 3)
     np.testing.assert_allclose(smooth.get_ydata(), np.abs(maps["hydrodynamic.friction"]["error"].values))
     plot_error_maps(pairs, second, title="Errors")
@@ -231,7 +231,7 @@ def test_the_worst_error_on_the_page_is_the_one_there_and_within_the_stated_one(
 
 
 def test_a_coarser_map_finds_no_worse_error_than_the_page(blocks):
-    for kind, step in (("smooth", 11), ("rest", 5), ("mixed", 5)):
+    for kind, step in (("smooth", 11), ("rest", 5), ("mixed", 7)):
         formulas = [formula for formula in FORMULAS if kind_of(formula) == kind]
         grid = {}
         for name, (low, high, each) in AXES[kind].items():
@@ -252,10 +252,10 @@ def test_the_uniform_law_of_friction_is_as_good_over_its_box_as_the_page_says(bl
         curve = sb.stribeck_curve(load=load, roughness=kappa * load, speed=(1e-9, 1e2), points=12)
         for beta in (1.0, 0.1, 0.01):
             right = np.array([state.friction(mu0=1.0, beta=beta).total for state in curve.solutions])
-            error = np.abs(uniform.friction(curve.groups, 1.0, beta) / right - 1)
+            error = np.abs(uniform.friction.function(curve.groups, 1.0, beta) / right - 1)
             assert error.max() <= 0.072
             assert np.median(error) < 0.005
-    assert {float(cells[3 - 1].removesuffix(" %")) > 85 for cells in shown.values()} == {True}
+    assert {float(cells[2].removesuffix(" %")) > 85 for cells in shown.values()} == {True}
     assert max(float(cells[4].removesuffix(" %")) for cells in shown.values()) <= 7.2
 
 
