@@ -18,7 +18,6 @@ from stribeck.asymptotics import (
     hertz,
     hydrodynamic,
     load_sharing,
-    mixed,
     rest,
     transitions,
     uniform,
@@ -105,11 +104,10 @@ def test_a_map_says_what_it_is(maps):
 
 
 def test_the_ends_of_a_range_are_in_it_though_the_relative_roughness_is_rounded():
-    # 1e-5 is 9.999999999999999e-06 after the division of the roughness by this load.
-    groups = sb.Groups(1.0, 0.1, 1e-5 * 0.1)
-    assert groups.relative_roughness < 1e-5
+    low = np.logspace(-5, 0, 16)[0]
+    assert low < 1e-5
     formula = replace(rest.central_gap, limits=(Limit("relative_roughness", 1e-5, 1e-3),))
-    data = error_map(formula, load=0.1, relative_roughness=[9e-6, 1e-5, 1e-3, 1.1e-3])
+    data = error_map(formula, load=0.1, relative_roughness=[9e-6, low, 1e-3, 1.1e-3])
     assert data["valid"].values.tolist() == [[False, True, True, False]]
 
 
@@ -137,9 +135,9 @@ def test_a_formula_that_options_turn_to_another_quantity_is_judged_by_that():
 
 
 def test_speed_zero_and_single_states_have_a_place_on_a_map():
-    data = error_map(mixed.friction, load=0.1, relative_roughness=1e-3, speed=[0.0, 1e-3])
-    assert np.isfinite(data["error"].values).all()
-    both = error_map(mixed.friction, load=0.1, relative_roughness=1e-3, speed=[1e-3, 1e-2])
+    data = error_map(uniform.friction, load=0.1, relative_roughness=1e-3, speed=[0.0, 1e-3])
+    assert abs(float(data["error"].values[0, 0, 0])) < 1e-9
+    both = error_map(uniform.friction, load=0.1, relative_roughness=1e-3, speed=[1e-3, 1e-2])
     assert math.isclose(data["error"].values[0, 0, 1], both["error"].values[0, 0, 0], rel_tol=1e-4, abs_tol=1e-7)
 
 
@@ -231,13 +229,14 @@ def test_the_worst_error_on_the_page_is_the_one_there_and_within_the_stated_one(
 
 
 def test_a_coarser_map_finds_no_worse_error_than_the_page(blocks):
-    for kind, step in (("smooth", 11), ("rest", 5), ("mixed", 7)):
+    # Along the speed every state is kept, as long steps cost more than what lies between.
+    for kind, step in (("smooth", 1), ("rest", 5), ("mixed", 8)):
         formulas = [formula for formula in FORMULAS if kind_of(formula) == kind]
         grid = {}
-        for name, (low, high, each) in AXES[kind].items():
-            grid[name] = (
-                [low, high, each] if name == "load" else np.logspace(low, high, round((high - low) * each) + 1)[1::step]
-            )
+        for name, default in AXES[kind].items():
+            low, high, each = default
+            points = np.logspace(low, high, round((high - low) * each) + 1)
+            grid[name] = {"load": [low, high], "relative_roughness": points[1::step], "speed": points}[name]
         for name, data in error_maps(formulas, **grid).items():
             errors = np.abs(data["error"].values)[data["valid"].values]
             shown = float(rows(blocks[name.partition(".")[0]])[name][2].removesuffix(" %")) / 100
@@ -247,15 +246,17 @@ def test_a_coarser_map_finds_no_worse_error_than_the_page(blocks):
 def test_the_uniform_law_of_friction_is_as_good_over_its_box_as_the_page_says(blocks):
     shown = rows(blocks["box"])
     rng = np.random.default_rng(71503)
+    errors = []
     for _ in range(8):
         load, kappa = np.exp(rng.uniform(np.log([1e-4, 1e-4]), np.log([0.7, 1e-1])))
         curve = sb.stribeck_curve(load=load, roughness=kappa * load, speed=(1e-9, 1e2), points=12)
         for beta in (1.0, 0.1, 0.01):
             right = np.array([state.friction(mu0=1.0, beta=beta).total for state in curve.solutions])
-            error = np.abs(uniform.friction.function(curve.groups, 1.0, beta) / right - 1)
-            assert error.max() <= 0.072
-            assert np.median(error) < 0.005
-    assert {float(cells[2].removesuffix(" %")) > 85 for cells in shown.values()} == {True}
+            errors.append(np.abs(uniform.friction.function(curve.groups, 1.0, beta) / right - 1))
+    assert np.max(errors) <= 0.072
+    assert np.median(errors) < 0.002
+    assert np.mean(np.less(errors, 0.03)) > 0.98
+    assert min(float(cells[2].removesuffix(" %")) for cells in shown.values()) > 85
     assert max(float(cells[4].removesuffix(" %")) for cells in shown.values()) <= 7.2
 
 

@@ -342,9 +342,10 @@ def _valid(formula: Formula[Any], groups: Groups) -> Flags:
 def _row(base: Groups, speeds: Array) -> list[tuple[int, Solution]]:
     """Return the states of one load and roughness over the speed that could be solved, with their places in ``speeds``."""
     moving = [k for k, speed in enumerate(speeds.tolist()) if speed > 0]
-    alone = list(range(len(speeds))) if len(moving) < 2 else [k for k in range(len(speeds)) if k not in moving]
+    # Two speeds would be the ends of a curve.
+    alone = list(range(len(speeds))) if len(moving) < 3 else [k for k in range(len(speeds)) if k not in moving]
     found = [(k, _state(replace(base, speed=float(speeds[k])))) for k in alone]
-    if len(moving) > 1:
+    if len(moving) > 2:
         try:
             curve = stribeck_curve(load=base.load, roughness=base.roughness, speed=speeds[moving], rtol=RTOL)
         except SolveError:
