@@ -86,9 +86,9 @@ def speed_at_fluid_share(groups: Groups, share: float = 0.5) -> Value:
 
     Notes
     -----
-    For half of the load within 10 %, in the median 0.9 %; for 5 % of it within 27 % and 0.8 %, the worst at heavy loads
-    and the largest roughness. The criterion :math:`\lambda^2 \phi/\kappa^4 = 1` of [BP], where the true share is 0.2 to 0.5, is the first
-    order extrapolated.
+    For half of the load within 10 %, in the median 0.9 %; for 5 % of it within 27 % and 0.8 %, the worst at heavy loads and
+    the largest roughness. The criterion :math:`\lambda^2 \phi/\kappa^4 = 1` of [BP], where the true share is 0.13 to 0.46,
+    is the first order extrapolated.
 
     Source: this module; the letters are :data:`WEDGE`, :data:`EDGE`, :data:`PROFILE` and :data:`SUM`.
     """
