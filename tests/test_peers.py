@@ -1,0 +1,91 @@
+"""The comparison with peers: the home-made solver, which shares no code with ours, and the tables that are shown."""
+
+import importlib.util
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+
+ROOT = Path(__file__).parents[1]
+BENCHMARKS = ROOT / "benchmarks"
+
+
+@pytest.fixture
+def load(monkeypatch):
+    """Return a function that imports a script of the benchmarks."""
+    monkeypatch.syspath_prepend(BENCHMARKS)
+
+    def module(name):
+        spec = importlib.util.spec_from_file_location(name, BENCHMARKS / f"{name}.py")
+        module = importlib.util.module_from_spec(spec)
+        monkeypatch.setitem(sys.modules, name, module)
+        spec.loader.exec_module(module)
+        return module
+
+    return module
+
+
+@pytest.fixture
+def textbook(load):
+    """Return the home-made solver."""
+    return load("textbook")
+
+
+def central_gap(textbook, x, speed):
+    h, _, reached = textbook.solve(x, speed)
+    assert reached == speed
+    return float(np.interp(0, x, h))
+
+
+@pytest.mark.parametrize(("speed", "width", "within"), [(1e-2, None, 5e-3), (1e-4, None, 5e-2), (1e-6, 1e-6**0.4, 5e-3)])
+def test_a_home_made_solver_finds_our_film(textbook, solved, speed, width, within):
+    found = central_gap(textbook, textbook.grid(201, width=width), speed)
+    assert abs(found / solved(speed, 0.1, 0.0).central_gap - 1) < within
+
+
+def test_it_tends_to_our_film_at_second_order(textbook, solved):
+    truth = solved(1e-4, 0.1, 0.0, 1e-9).central_gap
+    errors = [abs(central_gap(textbook, textbook.grid(n), 1e-4) / truth - 1) for n in (201, 401)]
+    assert abs(np.log2(errors[0] / errors[1]) - 2) < 0.2
+    assert errors[1] < 1e-2
+
+
+def test_it_finds_our_mixed_state(textbook, load, solved):
+    found = load("peers").textbook_mixed("graded grid", 201, runs=1)
+    truth = solved(1e-4, 0.1, 1e-4)
+    assert abs(found.contact_share / truth.contact_load_share - 1) < 2e-3
+    assert abs(found.viscous / truth.friction().viscous - 1) < 5e-3
+
+
+def test_where_its_grid_is_too_coarse_it_says_so(textbook):
+    assert textbook.solve(textbook.grid(101), 1e-6)[-1] > 1e-6
+
+
+def test_it_fits_on_a_page():
+    assert len((BENCHMARKS / "textbook.py").read_text().splitlines()) <= 60
+
+
+@pytest.mark.parametrize(("name", "module"), [("tamaas", "tamaas"), ("ContactMechanics", "ContactMechanics")])
+def test_a_peer_that_is_missing_is_named_with_the_way_to_install_it(load, monkeypatch, name, module):
+    peers = load("peers")
+    monkeypatch.setitem(sys.modules, module, None)
+    assert f"pip install {name}" in peers.peer_states(name)
+
+
+def test_our_dry_contact_is_that_of_hertz_but_for_its_roughness(load):
+    rough, smooth = load("peers").our_dry()
+    kappa = sb.Groups(0.0, 0.01, 1e-8).relative_roughness
+    assert rough.pressure - 1 == pytest.approx(-kappa, rel=1e-2)
+    assert rough.half_width - 1 == pytest.approx(2 * kappa, rel=1e-2)
+    assert (smooth.pressure, smooth.half_width) == (1.0, 1.0)
+
+
+def test_the_readme_shows_the_table_of_the_page():
+    page = (BENCHMARKS / "peers.md").read_text()
+    table = re.search(r"^\| relative error of .*?\n\n", page, re.M | re.S)[0]
+    assert table.count("\n") >= 6
+    assert table in (ROOT / "README.md").read_text()
