@@ -375,7 +375,9 @@ def sweep_command(
 
     Example: stribeck sweep examples/sweep.toml --out sweep.zarr --export sweep.nc
 
-    Example: stribeck sweep examples/sweep.toml --out cluster.zarr --scheduler tcp://node1:8786
+    Example: stribeck sweep examples/sweep.toml --out sweep.zarr --workers 2
+
+    With --scheduler, as in --scheduler tcp://node1:8786, the workers of a Dask cluster solve the states.
 
     After Ctrl-C the finished states are in the store; the exit code is then 130.  It is 1 where states failed; they are in the
     store too, with their outcome.
@@ -411,7 +413,7 @@ def sweep_command(
         _need("a NetCDF file", "data", "netCDF4")
     plan = load_sweep(design)
     processes = 1 if workers is None else _whole("workers", workers)
-    with _interruptible(terminated=True) as progress:
+    with _interruptible(sigterm=True) as progress:
         lines = report_sweep.ProgressLines(sys.stderr if progress.bar is None else None)
 
         def tell(state: SweepProgress) -> None:
@@ -659,15 +661,15 @@ class _Progress:
 
 
 @contextmanager
-def _interruptible(terminated: bool = False) -> Iterator[_Progress]:
-    """Show progress and let Ctrl-C stop the work between two points; and ``terminated``, the end that a batch system asks for."""
+def _interruptible(sigterm: bool = False) -> Iterator[_Progress]:
+    """Show progress and let Ctrl-C stop the work between two points, and SIGTERM too where that is wanted."""
     progress = _Progress()
-    handles = threading.current_thread() is threading.main_thread()
+    main = threading.current_thread() is threading.main_thread()
     # A shell makes background jobs ignore Ctrl-C; that stays so.
-    handles = handles and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    handles = main and signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if handles:
         signal.signal(signal.SIGINT, progress.interrupt)
-    before = signal.signal(signal.SIGTERM, progress.interrupt) if handles and terminated else None
+    before = signal.signal(signal.SIGTERM, progress.interrupt) if sigterm and main else None
     try:
         with _bar(progress):
             yield progress

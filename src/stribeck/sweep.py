@@ -7,7 +7,6 @@ import socket
 import time
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,7 +20,6 @@ from .sweep_design import SweepDesign, load_sweep
 from .sweep_lock import locked
 from .sweep_order import chains_of
 from .sweep_store import SweepError, clean, create_or_open, describe_store, log_run, read_rows
-from .sweep_workers import in_this_process, on_cluster, on_processes
 from .units import InputError, show
 
 __all__ = ["SweepProgress", "sweep"]
@@ -106,7 +104,9 @@ def sweep(
     if isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= MOST_WORKERS:
         raise InputError(f"workers = {show(workers)}; it must be a whole number from 1 to {MOST_WORKERS}.")
     if scheduler is not None and workers != 1:
-        raise InputError(f"workers = {workers} and scheduler = {show(scheduler)} are both given; a cluster has its own workers.")
+        raise InputError(
+            f"workers = {workers} and scheduler = {show(scheduler)} are both given; a cluster has its own workers."
+        )
     plan = design if isinstance(design, SweepDesign) else load_sweep(design)
     store = create_or_open(out, plan)
     began = time.monotonic()
@@ -150,7 +150,7 @@ class _Run:
                 # Workers may have written more than they told before they were stopped.
                 self.computed = int(read_rows(self.store).done.sum()) - self.before
                 ending |= {"computed": self.computed}
-        return ending["outcome"] == "INTERRUPTED"
+        return bool(ending["outcome"] == "INTERRUPTED")
 
     def _settle(self) -> Flags:
         """Return which states are done, after removing the halves that a killed run left."""
@@ -159,6 +159,11 @@ class _Run:
         return rows.done
 
     def _solve(self, done: Flags) -> None:
+        # Imported here because most uses of the package start no processes.
+        from concurrent.futures.process import BrokenProcessPool
+
+        from .sweep_workers import in_this_process, on_cluster, on_processes
+
         deaths = 0
         while not done.all():
             chains = self._chains(done)

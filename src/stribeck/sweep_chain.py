@@ -92,12 +92,12 @@ def solve_chain(chain: Chain, on_row: OnRow) -> None:
             first += 1
             continue
         path = _Polyline(groups[first : _end(groups, first)])
-        finished, outcome, failure = _follow(chain, first, path, on_row)
+        finished, outcome, failure, error = _follow(chain, first, path, on_row)
         if outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         first += finished
         if finished == 0:
-            on_row(chain.rows[first], *_failure(chain, first, outcome, failure))
+            on_row(chain.rows[first], *_failure(chain, first, outcome, failure, error))
             first += 1
 
 
@@ -110,15 +110,23 @@ def _end(groups: Array, first: int) -> int:
     return len(groups)
 
 
-def _follow(chain: Chain, first: int, path: _Polyline, on_row: OnRow) -> tuple[int, Outcome | str, Point | str | None]:
-    """Solve along a path; return how many of its states are finished, how it ended, and what is left of the one that failed."""
+def _follow(chain: Chain, first: int, path: _Polyline, on_row: OnRow) -> tuple[int, Outcome, Point | None, str]:
+    """Solve along a path; return how many of its states are finished, how it ended, what failed last, and an error there."""
     follower = Follower(path.groups_at, chain.rtol)
-    finished = 0
+    finished, error = 0, ""
 
     def correct(s: float, history: Sequence[tuple[float, Point]]) -> Point | None:
+        nonlocal error
         begin = path.straight_from(s)
         straight = [pair for pair in history if pair[0] >= begin]
-        return follower(s, straight if len(straight) > 1 else history[-1:])
+        error = ""
+        try:
+            return follower(s, straight if len(straight) > 1 else history[-1:])
+        except MemoryError:
+            raise
+        except Exception as problem:  # a fault of the program must not cost the other states of a long sweep
+            error = f"{type(problem).__name__}: {problem}"
+            return None
 
     def report(s: float, point: Point) -> None:
         nonlocal finished
@@ -129,30 +137,26 @@ def _follow(chain: Chain, first: int, path: _Polyline, on_row: OnRow) -> tuple[i
             on_row(chain.rows[i], *row_of(solution, *chain.coefficients(i)))
             finished += 1
 
-    try:
-        found = march(
-            correct,
-            path.knots[0],
-            path.knots[-1],
-            first_step=0.5,
-            max_step=LONGEST_STEP,
-            min_step=SHORTEST_STEP,
-            order=PREDICTOR_ORDER,
-            targets=path.knots,
-            on_point=report,
-        )
-    except (ArithmeticError, AssertionError, LookupError, RuntimeError, TypeError, ValueError) as problem:
-        # A fault of the program must not cost the other states of a long sweep; the row tells it.
-        return finished, ERROR, f"{type(problem).__name__}: {problem}"
-    return finished, found.outcome, found.failure
+    found = march(
+        correct,
+        path.knots[0],
+        path.knots[-1],
+        first_step=0.5,
+        max_step=LONGEST_STEP,
+        min_step=SHORTEST_STEP,
+        order=PREDICTOR_ORDER,
+        targets=path.knots,
+        on_point=report,
+    )
+    return finished, found.outcome, found.failure, error
 
 
-def _failure(chain: Chain, i: int, outcome: Outcome | str, failure: Point | str | None) -> tuple[Array, str]:
-    """Return the row of a state that could not be solved from cold: what was reached where there is a state, or its outcome."""
+def _failure(chain: Chain, i: int, outcome: Outcome, failure: Point | None, error: str) -> tuple[Array, str]:
+    """Return the row of a state that failed from cold: what was reached where there is a state, else its outcome alone."""
     contact, where = chain.contact(i), describe(Groups(*chain.groups[i]))
-    if isinstance(outcome, str):
-        return failed_row(contact, outcome, f"{where}: {failure}")
-    if isinstance(failure, Point):
+    if error:
+        return failed_row(contact, ERROR, f"{where}: {error}")
+    if failure is not None:
         outcome = failure.outcome
         solution = solution_of(failure, contact, chain.rtol)
         if solution is not None:

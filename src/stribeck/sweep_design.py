@@ -216,7 +216,9 @@ def _model() -> Any:
         points: Annotated[
             int | None, Field(strict=True, ge=1, le=MOST_STATES, description=f"a whole number from 1 to {MOST_STATES}")
         ] = None
-        seed: Annotated[int | None, Field(strict=True, ge=0, le=2**63 - 1, description="a whole number, zero or positive")] = None
+        seed: Annotated[int | None, Field(strict=True, ge=0, le=2**63 - 1, description="a whole number, zero or positive")] = (
+            None
+        )
 
     class Solver(Table):
         rtol: Annotated[

@@ -1,7 +1,7 @@
 """One sweep at a time on a store: a lock file with the host and the process that holds it.
 
-It works where several machines share a folder, which locks of the operating system do not do everywhere.  The lock of a process
-that has died on this host is taken over; that of another host cannot be judged from here.
+It works where several machines share a folder, which locks of the operating system do not do everywhere.  The lock of a
+process that has died on this host is taken over; that of another host cannot be judged from here.
 """
 
 from __future__ import annotations
@@ -42,7 +42,9 @@ def locked(folder: Path) -> Iterator[str]:
         If another sweep holds it, or the folder cannot be written.
     """
     lock = folder / LOCK
-    mine = json.dumps({"host": socket.gethostname(), "pid": os.getpid(), "born": _born(os.getpid()), "token": secrets.token_hex(8)})
+    mine = json.dumps(
+        {"host": socket.gethostname(), "pid": os.getpid(), "born": _born(os.getpid()), "token": secrets.token_hex(8)}
+    )
     own = folder / f".{LOCK}-{secrets.token_hex(6)}"
     note = ""
     try:
@@ -53,7 +55,9 @@ def locked(folder: Path) -> Iterator[str]:
         finally:
             own.unlink(missing_ok=True)
     except OSError as problem:
-        raise InputError(f"{folder} cannot be written ({problem.strerror or problem}); choose another place or free it.") from None
+        raise InputError(
+            f"{folder} cannot be written ({problem.strerror or problem}); choose another place or free it."
+        ) from None
     try:
         yield note
     finally:

@@ -44,7 +44,7 @@ def coordinates(groups: Array) -> Array:
 
 
 def _log(values: Array) -> Array:
-    return np.log(np.where(values > 0, values, 1.0))
+    return np.asarray(np.log(np.where(values > 0, values, 1.0)))
 
 
 def chains_of(groups: Array, shape: Sequence[int] = ()) -> tuple[Indices, ...]:
@@ -84,7 +84,7 @@ def _scattered(groups: Array, states: Indices) -> Indices:
     """Return states that are no grid in order: as they are given, or by cells where that is shorter."""
     z = coordinates(groups[states])
     given = np.arange(len(states))
-    return states[min(_cells(z), given, key=lambda order: _length(z[order]))]
+    return np.asarray(states[min(_cells(z), given, key=lambda order: _length(z[order]))])
 
 
 def _length(z: Array) -> float:

@@ -56,16 +56,16 @@ class Axis:
         """Return the values that a grid or a list takes."""
         if self.values:
             return np.array(self.values)
-        return (np.geomspace if self.spacing == "log" else np.linspace)(self.low, self.high, self.points)
+        return np.asarray((np.geomspace if self.spacing == "log" else np.linspace)(self.low, self.high, self.points))
 
     def at(self, parts: Array) -> Array:
         """Return the values at given parts of the way, 0 to 1: on a range, or one of the listed."""
         if self.values:
             places = np.minimum((parts * len(self.values)).astype(int), len(self.values) - 1)
-            return np.array(self.values)[places]
+            return np.asarray(np.array(self.values)[places])
         if self.spacing == "log":
             return np.asarray(np.exp(math.log(self.low) + parts * (math.log(self.high) - math.log(self.low))))
-        return self.low + parts * (self.high - self.low)
+        return np.asarray(self.low + parts * (self.high - self.low))
 
 
 def points_of(kind: Kind, axes: Sequence[Axis], points: int = 0, seed: int = 0) -> dict[str, Array]:

@@ -5,9 +5,9 @@
     done/c.I        a checksum of the two, written last: the state is finished where this is there and fits
     inputs, zarr.json, sweep.toml, runs.jsonl
 
-Chunks are written as files of their own, each under a temporary name and then moved: that is what ``zarr`` does too, at a fifth of
-the time.  A process that is killed leaves a chunk without its flag at worst, a machine that loses its power one that does not fit;
-both count as not done.
+Chunks are written here as files, each under a temporary name and then moved: zarr does the same in more time than some states
+take.  A process that is killed leaves a chunk without its flag at worst, a machine that loses its power one that does not
+fit; both count as not done.
 """
 
 from __future__ import annotations
@@ -162,7 +162,10 @@ def create_or_open(path: PathLike, design: SweepDesign) -> Path:
 def _make(zarr: Any, path: Path, design: SweepDesign) -> None:
     """Write everything but the states."""
     n, columns = len(design), columns_of(design.si)
-    inputs = {**design.inputs, **{f"{name}_group": design.groups[:, k] for k, name in enumerate(("speed", "load", "roughness"))}}
+    inputs = {
+        **design.inputs,
+        **{f"{name}_group": design.groups[:, k] for k, name in enumerate(("speed", "load", "roughness"))},
+    }
     attributes = {
         "stribeck_sweep": FORMAT,
         "version": version("stribeck"),

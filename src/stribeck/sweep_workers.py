@@ -1,7 +1,7 @@
 """Who solves the chains of a sweep: this process, processes of this machine, or the workers of a Dask cluster.
 
-Each way calls ``finished(states, failed)`` when states are in the store, and ``pause()`` at least twice a second, which may raise
-KeyboardInterrupt to stop.  Then, as at any end, no worker goes on.
+Each way calls ``finished(states, failed)`` when states are in the store, and ``pause()`` at least twice a second, which may
+raise KeyboardInterrupt to stop.  Then, as at any end, no worker goes on.
 """
 
 from __future__ import annotations
@@ -165,8 +165,9 @@ def on_cluster(path: Path, chains: Chains, scheduler: str, finished: Finished, p
         from distributed import Client
     except ImportError:
         raise MissingExtraError("a sweep on a cluster", "cluster", "distributed") from None
+    connect: Any = Client
     try:
-        client = Client(scheduler, timeout=CONNECTION_TIME, set_as_default=False)
+        client = connect(scheduler, timeout=CONNECTION_TIME, set_as_default=False)
     except (OSError, ValueError) as problem:
         reason = " ".join(str(problem).split()) or type(problem).__name__
         raise InputError(f"no scheduler answers at {scheduler} ({reason}); start one with: dask scheduler.") from None
@@ -202,8 +203,10 @@ def _gather(client: Any, write: Writer, chains: Iterable[Chain], finished: Finis
     finally:
         client.cancel(list(waiting))
     if died:
-        raise SweepError(f"{died} chains of states were given up, as the workers that solved them died again and again; "
-                         "is their memory large enough? Run the same sweep again to try once more.")
+        raise SweepError(
+            f"{died} chains of states were given up, as the workers that solved them died again and again; "
+            "is their memory large enough? Run the same sweep again to try once more."
+        )
 
 
 def _solve_there(chain: Chain) -> tuple[str, list[tuple[int, Array, str]]]:
@@ -224,5 +227,3 @@ def _reason(future: Any) -> str:
     problem = future.exception() if future.status == "error" else None
     text = " ".join(str(problem).split()) if problem is not None else "the connection to its scheduler was lost"
     return text if len(text) <= 200 else text[:197] + "..."
-
-
