@@ -53,6 +53,9 @@ class SweepError(RuntimeError):
         What happened and what to do, in sentences.
     """
 
+    def __init__(self, message: str) -> None:
+        super().__init__(message)
+
 
 @dataclass(frozen=True)
 class Rows:
