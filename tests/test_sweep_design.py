@@ -55,7 +55,9 @@ def test_groups_may_vary_with_the_coefficients_of_friction(tmp_path):
 
 
 def test_a_list_takes_the_lists_together(tmp_path):
-    design = load(tmp_path, '[groups]\nload = 0.1\n[design]\nkind = "list"\n[vary]\nspeed = [1e-4, 2e-4]\nroughness = [1e-3, 0]\n')
+    design = load(
+        tmp_path, '[groups]\nload = 0.1\n[design]\nkind = "list"\n[vary]\nspeed = [1e-4, 2e-4]\nroughness = [1e-3, 0]\n'
+    )
     assert design.groups.tolist() == [[1e-4, 0.1, 1e-3], [2e-4, 0.1, 0.0]]
 
 
@@ -116,15 +118,33 @@ GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
         ("[groups]\nload = 0.1\n[vary]\nspeed = [1]\n", "[groups] roughness is missing; add it there or to [vary]."),
         (GROUPS + "rough = 1\n[vary]\nspeed = [1]\n", "[groups] rough = 1 is not a known key; did you mean roughness."),
         (GROUPS + "[contact]\n[vary]\nspeed = [1]\n", "the tables [contact] and [groups] are both given"),
-        (CONTACT + '[vary]\nload = [30]\nspeed = ["1 s"]\nroughness = [0]\n', "[vary] speed = '1 s' is a time; a speed such as"),
+        (
+            CONTACT + '[vary]\nload = [30]\nspeed = ["1 s"]\nroughness = [0]\n',
+            "[vary] speed = '1 s' is a time; a speed such as",
+        ),
         (CONTACT + "[vary]\nload = [30]\nspeed = [1]\n", "[contact] roughness is missing; add a length, for example"),
-        (CONTACT + "[vary]\nload=[1]\nspeed=[1]\nroughness=[1]\nyoungs_modulus=[1e6]\n", "give either modulus, or youngs_modulus"),
-        (CONTACT + "[vary]\nload=[1e-300]\nspeed=[1e300]\nroughness=[1]\n", "state 0: the dimensionless groups of this contact"),
+        (
+            CONTACT + "[vary]\nload=[1]\nspeed=[1]\nroughness=[1]\nyoungs_modulus=[1e6]\n",
+            "give either modulus, or youngs_modulus",
+        ),
+        (
+            CONTACT + "[vary]\nload=[1e-300]\nspeed=[1e300]\nroughness=[1]\n",
+            "state 0: the dimensionless groups of this contact",
+        ),
         (GROUPS + "[vary]\nspeed = [1]\n[design]\npoints = 4\n", "[design] points = 4 is for random, latin-hypercube, sobol;"),
         (GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "sobol"\n', "[design] points is missing; say how many states"),
-        (GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "sobol"\npoints = 100\n', "must be a power of two for kind = 'sobol'"),
-        (GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "star"\n', "[design] kind = 'star' must be one of 'grid', 'list', 'random'"),
-        (GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "random"\npoints = 0\n', "points = 0 must be a whole number from 1 to"),
+        (
+            GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "sobol"\npoints = 100\n',
+            "must be a power of two for kind = 'sobol'",
+        ),
+        (
+            GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "star"\n',
+            "[design] kind = 'star' must be one of 'grid', 'list', 'random'",
+        ),
+        (
+            GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "random"\npoints = 0\n',
+            "points = 0 must be a whole number from 1 to",
+        ),
         (
             GROUPS + '[vary]\nspeed = { range = [1, 2], points = 3 }\n[design]\nkind = "random"\npoints = 4\n',
             "[vary] speed: points = 3 is for grids; with kind = 'random' it belongs in [design].",

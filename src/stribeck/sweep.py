@@ -148,8 +148,8 @@ class _Run:
                 ending["outcome"] = "INTERRUPTED"
             finally:
                 # Workers may have written more than they told before they were stopped.
-                self.computed = int(read_rows(self.store).done.sum()) - self.before
-                ending |= {"computed": self.computed}
+                ending["reported"] = self.computed
+                ending["computed"] = self.computed = int(read_rows(self.store).done.sum()) - self.before
         return bool(ending["outcome"] == "INTERRUPTED")
 
     def _settle(self) -> Flags:

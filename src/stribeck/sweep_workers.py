@@ -9,16 +9,20 @@ from __future__ import annotations
 import multiprocessing
 import os
 import queue
+import secrets
 import signal
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from contextlib import contextmanager
+from functools import partial
 from importlib.metadata import version
 from itertools import islice
 from multiprocessing.synchronize import Event
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from ._types import Array
 from .newton import Outcome
@@ -42,6 +46,7 @@ CONNECTION_TIME = 10.0
 Finished = Callable[[int, int], object]
 Pause = Callable[[], object]
 Chains = Sequence[Chain]
+Row = tuple[int, list[float], str]
 
 
 def _is_failure(values: Array) -> int:
@@ -150,7 +155,7 @@ def _solve_here(chain: Chain) -> tuple[int, int]:
 
 
 def on_cluster(path: Path, chains: Chains, scheduler: str, finished: Finished, pause: Pause) -> None:
-    """Solve the chains on a Dask cluster; its workers send states back, which this process writes.
+    """Solve the chains on a Dask cluster; its workers send each state as it is finished, and this process writes it.
 
     Raises
     ------
@@ -175,33 +180,46 @@ def on_cluster(path: Path, chains: Chains, scheduler: str, finished: Finished, p
         _gather(client, Writer(path), chains, finished, pause)
 
 
-def _gather(client: Any, write: Writer, chains: Iterable[Chain], finished: Finished, pause: Pause) -> None:
+def _gather(client: Any, write: Writer, chains: Chains, finished: Finished, pause: Pause) -> None:
     """Send all chains and write what comes back, in whatever order that is."""
-    ended: queue.Queue[Any] = queue.Queue()
-    waiting = set(client.map(_solve_there, list(chains), pure=False, key="stribeck-sweep"))
+    arrived: queue.Queue[Any] = queue.Queue()
+    written: set[int] = set()
+    topic = f"stribeck-sweep-{secrets.token_hex(8)}"
+
+    def keep(rows: Sequence[Row]) -> None:
+        for row, values, text in rows:
+            if row not in written:
+                written.add(row)
+                numbers = np.asarray(values)
+                write(row, numbers, text)
+                finished(1, _is_failure(numbers))
+
+    client.subscribe_topic(topic, lambda event: arrived.put([event[1]]))
+    waiting = set(client.map(partial(_solve_there, topic=topic), list(chains), pure=False, key=topic))
     for future in waiting:
-        future.add_done_callback(ended.put)
+        future.add_done_callback(arrived.put)
     died = 0
     try:
         while waiting:
+            pause()
             try:
-                future = ended.get(timeout=PAUSE)
+                news = arrived.get(timeout=PAUSE)
             except queue.Empty:
-                pause()
                 continue
-            waiting.discard(future)
-            if future.status == "finished":
-                rows = _rows(future.result())
-                for row, values, text in rows:
-                    write(row, values, text)
-                finished(len(rows), sum(_is_failure(values) for _, values, _ in rows))
-            elif future.status == "error" and type(future.exception()).__name__ == "KilledWorker":
+            if isinstance(news, list):
+                keep(news)
+                continue
+            waiting.discard(news)
+            if news.status == "finished":  # once more, as what was sent on the way may have been lost
+                keep(_rows(news.result()))
+            elif news.status == "error" and type(news.exception()).__name__ == "KilledWorker":
                 died += 1
             else:
-                raise SweepError(f"The cluster could not go on ({_reason(future)}); run the same sweep again to resume it.")
-            pause()
+                raise SweepError(f"The cluster could not go on ({_reason(news)}); run the same sweep again to resume it.")
+        pause()
     finally:
         client.cancel(list(waiting))
+        client.unsubscribe_topic(topic)
     if died:
         raise SweepError(
             f"{died} chains of states were given up, as the workers that solved them died again and again; "
@@ -209,14 +227,22 @@ def _gather(client: Any, write: Writer, chains: Iterable[Chain], finished: Finis
         )
 
 
-def _solve_there(chain: Chain) -> tuple[str, list[tuple[int, Array, str]]]:
+def _solve_there(chain: Chain, topic: str) -> tuple[str, list[Row]]:
     """Solve a chain on a worker of a cluster; return the version of the package there and the rows."""
-    rows: list[tuple[int, Array, str]] = []
-    solve_chain(chain, lambda *row: rows.append(row))
+    from distributed import get_worker
+
+    find: Any = get_worker
+    worker, rows = find(), []
+
+    def on_row(row: int, values: Array, text: str) -> None:
+        rows.append((row, values.tolist(), text))
+        worker.log_event(topic, rows[-1])
+
+    solve_chain(chain, on_row)
     return version("stribeck"), rows
 
 
-def _rows(result: tuple[str, list[tuple[int, Array, str]]]) -> list[tuple[int, Array, str]]:
+def _rows(result: tuple[str, list[Row]]) -> list[Row]:
     there, rows = result
     if there != version("stribeck"):
         raise InputError(f"a worker has stribeck {there}, this is {version('stribeck')}; install the same version on both.")
