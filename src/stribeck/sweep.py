@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ._types import Flags
 from .output import PathLike
 from .sweep_chain import Chain
 from .sweep_dataset import Sweep
@@ -113,8 +112,9 @@ def sweep(
     with locked(store) as note:
         run = _Run(plan, store, workers, scheduler, on_progress)
         interrupted = run.to_the_end()
-        rows = read_rows(store)
-    return Sweep(store, describe_store(store), rows, interrupted, run.computed, time.monotonic() - began, note)
+    if not interrupted and not run.rows.done.all():
+        raise SweepError("The run ended without an error, yet states are missing; please report it.")
+    return Sweep(store, describe_store(store), run.rows, interrupted, run.computed, time.monotonic() - began, note)
 
 
 class _Run:
@@ -132,64 +132,62 @@ class _Run:
         self.on_progress = on_progress
         self.before = self.computed = self.failed = 0
         self.marks: deque[tuple[float, int]] = deque()
+        self.rows = read_rows(store)
 
     def to_the_end(self) -> bool:
         """Solve what is not done; return whether that was interrupted."""
-        done = self._settle()
-        self.before = int(done.sum())
+        clean(self.store, self.rows)
+        self.before = int(self.rows.done.sum())
         facts = {"host": socket.gethostname(), "pid": os.getpid(), "workers": self.workers, "scheduler": self.scheduler}
         with log_run(self.store, **facts, done=self.before) as ending:
             ending["outcome"] = "STOPPED"
             self.marks.append((time.monotonic(), 0))
             try:
-                self._solve(done)
+                self._solve()
                 ending["outcome"] = "FINISHED"
             except KeyboardInterrupt:
                 ending["outcome"] = "INTERRUPTED"
             finally:
                 # Workers may have written more than they told before they were stopped.
+                self.rows = read_rows(self.store)
                 ending["reported"] = self.computed
-                ending["computed"] = self.computed = int(read_rows(self.store).done.sum()) - self.before
+                ending["computed"] = self.computed = int(self.rows.done.sum()) - self.before
         return bool(ending["outcome"] == "INTERRUPTED")
 
-    def _settle(self) -> Flags:
-        """Return which states are done, after removing the halves that a killed run left."""
-        rows = read_rows(self.store)
-        clean(self.store, rows)
-        return rows.done
-
-    def _solve(self, done: Flags) -> None:
+    def _solve(self) -> None:
         # Imported here because most uses of the package start no processes.
         from concurrent.futures.process import BrokenProcessPool
 
         from .sweep_workers import in_this_process, on_cluster, on_processes
 
-        deaths = 0
-        while not done.all():
-            chains = self._chains(done)
+        for deaths in range(1, MOST_DEATHS + 2):
+            chains = self._chains()
             try:
-                if self.scheduler is not None:
+                if not chains:
+                    pass
+                elif self.scheduler is not None:
                     on_cluster(self.store, chains, self.scheduler, self._finished, self._tell)
                 elif self.workers > 1:
                     on_processes(self.store, chains, min(self.workers, len(chains)), self._finished, self._tell)
                 else:
                     in_this_process(self.store, chains, self._finished, self._tell)
             except BrokenProcessPool:
-                deaths += 1
                 if deaths > MOST_DEATHS:
                     raise SweepError(
-                        f"Worker processes died {deaths} times; is the memory of this machine large enough? "
+                        f"Worker processes died {deaths} times; is the memory of this machine large enough, and does a "
+                        'script that sweeps with workers do so under `if __name__ == "__main__":`? '
                         "What is finished is kept: run the same sweep again, with fewer workers."
                     ) from None
-            before, done = done, self._settle()
-            if deaths == 0 and (before == done).all():
-                raise SweepError("The run ended without an error and without a state; please report it.")
+                self.rows = read_rows(self.store)
+                clean(self.store, self.rows)
+            else:
+                return
 
-    def _chains(self, done: Flags) -> list[Chain]:
+    def _chains(self) -> list[Chain]:
         """Return what is left to solve; a chain that is done in part goes on with the rest."""
         found = []
         for states in chains_of(self.plan.groups, self.plan.shape):
-            left = states[~done[states]]
+            left = states[~self.rows.done[states]]
             if len(left):
                 groups = tuple((speed, load, roughness) for speed, load, roughness in self.plan.groups[left].tolist())
                 inputs = {name: tuple(column[left].tolist()) for name, column in self.plan.inputs.items()}

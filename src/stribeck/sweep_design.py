@@ -82,7 +82,7 @@ class SweepDesign:
     @functools.cached_property
     def fingerprint(self) -> str:
         """What tells this design from another: of its states and settings, not of comments in its file."""
-        settings = [sorted(self.inputs), self.si, self.rtol, self.law, self.groups.shape]
+        settings = [sorted(self.inputs), self.si, self.rtol, self.law, self.kind, self.shape]
         parts = [json.dumps(settings).encode(), self.groups.tobytes()]
         parts += [self.inputs[name].tobytes() for name in sorted(self.inputs)]
         return hashlib.sha256(b"".join(parts)).hexdigest()

@@ -71,6 +71,12 @@ def _taken(own: Path, lock: Path) -> bool:
         os.link(own, lock)
     except FileExistsError:
         return False
+    except OSError:  # some file systems have no links
+        try:
+            with lock.open("x", encoding="utf-8") as file:
+                file.write(own.read_text(encoding="utf-8"))
+        except FileExistsError:
+            return False
     return True
 
 
@@ -107,8 +113,8 @@ def _refuse_living(lock: Path, found: str) -> None:
             "or choose another store."
         )
     raise InputError(
-        f"{lock.parent} is in use by process {pid} on {host}, as {lock} says, and whether that still runs cannot be seen "
-        f"from {socket.gethostname()}; if it does not, delete that file and run again."
+        f"{lock.parent} is in use by {f'process {pid} on {host}' if host else 'somebody'}, as {lock} says, and whether that "
+        f"still runs cannot be seen from {socket.gethostname()}; if it does not, delete that file and run again."
     )
 
 
