@@ -262,6 +262,16 @@ def children_of(pid):
         return [int(child) for child in file.read().split()]
 
 
+def open_text(path):
+    with open(path, errors="replace") as file:
+        return file.read()
+
+
+def workers_of(pid):
+    """Return those of its children that solve states."""
+    return [child for child in children_of(pid) if "spawn_main" in open_text(f"/proc/{child}/cmdline")]
+
+
 def lives(pid):
     try:
         with open(f"/proc/{pid}/stat") as file:
@@ -315,6 +325,31 @@ def test_ctrl_c_keeps_what_is_finished_and_the_same_command_goes_on(tmp_path, wo
     assert {path: after[path] for path in before} == before
 
 
+def test_ctrl_c_while_the_workers_start_is_quiet(tmp_path):
+    file, store = write(tmp_path, LONG), tmp_path / "store"
+    process = start(file, store, "--workers", "2", start_new_session=True)
+    try:
+        until(lambda: len(workers_of(process.pid)) == 2)
+        time.sleep(0.3)  # now they import, where an interrupt would be a traceback
+        os.killpg(process.pid, signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == 130
+    assert re.fullmatch(r"stribeck: Interrupted after [0-9]+ of 1024 states; .* goes on from there\.\n", err)
+
+
+def test_workers_stop_after_the_present_state(tmp_path):
+    def stop(progress):
+        if progress.done:
+            raise KeyboardInterrupt
+
+    found = sb.sweep(write(tmp_path, LONG), tmp_path / "store", workers=2, on_progress=stop)
+    assert found.interrupted
+    # The chain that brought the first news, and as much of the other worker's; five more chains were waiting.
+    assert 0 < found.finished < 120
+
+
 def kill_and_resume(tmp_path, text, total, kill_at, workers):
     """Kill a sweep at some number of states, resume it, and check that nothing is lost and nothing computed twice."""
     file, store = write(tmp_path, text), tmp_path / "store"
@@ -366,8 +401,7 @@ def test_a_killed_worker_process_is_replaced(tmp_path):
     try:
         until(lambda: rows_in(store) > 20)
         before = chunks(store)
-        workers = [pid for pid in children_of(process.pid) if "spawn_main" in open_text(f"/proc/{pid}/cmdline")]
-        os.kill(workers[-1], signal.SIGKILL)
+        os.kill(workers_of(process.pid)[-1], signal.SIGKILL)
         _, err = process.communicate(timeout=120)
     finally:
         process.kill()
@@ -376,11 +410,6 @@ def test_a_killed_worker_process_is_replaced(tmp_path):
     flags = {path for path in before if path.startswith("done/")}
     assert {path: after[path] for path in flags} == {path: before[path] for path in flags}
     assert sb.open_sweep(store).outcomes == {"CONVERGED": 128}
-
-
-def open_text(path):
-    with open(path, errors="replace") as file:
-        return file.read()
 
 
 def test_workers_that_die_again_and_again_end_the_sweep_with_a_sentence(tmp_path):
@@ -472,6 +501,7 @@ def test_a_full_disk_is_a_sentence_and_the_store_opens_and_goes_on(tmp_path, wor
         assert 0 < found.finished < 128
         assert found.outcomes == {"CONVERGED": found.finished}
         assert not (store / LOCK).exists()
+        assert not [name for array in ("values", "text", "done") for name in os.listdir(store / array) if name.startswith(".")]
         larger = tmp_path / "larger"
         shutil.copytree(store, larger)
     again = sb.sweep(file, larger)
