@@ -1,6 +1,6 @@
 """States per second of a sweep in one process and in several, each state written to the store; the table of docs/sweep.md.
 
-Random states over six decades of speed, two of load, two of roughness at rtol 1e-6.  The rate counts from the first to the
+Random states over six decades of speed, 1.7 of load, two of roughness at rtol 1e-6.  The rate counts from the first to the
 last state, so that the start of the processes, about a second once, does not hide in it; it is shown beside.  So is the
 processor time of a state, all processes together, which other work on the machine does not change much.
 
