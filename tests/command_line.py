@@ -11,6 +11,7 @@ from stribeck.cli import main
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PDMS = EXAMPLES / "pdms_cylinder.toml"
 WIPER = EXAMPLES / "wiper_blade.toml"
+SWEEP = EXAMPLES / "sweep.toml"
 SCRIPT = Path(sys.executable).with_name("stribeck")
 
 CONTACT = {

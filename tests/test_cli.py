@@ -19,6 +19,7 @@ from command_line import (
     FEW,
     PDMS,
     SCRIPT,
+    SWEEP,
     WIPER,
     call,
     call_outside,
@@ -144,7 +145,7 @@ def test_solve_draws_a_profile(capsys, tmp_path):
     assert b"<svg" in (tmp_path / "profile.svg").read_bytes()
 
 
-@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted({*EXAMPLES.glob("*.toml")} - {SWEEP}), ids=lambda path: path.stem)
 def test_every_example_case_is_solved(capsys, path):
     assert call(capsys, "solve", path).code == 0
 
@@ -412,7 +413,7 @@ def test_a_terminal_without_greek_and_micro_is_served(tmp_path):
 # --- help ---
 
 
-@pytest.mark.parametrize("command", [(), ("solve",), ("curve",), ("regimes",)])
+@pytest.mark.parametrize("command", [(), ("solve",), ("curve",), ("regimes",), ("sweep",)])
 def test_every_help_has_an_example(capsys, command):
     answer = call(capsys, *command, "--help")
     assert answer.code == 0
@@ -424,14 +425,14 @@ def test_the_examples_of_the_help_run(capsys, tmp_path, monkeypatch):
     (tmp_path / "examples").symlink_to(EXAMPLES)
     monkeypatch.setenv("COLUMNS", "300")
     seen = 0
-    for command in ("solve", "curve", "regimes"):
+    for command in ("solve", "curve", "regimes", "sweep"):
         help_ = call(capsys, command, "--help").out
         for example in re.findall(r"Example: stribeck (.+)", help_):
             few = ["--points", "3"] if command == "curve" else []
             answer = call(capsys, *shlex.split(example), *few, *([] if command == "regimes" else ["--force"]))
             assert (answer.code, answer.err) == (0, "")
             seen += 1
-    assert seen == 6
+    assert seen == 8
 
 
 def test_the_version_is_that_of_the_package(capsys):

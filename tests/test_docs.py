@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import stribeck as sb
+from stribeck.sweep_store import create_or_open
 
 ROOT = Path(__file__).parents[1]
 PAGES = [
@@ -47,9 +48,12 @@ def test_a_python_block_runs(code, desk):
 
 
 @pytest.mark.parametrize("code", blocks("toml"))
-def test_a_case_file_block_is_a_case_file(code, desk):
+def test_a_toml_block_is_a_case_or_sweep_file(code, desk):
     Path("case.toml").write_text(code)
-    assert sb.load_case("case.toml").contact.groups.load > 0
+    if "[vary]" in code:
+        assert len(sb.load_sweep("case.toml")) > 1
+    else:
+        assert sb.load_case("case.toml").contact.groups.load > 0
 
 
 def sessions(code):
@@ -114,7 +118,7 @@ def names_in_tables_of(section):
 
 
 RESULTS = (sb.Groups, sb.LineContact, sb.HertzScales, sb.Friction, sb.Profile, sb.Solution, sb.StribeckCurve)
-RESULTS += (sb.Landmark, sb.Case)
+RESULTS += (sb.Landmark, sb.Case, sb.Sweep, sb.SweepDesign, sb.SweepProgress)
 
 
 @pytest.mark.parametrize("kind", RESULTS, ids=lambda kind: kind.__name__)
@@ -128,6 +132,15 @@ def test_the_table_of_symbols_names_every_variable_of_a_data_file():
     case = sb.load_case(ROOT / "examples" / "pdms_cylinder.toml")
     curve = sb.stribeck_curve(case.contact, speed=(1e-3, 1e-2), points=3)
     assert set(curve.to_dataset().variables) - set(names_in_tables_of("4. Symbols")) <= {"speed"}
+
+
+def test_the_table_of_symbols_names_every_variable_of_a_sweep(tmp_path):
+    (tmp_path / "sweep.toml").write_text("[groups]\nload = 0.1\nroughness = 0\n[vary]\nspeed = [0, 0]\n")
+    groups = sb.sweep(tmp_path / "sweep.toml", tmp_path / "groups").to_dataset()
+    (tmp_path / "sweep.toml").write_text((ROOT / "examples" / "sweep.toml").read_text().replace("26", "2"))
+    design = sb.load_sweep(tmp_path / "sweep.toml")
+    contacts = sb.open_sweep(create_or_open(tmp_path / "contacts", design)).to_dataset()
+    assert {*groups.variables, *contacts.variables} - set(names_in_tables_of("4. Symbols")) == set()
 
 
 def test_the_table_of_symbols_names_every_observable():

@@ -25,6 +25,7 @@ PACKAGE = Path(stribeck.__file__).parent
 EQUATIONS = {"contact_laws", "elasticity", "equations", "mesh", "parameters", "reynolds"}
 ALGORITHMS = {"arclength", "continuation", "newton"}
 RESULTS = {"newton", "parameters", "solution", "solve", "threads", "units"}
+SWEEP = ("chain", "dataset", "design", "lock", "order", "store", "workers")
 
 # Who may import whom; `_types` is open to all, and a module that is not named here is refused.
 #
@@ -72,11 +73,22 @@ MAY_IMPORT = {
     "phase_dataset": RESULTS | {"asymptotics", "output", "phase_grid", "regimes", "store"},
     "phase_diagram": RESULTS | {"curve", "merging", "phase_dataset", "phase_grid", "regimes", "span"},
     "plot_phase": RESULTS | {"output", "plotting"},
+    "sweep_points": set(),
+    "sweep_order": set(),
+    "sweep_lock": {"units"},
+    "sweep_design": {"case", "parameters", "sweep_points", "units"},
+    "sweep_columns": RESULTS | {"observables", "store"},
+    "sweep_chain": RESULTS | {"continuation", "follow", "refine", "sweep_columns", "sweep_order"},
+    "sweep_store": {"output", "sweep_columns", "sweep_design", "units"},
+    "sweep_dataset": RESULTS | {"output", "regimes", "store", "sweep_columns", "sweep_store"},
+    "sweep_workers": RESULTS | {"output", "sweep_chain", "sweep_columns", "sweep_store"},
+    "sweep": RESULTS | {"output"} | {f"sweep_{part}" for part in SWEEP},
+    "report_sweep": RESULTS | {"sweep", "sweep_columns", "sweep_dataset"},
 }
 OPEN = {"__init__", "__main__", "app", "cli"}
 
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts)
-HEAVY = {"cyclopts", "matplotlib", "netCDF4", "pandas", "pint", "pydantic", "rich", "xarray"}
+HEAVY = {"cyclopts", "dask", "distributed", "matplotlib", "netCDF4", "pandas", "pint", "pydantic", "rich", "xarray", "zarr"}
 
 
 def top_of(path):

@@ -9,6 +9,10 @@ from .phase_diagram import phase_diagram
 from .regimes import regime_of
 from .solution import Friction, Profile, Solution
 from .solve import SolveError, solve
+from .sweep import SweepProgress, sweep
+from .sweep_dataset import Sweep, open_sweep
+from .sweep_design import SweepDesign, load_sweep
+from .sweep_store import SweepError
 
 __all__ = [
     "Case",
@@ -23,12 +27,19 @@ __all__ = [
     "Solution",
     "SolveError",
     "StribeckCurve",
+    "Sweep",
+    "SweepDesign",
+    "SweepError",
+    "SweepProgress",
     "asymptotics",
     "load_case",
+    "load_sweep",
+    "open_sweep",
     "phase_diagram",
     "regime_of",
     "solve",
     "stribeck_curve",
+    "sweep",
 ]
 
 

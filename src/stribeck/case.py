@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal
 from .parameters import QUANTITIES, InputError, LineContact, check_modulus_choice, quantity
 from .units import DIMENSIONS, show
 
-__all__ = ["Case", "CurveSettings", "curve_range", "load_case"]
+__all__ = ["Case", "CurveSettings", "curve_range", "error_sentence", "example_of", "load_case", "read_toml"]
 
 Axis = Literal["speed", "load", "roughness"]
 Law = Literal["exponential"]
@@ -115,13 +115,13 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     import pydantic
 
     path = Path(path)
-    table = _read(path)
+    table = read_toml(path)
     model = _model()
     problems = []
     try:
         checked = model(**table).model_dump()
     except pydantic.ValidationError as failure:
-        problems = [_sentence(model, error) for error in failure.errors(include_url=False)]
+        problems = [error_sentence(model, error) for error in failure.errors(include_url=False)]
     problems += _elasticity_problem(table.get("contact"))
     if not problems:
         inputs = checked["contact"]
@@ -143,25 +143,46 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     )
 
 
-def _read(path: Path) -> dict[str, Any]:
+def read_toml(path: Path, kind: str = "case file", needed: str = "[contact]") -> dict[str, Any]:
+    """Return the tables of a TOML file.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    kind : str
+        What the file is, for sentences.
+    needed : str
+        The table without which it says nothing.
+
+    Returns
+    -------
+    dict
+        What the file says, at least one entry.
+
+    Raises
+    ------
+    InputError
+        Where the file cannot be read, is too large, empty or no TOML.
+    """
     try:
         with path.open("rb") as file:
             content = file.read(_LARGEST_FILE + 1)
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", problem)
         received = f"{path} is a directory" if path.is_dir() else f"{path} cannot be read ({reason})"
-        raise InputError(f"{received}; give the path of a TOML case file.") from None
+        raise InputError(f"{received}; give the path of a TOML {kind}.") from None
     if len(content) > _LARGEST_FILE:
-        raise InputError(f"{path} has more than {_LARGEST_FILE} bytes; a case file is a page of TOML.")
+        raise InputError(f"{path} has more than {_LARGEST_FILE} bytes; a {kind} is a page of TOML.")
     try:
         # Some editors write a byte-order mark, which TOML does not know.
         table = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as problem:
-        raise InputError(f"{path} is not text (byte {problem.start} is not UTF-8); a case file is a page of TOML.") from None
+        raise InputError(f"{path} is not text (byte {problem.start} is not UTF-8); a {kind} is a page of TOML.") from None
     except (ValueError, RecursionError) as problem:
         raise InputError(f"{path} is not valid TOML: {' '.join(str(problem).split())}.") from None
     if not table:
-        raise InputError(f"{path} is empty; a case file needs at least the table [contact].")
+        raise InputError(f"{path} is empty; a {kind} needs at least the table {needed}.")
     return table
 
 
@@ -269,14 +290,14 @@ def _elasticity_problem(contact: Any) -> list[str]:
     return []
 
 
-def _sentence(file: Any, error: Any) -> str:
-    """Return the sentence for one of pydantic's errors."""
+def error_sentence(file: Any, error: Any) -> str:
+    """Return the sentence for one of pydantic's errors in a ``file`` of tables."""
     *tables, key = [str(part) for part in error["loc"][:2]]
     model = file.model_fields[tables[0]].annotation if tables else file
     where = f"[{tables[0]}] " if tables else ""
     shown = key if key.isprintable() else repr(key)
     if error["type"] == "missing":
-        return f"{where}{key} is missing; {_example(key)}." if tables else f"the table [{key}] is missing."
+        return f"{where}{key} is missing; {example_of(key)}." if tables else f"the table [{key}] is missing."
     if error["type"] == "extra_forbidden":
         return f"{where}{shown} = {show(error['input'])} is not a known key; {_nearest(file, model, key)}."
     if error["type"] == "value_error":
@@ -284,7 +305,8 @@ def _sentence(file: Any, error: Any) -> str:
     return f"{where}{key} = {show(error['input'])} must be {model.model_fields[key].description}."
 
 
-def _example(key: str) -> str:
+def example_of(key: str) -> str:
+    """Return the advice to add a quantity, with an example of its value."""
     dimension = DIMENSIONS[QUANTITIES[key].dimension]
     value = f'"{dimension.example}"' if dimension.unit else dimension.example
     return f"add {dimension.noun}, for example {key} = {value}"

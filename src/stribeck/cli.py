@@ -30,10 +30,13 @@ from .parameters import QUANTITIES, Groups
 from .regimes import friction_elasticities
 from .solution import coefficients
 from .solve import SolveError, solve
+from .sweep_store import SweepError
 from .units import InputError, format_si, show
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+    from .sweep import SweepProgress
 
 __all__ = ["main"]
 
@@ -94,6 +97,8 @@ def main(tokens: Sequence[str] | None = None) -> int:
         if problem.outcome is Outcome.ROUNDING and problem.solution is not None:
             return _complain(f"rtol = {problem.solution.rtol:g} cannot be reached at {problem}", BAD_INPUT)
         return _complain(str(problem), FAILED)
+    except SweepError as problem:
+        return _complain(str(problem), FAILED)
     except KeyboardInterrupt:
         return _complain("Interrupted; nothing was written.", INTERRUPTED)
     except BrokenPipeError:  # the reader, such as head, had enough
@@ -120,7 +125,7 @@ def make_app() -> App:
         help_format="plaintext",
         suppress_keyboard_interrupt=False,
     )
-    for command in (solve_command, curve_command, regimes_command, figures_command):
+    for command in (solve_command, curve_command, regimes_command, figures_command, sweep_command):
         app.command(command, name=command.__name__.removesuffix("_command"))
     app.register_install_completion_command()
     return app
@@ -355,6 +360,87 @@ def figures_command(
     return FAILED if "failed" in outcomes else BAD_INPUT if "unwritten" in outcomes else 0
 
 
+def sweep_command(
+    design: Annotated[Path | None, Parameter(name="SWEEP", show_default=False)] = None,
+    /,
+    *,
+    out: File = None,
+    workers: Number = None,
+    scheduler: Word = None,
+    export: File = None,
+    json: Flag = False,
+    force: Flag = False,
+) -> int:
+    """Solve many states and keep each in a store as it finishes; the same command again goes on where it stopped.
+
+    Example: stribeck sweep examples/sweep.toml --out sweep.zarr --export sweep.nc
+
+    Example: stribeck sweep examples/sweep.toml --out sweep.zarr --workers 2
+
+    With --scheduler, as in --scheduler tcp://node1:8786, the workers of a Dask cluster solve the states.
+
+    After Ctrl-C the finished states are in the store; the exit code is then 130.  It is 1 where states failed; they are in the
+    store too, with their outcome.
+
+    Parameters
+    ----------
+    design
+        Sweep file (TOML): what stays fixed, what varies and how.
+    out
+        Folder of the store; made if there is none.
+    workers
+        Processes of this machine, 1 if not given.
+    scheduler
+        Address of a Dask scheduler, whose workers solve the states instead.
+    export
+        Write all states to this file (.nc) at the end.
+    json
+        Print JSON.
+    force
+        Replace an existing file of --export; a store is never replaced.
+    """
+    from . import report_sweep
+    from .store import NETCDF
+    from .sweep import sweep
+    from .sweep_design import load_sweep
+
+    if design is None:
+        raise InputError("SWEEP is missing; give a sweep file, as in: stribeck sweep sweep.toml --out sweep.zarr.")
+    if out is None:
+        raise InputError("out is missing; give the folder of the store with --out.")
+    if export is not None:
+        check_output(export, NETCDF, force=force)
+        _need("a NetCDF file", "data", "netCDF4")
+    plan = load_sweep(design)
+    processes = 1 if workers is None else _whole("workers", workers)
+    with _interruptible(sigterm=True) as progress:
+        lines = report_sweep.ProgressLines(sys.stderr if progress.bar is None else None)
+
+        def tell(state: SweepProgress) -> None:
+            lines(state)
+            progress(state.done, state.total, report_sweep.progress_text(state))
+
+        found = sweep(plan, out, workers=processes, scheduler=scheduler, on_progress=tell)
+    written = []
+    if export is not None and not found.interrupted:
+        found.to_netcdf(export, force=force)
+        written.append(str(export))
+    if found.note:
+        _complain(found.note, 0)
+    if json:
+        from . import report
+
+        print(report.dump(report_sweep.sweep_json(found, written)))
+    else:
+        report_sweep.print_sweep(_console(), found, written)
+    if found.interrupted:
+        kept = f"{out} holds them, and the same command goes on from there"
+        return _complain(f"Interrupted after {found.finished} of {len(found)} states; {kept}.", INTERRUPTED)
+    if found.failed:
+        return _complain(f"{found.failed} of {len(found)} states did not converge; each has its outcome in the store.", FAILED)
+    return 0
+
+
 # --- arguments ---
 
 
@@ -575,14 +661,15 @@ class _Progress:
 
 
 @contextmanager
-def _interruptible() -> Iterator[_Progress]:
-    """Show progress and let Ctrl-C stop the work between two points."""
+def _interruptible(sigterm: bool = False) -> Iterator[_Progress]:
+    """Show progress and let Ctrl-C stop the work between two points, and SIGTERM too where that is wanted."""
     progress = _Progress()
-    handles = threading.current_thread() is threading.main_thread()
+    main = threading.current_thread() is threading.main_thread()
     # A shell makes background jobs ignore Ctrl-C; that stays so.
-    handles = handles and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    handles = main and signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if handles:
         signal.signal(signal.SIGINT, progress.interrupt)
+    before = signal.signal(signal.SIGTERM, progress.interrupt) if sigterm and main else None
     try:
         with _bar(progress):
             yield progress
@@ -594,6 +681,8 @@ def _interruptible() -> Iterator[_Progress]:
     finally:
         if handles:
             signal.signal(signal.SIGINT, signal.default_int_handler)
+        if before is not None:
+            signal.signal(signal.SIGTERM, before)
 
 
 @contextmanager
@@ -637,7 +726,7 @@ def _line(problem: BaseException) -> str:
 
 
 def _command(tokens: Sequence[str]) -> str:
-    known = ("solve", "curve", "regimes", "figures")
+    known = ("solve", "curve", "regimes", "figures", "sweep")
     return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
 
 

@@ -1,0 +1,509 @@
+"""Many states: the numbers, their failures, and that neither Ctrl-C, kill -9, a full disk nor a second sweep harms them."""
+
+import json
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+import xarray as xr
+from command_line import SCRIPT, SWEEP, call, environment
+from sweep_files import CONTACT, GRID, RANDOM, chunks, done_rows, same_rows, write
+
+import stribeck as sb
+from stribeck import sweep_chain
+from stribeck.newton import Outcome
+from stribeck.sweep_lock import LOCK
+
+LONG = RANDOM.format(kind="sobol", points=1024)
+"""Enough states to be stopped in the middle of."""
+
+
+# --- the numbers ---
+
+
+def test_scattered_states_are_those_that_solve_gives_from_cold(tmp_path):
+    file = write(tmp_path, RANDOM.format(kind="latin-hypercube", points=30))
+    found = sb.sweep(file, tmp_path / "store").to_dataset()
+    assert found.attrs["finished"] == 30
+    for i in range(0, 30, 3):
+        state = sb.solve(sb.Groups(*(float(found[f"{name}_group"][i]) for name in ("speed", "load", "roughness"))))
+        for name in ("contact_load_share", "central_gap", "minimum_gap", "flux_gap"):
+            error = float(found[f"{name}_error"][i]) + state.errors[name]
+            assert float(found[name][i]) == pytest.approx(getattr(state, name), rel=error, abs=error)
+        for definition in ("paper", "balanced"):
+            friction = state.friction(definition=definition)
+            error = float(found[f"friction_{definition}_error"][i]) + friction.error
+            assert float(found[f"friction_{definition}"][i]) == pytest.approx(friction.total, abs=error)
+
+
+def test_zero_speed_and_zero_roughness_are_ordinary_states(tmp_path):
+    text = "[groups]\n[vary]\nload = [0.1, 0.2]\nroughness = [0, 1e-3]\nspeed = [0, 1e-4, 1e-3]\n"
+    found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset()
+    assert set(found.outcome.values) == {"CONVERGED"}
+    for i in range(12):
+        state = sb.solve(sb.Groups(*(float(found[f"{name}_group"][i]) for name in ("speed", "load", "roughness"))))
+        assert float(found.central_gap[i]) == pytest.approx(state.central_gap, rel=2e-6)
+        assert float(found.contact_load_share[i]) == pytest.approx(state.contact_load_share, abs=2e-6)
+
+
+def test_a_contact_has_its_films_in_si_units_and_its_notes(tmp_path):
+    text = CONTACT + '[vary]\nload = ["30 N/m"]\nroughness = ["1 um"]\nspeed = ["1 mm/s", "1 m/s"]\n'
+    found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset()
+    for i, speed in enumerate((1e-3, 1.0)):
+        contact = sb.LineContact(**{name: float(found[name][i]) for name in sb.LineContact.__dataclass_fields__})
+        assert contact.speed == speed
+        state = sb.solve(contact)
+        assert float(found.central_film_thickness[i]) == pytest.approx(state.central_gap * contact.hertz.indentation, rel=2e-6)
+        assert float(found.friction_paper[i]) == pytest.approx(state.friction().total, rel=2e-6)
+        assert found.message[i].item() == "\n".join(state.notes)
+
+
+def test_the_coefficients_scale_friction_on_the_same_states(tmp_path):
+    text = "[groups]\nload = 0.1\nroughness = 1e-3\n[vary]\nmu0 = [0.5, 1]\nbeta = [1, 0.1]\nspeed = [1e-3, 1e-4]\n"
+    found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset()
+    cube = {
+        name: found[name].values.reshape(2, 2, 2) for name in ("central_gap", "friction_paper_viscous", "friction_contact")
+    }
+    assert np.ptp(cube["central_gap"], axis=(0, 1)).tolist() == [0, 0]
+    assert cube["friction_paper_viscous"][:, 1] == pytest.approx(0.1 * cube["friction_paper_viscous"][:, 0])
+    assert cube["friction_contact"][1] == pytest.approx(2 * cube["friction_contact"][0])
+
+
+def test_continuation_costs_fewer_cold_starts_than_states(tmp_path, monkeypatch):
+    starts = []
+    cold = sweep_chain.Follower.__call__
+
+    def counted(self, s, history):
+        starts.append(not history)
+        return cold(self, s, history)
+
+    monkeypatch.setattr(sweep_chain.Follower, "__call__", counted)
+    assert sb.sweep(write(tmp_path, GRID), tmp_path / "store").failed == 0
+    assert sum(starts) == 4
+    assert len(starts) < 1.5 * 68
+
+
+def test_the_numbers_do_not_depend_on_the_workers(tmp_path):
+    file = write(tmp_path, RANDOM.format(kind="random", points=48))
+    alone = sb.sweep(file, tmp_path / "one")
+    together = sb.sweep(file, tmp_path / "two", workers=2)
+    assert (alone.computed, together.computed) == (48, 48)
+    assert same_rows(alone, together)
+
+
+# --- failures ---
+
+
+def fail_at(monkeypatch, when, how):
+    """Let the solver fail wherever ``when(groups)`` holds."""
+    follow = sweep_chain.Follower.__call__
+
+    def failing(self, s, history):
+        if when(self.groups_at(s)):
+            return how()
+        return follow(self, s, history)
+
+    monkeypatch.setattr(sweep_chain.Follower, "__call__", failing)
+
+
+def test_a_failed_state_keeps_its_outcome_and_costs_no_other(tmp_path, monkeypatch):
+    fail_at(monkeypatch, lambda groups: 2e-4 < groups.speed < 9e-4, lambda: None)
+    found = sb.sweep(write(tmp_path, GRID), tmp_path / "store")
+    table = found.to_dataset()
+    hit = (table.speed_group.values > 2e-4) & (table.speed_group.values < 9e-4)
+    assert found.failed == hit.sum() == 8
+    assert found.outcomes == {"CONVERGED": 60, "PATH_LOST": 8}
+    assert set(table.outcome.values[hit]) == {"PATH_LOST"}
+    assert np.isnan(table.friction_paper.values[hit]).all()
+    assert np.isfinite(table.friction_paper.values[~hit]).all()
+    assert all(Outcome.PATH_LOST.value in text for text in table.message.values[hit])
+
+
+def test_an_error_of_the_program_is_an_outcome_with_its_words(tmp_path, monkeypatch):
+    def broken():
+        raise ZeroDivisionError("division by zero")
+
+    fail_at(monkeypatch, lambda groups: groups.roughness == 1e-3 and groups.speed < 3e-5, broken)
+    found = sb.sweep(write(tmp_path, GRID), tmp_path / "store")
+    assert found.outcomes == {"CONVERGED": 64, "ERROR": 4}
+    assert all("ZeroDivisionError: division by zero" in text for text in found.rows.texts if "Zero" in text)
+
+
+def test_a_state_that_rounding_bounds_keeps_its_value_with_its_error(tmp_path):
+    text = "[groups]\nload = 0.1\nroughness = 1e-8\n[vary]\nspeed = [1e-11, 1e-12]\n[solver]\nrtol = 1e-11\n"
+    found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset()
+    bounded = found.outcome.values == "ROUNDING"
+    assert bounded.any()
+    assert (found.error_estimate.values[bounded] > 1e-11).all()
+    assert np.isfinite(found.friction_paper.values[bounded]).all()
+    assert all("Double precision bounds" in text for text in found.message.values[bounded])
+
+
+def test_failures_are_not_tried_again(tmp_path, monkeypatch):
+    with monkeypatch.context() as patched:
+        fail_at(patched, lambda groups: groups.speed < 3e-5, lambda: None)
+        assert sb.sweep(write(tmp_path, GRID), tmp_path / "store").failed == 8
+    again = sb.sweep(tmp_path / "sweep.toml", tmp_path / "store")
+    assert (again.computed, again.failed) == (0, 8)
+
+
+# --- the command ---
+
+
+def test_the_command_says_what_it_did(capsys, tmp_path):
+    store, data = tmp_path / "store", tmp_path / "sweep.nc"
+    answer = call(capsys, "sweep", SWEEP, "--out", store, "--export", data)
+    assert (answer.code, answer.err) == (0, "")
+    lines = answer.out.splitlines()
+    assert lines[0] == "PDMS cylinder over speed, roughness and load"
+    assert lines[1] == f"156 of 156 states are finished in {store}; load, roughness, speed varied, grid."
+    assert re.fullmatch(r"Computed now: 156, [0-9.]+ per second; found there: 0\.", lines[2])
+    assert lines[3:] == ["156 CONVERGED: Converged.", f"Written: {data}"]
+    with xr.open_dataset(data, engine="netcdf4") as found:
+        assert found.sizes["state"] == 156
+    again = json.loads(call(capsys, "sweep", SWEEP, "--out", store, "--json").out)
+    assert (again["states"], again["finished"], again["computed"], again["outcomes"]) == (156, 156, 0, {"CONVERGED": 156})
+
+
+def test_failed_states_make_exit_code_1(capsys, tmp_path, monkeypatch):
+    fail_at(monkeypatch, lambda groups: groups.speed < 3e-5, lambda: None)
+    answer = call(capsys, "sweep", write(tmp_path, GRID), "--out", tmp_path / "store")
+    assert answer.code == 1
+    assert answer.err == "stribeck: 8 of 68 states did not converge; each has its outcome in the store.\n"
+    assert f"8 PATH_LOST: {Outcome.PATH_LOST.value}" in answer.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ((), "SWEEP is missing; give a sweep file, as in: stribeck sweep sweep.toml --out sweep.zarr."),
+        (("FILE",), "out is missing; give the folder of the store with --out."),
+        (("FILE", "--out", "s", "--workers", "two"), "workers = 'two' is not a whole number; write it as 101."),
+        (("FILE", "--out", "s", "--workers", "0"), "workers = 0; it must be a whole number from 1 to 1024."),
+        (("FILE", "--out", "s", "--export", "a.csv"), "a.csv has the ending '.csv'; the name of this file must end in .nc."),
+        (("FILE", "--out", "FILE"), "sweep.toml is a file; give the folder of a store, or the name of a new one."),
+        (("no.toml", "--out", "s"), "no.toml cannot be read (No such file or directory); give the path of a TOML sweep file."),
+        (("FILE", "--out", "s", "--scheduler", "nonsense://x"), "no scheduler answers at nonsense://x"),
+    ],
+)
+def test_bad_input_is_a_sentence_and_exit_code_2(capsys, tmp_path, monkeypatch, arguments, sentence):
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path, GRID)
+    answer = call(capsys, "sweep", *("sweep.toml" if word == "FILE" else word for word in arguments))
+    assert answer.code == 2
+    assert sentence in answer.err and answer.err.startswith("stribeck: ") and answer.err.endswith(".\n")
+    assert not (tmp_path / "s" / "done").exists() or not done_rows(tmp_path / "s")
+
+
+def test_an_existing_export_is_kept_before_anything_is_solved(capsys, tmp_path):
+    (tmp_path / "sweep.nc").write_text("mine")
+    answer = call(capsys, "sweep", write(tmp_path, GRID), "--out", tmp_path / "store", "--export", tmp_path / "sweep.nc")
+    assert answer.code == 2
+    assert not (tmp_path / "store").exists()
+    assert (tmp_path / "sweep.nc").read_text() == "mine"
+
+
+def test_progress_tells_rate_and_time_left(tmp_path):
+    seen = []
+    sb.sweep(write(tmp_path, GRID), tmp_path / "store", on_progress=seen.append)
+    assert [state.done for state in seen] == list(range(1, 69))
+    assert {state.total for state in seen} == {68}
+    last = seen[-1]
+    assert last.seconds_left == 0 and last.rate > 0
+    for state in seen[1:]:
+        assert state.seconds_left == pytest.approx((68 - state.done) / state.rate)
+
+
+def test_a_batch_job_gets_lines_of_progress(tmp_path, capsys, monkeypatch):
+    from stribeck import report_sweep
+
+    monkeypatch.setattr(report_sweep, "EVERY", 0.0)
+    answer = call(capsys, "sweep", write(tmp_path, GRID), "--out", tmp_path / "store")
+    assert answer.code == 0
+    assert re.fullmatch(r"stribeck: 68 of 68 states, [0-9.e+]+ states/s, 0:00:00 left", answer.err.splitlines()[-1])
+
+
+# --- stopped ---
+
+
+def start(file, store, *arguments, **options):
+    """Start the command in a process of its own, in which Ctrl-C is not ignored."""
+
+    def heed():
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "preexec_fn": heed} | options
+    return subprocess.Popen([SCRIPT, "sweep", str(file), "--out", str(store), *arguments], env=environment(), **options)
+
+
+def until(condition, seconds=60):
+    """Wait for a condition."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def rows_in(store):
+    return len(done_rows(store)) if (store / "done").exists() else 0
+
+
+def children_of(pid):
+    """Return the processes that a process has started."""
+    with open(f"/proc/{pid}/task/{pid}/children") as file:
+        return [int(child) for child in file.read().split()]
+
+
+def open_text(path):
+    with open(path, errors="replace") as file:
+        return file.read()
+
+
+def workers_of(pid):
+    """Return those of its children that solve states."""
+    return [child for child in children_of(pid) if "spawn_main" in open_text(f"/proc/{child}/cmdline")]
+
+
+def lives(pid):
+    try:
+        with open(f"/proc/{pid}/stat") as file:
+            return file.read().rpartition(")")[2].split()[0] not in "ZX"
+    except FileNotFoundError:
+        return False
+
+
+SLOW = pytest.mark.slow
+
+
+@pytest.mark.parametrize(
+    ("workers", "number"),
+    [
+        pytest.param(1, signal.SIGINT, id="ctrl-c, one process", marks=SLOW),
+        pytest.param(2, signal.SIGINT, id="ctrl-c, workers"),
+        pytest.param(1, signal.SIGTERM, id="end of a batch job, one process"),
+        pytest.param(2, signal.SIGTERM, id="end of a batch job, workers", marks=SLOW),
+    ],
+)
+def test_ctrl_c_keeps_what_is_finished_and_the_same_command_goes_on(tmp_path, workers, number):
+    file, store = write(tmp_path, LONG), tmp_path / "store"
+    process = start(file, store, "--workers", str(workers), start_new_session=True)
+    try:
+        until(lambda: rows_in(store) > 20)
+        if number == signal.SIGINT:
+            os.killpg(process.pid, number)  # as a terminal does
+        else:
+            process.send_signal(number)
+        out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == 130
+    found = sb.open_sweep(store)
+    assert 20 < found.finished < 1024
+    assert err == (
+        f"stribeck: Interrupted after {found.finished} of 1024 states; {store} holds them, "
+        "and the same command goes on from there.\n"
+    )
+    assert f"Computed now: {found.finished}, " in out
+    assert not (store / LOCK).exists()
+    assert json.loads((store / "runs.jsonl").read_text().splitlines()[-1])["outcome"] == "INTERRUPTED"
+
+    def enough(progress):
+        if progress.done >= found.finished + 5:
+            raise KeyboardInterrupt
+
+    before = chunks(store)
+    assert sb.sweep(file, store, on_progress=enough).computed == 5
+    after = chunks(store)
+    assert {path: after[path] for path in before} == before
+
+
+def test_ctrl_c_while_the_workers_start_is_quiet(tmp_path):
+    file, store = write(tmp_path, LONG), tmp_path / "store"
+    process = start(file, store, "--workers", "2", start_new_session=True)
+    try:
+        until(lambda: len(workers_of(process.pid)) == 2)
+        time.sleep(0.3)  # now they import, where an interrupt would be a traceback
+        os.killpg(process.pid, signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == 130
+    assert re.fullmatch(r"stribeck: Interrupted after [0-9]+ of 1024 states; .* goes on from there\.\n", err)
+
+
+def test_workers_stop_after_the_present_state(tmp_path):
+    def stop(progress):
+        if progress.done:
+            raise KeyboardInterrupt
+
+    found = sb.sweep(write(tmp_path, LONG), tmp_path / "store", workers=2, on_progress=stop)
+    assert found.interrupted
+    # The chain that brought the first news, and as much of the other worker's; five more chains were waiting.
+    assert 0 < found.finished < 120
+
+
+def kill_and_resume(tmp_path, text, total, kill_at, workers):
+    """Kill a sweep at some number of states, resume it, and check that nothing is lost and nothing computed twice."""
+    file, store = write(tmp_path, text), tmp_path / "store"
+    process = start(file, store, "--workers", str(workers))
+    try:
+        until(lambda: rows_in(store) >= kill_at)
+        children = children_of(process.pid)
+        process.kill()
+        process.communicate(timeout=60)
+        until(lambda: not any(map(lives, children)), 10)
+    finally:
+        process.kill()
+    before = chunks(store)
+    kept = sb.open_sweep(store)
+    assert kill_at <= kept.finished < total
+    assert (store / LOCK).exists()
+    again = sb.sweep(file, store)
+    assert "its lock was taken over" in again.note
+    assert again.finished == total
+    assert again.computed == total - kept.finished
+    after = chunks(store)
+    rows = np.nonzero(kept.rows.done)[0]
+    for row in rows:
+        for path in (f"values/c.{row}.0", f"done/c.{row}", f"text/c.{row}.0"):
+            assert after.get(path) == before.get(path)
+    assert np.array_equal(again.rows.values[rows], kept.rows.values[rows])
+    return again
+
+
+@pytest.mark.parametrize("workers", [pytest.param(1, marks=SLOW), 2])
+def test_kill_9_loses_nothing_and_computes_nothing_twice(tmp_path, workers):
+    text = RANDOM.format(kind="sobol", points=128)
+    again = kill_and_resume(tmp_path, text, 128, 32, workers)
+    assert again.outcomes == {"CONVERGED": 128}
+    right(again)
+
+
+def right(sweep, step=16):
+    """Check some of the states of a sweep against cold solves."""
+    found = sweep.to_dataset()
+    for i in range(0, len(sweep), step):
+        state = sb.solve(sb.Groups(*(float(found[f"{name}_group"][i]) for name in ("speed", "load", "roughness"))))
+        assert float(found.friction_paper[i]) == pytest.approx(state.friction().total, rel=2e-6)
+
+
+def test_a_killed_worker_process_is_replaced(tmp_path):
+    file, store = write(tmp_path, RANDOM.format(kind="sobol", points=128)), tmp_path / "store"
+    process = start(file, store, "--workers", "2")
+    try:
+        until(lambda: rows_in(store) > 20)
+        before = chunks(store)
+        os.kill(workers_of(process.pid)[-1], signal.SIGKILL)
+        _, err = process.communicate(timeout=120)
+    finally:
+        process.kill()
+    assert (process.returncode, err) == (0, "")
+    after = chunks(store)
+    flags = {path for path in before if path.startswith("done/")}
+    assert {path: after[path] for path in flags} == {path: before[path] for path in flags}
+    assert sb.open_sweep(store).outcomes == {"CONVERGED": 128}
+
+
+def test_workers_that_die_again_and_again_end_the_sweep_with_a_sentence(tmp_path):
+    code = """
+import os, sys
+import stribeck as sb
+from stribeck import sweep_chain, sweep_workers
+def die(path, chains, workers, finished, pause):
+    from concurrent.futures.process import BrokenProcessPool
+    raise BrokenProcessPool
+sweep_workers.on_processes = die
+from stribeck.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
+    file, store = write(tmp_path, GRID), tmp_path / "store"
+    run = subprocess.run(
+        [sys.executable, "-c", code, "sweep", file, "--out", store, "--workers", "2"],
+        capture_output=True,
+        text=True,
+        env=environment(),
+        timeout=60,
+    )
+    assert run.returncode == 1
+    assert run.stderr.startswith("stribeck: Worker processes died 4 times; is the memory of this machine large enough, ")
+    assert not (store / LOCK).exists()
+
+
+def test_a_second_sweep_on_the_store_is_refused_while_the_first_runs(capsys, tmp_path):
+    file, store = write(tmp_path, LONG), tmp_path / "store"
+    process = start(file, store)
+    try:
+        until(lambda: rows_in(store) > 0)
+        answer = call(capsys, "sweep", file, "--out", store)
+        assert process.poll() is None
+        assert answer.code == 2
+        assert f"{store} is in use: process {process.pid} on this machine sweeps on it" in answer.err
+        assert 0 < sb.open_sweep(store).finished < 1024  # reading is free
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == 130
+
+
+# --- a full disk ---
+
+
+@contextmanager
+def small_disk(folder, kind):
+    """Give a disk that holds a hundred states, where one is wanted and the system lets us mount it."""
+    mounted = (
+        kind == "mounted"
+        and subprocess.run(["mount", "-t", "tmpfs", "-o", "size=600k", "none", folder], capture_output=True).returncode == 0
+    )
+    try:
+        yield mounted
+    finally:
+        if mounted:
+            subprocess.run(["umount", "-l", folder], check=True)
+
+
+@pytest.mark.parametrize(
+    ("workers", "kind"),
+    [(1, "mounted"), *(pytest.param(*pair, marks=SLOW) for pair in ((2, "mounted"), (1, "limited"), (2, "limited")))],
+)
+def test_a_full_disk_is_a_sentence_and_the_store_opens_and_goes_on(tmp_path, workers, kind):
+    """Where no disk can or shall be mounted, the system refuses to let any file grow once there are some states."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    file, store = write(tmp_path, RANDOM.format(kind="sobol", points=128)), disk / "store"
+    with small_disk(disk, kind) as mounted:
+        process = start(file, store, "--workers", str(workers))
+        try:
+            if not mounted:
+                until(lambda: rows_in(store) > 20)
+                for pid in (process.pid, *children_of(process.pid)):
+                    resource.prlimit(pid, resource.RLIMIT_FSIZE, (0, resource.RLIM_INFINITY))
+            _, err = process.communicate(timeout=120)
+        finally:
+            process.kill()
+        assert process.returncode == 1, err
+        assert re.fullmatch(
+            rf"stribeck: {store} could not be written \((No space left on device|File too large)\); "
+            r"the states finished until then are kept\. "
+            r"Make room and run the same sweep again: it goes on where it stopped\.\n",
+            err,
+        )
+        found = sb.open_sweep(store)
+        assert 0 < found.finished < 128
+        assert found.outcomes == {"CONVERGED": found.finished}
+        assert not (store / LOCK).exists()
+        assert not [name for array in ("values", "text", "done") for name in os.listdir(store / array) if name.startswith(".")]
+        larger = tmp_path / "larger"
+        shutil.copytree(store, larger)
+    again = sb.sweep(file, larger)
+    assert (again.finished, again.computed) == (128, 128 - found.finished)
+    assert not [name for name in os.listdir(larger / "values") if name.startswith(".")]

@@ -1,0 +1,228 @@
+"""A sweep file says which states there are; all that is wrong with one is told in sentences."""
+
+import numpy as np
+import pytest
+from sweep_files import CONTACT, GRID, RANDOM, write
+
+import stribeck as sb
+from stribeck.sweep_order import CHAIN, chains_of, coordinates
+
+VARY = """
+[vary]
+load = ["10 N/m", "30 N/m"]
+roughness = { range = ["0.5 um", "2 um"], points = 3 }
+speed = { range = ["0", "1 m/s"], points = 5, spacing = "linear" }
+""".replace('"0"', "0")
+
+
+def load(folder, text):
+    return sb.load_sweep(write(folder, text))
+
+
+def test_a_grid_holds_every_combination_the_last_axis_fastest(tmp_path):
+    design = load(tmp_path, CONTACT + VARY)
+    assert (design.kind, design.shape, len(design)) == ("grid", (2, 3, 5), 30)
+    assert design.varied == ("load", "roughness", "speed")
+    cube = {name: design.inputs[name].reshape(design.shape) for name in design.varied}
+    assert cube["load"][:, 1, 1].tolist() == [10.0, 30.0]
+    assert cube["roughness"][1, :, 4] == pytest.approx([0.5e-6, 1e-6, 2e-6], rel=1e-12)
+    assert cube["speed"][1, 2] == pytest.approx([0, 0.25, 0.5, 0.75, 1.0])
+
+
+def test_each_state_has_the_groups_of_its_contact(tmp_path):
+    design = load(tmp_path, CONTACT + VARY)
+    for i in (0, 7, 29):
+        contact = sb.LineContact(**{name: design.inputs[name][i] for name in sb.LineContact.__dataclass_fields__})
+        assert contact.radius == 0.01
+        groups = contact.groups
+        assert design.groups[i].tolist() == [groups.speed, groups.load, groups.roughness]
+
+
+def test_youngs_modulus_and_poisson_ratio_may_vary(tmp_path):
+    text = CONTACT.replace('modulus = "2.7 MPa"', "poisson_ratio = 0.5") + 'load = 30\nspeed = 0.1\nroughness = "1 um"\n'
+    design = load(tmp_path, text + '[vary]\nyoungs_modulus = ["1 MPa", "3 MPa"]\n')
+    assert design.inputs["modulus"] == pytest.approx([4e6 / 3, 4e6])
+    assert design.inputs["youngs_modulus"].tolist() == [1e6, 3e6]
+    assert design.inputs["poisson_ratio"].tolist() == [0.5, 0.5]
+
+
+def test_groups_may_vary_with_the_coefficients_of_friction(tmp_path):
+    design = load(tmp_path, "[groups]\nspeed = 1e-4\nload = 0.1\n[vary]\nroughness = [0, 1e-3]\nmu0 = [0.5, 1]\n")
+    assert not design.si
+    assert design.groups.tolist() == [[1e-4, 0.1, 0.0]] * 2 + [[1e-4, 0.1, 1e-3]] * 2
+    assert design.inputs["mu0"].tolist() == [0.5, 1.0, 0.5, 1.0]
+    assert design.inputs["beta"].tolist() == [1.0] * 4
+
+
+def test_a_list_takes_the_lists_together(tmp_path):
+    design = load(
+        tmp_path, '[groups]\nload = 0.1\n[design]\nkind = "list"\n[vary]\nspeed = [1e-4, 2e-4]\nroughness = [1e-3, 0]\n'
+    )
+    assert design.groups.tolist() == [[1e-4, 0.1, 1e-3], [2e-4, 0.1, 0.0]]
+
+
+@pytest.mark.parametrize("kind", ["random", "latin-hypercube", "sobol"])
+def test_a_random_design_fills_its_ranges_and_its_seed_repeats_it(tmp_path, kind):
+    text = RANDOM.format(kind=kind, points=64)
+    design, again = load(tmp_path, text), load(tmp_path, text)
+    other = load(tmp_path, text.replace("20261", "20262"))
+    assert np.array_equal(design.groups, again.groups)
+    assert not np.array_equal(design.groups, other.groups)
+    assert design.fingerprint == again.fingerprint != other.fingerprint
+    for column, low, high in zip(design.groups.T, (1e-6, 0.01, 1e-4), (1.0, 0.5, 1e-2), strict=True):
+        parts = np.log(column / low) / np.log(high / low)
+        assert parts.min() >= 0 and parts.max() <= 1
+        halves = np.histogram(parts, bins=2, range=(0, 1))[0]
+        slots = np.histogram(parts, bins=64, range=(0, 1))[0]
+        if kind == "random":
+            assert halves.min() > 16
+        else:  # what these designs promise: each of n slots of an axis holds one point
+            assert slots.tolist() == [1] * 64
+
+
+def test_a_random_design_draws_from_a_list_in_equal_parts(tmp_path):
+    text = RANDOM.format(kind="sobol", points=64).replace("load = { range = [0.01, 0.5] }", "load = [0.1, 0.2, 0.3, 0.4]")
+    values, counts = np.unique(load(tmp_path, text).groups[:, 1], return_counts=True)
+    assert (values.tolist(), counts.tolist()) == ([0.1, 0.2, 0.3, 0.4], [16] * 4)
+
+
+def test_the_fingerprint_is_that_of_the_states_and_not_of_the_comments(tmp_path):
+    base = load(tmp_path, GRID)
+    assert load(tmp_path, "# why\n" + GRID).fingerprint == base.fingerprint
+    for changed in (GRID.replace("mu0 = 0.8", "mu0 = 0.9"), GRID.replace("17", "18"), GRID + "[solver]\nrtol = 1e-5\n"):
+        assert load(tmp_path, changed).fingerprint != base.fingerprint
+
+
+GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("", "is empty; a sweep file needs at least the table [vary]."),
+        (GROUPS, "the table [vary] is missing."),
+        (GROUPS + "[vary]\n", "[vary] is empty; say what varies, for example: load = ['10 N/m', '30 N/m']."),
+        (GROUPS + "[vary]\nspeed = []\n", "[vary] speed = [] is empty; list its values."),
+        (GROUPS + "[vary]\nspeed = 3\n", "[vary] speed = 3 must be a list of values, or a range as in"),
+        (GROUPS + "[vary]\nspeed = [1, -1]\n", "[vary] speed = -1 must be finite and zero or positive."),
+        (GROUPS + '[vary]\nspeed = ["1 m/s"]\n', "[vary] speed = '1 m/s' is text; groups are bare numbers"),
+        (GROUPS + "[vary]\nspede = [1]\n", "[vary] 'spede' cannot vary; known are speed, load, roughness, mu0, beta."),
+        (GROUPS + "[vary]\nspeed = [1]\nbeta = [0]\n", "[vary] beta = 0 must be positive."),
+        (GROUPS + "[vary]\nspeed = { range = [1, 2] }\n", "[vary] speed: points = None must be a whole number from 2 to"),
+        (GROUPS + "[vary]\nspeed = { range = [2, 1], points = 3 }\n", "speed: range = [2, 1] must increase; write the lowest"),
+        (GROUPS + "[vary]\nspeed = { range = [0, 1], points = 3 }\n", "speed: range = [0, 1] begins at zero; add spacing"),
+        (GROUPS + "[vary]\nspeed = { range = 1, points = 3 }\n", "speed: range = 1 must be a list of two values"),
+        (GROUPS + "[vary]\nspeed = { range = [1, 2], points = 3, scale = 1 }\n", "speed has the unknown key 'scale'; known"),
+        (GROUPS + '[vary]\nspeed = { range = [1, 2], points = 3, spacing = "even" }\n', "spacing = 'even' must be 'log' or"),
+        (GROUPS + "[vary]\nspeed = [1]\nload = [0.1]\n", "[groups] load = 0.1 also stands in [vary]; keep one of them."),
+        ("[groups]\nload = 0.1\n[vary]\nspeed = [1]\n", "[groups] roughness is missing; add it there or to [vary]."),
+        (GROUPS + "rough = 1\n[vary]\nspeed = [1]\n", "[groups] rough = 1 is not a known key; did you mean roughness."),
+        (GROUPS + "[contact]\n[vary]\nspeed = [1]\n", "the tables [contact] and [groups] are both given"),
+        (
+            CONTACT + '[vary]\nload = [30]\nspeed = ["1 s"]\nroughness = [0]\n',
+            "[vary] speed = '1 s' is a time; a speed such as",
+        ),
+        (CONTACT + "[vary]\nload = [30]\nspeed = [1]\n", "[contact] roughness is missing; add a length, for example"),
+        (
+            CONTACT + "[vary]\nload=[1]\nspeed=[1]\nroughness=[1]\nyoungs_modulus=[1e6]\n",
+            "give either modulus, or youngs_modulus",
+        ),
+        (
+            CONTACT + "[vary]\nload=[1e-300]\nspeed=[1e300]\nroughness=[1]\n",
+            "state 0: the dimensionless groups of this contact",
+        ),
+        (GROUPS + "[vary]\nspeed = [1]\n[design]\npoints = 4\n", "[design] points = 4 is for random, latin-hypercube, sobol;"),
+        (GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "sobol"\n', "[design] points is missing; say how many states"),
+        (
+            GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "sobol"\npoints = 100\n',
+            "must be a power of two for kind = 'sobol'",
+        ),
+        (
+            GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "star"\n',
+            "[design] kind = 'star' must be one of 'grid', 'list', 'random'",
+        ),
+        (
+            GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "random"\npoints = 0\n',
+            "points = 0 must be a whole number from 1 to",
+        ),
+        (
+            GROUPS + '[vary]\nspeed = { range = [1, 2], points = 3 }\n[design]\nkind = "random"\npoints = 4\n',
+            "[vary] speed: points = 3 is for grids; with kind = 'random' it belongs in [design].",
+        ),
+        (
+            '[groups]\nload = 0.1\n[design]\nkind = "list"\n[vary]\nspeed = [1, 2]\nroughness = [1]\n',
+            "[vary] the lists must be equally long with kind = 'list': speed has 2, roughness has 1.",
+        ),
+        (
+            GROUPS + '[vary]\nspeed = { range = [1, 2], points = 3 }\n[design]\nkind = "list"\n',
+            "'points': 3} must be a list of values.",
+        ),
+        (
+            "[groups]\nload = 0.1\n[vary]\nspeed={range=[1,2],points=2000}\nroughness={range=[1,2],points=2000}\n",
+            "[vary] makes 4000000 states; at most 1000000 are possible in one sweep.",
+        ),
+        (GROUPS + "[vary]\nspeed = [1]\n[solver]\nrtol = 1\n", "[solver] rtol = 1 must be a number from 1e-11 to 1e-2"),
+    ],
+)
+def test_what_is_wrong_is_told_in_a_sentence_that_names_the_key(tmp_path, text, sentence):
+    with pytest.raises(sb.InputError) as caught:
+        load(tmp_path, text)
+    lines = str(caught.value).splitlines()
+    assert any(sentence in line for line in lines), lines
+    assert all(line.startswith(str(tmp_path / "sweep.toml")) and line.endswith(".") for line in lines)
+
+
+def test_all_problems_are_told_in_one_go(tmp_path):
+    with pytest.raises(sb.InputError) as caught:
+        load(tmp_path, '[groups]\nload = "x"\n[vary]\nspede = [1]\n[solver]\nrtol = 2\n[design]\nkind = "grid"\n')
+    assert len(str(caught.value).splitlines()) == 5  # roughness and speed are missing too
+
+
+# --- the order ---
+
+
+@pytest.mark.parametrize("kind", ["random", "latin-hypercube", "sobol"])
+def test_every_state_is_in_one_chain_and_neighbours_follow_one_another(tmp_path, kind):
+    design = load(tmp_path, RANDOM.format(kind=kind, points=512))
+    chains = chains_of(design.groups)
+    assert sorted(np.concatenate(chains)) == list(range(512))
+    assert max(map(len, chains)) <= CHAIN
+    z = coordinates(design.groups)
+    steps = [np.abs(np.diff(z[chain], axis=0)).max(axis=1) for chain in chains]
+    unordered = np.abs(np.diff(z, axis=0)).max(axis=1)
+    assert np.mean(np.concatenate(steps)) < 0.35 * np.mean(unordered)
+
+
+def test_long_lines_of_a_grid_are_followed_from_high_speed_to_low(tmp_path):
+    design = load(tmp_path, GRID)
+    chains = chains_of(design.groups, design.shape)
+    assert [len(chain) for chain in chains] == [17] * 4
+    for chain in chains:
+        speed, load_, roughness = design.groups[chain].T
+        assert (np.diff(speed) < 0).all()
+        assert len(set(load_)) == len(set(roughness)) == 1
+
+
+def test_short_lines_are_joined_each_beginning_where_the_one_before_ended(tmp_path):
+    design = load(tmp_path, GRID.replace("17", "5"))
+    chains = chains_of(design.groups, design.shape)
+    assert [len(chain) for chain in chains] == [20]
+    z = np.log(design.groups[chains[0]])
+    assert ((np.abs(np.diff(z, axis=0)) > 1e-9).sum(axis=1) == 1).all()
+
+
+def test_states_that_differ_in_friction_alone_follow_one_another(tmp_path):
+    design = load(tmp_path, GRID.replace("mu0 = 0.8\n", "").replace("[vary]\n", "[vary]\nmu0 = [0.5, 0.8]\n"))
+    chains = chains_of(design.groups, design.shape)
+    assert sorted(np.concatenate(chains)) == list(range(136))
+    for chain in chains:
+        assert np.array_equal(design.groups[chain][::2], design.groups[chain][1::2])
+
+
+def test_resting_and_smooth_states_have_chains_of_their_own(tmp_path):
+    text = "[groups]\n[vary]\nload = [0.1, 0.2]\nroughness = [0, 1e-4, 1e-3]\nspeed = [0, 1e-5, 1e-4]\n"
+    design = load(tmp_path, text)
+    chains = chains_of(design.groups, design.shape)
+    assert sorted(np.concatenate(chains)) == list(range(18))
+    for chain in chains:
+        assert len({tuple(state == 0) for state in design.groups[chain]}) == 1

@@ -1,0 +1,344 @@
+"""The store of a sweep: what is in it is whole, what is torn counts as not done, and one sweep at a time works on it."""
+
+import json
+import os
+import shutil
+import socket
+import struct
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+import zarr
+from sweep_files import GRID, chunks, done_rows, write
+
+import stribeck as sb
+from stribeck import sweep_lock, sweep_store
+from stribeck.output import MissingExtraError
+from stribeck.sweep_columns import OUTCOMES, columns_of
+from stribeck.sweep_lock import LOCK
+
+SMALL = GRID.replace("17", "3")
+
+
+@pytest.fixture(scope="module")
+def filled(tmp_path_factory):
+    """Return a sweep of 12 states that nobody changes."""
+    folder = tmp_path_factory.mktemp("filled")
+    return sb.sweep(write(folder, SMALL), folder / "store")
+
+
+@pytest.fixture
+def copy(filled, tmp_path):
+    """Return a copy of its store, and its file."""
+    shutil.copytree(filled.path, tmp_path / "store")
+    return tmp_path / "store", write(tmp_path, SMALL)
+
+
+# --- what is in it ---
+
+
+def test_zarr_reads_what_was_written(filled):
+    group = zarr.open_group(str(filled.path), mode="r", use_consolidated=False)
+    assert np.array_equal(group["values"][:], filled.rows.values)
+    assert (group["done"][:] > 0).all()
+    assert group["values"].attrs["columns"] == list(columns_of(si=False))
+    assert group["values"].chunks == (1, len(columns_of(si=False)))
+    texts = [bytes(row).rstrip(b"\0").decode() for row in group["text"][:]]
+    assert texts == list(filled.rows.texts)
+    assert group.attrs["design"] == SMALL == (filled.path / "sweep.toml").read_text()
+    assert group.attrs["outcomes"] == list(OUTCOMES)
+    names = group["inputs"].attrs["columns"]
+    assert group["inputs"][:, names.index("mu0")].tolist() == [0.8] * 12
+
+
+def test_the_dataset_holds_what_solve_gives(filled):
+    found = filled.to_dataset()
+    for i in range(12):
+        groups = sb.Groups(*(float(found[f"{name}_group"][i]) for name in ("speed", "load", "roughness")))
+        state = sb.solve(groups)
+        for name in ("contact_load_share", "central_gap", "minimum_gap", "flux_gap", "offset"):
+            assert float(found[name][i]) == pytest.approx(getattr(state, name), rel=2e-6, abs=2e-6)
+        for definition in ("paper", "balanced"):
+            friction = state.friction(0.8, 0.05, definition)
+            assert float(found[f"friction_{definition}"][i]) == pytest.approx(friction.total, rel=2e-6)
+            assert float(found[f"friction_{definition}_viscous"][i]) == pytest.approx(friction.viscous, rel=2e-6)
+        assert float(found.hersey_number[i]) == pytest.approx(groups.hersey_number(0.05))
+        assert found.regime[i] == sb.regime_of(state.fluid_load_share, friction_share(state))
+        assert str(found.outcome[i].item()) == "CONVERGED"
+        assert 0 < found.error_estimate[i] <= 1e-6
+
+
+def friction_share(state):
+    friction = state.friction(0.8, 0.05)
+    return friction.contact / friction.total
+
+
+def test_every_variable_has_a_unit_and_a_long_name_and_survives_netcdf(filled, tmp_path):
+    filled.to_netcdf(tmp_path / "sweep.nc")
+    with xr.open_dataset(tmp_path / "sweep.nc", engine="netcdf4") as found:
+        made = filled.to_dataset()
+        assert set(found.variables) == set(made.variables)
+        for name, variable in found.variables.items():
+            assert variable.attrs["units"] and variable.attrs["long_name"]
+            assert variable.values.tolist() == made[name].values.tolist()
+        assert (found.attrs["complete"], found.attrs["failed"], found.attrs["rtol"]) == (1, 0, 1e-6)
+        assert found.attrs["design"] == SMALL
+
+
+def test_a_grid_unstacks_by_its_inputs(filled):
+    found = filled.to_dataset().set_index(state=["load_group", "roughness_group", "speed_group"]).unstack("state")
+    assert dict(found.sizes) == {"load_group": 2, "roughness_group": 2, "speed_group": 3}
+
+
+def test_states_not_computed_say_so(copy):
+    store, _ = copy
+    (store / "done" / "c.4").unlink()
+    found = sb.open_sweep(store).to_dataset()
+    assert found.outcome.values.tolist() == ["CONVERGED"] * 4 + ["NOT_COMPUTED"] + ["CONVERGED"] * 7
+    assert np.isnan(found.friction_paper[4]) and found.regime[4] == ""
+    assert found.attrs["complete"] == 0
+
+
+# --- torn writes ---
+
+
+@pytest.mark.parametrize("damage", ["no values", "short values", "other values", "empty flag", "other flag", "other text"])
+def test_a_torn_state_is_not_done_and_is_computed_again(copy, filled, damage):
+    store, file = copy
+    said = next(row for row, text in enumerate(filled.rows.texts) if text)
+    values, done, text = store / "values" / f"c.{said}.0", store / "done" / f"c.{said}", store / "text" / f"c.{said}.0"
+    if damage == "no values":
+        values.unlink()
+    elif damage == "short values":
+        values.write_bytes(values.read_bytes()[:100])
+    elif damage == "other values":
+        values.write_bytes(b"\1" + values.read_bytes()[1:])
+    elif damage == "empty flag":
+        done.write_bytes(b"")
+    elif damage == "other flag":
+        done.write_bytes(struct.pack("<I", 1))
+    else:
+        text.write_bytes(b"X" + text.read_bytes()[1:])
+    before = chunks(store)
+    assert sb.open_sweep(store).rows.done.tolist() == [row != said for row in range(12)]
+    again = sb.sweep(file, store)
+    assert (again.computed, again.finished) == (1, 12)
+    after = chunks(store)
+    assert {path for path in after if after[path] != before.get(path)} <= {
+        f"values/c.{said}.0",
+        f"text/c.{said}.0",
+        f"done/c.{said}",
+    }
+    # Now it began cold: its mesh is another one, its numbers agree within the tolerance.
+    numbers = [k for k, name in enumerate(columns_of(si=False)) if name not in ("nodes", "newton_steps")]
+    assert again.rows.values[said, numbers] == pytest.approx(filled.rows.values[said, numbers], rel=2e-6, abs=2e-6)
+
+
+def test_a_state_without_its_flag_and_temporary_files_are_cleared_away(copy):
+    store, file = copy
+    (store / "done" / "c.7").unlink()
+    (store / "values" / ".c.7.0-0123abcd").write_bytes(b"half")
+    (store / "text" / "c.7.0").write_bytes(b"left by a run that was killed".ljust(sweep_store.TEXT, b"\0"))
+    assert sb.sweep(file, store).computed == 1
+    assert not list((store / "values").glob(".*"))
+    assert sb.open_sweep(store).finished == 12
+
+
+def test_data_come_before_the_flag(tmp_path, monkeypatch):
+    order = []
+    replace = os.replace
+
+    def noted(a, b):
+        if b.name.startswith("c."):
+            order.append(b.parent.name)
+        replace(a, b)
+
+    monkeypatch.setattr(sweep_store.os, "replace", noted)
+    sb.sweep(write(tmp_path, SMALL), tmp_path / "store")
+    states = "".join(name[0] for name in order).split("d")
+    assert len(states) == 13
+    assert set(states) == {"v", "tv", ""}
+
+
+def test_a_long_text_is_cut_at_a_letter(tmp_path):
+    cut = sweep_store._text("µ" * 2000)
+    assert len(cut) == sweep_store.TEXT
+    assert cut.rstrip(b"\0").decode().endswith("µ...")
+
+
+def test_a_finished_sweep_computes_nothing(copy):
+    store, file = copy
+    before = chunks(store)
+    again = sb.sweep(file, store)
+    assert (again.computed, again.finished, again.failed) == (0, 12, 0)
+    assert chunks(store) == before
+
+
+def test_each_run_is_noted(copy):
+    store, file = copy
+    (store / "done" / "c.7").unlink()
+    sb.sweep(file, store)
+    runs = [json.loads(line) for line in (store / "runs.jsonl").read_text().splitlines()]
+    assert [run["run"] for run in runs] == [1, 1, 2, 2]
+    assert (runs[0]["done"], runs[1]["computed"], runs[1]["outcome"]) == (0, 12, "FINISHED")
+    assert (runs[2]["done"], runs[3]["computed"], runs[2]["pid"]) == (11, 1, os.getpid())
+
+
+# --- what is refused ---
+
+
+def test_another_design_is_refused(copy, tmp_path):
+    store, _ = copy
+    before = chunks(store)
+    for name, changed in (("a", SMALL.replace("0.8", "0.9")), ("b", SMALL + "[solver]\nrtol = 1e-5\n")):
+        with pytest.raises(sb.InputError, match=r"store holds another sweep than .*: the states or the tolerance differ\."):
+            sb.sweep(write(tmp_path, changed, f"{name}.toml"), store)
+    assert chunks(store) == before
+
+
+def test_another_version_is_refused(copy, monkeypatch):
+    store, file = copy
+    monkeypatch.setattr(sweep_store, "version", lambda name: "9.9.9")
+    with pytest.raises(sb.InputError, match=r"was begun with stribeck 0\.[0-9.]+, this is 9\.9\.9"):
+        sb.sweep(file, store)
+
+
+def test_the_same_design_with_other_comments_goes_on(copy, tmp_path):
+    store, _ = copy
+    assert sb.sweep(write(tmp_path, "# why\n" + SMALL, "why.toml"), store).finished == 12
+
+
+@pytest.mark.parametrize("taken", ["file", "folder", "nowhere"])
+def test_a_place_that_is_no_store_is_refused_and_kept(tmp_path, taken):
+    out = tmp_path / "out"
+    if taken == "file":
+        out.write_text("mine")
+    elif taken == "folder":
+        out.mkdir()
+        (out / "mine").write_text("mine")
+    else:
+        out = tmp_path / "no" / "out"
+    what = {"file": "is a file", "folder": "holds no sweep", "nowhere": "there is no folder"}[taken]
+    with pytest.raises(sb.InputError, match=what):
+        sb.sweep(write(tmp_path, SMALL), out)
+    assert sorted(os.listdir(tmp_path)) == sorted(["sweep.toml", *(["out"] if taken != "nowhere" else [])])
+
+
+def test_an_empty_folder_becomes_the_store(tmp_path):
+    (tmp_path / "store").mkdir()
+    assert sb.sweep(write(tmp_path, SMALL), tmp_path / "store").finished == 12
+
+
+def test_a_store_of_a_later_format_is_refused(copy):
+    store, _ = copy
+    about = json.loads((store / "zarr.json").read_text())
+    about["attributes"]["stribeck_sweep"] = 99
+    (store / "zarr.json").write_text(json.dumps(about))
+    with pytest.raises(sb.InputError, match="has the format 99, of another version of stribeck"):
+        sb.open_sweep(store)
+
+
+@pytest.mark.parametrize(("library", "extra"), [("zarr", "data"), ("distributed", "cluster"), ("xarray", "data")])
+def test_a_missing_extra_is_one_sentence(tmp_path, monkeypatch, filled, library, extra):
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(MissingExtraError, match=rf"needs {library}; install it with: pip install 'stribeck\[{extra}\]'\."):
+        if library == "xarray":
+            filled.to_dataset()
+        else:
+            sb.sweep(write(tmp_path, SMALL), tmp_path / "store", scheduler="tcp://127.0.0.1:1" if extra == "cluster" else None)
+
+
+@pytest.mark.parametrize("workers", [0, -1, 1.5, True, "2", 100_000])
+def test_a_number_of_workers_that_is_none_is_refused(tmp_path, workers):
+    with pytest.raises(sb.InputError, match=r"workers = .*; it must be a whole number from 1 to 1024\."):
+        sb.sweep(write(tmp_path, SMALL), tmp_path / "store", workers=workers)
+    with pytest.raises(sb.InputError, match=r"workers = 2 and scheduler = 'tcp://x:1' are both given"):
+        sb.sweep(write(tmp_path, SMALL), tmp_path / "store", workers=2, scheduler="tcp://x:1")
+
+
+# --- the lock ---
+
+
+def lock_of(store, **changes):
+    """Write the lock of a process into a store."""
+    holder = {"host": socket.gethostname(), "pid": os.getpid(), "born": sweep_lock._born(os.getpid()), "token": "x"} | changes
+    (store / LOCK).write_text(json.dumps(holder))
+
+
+def test_a_store_that_a_living_process_sweeps_on_is_refused(copy):
+    store, file = copy
+    lock_of(store)
+    with pytest.raises(sb.InputError, match=rf"is in use: process {os.getpid()} on this machine sweeps on it; wait for it"):
+        sb.sweep(file, store)
+    assert (store / LOCK).exists()
+
+
+def test_the_lock_of_another_machine_is_refused_with_what_to_do(copy):
+    store, file = copy
+    lock_of(store, host="node17", pid=4711)
+    with pytest.raises(sb.InputError, match=r"in use by process 4711 on node17, .*; if it does not, delete that file and run"):
+        sb.sweep(file, store)
+    (store / LOCK).unlink()
+    assert sb.sweep(file, store).note == ""
+
+
+def dead_process():
+    with subprocess.Popen([sys.executable, "-c", ""]) as process:
+        process.wait()
+    return process.pid
+
+
+@pytest.mark.parametrize("how", ["ended", "number used again", "torn"])
+def test_the_lock_of_a_dead_process_is_taken_over_with_a_note(copy, how):
+    store, file = copy
+    if how == "ended":
+        lock_of(store, pid=dead_process())
+    elif how == "number used again":
+        lock_of(store, born="another boot 17")
+    else:
+        (store / LOCK).write_text("{")
+    if how == "torn":  # written whole or not at all: somebody else's
+        with pytest.raises(sb.InputError, match="delete that file and run again"):
+            sb.sweep(file, store)
+        return
+    found = sb.sweep(file, store)
+    assert "An earlier sweep on this store" in found.note
+    assert not list(store.glob(f"*{LOCK}*"))
+
+
+def test_a_lock_that_changes_hands_while_it_is_judged_is_left_alone(copy, monkeypatch):
+    store, file = copy
+    lock_of(store, pid=dead_process())
+    rename = os.rename
+
+    def too_late(a, b):
+        lock_of(store)  # somebody else took it over first
+        rename(a, b)
+
+    monkeypatch.setattr(sweep_lock.os, "rename", too_late)
+    with pytest.raises(sb.InputError, match="is in use: process"):
+        sb.sweep(file, store)
+    assert json.loads((store / LOCK).read_text())["pid"] == os.getpid()
+
+
+def test_the_lock_is_gone_after_success_failure_and_interruption(tmp_path):
+    file = write(tmp_path, SMALL)
+
+    def stop(progress):
+        raise KeyboardInterrupt
+
+    def fail(progress):
+        raise ZeroDivisionError
+
+    store = tmp_path / "store"
+    assert sb.sweep(file, store, on_progress=stop).interrupted
+    assert not (store / LOCK).exists()
+    with pytest.raises(ZeroDivisionError):
+        sb.sweep(file, store, on_progress=fail)
+    assert not (store / LOCK).exists()
+    assert len(done_rows(store)) == 2
+    assert sb.sweep(file, store).computed == 10
+    assert not (store / LOCK).exists()
