@@ -56,8 +56,9 @@ MAY_IMPORT = {
     "sensitivity": EQUATIONS | {"observables", "states"},
     "solution": {"mesh", "newton", "observables", "parameters", "units"},
     "solve": {"hertz", "mesh", "newton", "observables", "parameters", "refine", "solution", "start", "threads", "units"},
-    "regimes": RESULTS | {"refine", "sensitivity", "start"},
-    "curve": RESULTS | {"asymptotics", "follow", "plotting", "refine", "regimes", "sensitivity", "span", "store"},
+    "regimes": RESULTS | {"atlas", "refine", "sensitivity", "start"},
+    "curve": RESULTS
+    | {"asymptotics", "atlas_curve", "follow", "plotting", "refine", "regimes", "sensitivity", "span", "store"},
     "validity": RESULTS | {"asymptotics", "curve", "output"},
     "plot_validity": {"asymptotics", "figures", "output", "parameters", "plotting", "units"},
     "output": {"units"},
@@ -70,8 +71,15 @@ MAY_IMPORT = {
     "merging": RESULTS | {"follow", "refine", "sensitivity", "span"},
     "phase_grid": RESULTS | {"regimes", "span"},
     "phase_dataset": RESULTS | {"asymptotics", "output", "phase_grid", "regimes", "store"},
-    "phase_diagram": RESULTS | {"curve", "merging", "phase_dataset", "phase_grid", "regimes", "span"},
+    "phase_diagram": RESULTS | {"atlas_phase", "curve", "merging", "phase_dataset", "phase_grid", "regimes", "span"},
     "plot_phase": RESULTS | {"output", "plotting"},
+    "atlas_grid": set(),
+    "atlas_table": {"atlas_grid"},
+    "atlas": {"atlas_grid", "atlas_table", "hertz", "parameters", "solution", "units"},
+    "atlas_curve": {"atlas", "parameters", "regimes", "solution", "units"},
+    "atlas_phase": {"atlas", "atlas_curve", "newton", "parameters", "phase_grid", "regimes"},
+    "atlas_build": {"atlas_grid", "atlas_table", "curve"},
+    "atlas_certificate": {"atlas", "parameters", "solve"},
 }
 OPEN = {"__init__", "__main__", "app", "cli"}
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from . import hertz
 from ._types import Array, Flags
-from .atlas_grid import LEAST_LOAD, REGIONS
-from .atlas_table import TABULATED, Values, load_table
+from .atlas_grid import HEAVY, LEAST_LOAD, LEAST_SPEED, NEARLY_SMOOTH, region_at
+from .atlas_table import TABULATED, Values, load_table, solver_hash
 from .parameters import Groups, InputError, quantity
 from .solution import Definition, check_definition
 from .units import show
@@ -34,14 +34,11 @@ __all__ = [
     "viscous_friction",
 ]
 
-BOX = {"speed": (1e-12, 1e6), "load": (LEAST_LOAD, 1.0), "relative_roughness": (1e-6, 1e2)}
+BOX = {"speed": (LEAST_SPEED, 1e6), "load": (LEAST_LOAD, 1.0), "relative_roughness": (1e-6, 1e2)}
 """Least and largest groups of the atlas, beside speed 0, at rest, and roughness 0, smooth."""
 
-HEAVIEST_NEARLY_SMOOTH = 0.99
-"""Largest load below the next relative roughness, where towards load 1 the gap at rest closes and no power of it is smooth."""
-
-NEARLY_SMOOTH = REGIONS[1].roughness[0]
-"""Relative roughness from which on all loads up to 1 are in the atlas."""
+HEAVY_REGION = 1
+"""Number of the region of heavy loads on nearly smooth surfaces, which does not begin at rest."""
 
 SLACK = 1e-12
 """Relative excess over an end of the box that is rounding."""
@@ -288,9 +285,15 @@ def about() -> dict[str, Any]:
     Returns
     -------
     dict
-        ``version`` and ``solver_hash`` of the solver that made it, number of ``states`` and their tolerance ``rtol``.
+        ``version`` and ``solver_hash`` of the solver that made it, whether that is the ``same_solver`` as the installed one,
+        and number of ``states`` and their tolerance ``rtol``.
+
+    Notes
+    -----
+    A solver whose sources changed keeps the table: whether its numbers moved too is for the certificate to say.
     """
-    return dict(load_table().about)
+    made = load_table().about
+    return {**made, "same_solver": made["solver_hash"] == solver_hash()}
 
 
 Flat = tuple[Array, Array, Array]
@@ -307,17 +310,25 @@ def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> t
     _check("speed", speed, *BOX["speed"], zero=True)
     _check("load", load, *BOX["load"], zero=False)
     _check("relative_roughness", kappa, *BOX["relative_roughness"], zero=True)
-    heavy = (load > HEAVIEST_NEARLY_SMOOTH * (1 + SLACK)) & (kappa > 0) & (kappa < NEARLY_SMOOTH)
-    if heavy.any():
-        raise InputError(
-            f"load has the value {load[heavy][0]:g}; below the relative roughness {NEARLY_SMOOTH:g} the atlas holds loads "
-            f"from {LEAST_LOAD:g} to {HEAVIEST_NEARLY_SMOOTH:g}. Use solve."
-        )
     with np.errstate(divide="ignore"):
         log_speed = np.log(speed)
     log_load = np.clip(-np.log(load), 0.0, -math.log(LEAST_LOAD))
     inside = np.where(kappa > 0, np.clip(kappa, *BOX["relative_roughness"]), 0.0)
-    return (speed, load, kappa), load_table().read(functions, log_speed, log_load, inside, slopes)
+    closing = (speed == 0) & (inside > 0) & (region_at(log_load, inside) == HEAVY_REGION)
+    if not closing.any():
+        return (speed, load, kappa), load_table().read(functions, log_speed, log_load, inside, slopes)
+    if FLUX in functions:
+        raise InputError(
+            f"load has the value {load[closing][0]:g} at speed 0; there, at relative roughness below {NEARLY_SMOOTH:g}, the "
+            f"atlas holds the flux gap for loads up to {math.exp(-HEAVY):.4g}. Use solve."
+        )
+    found = load_table().read(functions, log_speed, np.where(closing, HEAVY, log_load), inside, slopes)
+    # At rest the load shifts the gap and does nothing else.
+    shift = 0.5 * inside[closing] * (log_load[closing] - HEAVY)
+    for row, function in enumerate(functions):
+        if function in (CENTRAL, MINIMUM):
+            found.values[row, closing] = np.log(np.exp(found.values[row, closing]) + shift)
+    return (speed, load, kappa), found
 
 
 def _check(name: str, values: Array, low: float, high: float, zero: bool) -> None:

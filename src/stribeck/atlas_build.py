@@ -23,7 +23,7 @@ import numpy as np
 from ._types import Array
 from .atlas_grid import (
     BREAK_TERMS,
-    LEAST_LOAD,
+    LEAST_SPEED,
     REGIONS,
     SEGMENTS,
     SHARES,
@@ -34,7 +34,7 @@ from .atlas_grid import (
     segment_nodes,
     to_coefficients,
 )
-from .atlas_table import FILE, FILM_RANGE, STEP, TABULATED, pack
+from .atlas_table import FILE, FILM_RANGE, STEP, TABULATED, pack, solver_hash
 from .curve import stribeck_curve
 
 RTOL = 1e-6
@@ -52,31 +52,6 @@ FILM_PIECES, FILM_NODES, FILM_RTOL = 5, 20, 1e-7
 
 NEGLIGIBLE = 2e-8
 """Coefficients up to which a polynomial is left out."""
-
-SOLVER = (
-    "contact_laws",
-    "continuation",
-    "elasticity",
-    "equations",
-    "estimate",
-    "follow",
-    "mesh",
-    "newton",
-    "observables",
-    "refine",
-    "reynolds",
-    "start",
-    "states",
-)
-"""The modules whose hash says which solver made a table."""
-
-
-def solver_hash() -> str:
-    """Return the SHA-256 of the sources of the solver."""
-    found = hashlib.sha256()
-    for name in SOLVER:
-        found.update(Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8").encode())
-    return found.hexdigest()
 
 
 def solved(log_speeds: Array, log_load: float, kappa: float, rtol: float) -> Array:
@@ -110,17 +85,19 @@ def speed_range(log_load: float, kappa: float) -> tuple[float, float]:
     return half - math.log(60) - yielding, film + math.log(300)
 
 
-def breaks_on(log_speeds: Array, observed: Array) -> Array:
-    """Return b_1 .. b_5 on a coarse curve."""
+def breaks_on(log_speeds: Array, observed: Array, has_rest: bool) -> Array:
+    """Return b_1 .. b_5 on a coarse curve; b_1 is the least speed where segments do not begin at rest."""
     from scipy.interpolate import PchipInterpolator
 
     there = observed[:, 0] > 1e-300
     s, contact, fluid, central = log_speeds[there], *observed[there, :3].T
-    yielding = fluid / contact + central / central[0] - 1
-    early = np.arange(1, 1 + int(np.argmax(yielding > 8 * YIELDING)))
-    first = PchipInterpolator(np.log(yielding[early]), s[early])(math.log(YIELDING))
+    first = math.log(LEAST_SPEED)
+    if has_rest:
+        yielding = fluid / contact + central / central[0] - 1
+        early = np.arange(1, 1 + int(np.argmax(yielding > 8 * YIELDING)))
+        first = float(PchipInterpolator(np.log(yielding[early]), s[early])(math.log(YIELDING)))
     logs = np.where(contact > 0.5, -np.log1p(-np.minimum(fluid, 0.9)), -np.log(contact))
-    return np.array([float(first), *PchipInterpolator(logs, s)(SHARES).tolist()])
+    return np.array([first, *PchipInterpolator(logs, s)(SHARES).tolist()])
 
 
 def coarse_line(region: int, i: int) -> Array:
@@ -131,15 +108,16 @@ def coarse_line(region: int, i: int) -> Array:
     for y in nodes(COARSE_NODES[1]):
         log_load = float(where.log_load(y, np.asarray(kappa)))
         low, high = speed_range(log_load, kappa)
+        low = low if where.has_rest else math.log(LEAST_SPEED)
         speeds = np.linspace(low, high, max(30, int((high - low) / COARSE_STEP)))
-        found.append(breaks_on(speeds, solved(speeds, log_load, kappa, COARSE_RTOL)))
+        found.append(breaks_on(speeds, solved(speeds, log_load, kappa, COARSE_RTOL), where.has_rest))
     return np.array(found)
 
 
 def break_polynomials(values: Array) -> Array:
     """Return the coefficients of b_1 .. b_5, shape (5, terms, terms), of values at the coarse nodes (roughness, load, 5)."""
     K, Y = (to_coefficients(count)[:BREAK_TERMS] for count in COARSE_NODES)
-    return np.einsum("ai,bj,ijq->qab", K, Y, values)
+    return np.asarray(np.einsum("ai,bj,ijq->qab", K, Y, values))
 
 
 # --- the table ---
@@ -183,7 +161,8 @@ def piece_blocks(region: int, lines: Sequence[Array]) -> list[Array]:
     found, first = [], 0
     for count in where.speeds:
         part = values[:, :, first : first + count]
-        dense = np.einsum("ai,bj,ct,ijtf->cabf", K, Y, to_coefficients(count), part, optimize=True)
+        T = to_coefficients(count) if count else np.empty((0, 0))
+        dense = np.einsum("ai,bj,ct,ijtf->cabf", K, Y, T, part, optimize=True)
         found.append(np.where(np.abs(dense) > NEGLIGIBLE, dense, 0.0))
         first += count
     assert len(found) == SEGMENTS
@@ -196,7 +175,8 @@ def film_coefficients() -> Array:
     x = np.concatenate([in_region(piece, FILM_PIECES, nodes(FILM_NODES)) for piece in range(FILM_PIECES)])
     speeds = low + 0.5 * (x + 1) * (high - low)
     values = tabulated(solved(speeds, math.log(10), 0.0, FILM_RTOL), speeds, math.log(10))[:, 1:]
-    return np.einsum("ct,ptf->pcf", to_coefficients(FILM_NODES), values.reshape(FILM_PIECES, FILM_NODES, -1))
+    values = values.reshape(FILM_PIECES, FILM_NODES, -1)
+    return np.asarray(np.einsum("ct,ptf->pcf", to_coefficients(FILM_NODES), values))
 
 
 # --- running it ---
@@ -253,7 +233,7 @@ def build(target: Path, folder: Path, workers: int) -> None:
         Processes.
     """
     begun = time.monotonic()
-    plan = hashlib.sha256(repr((REGIONS, SHARES, YIELDING, BREAK_TERMS, RTOL, LEAST_LOAD)).encode()).hexdigest()
+    plan = hashlib.sha256(repr((REGIONS, SHARES, YIELDING, BREAK_TERMS, RTOL)).encode()).hexdigest()
     folder = folder / f"{solver_hash()[:8]}-{plan[:8]}"
     folder.mkdir(parents=True, exist_ok=True)
     with ProcessPoolExecutor(workers) as pool:

@@ -23,6 +23,9 @@ RTOL = 1e-7
 LEAST_SHARE = 1e-9
 """Contact share from which its relative error counts; so small a part of the load is felt nowhere else."""
 
+LEAST_FLUID = 1e-3
+"""Fluid share from which the solver, which bounds its absolute error, can judge."""
+
 OFFSET_FLOOR = 1e-3
 """The offset crosses zero: below this its error is relative to this, as in the solver."""
 
@@ -54,7 +57,7 @@ class Certificate:
     contact_share : ndarray, shape (n,)
         Solved load share of the asperities.
     errors : ndarray, shape (n, len(QUANTITIES))
-        Relative errors; nan where the contact share is too small to count.
+        Relative errors; nan where a load share is too small to count.
     """
 
     speed: Array
@@ -78,7 +81,7 @@ class Certificate:
 def random_states(states: int, seed: int) -> tuple[Array, Array, Array]:
     """Return speeds, loads and relative roughnesses, evenly distributed in their logarithms over the box of the atlas."""
     rng = np.random.default_rng(seed)
-    speed, load, kappa = (np.exp(rng.uniform(*np.log(ends), states)) for ends in atlas.BOX.values())
+    speed, load, kappa = (np.exp(rng.uniform(np.log(ends[0]), np.log(ends[1]), states)) for ends in atlas.BOX.values())
     return speed, load, kappa
 
 
@@ -112,8 +115,9 @@ def compare(speed: Array, load: Array, kappa: Array, observed: Array) -> Certifi
     found += [atlas.viscous_friction(groups) / paper, atlas.viscous_friction(groups, 1.0, "balanced") / balanced]
     found += [atlas.central_gap(groups) / central, atlas.minimum_gap(groups) / minimum, atlas.flux_gap(groups) / flux]
     found += [1 + (atlas.offset(groups) - offset) / np.maximum(np.abs(offset), OFFSET_FLOOR)]
-    counts = np.where(contact > LEAST_SHARE, contact, np.nan)
-    found += [atlas.contact_load_share(groups) / counts, atlas.fluid_load_share(groups) / fluid]
+    contact_counts = np.where(contact > LEAST_SHARE, contact, np.nan)
+    fluid_counts = np.where(fluid > LEAST_FLUID, fluid, np.nan)
+    found += [atlas.contact_load_share(groups) / contact_counts, atlas.fluid_load_share(groups) / fluid_counts]
     return Certificate(speed, load, kappa, contact, np.abs(np.stack(found, axis=1) - 1))
 
 
@@ -139,7 +143,7 @@ def draw(certificate: Certificate, path: Path) -> None:
     for row, (name, errors) in zip(panels, (("friction", certificate.friction), ("film", certificate.film)), strict=True):
         for axes, across in zip(row, ("speed", "load"), strict=True):
             x = np.log10(getattr(certificate, across))
-            bins = [np.linspace(*np.log10(atlas.BOX[side]), 25) for side in (across, "relative_roughness")]
+            bins = [np.log10(np.geomspace(*atlas.BOX[side], 25)) for side in (across, "relative_roughness")]
             place = tuple(np.clip(np.digitize(v, b) - 1, 0, 23) for v, b in zip((x, kappa), bins, strict=True))
             worst = np.zeros((24, 24))
             np.maximum.at(worst, place, errors)

@@ -7,11 +7,13 @@ and roughness of many states are one matrix, and the sum over them one matrix pr
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,6 +21,7 @@ import numpy as np
 from ._types import Array, Indices
 from .atlas_grid import (
     BREAK_TERMS,
+    LEAST_SPEED,
     PIECES,
     REGIONS,
     SEGMENTS,
@@ -28,6 +31,7 @@ from .atlas_grid import (
     chebyshev_slopes,
     local,
     piece_at,
+    region_at,
 )
 
 TABULATED = ("log_odds", "viscous_paper", "viscous_balanced", "central_gap", "minimum_gap", "flux_gap", "deflection")
@@ -37,13 +41,30 @@ segments end at, twice the logarithm of the speed is taken off the first."""
 
 FILE = "atlas.npz"
 
+SOLVER = (
+    "contact_laws",
+    "continuation",
+    "elasticity",
+    "equations",
+    "estimate",
+    "follow",
+    "mesh",
+    "newton",
+    "observables",
+    "refine",
+    "reynolds",
+    "start",
+    "states",
+)
+"""The modules whose hash says which solver made a table."""
+
 STEP = 2.0**-25
 """Unit of the coefficients in the file, which holds whole numbers."""
 
 CHUNK = 1024
 """States that are summed at once: their polynomials then fit into the cache."""
 
-FILM_RANGE = (math.log(1e-12), math.log(1e6))
+FILM_RANGE = (math.log(LEAST_SPEED), math.log(1e6))
 """Logarithms of the speeds between which smooth films are tabulated."""
 
 
@@ -68,7 +89,7 @@ class Values:
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Coefficients of one block: ``coefficients[t, f, pair]`` belongs to the polynomials t, ``first[pair]``, ``second[pair]``."""
+    """Coefficients of one block: ``coefficients[t, f, pair]`` is of the polynomials t, ``first[pair]``, ``second[pair]``."""
 
     coefficients: Array
     first: Indices
@@ -78,8 +99,8 @@ class Block:
     @classmethod
     def of(cls, dense: Array) -> Block:
         """Return the block of coefficients along speed, roughness, load and function."""
-        kept = np.nonzero(np.abs(dense).max(axis=(0, 3)))
-        return cls(np.ascontiguousarray(dense[:, *kept].transpose(0, 2, 1)), *kept)
+        first, second = np.nonzero(np.abs(dense).max(axis=(0, 3)))
+        return cls(np.ascontiguousarray(dense[:, first, second].transpose(0, 2, 1)), first, second)
 
     def chosen(self, functions: tuple[int, ...]) -> Array:
         """Return the coefficients of some functions as a matrix, a row for each polynomial in speed and function."""
@@ -114,8 +135,8 @@ class Table:
     ----------
     breaks : tuple of ndarray, each of shape (5, terms in roughness, terms in load)
         For each region the coefficients of the logarithms of the speeds b_1 .. b_5.
-    blocks : tuple of Block
-        For each piece its segments.
+    blocks : tuple of Block or None
+        For each piece its segments; none where a region does not begin at rest.
     film : ndarray, shape (pieces, terms, functions)
         Smooth films along the logarithm of the speed, without the first function.
     about : dict
@@ -123,7 +144,7 @@ class Table:
     """
 
     breaks: tuple[Array, ...]
-    blocks: tuple[Block, ...]
+    blocks: tuple[Block | None, ...]
     film: Array
     about: dict[str, Any]
 
@@ -143,51 +164,62 @@ class Table:
     def read(self, functions: tuple[int, ...], log_speed: Array, log_load: Array, kappa: Array, slopes: bool) -> Values:
         """Return functions at states inside the box, flat arrays; -inf as ``log_speed`` is rest, ``kappa`` 0 smooth."""
         states = log_speed.size
-        found = np.empty((4 if slopes else 1, len(functions), states))
         block = np.full(states, PIECES * SEGMENTS)
-        coordinates = np.empty((3, states))
-        chain = np.zeros((5, states)) if slopes else None
+        coordinates, chain = np.empty((3, states)), np.zeros((6, states if slopes else 0))
+        regions = np.where(kappa > 0, region_at(log_load, kappa), -1)
         for number, region in enumerate(REGIONS):
-            inside = np.nonzero((kappa > 0) & (number == (kappa >= REGIONS[1].roughness[0])))[0]
+            inside = np.nonzero(regions == number)[0]
             for start in range(0, inside.size, 4 * CHUNK):
                 part = inside[start : start + 4 * CHUNK]
-                placed = self._place(number, region, log_speed[part], log_load[part], kappa[part], slopes)
-                block[part], coordinates[:, part] = placed[0], placed[1]
-                if chain is not None:
-                    chain[:, part] = placed[2]
-        order = np.argsort(block.astype(np.uint8), kind="stable")
-        counts = np.bincount(block, minlength=PIECES * SEGMENTS + 1)
-        sorted_coordinates = coordinates[:, order]
-        sorted_found = np.empty_like(found)
-        last = np.cumsum(counts)
-        for number in np.nonzero(counts[:-1])[0]:
-            for start in range(int(last[number] - counts[number]), int(last[number]), CHUNK):
-                part = slice(start, min(start + CHUNK, int(last[number])))
-                sorted_found[..., part] = self.blocks[number].sum(functions, *sorted_coordinates[:, part], slopes)
-        found[..., order] = sorted_found
+                block[part], coordinates[:, part], found_chain = self._place(
+                    number, region, log_speed[part], log_load[part], kappa[part], slopes
+                )
+                if found_chain is not None:
+                    chain[:, part] = found_chain
+        found = self._sums(functions, block, coordinates, slopes)
         film = block == PIECES * SEGMENTS
         if film.any():
             found[..., film] = self._film(functions, log_speed[film], slopes)
-        if chain is None:
-            by_state = None
-        else:
-            by_state = np.stack([chain[0] * found[1], chain[1] * found[1] + chain[2] * found[3], np.zeros_like(found[0])])
-            by_state[2] = chain[3] * found[1] + chain[4] * found[3] + self._by_roughness(kappa) * found[2]
+        by_state = None
+        if slopes:
+            t_s, t_L, y_L, t_kappa, y_kappa, k_kappa = chain
+            by_state = np.empty((3, len(functions), states))
+            by_state[0] = t_s * found[1]
+            by_state[1] = t_L * found[1] + y_L * found[3]
+            by_state[2] = t_kappa * found[1] + y_kappa * found[3] + k_kappa * found[2]
             by_state[:, :, film] = 0.0
             by_state[0][:, film] = found[1][:, film]
         self._add_squared_speed(functions, found[0], by_state, log_speed, (block % SEGMENTS == 0) & ~film)
         return Values(found[0], by_state, film)
 
+    def _sums(self, functions: tuple[int, ...], block: Indices, coordinates: Array, slopes: bool) -> Array:
+        """Return the sums of :meth:`Block.sum` for states in any order; those on no block are left open."""
+        order = np.argsort(block.astype(np.uint8), kind="stable")
+        counts = np.bincount(block, minlength=PIECES * SEGMENTS + 1)
+        ends = np.cumsum(counts).tolist()
+        coordinates = coordinates[:, order]
+        found = np.empty((4 if slopes else 1, len(functions), block.size))
+        for number in np.nonzero(counts[:-1])[0].tolist():
+            here = self.blocks[number]
+            assert here is not None
+            for start in range(ends[number] - int(counts[number]), ends[number], CHUNK):
+                part = slice(start, min(start + CHUNK, ends[number]))
+                t, k, y = coordinates[:, part]
+                found[..., part] = here.sum(functions, t, k, y, slopes)
+        result = np.empty_like(found)
+        result[..., order] = found
+        return result
+
     def _place(
         self, number: int, region: Region, s: Array, log_load: Array, kappa: Array, slopes: bool
-    ) -> tuple[Array, Array, Array | None]:
+    ) -> tuple[Indices, Array, Array | None]:
         """Return the block and the local coordinates of states of a region, and what the chain rule needs.
 
-        That is dt/ds, dt/dL, dy/dL, dt/dln(kappa), dy/dln(kappa), with t, y local and k left to the caller.
+        That is dt/ds, dt/dL, dy/dL, dt/dln(kappa), dy/dln(kappa) and dk/dln(kappa), all local.
         """
         k, y = region.roughness_coordinate(np.log(kappa)), region.load_coordinate(log_load, kappa)
         ends = self.ends(number, k, y)
-        segment = (s >= ends).sum(axis=0)
+        segment = np.maximum((s >= ends).sum(axis=0), 0 if region.has_rest else 1)
         (i, k_local), (j, y_local) = (local(c, n) for c, n in zip((k, y), region.pieces, strict=True))
         block = np.where(segment < SEGMENTS, SEGMENTS * (piece_at(number, 0, 0) + i * region.pieces[1] + j) + segment, -1)
         block[segment >= SEGMENTS] = PIECES * SEGMENTS
@@ -209,18 +241,14 @@ class Table:
         t_low = np.where(squared, 0.0, (t - 1) / length)
         t_k, t_y = (t_high * end[choose[0], at] + t_low * end[choose[1], at] for end in (by_k, by_y))
         y_L, y_kappa = region.load_slopes(log_load, kappa)
-        k_kappa = 2 / math.log(region.roughness[1] / region.roughness[0])
-        chain = np.stack([t_s, t_y * y_L, region.pieces[1] * y_L, t_k * k_kappa + t_y * y_kappa, region.pieces[1] * y_kappa])
-        return block, coordinates, chain
-
-    @staticmethod
-    def _by_roughness(kappa: Array) -> Array:
-        """Return the derivative of the local coordinate of roughness by the logarithm of kappa."""
-        steps = [2 * region.pieces[0] / math.log(region.roughness[1] / region.roughness[0]) for region in REGIONS]
-        return np.where(kappa >= REGIONS[1].roughness[0], steps[1], steps[0])
+        k_kappa = region.roughness_slope / region.pieces[0]
+        moved = t_k * k_kappa + t_y * y_kappa
+        scale = region.pieces[1]
+        slope_k = np.full_like(t_s, region.roughness_slope)
+        return block, coordinates, np.stack([t_s, t_y * y_L, scale * y_L, moved, scale * y_kappa, slope_k])
 
     def _film(self, functions: tuple[int, ...], log_speed: Array, slopes: bool) -> Array:
-        """Return functions and, if wanted, their derivative by ln(speed) of smooth films, shape (1 or 4, functions, states)."""
+        """Return functions of smooth films and, if wanted, their derivative by ln(speed), as :meth:`Block.sum`."""
         pieces, terms, _ = self.film.shape
         low, high = FILM_RANGE
         piece, x = local((2 * np.maximum(log_speed, low) - low - high) / (high - low), pieces)
@@ -250,7 +278,7 @@ class Table:
                 slopes[0, row] += np.where(squared, 2.0, 0.0)
 
 
-def pack(breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dict[str, Any]) -> dict[str, Array]:
+def pack(breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dict[str, Any]) -> dict[str, Any]:
     """Return the arrays of the file for dense blocks, in whole units of :data:`STEP`."""
     joined = np.concatenate([np.ascontiguousarray(np.moveaxis(block, 3, 0)).ravel() for block in blocks])
     return {
@@ -263,15 +291,25 @@ def pack(breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dic
 
 def unpack(data: Any) -> Table:
     """Return the table of the arrays of a file."""
-    flat, position, blocks = data["blocks"] * STEP, 0, []
+    flat, position = data["blocks"] * STEP, 0
+    blocks: list[Block | None] = []
     for region in REGIONS:
         for _ in range(math.prod(region.pieces)):
             for count in region.speeds:
                 shape = len(TABULATED), count, *region.nodes
                 size = math.prod(shape)
-                blocks.append(Block.of(np.moveaxis(flat[position : position + size].reshape(shape), 0, 3)))
+                dense = np.moveaxis(flat[position : position + size].reshape(shape), 0, 3)
+                blocks.append(Block.of(dense) if count else None)
                 position += size
     return Table(tuple(data["breaks"]), tuple(blocks), data["film"], json.loads(str(data["about"])))
+
+
+def solver_hash() -> str:
+    """Return the SHA-256 of the sources of the solver."""
+    found = hashlib.sha256()
+    for name in SOLVER:
+        found.update(Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8").encode())
+    return found.hexdigest()
 
 
 @lru_cache(maxsize=1)
