@@ -19,13 +19,14 @@ define install
 	@touch $@
 endef
 
-.PHONY: help demo test slow lint format types benchmark clean
+.PHONY: help demo test slow lint format types benchmark atlas certificate clean
 
 help:
 	@echo "make demo       the Stribeck curve of a PDMS cylinder: curve.png, curve.nc"
 	@echo "make test       the tests      make slow   those that take minutes"
 	@echo "make lint       style          make format apply it"
 	@echo "make types      static types   make benchmark  the tables of the documentation"
+	@echo "make atlas      the table of solved states, 20 minutes on two cores      make certificate  its errors"
 	@echo "make clean      remove what make made"
 
 $(READY): pyproject.toml requirements.lock
@@ -56,6 +57,13 @@ types: $(TOOLS)
 
 benchmark: $(READY)
 	@for script in benchmarks/*.py; do echo "# $$script"; $(ONE_THREAD) $(BIN)/python "$$script" || exit 1; done
+
+# The lines that are finished are kept in build/atlas, so that an interrupted build goes on.
+atlas: $(READY)
+	$(ONE_THREAD) $(BIN)/python -m stribeck.atlas_build
+
+certificate: $(READY)
+	$(ONE_THREAD) $(BIN)/python -m stribeck.atlas_certificate
 
 clean:
 	rm -rf $(VENV) build dist curve.nc curve.png curve.csv .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -1,6 +1,7 @@
 """The atlas: its error on states it was not made from, its derivatives, its limits, and what it refuses."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -128,25 +129,6 @@ def test_derivatives_agree_with_differences(states, definition):
         error = np.abs((ahead - behind) / 2e-5 - exact[row]) / (friction + np.abs(exact[row]))
         # Blocks meet within their errors: the few states next to an edge see their jump.
         assert np.quantile(error, 0.98) < 1e-6
-
-
-def test_derivatives_are_those_of_the_solver():
-    pdms = sb.LineContact(
-        radius=0.01,
-        modulus=2.1e6,
-        load=50,
-        viscosity=0.001,
-        speed=0.1,
-        roughness=1e-6,
-        alpha=2.0,
-        beta=0.05,
-        friction_coefficient=0.8,
-    )
-    _, right = friction_elasticities(pdms)
-    slopes = sb.atlas.friction_derivatives(pdms.groups, 0.8, 0.05) / sb.atlas.friction(pdms.groups, 0.8, 0.05)
-    assert slopes[0] == pytest.approx(right["speed"], abs=1e-4)
-    assert slopes[1] - 2 * slopes[0] == pytest.approx(right["load"], abs=1e-4)
-    assert slopes[2] == pytest.approx(right["roughness"], abs=1e-4)
 
 
 def test_at_rest_and_for_smooth_contacts_derivatives_are_exact():
@@ -296,3 +278,66 @@ def test_a_build_goes_on_with_what_is_kept(tmp_path):
     for _ in range(2):
         assert (atlas_build.kept(tmp_path, "rows", make) == np.arange(3.0)).all()
     assert len(calls) == 1
+
+
+# --- curves, diagrams and elasticities read off it ---
+
+
+@pytest.fixture(scope="module")
+def contact():
+    return sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact
+
+
+def test_a_curve_read_off_it_is_the_solved_one(contact):
+    solved = sb.stribeck_curve(contact, points=41)
+    read = sb.stribeck_curve(contact, points=41, method="atlas")
+    assert len(read) == 41
+    assert np.allclose(read.values, solved.values, rtol=1e-12)
+    for name in ("friction", "friction_viscous", "friction_contact"):
+        assert np.allclose(getattr(read, name), getattr(solved, name), rtol=1e-4)
+    assert np.allclose(read.observable("minimum_gap"), solved.observable("minimum_gap"), rtol=1e-4)
+    assert (np.abs(read.friction - solved.friction) <= read.friction_error).all()
+    assert read.regimes == solved.regimes
+    assert [mark.name for mark in read.transitions] == [mark.name for mark in solved.transitions]
+    for mine, theirs in zip(read.transitions, solved.transitions, strict=True):
+        assert mine.value == pytest.approx(theirs.value, rel=1e-3)
+        assert mine.friction == pytest.approx(theirs.friction, rel=1e-4)
+
+
+def test_a_curve_over_load_falls_where_the_solved_one_does(contact):
+    slope = sb.stribeck_curve(contact, load=(5, 100), points=21, method="atlas")
+    solved = sb.stribeck_curve(contact, load=(5, 100), points=21)
+    assert np.allclose(slope.friction, solved.friction, rtol=1e-4)
+    differences = np.gradient(slope.friction, np.log(slope.values))[1:-1]
+    assert np.allclose(slope._slope_at(slope.values)[1:-1], differences, atol=0.02 * np.abs(differences).max())
+
+
+def test_a_curve_knows_what_it_does_not_have(contact):
+    with pytest.raises(sb.InputError, match="the atlas has contact_load_share"):
+        sb.stribeck_curve(contact, points=3, method="atlas").observable("error_estimate")
+    with pytest.raises(sb.InputError, match="must be 'solver' or 'atlas'"):
+        sb.stribeck_curve(contact, points=3, method="table")
+
+
+def test_elasticities_read_off_it_are_the_solved_ones(contact):
+    _, right = friction_elasticities(contact)
+    nothing, found = friction_elasticities(contact, method="atlas")
+    assert nothing is None
+    assert found == pytest.approx(right, abs=2e-4)
+
+
+def test_a_phase_diagram_read_off_it_is_the_solved_one():
+    pytest.importorskip("xarray")
+    grid = {"load": (0.01, 0.3), "roughness": [0.0, 1e-6, 1e-4], "speed": (1e-8, 1.0), "points": {"load": 2, "speed": 13}}
+    solved, read = (sb.phase_diagram(**grid, rtol=1e-6, method=method) for method in ("solver", "atlas"))
+    assert set(read.variables) == set(solved.variables)
+    assert (read.outcome == "CONVERGED").all()
+    assert (read.regime == solved.regime).all()
+    assert (read.velocity_weakening == solved.velocity_weakening).all()
+    for name in ("friction", "central_gap", "fluid_load_share", "contact_friction_share", "lambda_ratio"):
+        assert np.allclose(read[name], solved[name], rtol=1e-4, atol=1e-7), name
+    for name in read:
+        if name.startswith("speed_at"):
+            assert np.allclose(read[name], solved[name], rtol=1e-3, equal_nan=True), name
+    with pytest.raises(sb.InputError, match="speed has the value"):
+        sb.phase_diagram(load=0.1, roughness=1e-3, speed=(1e-9, 1e8), method="atlas")
