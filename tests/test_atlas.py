@@ -98,7 +98,7 @@ def test_rest_is_that_of_the_solver(load, kappa):
 @pytest.mark.parametrize("speed", [1e-12, 1e-5, 3.0, 1e6])
 def test_smooth_contacts_are_those_of_the_solver(speed):
     groups = sb.Groups(speed, 0.4, 0.0)
-    state = sb.solve(groups, rtol=1e-7)
+    state = sb.solve(groups, rtol=1e-7, on_failure="return")
     for name, function in zip(NAMES, FUNCTIONS, strict=False):
         assert function(groups) == pytest.approx(getattr(state, name), rel=2e-6)
     for definition in DEFINITIONS:
@@ -144,8 +144,7 @@ def test_at_rest_and_for_smooth_contacts_derivatives_are_exact():
 
 def test_arrays_broadcast_and_order_does_not_matter():
     speed, load, kappa, groups = random_groups(300, 30103)
-    wide = sb.Groups(speed[:, None], load[:20], 1e-3)
-    wide = sb.Groups(wide.speed, wide.load, np.clip(1e-3 * wide.load, 2e-6 * wide.load, None))
+    wide = sb.Groups(speed[:, None], load[:20], 1e-4 * load[:20])
     mixed = np.random.default_rng(1).permutation(300)
     shuffled = sb.Groups(speed[mixed], load[mixed], (kappa * load)[mixed])
     for function in FUNCTIONS:
