@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from . import hertz
-from ._types import Array, Flags
+from ._types import Array
 from .atlas_grid import HEAVY, LEAST_LOAD, LEAST_SPEED, NEARLY_SMOOTH, region_at
 from .atlas_table import TABULATED, Values, load_table, solver_hash
 from .parameters import Groups, InputError, quantity
@@ -275,8 +275,8 @@ def offset(groups: Groups) -> Value:
     InputError
         If a state is outside :data:`BOX`.
     """
-    flat, values = _read(groups, (CENTRAL, DEFLECTION))
-    return _shaped(groups, np.where(_dry(flat), hertz.OFFSET, np.exp(values.values[0]) + values.values[1]))
+    _, values = _read(groups, (CENTRAL, DEFLECTION))
+    return _shaped(groups, np.exp(values.values[0]) + values.values[1])
 
 
 def about() -> dict[str, Any]:
@@ -315,9 +315,7 @@ def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> t
     log_load = np.clip(-np.log(load), 0.0, -math.log(LEAST_LOAD))
     inside = np.where(kappa > 0, np.clip(kappa, *BOX["relative_roughness"]), 0.0)
     closing = (speed == 0) & (inside > 0) & (region_at(log_load, inside) == HEAVY_REGION)
-    if not closing.any():
-        return (speed, load, kappa), load_table().read(functions, log_speed, log_load, inside, slopes)
-    if FLUX in functions:
+    if FLUX in functions and closing.any():
         raise InputError(
             f"load has the value {load[closing][0]:g} at speed 0; there, at relative roughness below {NEARLY_SMOOTH:g}, the "
             f"atlas holds the flux gap for loads up to {math.exp(-HEAVY):.4g}. Use solve."
@@ -325,9 +323,11 @@ def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> t
     found = load_table().read(functions, log_speed, np.where(closing, HEAVY, log_load), inside, slopes)
     # At rest the load shifts the gap and does nothing else.
     shift = 0.5 * inside[closing] * (log_load[closing] - HEAVY)
+    dry = (speed == 0) & (kappa == 0)
     for row, function in enumerate(functions):
         if function in (CENTRAL, MINIMUM):
             found.values[row, closing] = np.log(np.exp(found.values[row, closing]) + shift)
+        found.values[row, dry] = hertz.OFFSET if function == DEFLECTION else -math.inf
     return (speed, load, kappa), found
 
 
@@ -357,13 +357,9 @@ def _viscous(flat: Flat, logs: Array, beta: float) -> Array:
     return np.asarray(beta * np.sqrt(load) * speed * np.exp(logs))
 
 
-def _dry(flat: Flat) -> Flags:
-    return np.asarray((flat[0] == 0) & (flat[2] == 0))
-
-
 def _gap(groups: Groups, function: int) -> Value:
-    flat, values = _read(groups, (function,))
-    return _shaped(groups, np.where(_dry(flat), 0.0, np.exp(values.values[0])))
+    _, values = _read(groups, (function,))
+    return _shaped(groups, np.exp(values.values[0]))
 
 
 def _shaped(groups: Groups, flat: Array) -> Value:

@@ -23,6 +23,7 @@ def fill(diagram: Diagram) -> None:
         for j in range(len(diagram.axes["roughness"])):
             _, groups, unit = diagram.problem(i, j)
             _enter(diagram, (i, j), Groups(unit * speeds, groups.load, groups.roughness))
+            diagram.velocity_weakening[i, j] = 0
             if float(groups.roughness) > 0:
                 _enter_lines(diagram, (i, j), groups, unit)
             diagram.messages[i, j] = ""
