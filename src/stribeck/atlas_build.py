@@ -47,7 +47,7 @@ COARSE_NODES = (14, 12)
 COARSE_STEP = 0.35
 """Their step in the logarithm of the speed."""
 
-FILM_PIECES, FILM_NODES, FILM_RTOL = 5, 20, 1e-7
+FILM_PIECES, FILM_NODES, FILM_RTOL = 8, 20, 1e-7
 """Of the smooth films: pieces of the logarithm of the speed, nodes of a piece, and tolerance."""
 
 NEGLIGIBLE = 2e-8
@@ -244,7 +244,7 @@ def build(target: Path, folder: Path, workers: int) -> None:
         pieces = list(tasks_of_pieces())
         tasks = [(*piece, k) for piece in pieces for k in range(REGIONS[piece[0]].nodes[0])]
         lines = dict(zip(tasks, _run("lines", pool, partial(_kept_line, folder, breaks), tasks), strict=True))
-    film = kept(folder, "film", film_coefficients)
+    film = kept(folder, f"film_{FILM_PIECES}_{FILM_NODES}", film_coefficients)
     blocks: list[Array] = []
     for piece in pieces:
         blocks += piece_blocks(piece[0], [lines[*piece, k] for k in range(REGIONS[piece[0]].nodes[0])])
