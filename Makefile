@@ -19,7 +19,7 @@ define install
 	@touch $@
 endef
 
-.PHONY: help demo test slow lint format types benchmark validity clean
+.PHONY: help demo test slow lint format types benchmark validity atlas certificate clean
 
 help:
 	@echo "make demo       the Stribeck curve of a PDMS cylinder: curve.png, curve.nc"
@@ -27,6 +27,7 @@ help:
 	@echo "make lint       style          make format apply it"
 	@echo "make types      static types   make benchmark  the tables of the documentation"
 	@echo "make validity   docs/validity.md: the maps of the errors of all formulas"
+	@echo "make atlas      the table of solved states, 20 minutes on two cores      make certificate  its errors"
 	@echo "make clean      remove what make made"
 
 $(READY): pyproject.toml requirements.lock
@@ -60,6 +61,13 @@ benchmark: $(READY)
 
 validity: $(READY)
 	$(ONE_THREAD) $(BIN)/python docs/validity.py
+
+# The lines that are finished are kept in build/atlas, so that an interrupted build goes on.
+atlas: $(READY)
+	$(ONE_THREAD) $(BIN)/python -m stribeck.atlas_build
+
+certificate: $(READY)
+	$(ONE_THREAD) $(BIN)/python -m stribeck.atlas_certificate
 
 clean:
 	rm -rf $(VENV) build dist curve.nc curve.png curve.csv .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -57,8 +57,9 @@ MAY_IMPORT = {
     "sensitivity": EQUATIONS | {"observables", "states"},
     "solution": {"mesh", "newton", "observables", "parameters", "units"},
     "solve": {"hertz", "mesh", "newton", "observables", "parameters", "refine", "solution", "start", "threads", "units"},
-    "regimes": RESULTS | {"refine", "sensitivity", "start"},
-    "curve": RESULTS | {"asymptotics", "follow", "plotting", "refine", "regimes", "sensitivity", "span", "store"},
+    "regimes": RESULTS | {"atlas", "refine", "sensitivity", "start"},
+    "curve": RESULTS
+    | {"asymptotics", "atlas_curve", "follow", "plotting", "refine", "regimes", "sensitivity", "span", "store"},
     "validity": RESULTS | {"asymptotics", "curve", "output"},
     "plot_validity": {"asymptotics", "figures", "output", "parameters", "plotting", "units"},
     "output": {"units"},
@@ -71,7 +72,7 @@ MAY_IMPORT = {
     "merging": RESULTS | {"follow", "refine", "sensitivity", "span"},
     "phase_grid": RESULTS | {"regimes", "span"},
     "phase_dataset": RESULTS | {"asymptotics", "output", "phase_grid", "regimes", "store"},
-    "phase_diagram": RESULTS | {"curve", "merging", "phase_dataset", "phase_grid", "regimes", "span"},
+    "phase_diagram": RESULTS | {"atlas_phase", "curve", "merging", "phase_dataset", "phase_grid", "regimes", "span"},
     "plot_phase": RESULTS | {"output", "plotting"},
     "sweep_points": set(),
     "sweep_order": set(),
@@ -84,6 +85,13 @@ MAY_IMPORT = {
     "sweep_workers": RESULTS | {"output", "sweep_chain", "sweep_columns", "sweep_store"},
     "sweep": RESULTS | {"output"} | {f"sweep_{part}" for part in SWEEP},
     "report_sweep": RESULTS | {"sweep", "sweep_columns", "sweep_dataset"},
+    "atlas_grid": set(),
+    "atlas_table": {"atlas_grid"},
+    "atlas": {"atlas_grid", "atlas_table", "hertz", "parameters", "solution", "units"},
+    "atlas_curve": {"atlas", "parameters", "regimes", "solution", "units"},
+    "atlas_phase": {"atlas", "atlas_curve", "newton", "parameters", "phase_grid", "regimes"},
+    "atlas_build": {"atlas_grid", "atlas_table", "curve"},
+    "atlas_certificate": {"atlas", "parameters", "solve"},
 }
 OPEN = {"__init__", "__main__", "app", "cli"}
 

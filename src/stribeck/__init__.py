@@ -1,6 +1,6 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
-from . import asymptotics
+from . import asymptotics, atlas
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .newton import Outcome
@@ -32,6 +32,7 @@ __all__ = [
     "SweepError",
     "SweepProgress",
     "asymptotics",
+    "atlas",
     "load_case",
     "load_sweep",
     "open_sweep",

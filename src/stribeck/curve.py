@@ -7,18 +7,19 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ._types import Array
 from .asymptotics import hydrodynamic
+from .atlas_curve import AtlasCurve
 from .follow import Follower, follow
 from .newton import Outcome
 from .parameters import QUANTITIES, Groups, LineContact
 from .refine import Point
-from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
+from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Method, Regime, check_method, regime_of
 from .sensitivity import GROUPS, friction_slopes
 from .solution import Definition, Solution, check_definition, coefficients
 from .solve import SolveError, as_groups, check_rtol, describe, finish, solution_of
@@ -390,12 +391,51 @@ class _Coordinate:
         assert isinstance(self.base, Groups)
         return replace(self.base, **{self.over: math.exp(s)})
 
+    def groups_along(self, values: Array) -> Groups:
+        """Return the groups at many values of what varies, as arrays."""
+        groups = [self.groups_at(s) for s in np.log(values).tolist()]
+        return Groups(*(np.array([float(getattr(g, name)) for g in groups]) for name in GROUPS))
+
     @property
     def direction(self) -> Array:
         """Derivatives of ln(speed), ln(load), ln(roughness) of the groups along s."""
         if isinstance(self.base, LineContact) and self.over == "load":
             return np.array([-2.0, 1.0, 0.0])
         return np.array([1.0 if name == self.over else 0.0 for name in GROUPS])
+
+
+@overload
+def stribeck_curve(
+    problem: LineContact | Groups | None = ...,
+    *,
+    speed: ArrayLike | Sequence[str] | None = ...,
+    load: ArrayLike | Sequence[str] | None = ...,
+    roughness: ArrayLike | Sequence[str] | None = ...,
+    points: int = ...,
+    rtol: float = ...,
+    mu0: float | None = ...,
+    beta: float | None = ...,
+    definition: Definition = ...,
+    on_point: Callable[[int, int], object] | None = ...,
+    method: Literal["solver"] = ...,
+) -> StribeckCurve: ...
+
+
+@overload
+def stribeck_curve(
+    problem: LineContact | Groups | None = ...,
+    *,
+    speed: ArrayLike | Sequence[str] | None = ...,
+    load: ArrayLike | Sequence[str] | None = ...,
+    roughness: ArrayLike | Sequence[str] | None = ...,
+    points: int = ...,
+    rtol: float = ...,
+    mu0: float | None = ...,
+    beta: float | None = ...,
+    definition: Definition = ...,
+    on_point: Callable[[int, int], object] | None = ...,
+    method: Literal["atlas"],
+) -> AtlasCurve: ...
 
 
 @one_blas_thread
@@ -411,7 +451,8 @@ def stribeck_curve(
     beta: float | None = None,
     definition: Definition = "paper",
     on_point: Callable[[int, int], object] | None = None,
-) -> StribeckCurve:
+    method: Method = "solver",
+) -> StribeckCurve | AtlasCurve:
     """Solve the contact along speed, load or roughness.
 
     Parameters
@@ -432,16 +473,20 @@ def stribeck_curve(
         Definition of the viscous friction, see :meth:`Solution.friction`.
     on_point : callable, optional
         ``on_point(done, points)`` is called after each point, for progress.
+    method : {"solver", "atlas"}
+        Whether each state is solved, or read off :mod:`stribeck.atlas`: within 1e-4, thousands of times as fast, without
+        fields; ``rtol`` and ``on_point`` then have no effect.
 
     Returns
     -------
     StribeckCurve
-        All points, ascending; after Ctrl-C those that were finished, with outcome INTERRUPTED.
+        All points, ascending; after Ctrl-C those that were finished, with outcome INTERRUPTED. From the atlas an
+        :class:`stribeck.atlas_curve.AtlasCurve`, with the same values, friction, observables, minimum and transitions.
 
     Raises
     ------
     InputError
-        If an argument is outside its range.
+        If an argument is outside its range, or a point outside that of the atlas.
     SolveError
         If the first state cannot be solved.
 
@@ -465,6 +510,8 @@ def stribeck_curve(
     else:
         values = ends
     _check_inside(coordinate, values)
+    if check_method(method) == "atlas":
+        return AtlasCurve(over, values, coordinate.groups_along, contact, mu0, beta, definition)
     descending = values[::-1]
     done = 0
     targets = np.log(descending)

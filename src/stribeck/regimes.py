@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Literal, overload
 
 import numpy as np
 
+from . import atlas
+from ._types import Array
 from .parameters import LineContact
 from .sensitivity import friction_slopes
 from .solution import Definition, Solution, check_definition
 from .solve import check_rtol, finish, solve, solved_point
 from .threads import one_blas_thread
+from .units import InputError, show
 
 Regime = Literal["boundary", "mixed", "hydrodynamic"]
+Method = Literal["solver", "atlas"]
+
+METHODS: tuple[Method, ...] = ("solver", "atlas")
+"""Where states come from: solved, or read off :mod:`stribeck.atlas`."""
 
 BOUNDARY_FLUID_SHARE = 0.05
 """Part of the load on the fluid up to which lubrication is called boundary: friction is within 5 % of the plateau."""
@@ -58,10 +65,26 @@ EXPONENTS = {
 """Exponents with which each input enters the groups of speed, load and roughness."""
 
 
+@overload
+def friction_elasticities(
+    contact: LineContact, *, rtol: float = ..., definition: Definition = ..., method: Literal["solver"] = ...
+) -> tuple[Solution, dict[str, float]]: ...
+
+
+@overload
+def friction_elasticities(
+    contact: LineContact, *, rtol: float = ..., definition: Definition = ..., method: Literal["atlas"]
+) -> tuple[None, dict[str, float]]: ...
+
+
 @one_blas_thread
 def friction_elasticities(
-    contact: LineContact, *, rtol: float = 1e-6, definition: Definition = "paper"
-) -> tuple[Solution, dict[str, float]]:
+    contact: LineContact,
+    *,
+    rtol: float = 1e-6,
+    definition: Definition = "paper",
+    method: Method = "solver",
+) -> tuple[Solution | None, dict[str, float]]:
     r"""Solve a contact and tell how its friction answers to each input.
 
     .. math::
@@ -81,14 +104,21 @@ def friction_elasticities(
         Relative tolerance of the state.
     definition : {"paper", "balanced"}
         Definition of the viscous friction.
+    method : {"solver", "atlas"}
+        Whether the state is solved, or read off :mod:`stribeck.atlas`, where nothing but the numbers comes back.
 
     Returns
     -------
-    Solution
-        The state.
+    Solution or None
+        The state; None from the atlas.
     dict of str to float
         Elasticity by name of the input: 0.5 means that 1 % more of it makes 0.5 % more friction; nan where
         there is no friction.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range, or the contact outside that of the atlas.
 
     Notes
     -----
@@ -97,6 +127,8 @@ def friction_elasticities(
     """
     check_rtol(rtol)
     definition = check_definition(definition)
+    if check_method(method) == "atlas":
+        return None, _from_atlas(contact, definition)
     groups = contact.groups
     if groups.speed == 0:
         solution, slopes = solve(contact, rtol=rtol), np.zeros(3)
@@ -106,8 +138,28 @@ def friction_elasticities(
         assert point.state is not None
         slopes = friction_slopes(point.state, contact.friction_coefficient, contact.beta, definition)
     friction = solution.friction(definition=definition)
-    direct = {"friction_coefficient": friction.contact, "beta": friction.viscous}
-    total = friction.total or math.nan
-    return solution, {
+    return solution, _elasticities(slopes, friction.contact, friction.viscous)
+
+
+def check_method(method: str) -> Method:
+    """Return ``method`` if it is one of the two."""
+    for known in METHODS:
+        if method == known:
+            return known
+    raise InputError(f"method = {show(method)}; it must be {' or '.join(map(repr, METHODS))}.")
+
+
+def _from_atlas(contact: LineContact, definition: Definition) -> dict[str, float]:
+    groups, mu0, beta = contact.groups, contact.friction_coefficient, contact.beta
+    viscous = float(atlas.viscous_friction(groups, beta, definition))
+    slopes = atlas.friction_derivatives(groups, mu0, beta, definition)
+    return _elasticities(slopes, mu0 * float(atlas.contact_load_share(groups)), viscous)
+
+
+def _elasticities(slopes: Array, contact: float, viscous: float) -> dict[str, float]:
+    """Return the elasticities by the derivatives of the friction and its two parts."""
+    direct = {"friction_coefficient": contact, "beta": viscous}
+    total = (contact + viscous) or math.nan
+    return {
         name: (float(slopes @ np.array(exponents)) + direct.get(name, 0.0)) / total for name, exponents in EXPONENTS.items()
     }

@@ -50,7 +50,10 @@ def _state(groups: Groups) -> Solution:
 @lru_cache(maxsize=512)
 def _curve(groups: Groups, mu0: float, beta: float, definition: Definition) -> StribeckCurve:
     coefficients: dict[str, Any] = {"mu0": mu0, "beta": beta, "definition": definition}
-    return stribeck_curve(load=groups.load, roughness=groups.roughness, points=CURVE_POINTS, rtol=RTOL, **coefficients)
+    curve: StribeckCurve = stribeck_curve(
+        load=groups.load, roughness=groups.roughness, points=CURVE_POINTS, rtol=RTOL, **coefficients
+    )
+    return curve
 
 
 def _coefficients(options: dict[str, Any]) -> dict[str, Any]:

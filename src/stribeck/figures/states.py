@@ -98,7 +98,7 @@ class Work:
                 raise
 
         try:
-            found = stribeck_curve(rtol=self.rtol, on_point=report, **arguments)
+            found: StribeckCurve = stribeck_curve(rtol=self.rtol, on_point=report, **arguments)
         except SolveError:
             if interrupted:
                 raise KeyboardInterrupt from None

@@ -1,0 +1,342 @@
+"""The atlas: its error on states it was not made from, its derivatives, its limits, and what it refuses."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.polynomial import chebyshev as reference
+
+import stribeck as sb
+from stribeck import atlas_build, atlas_grid, atlas_table
+from stribeck.atlas_certificate import FRICTIONS, QUANTITIES, certify, compare, solved
+from stribeck.regimes import friction_elasticities
+
+DEFINITIONS = ("paper", "balanced")
+FUNCTIONS = (
+    sb.atlas.contact_load_share,
+    sb.atlas.fluid_load_share,
+    sb.atlas.central_gap,
+    sb.atlas.minimum_gap,
+    sb.atlas.flux_gap,
+    sb.atlas.offset,
+    sb.atlas.viscous_friction,
+    sb.atlas.friction,
+)
+NAMES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
+
+
+def random_groups(number, seed, margin=1e-3):
+    """Return random states well inside the box: their numbers, and the groups."""
+    rng = np.random.default_rng(seed)
+    ends = [np.log(side) + [margin, -margin] for side in sb.atlas.BOX.values()]
+    speed, load, kappa = (np.exp(rng.uniform(*side, number)) for side in ends)
+    return speed, load, kappa, sb.Groups(speed, load, kappa * load)
+
+
+def transition_groups(number, seed):
+    """Return random states near the speeds at which fluid and asperities share the load."""
+    rng = np.random.default_rng(seed)
+    load, kappa = (np.exp(rng.uniform(*np.log(ends), number)) for ends in ((1e-5, 0.98), (2e-6, 50.0)))
+    half = np.array([atlas_build.speed_range(-math.log(F), k)[0] + math.log(60) for F, k in zip(load, kappa, strict=True)])
+    speed = np.clip(np.exp(half + rng.uniform(-4, 3, number)), 2e-12, 5e5)
+    return sb.Groups(speed, load, kappa * load)
+
+
+# --- against the solver ---
+
+
+def test_friction_and_film_are_within_their_stated_error_of_states_it_was_not_made_from():
+    found = certify(60, seed=60221)
+    assert found.errors.shape == (60, len(QUANTITIES))
+    for errors in (found.friction, found.film):
+        assert np.median(errors) < 1e-5
+        assert errors.max() < 1e-4
+    viscous, balanced, *_ = found.errors[:, len(FRICTIONS) :].T
+    assert max(viscous.max(), balanced.max()) < 1e-4
+
+
+def test_where_fluid_and_asperities_share_the_load_it_is_as_good():
+    found = certify(40, seed=141421, mixed=True)
+    assert ((found.contact_share > 0.009) & (found.contact_share < 0.991)).all()
+    assert found.speed.size == 40
+    assert np.median(found.errors) < 1e-6
+    assert np.nanmax(found.errors) < 3e-5
+
+
+def test_heavy_loads_on_nearly_smooth_surfaces_are_as_good():
+    rng = np.random.default_rng(23606)
+    load = np.array([1.0, 1.0, *np.exp(-np.exp(rng.uniform(np.log(1e-6), np.log(0.01), 6)))])
+    kappa, speed = np.exp(rng.uniform(np.log(2e-6), np.log(1e-3), 8)), np.exp(rng.uniform(np.log(1e-12), np.log(1e-3), 8))
+    found = compare(speed, load, kappa, np.array([solved(state) for state in zip(speed, load, kappa, strict=True)]))
+    assert np.nanmax(found.errors) < 1e-5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mixed", [False, True])
+def test_the_certificate_holds_on_five_thousand_states(mixed):
+    found = certify(5000, seed=271828 + mixed, mixed=mixed)
+    for errors in (found.friction, found.film):
+        assert np.median(errors) < 1e-5
+        assert errors.max() < 1e-4
+
+
+@pytest.mark.parametrize("load", [0.3, 0.999, 1.0])
+@pytest.mark.parametrize("kappa", [1e-5, 0.03, 30.0])
+def test_rest_is_that_of_the_solver(load, kappa):
+    groups = sb.Groups(0.0, load, kappa * load)
+    state = sb.solve(groups, rtol=1e-8)
+    assert sb.atlas.friction(groups, mu0=0.7) == 0.7
+    assert sb.atlas.contact_load_share(groups) == 1
+    assert sb.atlas.fluid_load_share(groups) == 0
+    for function in (sb.atlas.central_gap, sb.atlas.minimum_gap):
+        right = getattr(state, function.__name__)
+        assert abs(function(groups) - right) < 1e-5 * max(right, 1e-3 * kappa)
+    assert abs(sb.atlas.offset(groups) - state.offset) < 1e-5 * max(1, abs(state.offset))
+
+
+@pytest.mark.parametrize("speed", [1e-12, 1e-5, 3.0, 1e6])
+def test_smooth_contacts_are_those_of_the_solver(speed):
+    groups = sb.Groups(speed, 0.4, 0.0)
+    state = sb.solve(groups, rtol=1e-7, on_failure="return")
+    for name, function in zip(NAMES, FUNCTIONS, strict=False):
+        assert function(groups) == pytest.approx(getattr(state, name), rel=2e-6)
+    for definition in DEFINITIONS:
+        assert sb.atlas.friction(groups, 1.0, 0.2, definition) == pytest.approx(
+            state.friction(1.0, 0.2, definition).total, rel=2e-6
+        )
+
+
+def test_the_dry_contact_is_that_of_hertz():
+    groups = sb.Groups(0.0, 0.4, 0.0)
+    state = sb.solve(groups)
+    assert [function(groups) for function in FUNCTIONS[:6]] == [getattr(state, name) for name in NAMES]
+    assert sb.atlas.friction(groups, mu0=0.3) == 0.3
+
+
+# --- derivatives ---
+
+
+@pytest.mark.parametrize("definition", DEFINITIONS)
+@pytest.mark.parametrize("states", [random_groups(400, 57721)[3], transition_groups(400, 16180)], ids=["box", "transition"])
+def test_derivatives_agree_with_differences(states, definition):
+    at = np.log([states.speed, states.load, states.roughness])
+    settings = {"mu0": 0.9, "beta": 0.3, "definition": definition}
+    exact = sb.atlas.friction_derivatives(states, **settings)
+    friction = sb.atlas.friction(states, **settings)
+    for row, step in enumerate(np.eye(3) * 1e-5):
+        ahead, behind = (sb.atlas.friction(sb.Groups(*np.exp(at + sign * step[:, None])), **settings) for sign in (1, -1))
+        error = np.abs((ahead - behind) / 2e-5 - exact[row]) / (friction + np.abs(exact[row]))
+        # Blocks meet within their errors: the few states next to an edge see their jump.
+        assert np.quantile(error, 0.98) < 1e-6
+
+
+def test_at_rest_and_for_smooth_contacts_derivatives_are_exact():
+    assert (sb.atlas.friction_derivatives(sb.Groups(0.0, 0.2, 0.01)) == 0).all()
+    slopes = sb.atlas.friction_derivatives(sb.Groups(1e-3, 0.2, 0.0), beta=0.1)
+    friction = sb.atlas.friction(sb.Groups(1e-3, 0.2, 0.0), beta=0.1)
+    assert slopes[1] == pytest.approx(0.5 * friction, rel=1e-12)
+    assert slopes[2] == 0
+
+
+# --- what is asked ---
+
+
+def test_arrays_broadcast_and_order_does_not_matter():
+    speed, load, kappa, groups = random_groups(300, 30103)
+    wide = sb.Groups(speed[:, None], load[:20], 1e-4 * load[:20])
+    mixed = np.random.default_rng(1).permutation(300)
+    shuffled = sb.Groups(speed[mixed], load[mixed], (kappa * load)[mixed])
+    for function in FUNCTIONS:
+        values = function(groups)
+        assert np.allclose(function(shuffled), values[mixed], rtol=1e-13)
+        assert function(wide).shape == (300, 20)
+        one = function(sb.Groups(speed[7], load[7], kappa[7] * load[7]))
+        assert type(one) is float
+        assert one == pytest.approx(values[7], rel=1e-13)
+    assert sb.atlas.friction_derivatives(wide).shape == (3, 300, 20)
+    assert sb.atlas.friction(sb.Groups(np.empty(0), 0.1, 1e-3)).shape == (0,)
+
+
+@pytest.mark.parametrize(
+    ("speed", "load", "kappa", "words"),
+    [
+        (1e-13, 0.1, 1e-3, "speed has the value 1e-13; the atlas holds 1e-12 to 1e+06 and 0"),
+        (2e6, 0.1, 1e-3, "speed has the value 2e.06"),
+        (1e-3, 2.0, 1e-3, "load has the value 2; the atlas holds 1e-06 to 1. Use solve"),
+        (1e-3, 1e-7, 1e-3, "load has the value 1e-07"),
+        (1e-3, 0.1, 1e-7, "relative_roughness has the value 1e-07; the atlas holds 1e-06 to 100 and 0"),
+        (1e-3, 0.1, 200.0, "relative_roughness has the value 200"),
+    ],
+)
+@pytest.mark.parametrize("function", [*FUNCTIONS, sb.atlas.friction_derivatives], ids=lambda function: function.__name__)
+def test_outside_the_box_it_refuses(function, speed, load, kappa, words):
+    inside = sb.Groups(1e-3, 0.1, 1e-4)
+    function(inside)
+    with pytest.raises(sb.InputError, match=words.replace("+", r"\+")):
+        function(sb.Groups(speed, load, kappa * load))
+    with pytest.raises(sb.InputError, match=words.replace("+", r"\+")):
+        function(sb.Groups(np.array([1e-3, speed]), np.array([0.1, load]), np.array([1e-4, kappa * load])))
+
+
+def test_the_flux_gap_that_it_does_not_hold_is_refused():
+    with pytest.raises(sb.InputError, match="load has the value 0.995 at speed 0"):
+        sb.atlas.flux_gap(sb.Groups(0.0, 0.995, 1e-5))
+
+
+def test_the_ends_of_the_box_belong_to_it():
+    for speed in (1e-12, 1e6):
+        for load in (1e-6, 1.0):
+            for kappa in (1e-6, 1e2):
+                groups = sb.Groups(speed, load, kappa * load)
+                assert np.isfinite([function(groups) for function in FUNCTIONS]).all()
+
+
+@pytest.mark.parametrize("wrong", [{"definition": "total"}, {"beta": 0.0}, {"mu0": -1.0}])
+def test_wrong_arguments_are_refused(wrong):
+    with pytest.raises(sb.InputError):
+        sb.atlas.friction(sb.Groups(1e-3, 0.1, 1e-4), **wrong)
+
+
+def test_something_else_than_groups_is_refused():
+    with pytest.raises(sb.InputError, match="must be Groups"):
+        sb.atlas.friction((1e-3, 0.1, 1e-4))
+
+
+# --- the table ---
+
+
+def test_the_table_is_small_and_says_where_it_comes_from():
+    path = atlas_table.files("stribeck").joinpath("data", atlas_table.FILE)
+    assert path.stat().st_size < 5e6
+    about = sb.atlas.about()
+    assert about["states"] > 50_000
+    assert len(about["solver_hash"]) == 64
+    assert about["same_solver"] is (about["solver_hash"] == atlas_table.solver_hash())
+
+
+def test_blocks_meet_within_the_stated_error():
+    rng = np.random.default_rng(66260)
+    load, speed = np.exp(rng.uniform(np.log(1e-6), -0.02, 300)), np.exp(rng.uniform(np.log(1e-9), np.log(1e3), 300))
+    for edge in (1e-3, 1e-2, 1e-1):
+        below, above = (sb.atlas.friction(sb.Groups(speed, load, load * edge * (1 + side * 1e-9))) for side in (-1, 1))
+        assert np.abs(below / above - 1).max() < 5e-5
+    kappa = np.exp(rng.uniform(np.log(1e-6), np.log(1e-3), 300))
+    below, above = (sb.atlas.friction(sb.Groups(speed, 0.99 * (1 + side), kappa * 0.99)) for side in (-1e-9, 1e-9))
+    assert np.abs(below / above - 1).max() < 5e-5
+
+
+def test_chebyshev_polynomials_and_slopes_are_those_of_numpy():
+    x = np.linspace(-1, 1, 7)
+    assert np.allclose(atlas_grid.chebyshev(x, 9), reference.chebvander(x, 8).T)
+    slopes = [reference.chebval(x, reference.chebder(row)) for row in np.eye(9)]
+    assert np.allclose(atlas_grid.chebyshev_slopes(x, 9), slopes)
+
+
+def test_coefficients_give_back_the_values_at_the_nodes():
+    values = np.exp(atlas_grid.nodes(9))
+    assert np.allclose(atlas_grid.chebyshev(atlas_grid.nodes(9), 9).T @ (atlas_grid.to_coefficients(9) @ values), values)
+
+
+@pytest.mark.parametrize("region", atlas_grid.REGIONS)
+def test_the_coordinate_of_load_is_undone_and_its_slopes_are_right(region):
+    kappa = np.geomspace(*region.roughness, 5)
+    y = np.linspace(-0.95, 0.95, 5)
+    log_load = region.log_load(y, kappa)
+    assert np.allclose(region.load_coordinate(log_load, kappa), y)
+    by_load, by_kappa = region.load_slopes(log_load, kappa)
+    step = 1e-6 * log_load
+    ahead, behind = region.load_coordinate(log_load + step, kappa), region.load_coordinate(log_load - step, kappa)
+    assert np.allclose(by_load, (ahead - behind) / (2 * step), rtol=1e-6)
+    ahead, behind = (region.load_coordinate(log_load, kappa * np.exp(sign * 1e-6)) for sign in (1, -1))
+    assert np.allclose(by_kappa, (ahead - behind) / 2e-6, atol=1e-7)
+
+
+def test_a_table_is_packed_and_unpacked_within_its_unit():
+    table = atlas_table.load_table()
+    rng = np.random.default_rng(13)
+    shapes = [
+        (n, *region.nodes, 7) for region in atlas_grid.REGIONS for _ in range(math.prod(region.pieces)) for n in region.speeds
+    ]
+    dense = [rng.normal(size=shape) for shape in shapes]
+    again = atlas_table.unpack(atlas_table.pack(table.breaks, dense, table.film, {"made": "here"}))
+    assert again.about == {"made": "here"}
+    for block, wanted in zip(again.blocks, dense, strict=True):
+        if block is not None:
+            found = block.coefficients.transpose(0, 2, 1).reshape(wanted.shape)
+            assert np.abs(found - wanted).max() <= 0.5 * atlas_table.STEP
+
+
+def test_a_build_goes_on_with_what_is_kept(tmp_path):
+    calls = []
+
+    def make():
+        calls.append(1)
+        return np.arange(3.0)
+
+    for _ in range(2):
+        assert (atlas_build.kept(tmp_path, "rows", make) == np.arange(3.0)).all()
+    assert len(calls) == 1
+
+
+# --- curves, diagrams and elasticities read off it ---
+
+
+@pytest.fixture(scope="module")
+def contact():
+    return sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact
+
+
+def test_a_curve_read_off_it_is_the_solved_one(contact):
+    solved = sb.stribeck_curve(contact, points=41)
+    read = sb.stribeck_curve(contact, points=41, method="atlas")
+    assert len(read) == 41
+    assert np.allclose(read.values, solved.values, rtol=1e-12)
+    for name in ("friction", "friction_viscous", "friction_contact"):
+        assert np.allclose(getattr(read, name), getattr(solved, name), rtol=1e-4)
+    assert np.allclose(read.observable("minimum_gap"), solved.observable("minimum_gap"), rtol=1e-4)
+    assert (np.abs(read.friction - solved.friction) <= read.friction_error).all()
+    assert read.regimes == solved.regimes
+    assert [mark.name for mark in read.transitions] == [mark.name for mark in solved.transitions]
+    for mine, theirs in zip(read.transitions, solved.transitions, strict=True):
+        assert mine.value == pytest.approx(theirs.value, rel=1e-3)
+        assert mine.friction == pytest.approx(theirs.friction, rel=1e-4)
+
+
+def test_a_curve_over_load_falls_where_the_solved_one_does(contact):
+    slope = sb.stribeck_curve(contact, load=(5, 100), points=21, method="atlas")
+    solved = sb.stribeck_curve(contact, load=(5, 100), points=21)
+    assert np.allclose(slope.friction, solved.friction, rtol=1e-4)
+    differences = np.gradient(slope.friction, np.log(slope.values))[1:-1]
+    assert np.allclose(slope._slope_at(slope.values)[1:-1], differences, atol=0.02 * np.abs(differences).max())
+
+
+def test_a_curve_knows_what_it_does_not_have(contact):
+    with pytest.raises(sb.InputError, match="the atlas has contact_load_share"):
+        sb.stribeck_curve(contact, points=3, method="atlas").observable("error_estimate")
+    with pytest.raises(sb.InputError, match="must be 'solver' or 'atlas'"):
+        sb.stribeck_curve(contact, points=3, method="table")
+
+
+def test_elasticities_read_off_it_are_the_solved_ones(contact):
+    _, right = friction_elasticities(contact)
+    nothing, found = friction_elasticities(contact, method="atlas")
+    assert nothing is None
+    assert found == pytest.approx(right, abs=2e-4)
+
+
+def test_a_phase_diagram_read_off_it_is_the_solved_one():
+    pytest.importorskip("xarray")
+    grid = {"load": (0.01, 0.3), "roughness": [0.0, 1e-6, 1e-4], "speed": (1e-8, 1.0), "points": {"load": 2, "speed": 13}}
+    solved, read = (sb.phase_diagram(**grid, rtol=1e-6, method=method) for method in ("solver", "atlas"))
+    assert set(read.variables) == set(solved.variables)
+    assert (read.outcome == "CONVERGED").all()
+    assert (read.regime == solved.regime).all()
+    assert (read.velocity_weakening == solved.velocity_weakening).all()
+    for name in ("friction", "central_gap", "fluid_load_share", "contact_friction_share", "lambda_ratio"):
+        assert np.allclose(read[name], solved[name], rtol=1e-4, atol=1e-7), name
+    for name in read:
+        if name.startswith("speed_at"):
+            assert np.allclose(read[name], solved[name], rtol=1e-3, equal_nan=True), name
+    with pytest.raises(sb.InputError, match="speed has the value"):
+        sb.phase_diagram(load=0.1, roughness=1e-3, speed=(1e-9, 1e8), method="atlas")
