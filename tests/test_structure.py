@@ -87,7 +87,7 @@ MAY_IMPORT = {
     "report_sweep": RESULTS | {"sweep", "sweep_columns", "sweep_dataset"},
     "atlas_grid": set(),
     "atlas_table": {"atlas_grid"},
-    "atlas": {"atlas_grid", "atlas_table", "hertz", "parameters", "solution", "units"},
+    "atlas": {"atlas_grid", "atlas_table", "hertz", "parameters", "solution", "threads", "units"},
     "atlas_curve": {"atlas", "parameters", "regimes", "solution", "units"},
     "atlas_phase": {"atlas", "atlas_curve", "newton", "parameters", "phase_grid", "regimes"},
     "atlas_build": {"atlas_grid", "atlas_table", "curve"},

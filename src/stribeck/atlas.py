@@ -18,6 +18,7 @@ from .atlas_grid import HEAVY, LEAST_LOAD, LEAST_SPEED, NEARLY_SMOOTH, region_at
 from .atlas_table import TABULATED, Values, load_table, solver_hash
 from .parameters import Groups, InputError, quantity
 from .solution import Definition, check_definition
+from .threads import one_blas_thread
 from .units import show
 
 __all__ = [
@@ -299,6 +300,7 @@ def about() -> dict[str, Any]:
 Flat = tuple[Array, Array, Array]
 
 
+@one_blas_thread
 def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> tuple[Flat, Values]:
     """Return speed, load and relative roughness as flat arrays inside the box, and the functions of the table there."""
     if not isinstance(groups, Groups):
