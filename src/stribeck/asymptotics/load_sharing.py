@@ -28,6 +28,7 @@ from ..parameters import Groups
 from ..units import InputError, show
 from .constants import FILM_CONSTANT
 from .formula import Limit, Value, formula
+from .hydrodynamic import GAP_SLOPE
 from .perturbation import phi_of
 
 BOX = (Limit("speed", 1e-9, 1e2), Limit("load", 1e-4, 0.7), Limit("relative_roughness", 1e-4, 1e-1))
@@ -41,7 +42,8 @@ WEDGE = (4.909, 2.551, 0.7937, 0.02793)
 EDGE = (-6.265, 4.186, 3.065)
 PROFILE = (0.5996, 0.8093, 0.3581, 0.09829, 0.1302, 0.7041, 2.677, 1.038, 3.302)
 SUM = (2.358, -0.3874, -0.9880, 0.05973)
-"""Fitted coefficients of :func:`_film_speed`, :func:`_wedge`, :func:`_film` and :func:`_speed`, in this order."""
+"""Fitted coefficients of :func:`_log_film_speed`, :func:`_wedge`, :func:`_film` and :func:`_log_speed`, :data:`EDGE` of the
+second too."""
 
 NEWTON_STEPS = 60
 """Most steps of the inversion; 6 are usual."""
@@ -196,7 +198,7 @@ def _log_film_speed(y: Array) -> Array:
     """
     f1, f2, f3, f4, f5 = FILM_SPEED
     c = FILM_CONSTANT
-    a, K = 10 * 0.245 * c ** (-2 / 3), c**-10 / 24**3
+    a, K = 10 * GAP_SLOPE * c ** (-2 / 3), c**-10 / 24**3
     z = np.cbrt(y)
     bridge = (1 + z**2 * (f1 + f2 * z)) / (1 + z**2 * (f1 + a + z * (f3 + z * (f4 + z * (f5 + z * K * f2)))))
     return np.asarray(5 / 3 * np.log(y / c) + np.log(bridge) / 6)

@@ -74,8 +74,6 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
 
     Source: this module, with S, G and the film's speed of :mod:`load_sharing`.
     """
-    if definition not in ("paper", "balanced"):
-        raise InputError(f"definition = {show(definition)}; it must be 'paper' or 'balanced'.")
     return _viscous(groups, log_odds(groups), beta, definition)[()]
 
 
@@ -120,14 +118,14 @@ def friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, definition: De
 
     Source: :func:`viscous_friction` and :func:`load_sharing.contact_load_share`.
     """
-    if definition not in ("paper", "balanced"):
-        raise InputError(f"definition = {show(definition)}; it must be 'paper' or 'balanced'.")
     odds = log_odds(groups)
     share = np.exp(-np.logaddexp(0.0, odds))
     return (mu0 * share + _viscous(groups, odds, beta, definition))[()]
 
 
 def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition) -> Array:
+    if definition not in ("paper", "balanced"):
+        raise InputError(f"definition = {show(definition)}; it must be 'paper' or 'balanced'.")
     a1, a2, a3, a4 = SHEAR
     m1, m2, m3, m4, m5 = FIRST_MOMENT
     b1, b2, b3, b4, b5, b6, b7 = MOMENT
