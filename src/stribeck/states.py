@@ -7,14 +7,15 @@ gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
+from scipy.linalg import lapack
 
-from ._types import Array
+from ._types import Array, Numbers
 from .contact_laws import ContactLaw, contact_law
 from .continuation import extrapolation_weights
 from .equations import Equations, Operators
@@ -56,6 +57,34 @@ class Guess(Protocol):
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """States that share a mesh, as observables and error estimates want them.
+
+    Attributes
+    ----------
+    equations : Equations
+        Theirs; speed and law hold columns where there are several states.
+    y : ndarray, shape (rows, N + 2)
+        The unknowns of each.
+    load : float or ndarray
+        Load group; a column of them where there are several states.
+    correction : callable
+        What removes residuals, shape (..., rows, N + 2), to first order, -J^-1 of each.
+    """
+
+    equations: Equations
+    y: Array
+    load: Numbers
+    correction: Callable[[Array], Array]
+
+
+def correction(factors: Factors, residuals: Array) -> Array:
+    """Return ``-J^-1`` of residuals, shape (..., n), by the factors of the Jacobian J."""
+    columns = residuals.reshape(-1, residuals.shape[-1]).T
+    return np.asarray(-lapack.dgetrs(*factors, columns)[0].T.reshape(residuals.shape))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +144,13 @@ class State:
     def without_factors(self) -> State:
         """Return the state without Newton's factors, which are as large as an operator and serve only its neighbour."""
         return replace(self, root=replace(self.root, factors=None))
+
+    @property
+    def rows(self) -> Rows:
+        """The state as the only one of its mesh."""
+        factors = self.root.factors
+        assert factors is not None
+        return Rows(self.equations, self.y[None], float(self.groups.load), lambda r: correction(factors, r))
 
     @property
     def effort(self) -> float:
