@@ -10,6 +10,7 @@ Source: [Allgower & Georg 1990] Numerical Continuation Methods, chapter 6 (step 
 corrector).
 """
 
+import bisect
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
@@ -98,6 +99,7 @@ def march(
     history: Sequence[tuple[float, S]] = (),
     accept: Collection[Outcome] = (Outcome.CONVERGED,),
     aim: int = 4,
+    skip: bool = False,
     stop_when: Callable[[S], bool] | None = None,
     on_point: Callable[[float, S], object] | None = None,
 ) -> Path[S]:
@@ -123,6 +125,8 @@ def march(
         Outcomes with which a state counts as a point of the path.
     aim : int, optional
         Effort at which the step length is kept; two less doubles it, two more halves it.
+    skip : bool, optional
+        End each step at the farthest target that it reaches, and leave out those before.
     stop_when : callable, optional
         ``stop_when(state)`` ends the path after a point for which it is true.
     on_point : callable, optional
@@ -176,9 +180,11 @@ def march(
                 on_point(start, state)
         while ahead and not (stop_when is not None and stop_when(points[-1][1])):
             here = points[-1][0]
-            left = abs(ahead[0] - here)
+            within = bisect.bisect_right(ahead, length, key=lambda s: abs(s - here)) if skip else 1
+            target = ahead[max(within, 1) - 1]
+            left = abs(target - here)
             step = left if left <= length else min(length, 0.5 * left)
-            s = ahead[0] if step == left else here + sign * step
+            s = target if step == left else here + sign * step
             state = correct(s, points[-order - 1 :]) if s != here else None
             if state is None or state.outcome not in accept:
                 failures, failure = failures + 1, failure if state is None else state
@@ -187,8 +193,8 @@ def march(
                     return path(Outcome.PATH_LOST)
                 continue
             points.append((s, state))
-            if s == ahead[0]:
-                del ahead[0]
+            if s == target:
+                del ahead[: max(within, 1)]
             if on_point is not None:
                 on_point(s, state)
             factor = min(FASTEST_GROWTH, max(1.0 / FASTEST_GROWTH, 2.0 ** (0.5 * (aim - state.effort))))

@@ -108,15 +108,30 @@ class Equations:
         r = np.empty_like(y)
         r[..., :-2] = h - y[..., -2:-1] - op.parabola - p_c @ op.deflection.T
         r[..., -2] = p_c @ op.mesh.weights - LOAD
-        r[..., -1] = self.flux_scale * (g @ op.mesh.weights)
+        r[..., -1:] = self.flux_scale * (g @ op.mesh.weights)[..., None]
         if self.moves:
             g *= self.speed
             r[..., :-2] -= g @ op.deflection_of_gradient.T
             r[..., -2] += g @ op.load_of_gradient
         return r
 
-    def jacobian(self, y: Array) -> Array:
-        """Return the derivative of the residual, shape (N + 2, N + 2), in Fortran order.
+    @staticmethod
+    def units(y: Array) -> Array:
+        """Return the gaps and the flux gap themselves, and one for the offset: what unknowns change relative to.
+
+        From one speed to the next films grow as a whole: the derivatives with respect to relative changes of the gap hardly
+        change, and factors of a Jacobian in these units serve many states.
+        """
+        units = np.array(y)
+        units[..., -2] = 1.0
+        return units
+
+    def relative_jacobian(self, y: Array) -> Array:
+        """Return the derivative of the residual in :meth:`units` of the unknowns, :meth:`jacobian` times their diagonal."""
+        return self.jacobian(y, self.units(y))
+
+    def jacobian(self, y: Array, units: Array | None = None) -> Array:
+        """Return the derivative of the residual, shape (N + 2, N + 2), in Fortran order; its columns times ``units``.
 
         ::
 
@@ -127,9 +142,10 @@ class Equations:
         op = self.operators
         n = len(y) - 2
         h, h_star = y[:-2], y[-1]
-        p_slope = self.law.slope(h, self.law.pressure(h))
-        g_h = reynolds.gap_derivative(h, h_star)
-        g_flux = reynolds.flux_derivative(h)
+        u, u_offset, u_flux = (np.ones(n), 1.0, 1.0) if units is None else (units[:n], units[n], units[n + 1])
+        p_slope = self.law.slope(h, self.law.pressure(h)) * u
+        g_h = reynolds.gap_derivative(h, h_star) * u
+        g_flux = reynolds.flux_derivative(h) * u_flux
         matrix = np.zeros((n + 2, n + 2), order="F")
         block = matrix[:n, :n]
         np.multiply(op.deflection, -p_slope, out=block)
@@ -139,8 +155,8 @@ class Equations:
             matrix[:n, n + 1] = op.deflection_of_gradient @ (-self.speed * g_flux)
             matrix[n, :n] += op.load_of_gradient * (self.speed * g_h)
             matrix[n, n + 1] = self.speed * (op.load_of_gradient @ g_flux)
-        block[np.diag_indices(n)] += 1.0
-        matrix[:n, n] = -1.0
+        block[np.diag_indices(n)] += u
+        matrix[:n, n] = -u_offset
         matrix[n + 1, :n] = op.mesh.weights * g_h * self.flux_scale
         matrix[n + 1, n + 1] = self.flux_scale * (op.mesh.weights @ g_flux)
         return matrix

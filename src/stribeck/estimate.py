@@ -81,7 +81,7 @@ class FineOperators:
         return found.reshape(mesh.size, -1)
 
     def deflection(self, pressure: Array, operators: Operators) -> Array:
-        """Return the deflection at the coarse nodes under rows of fine nodal ``pressure``, with the ``operators`` of the mesh."""
+        """Return the deflection at the coarse nodes under rows of fine ``pressure``, by the ``operators`` of the mesh."""
         density = (pressure * self.mesh.stretch).reshape(len(pressure), self.mesh.panels, -1)
         lowered = (density @ self._lowered.T).reshape(len(pressure), -1) / self.coarse.stretch
         highest = density @ reference(self.mesh.order).to_legendre[self.coarse.order :].T

@@ -82,7 +82,7 @@ class Rows:
 
 
 def correction(factors: Factors, residuals: Array) -> Array:
-    """Return ``-J^-1`` of residuals, shape (..., n), by the factors of the Jacobian J."""
+    """Return what removes residuals, shape (..., n), by the factors of a Jacobian, in its units of the unknowns."""
     columns = residuals.reshape(-1, residuals.shape[-1]).T
     return np.asarray(-lapack.dgetrs(*factors, columns)[0].T.reshape(residuals.shape))
 
@@ -150,7 +150,8 @@ class State:
         """The state as the only one of its mesh."""
         factors = self.root.factors
         assert factors is not None
-        return Rows(self.equations, self.y[None], float(self.groups.load), lambda r: correction(factors, r))
+        units = self.equations.units(self.y)
+        return Rows(self.equations, self.y[None], float(self.groups.load), lambda r: units * correction(factors, r))
 
     @property
     def effort(self) -> float:
@@ -293,6 +294,15 @@ def mesh_for(
     return adapt(fields, scale, reach, order, tolerance, start)
 
 
+def factors_on(operators: Operators, state: State) -> Factors:
+    """Return the factors of the Jacobian at a state, put on the mesh of ``operators``, in units of the unknowns."""
+    flux_gap = state.flux_gap
+    y = np.append(np.exp(state.log_gap(operators.mesh)), [state.offset, flux_gap])
+    equations = Equations(operators, float(state.groups.speed), contact_law(state.groups), flux_gap**2)
+    lu, pivots, _ = lapack.dgetrf(equations.relative_jacobian(y), overwrite_a=True)
+    return lu, pivots
+
+
 def solve_state(
     groups: Groups,
     operators: Operators,
@@ -312,7 +322,7 @@ def solve_state(
     y[-2:] = guess.offset, flux_gap
     root = root_find(
         equations.residual,
-        equations.jacobian,
+        equations.relative_jacobian,
         y,
         fraction=equations.admissible,
         size=equations.size,
@@ -320,6 +330,7 @@ def solve_state(
         max_steps=max_steps,
         chord=CHORD,
         factors=factors,
+        units=equations.units,
         overwrite_jacobian=True,
         singular_below=0.0,
     )
