@@ -22,7 +22,7 @@ import numpy as np
 from . import reynolds
 from ._types import Array, Numbers
 from .contact_laws import ContactLaw
-from .elasticity import deflection_operator
+from .elasticity import nodal_deflection
 from .mesh import Mesh
 
 LOAD = 0.5 * np.pi
@@ -38,7 +38,7 @@ class Operators:
     @cached_property
     def deflection(self) -> Array:
         """D: nodal pressures -> deflection."""
-        return np.asfortranarray(deflection_operator(self.mesh))
+        return nodal_deflection(self.mesh)
 
     @cached_property
     def deflection_of_gradient(self) -> Array:

@@ -21,7 +21,16 @@ from numpy.polynomial import legendre
 
 from . import reynolds
 from ._types import Array
-from .elasticity import log_moments, near_distance
+from .elasticity import (
+    Blocks,
+    log_moments,
+    near_distance,
+    near_infinity,
+    near_panels,
+    nodes_at_infinity,
+    nodes_on_panel,
+    panels_from_infinity,
+)
 from .equations import LOAD, Operators
 from .mesh import Mesh, interpolation_error, reference
 from .observables import NAMES, Observables, friction_integrals, friction_scale, gradients
@@ -45,6 +54,24 @@ OFFSET_FLOOR = 1e-3
 
 GAP_FLOOR = 1e-3
 """At speed zero the gap crosses zero too: its error is relative to it where it exceeds this part of kappa."""
+
+
+def _by_highest(s: Array, order: int) -> Array:
+    """Moments of the logarithm with the degrees that a panel of ``order`` nodes gains, at the near ones of targets s."""
+    near = np.abs(s) < near_distance(order)
+    found = np.zeros((len(s), EXTRA_NODES))
+    found[near] = log_moments(s[near], order + EXTRA_NODES)[:, order:]
+    return found
+
+
+def _seen_from_infinity(centre: Array, half_width: Array, nodes: Array) -> Array:
+    """Nodes of a panel in ``x``, in units of the edge of the panel through infinity, in the coordinate of that one."""
+    return np.asarray(1 / (centre + half_width * nodes))
+
+
+_ON_PANELS = Blocks(nodes_on_panel, _by_highest)
+_AT_INFINITY = Blocks(nodes_at_infinity, _by_highest)
+_OF_INFINITY = Blocks(_seen_from_infinity, _by_highest)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,12 +99,14 @@ class FineOperators:
     def _of_highest(self) -> Array:
         """Highest Legendre coefficients on all panels -> the deflection by them, shape (size, panels * EXTRA_NODES)."""
         mesh, m = self.coarse, self.coarse.order
-        s = (mesh.nodes[:, None] - mesh.centres) / mesh.half_widths
-        s[:, -1] = 1 / (mesh.nodes * mesh.half_widths[-1])
-        target, panel = np.nonzero(np.abs(s) < near_distance(m))
-        found = np.zeros((mesh.size, mesh.panels, EXTRA_NODES))
-        moments = log_moments(s[target, panel], m + EXTRA_NODES)[:, m:]
-        found[target, panel] = moments * mesh.half_widths[panel, None] / -np.pi
+        found = np.zeros((mesh.panels, m, mesh.panels, EXTRA_NODES))
+        target, source, places = near_panels(mesh)
+        found[target, :, source] = _ON_PANELS.at(places, m)
+        outermost, places = np.flatnonzero(near_infinity(mesh)), panels_from_infinity(mesh)
+        found[-1, :, outermost] = _AT_INFINITY.at([places[k] for k in outermost], m)
+        found[:-1, :, -1] = _OF_INFINITY.at(places, m)
+        found[-1, :, -1] = _by_highest(reference(m).nodes, m)
+        found *= mesh.half_widths[:, None] / -np.pi
         return found.reshape(mesh.size, -1)
 
     def deflection(self, pressure: Array, operators: Operators) -> Array:
