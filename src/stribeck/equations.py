@@ -94,7 +94,7 @@ class Equations:
         fluid = np.asarray(self.speed * self.operators.mesh.integral_from_infinity(reynolds.gradient(h, h_star)))
         return self.law.pressure(h), fluid
 
-    @property
+    @cached_property
     def moves(self) -> bool:
         """Whether the speed is positive; of states in rows, that of all."""
         return bool(np.all(self.speed > 0))

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -41,23 +42,22 @@ class Anchor:
     coordinate: float
     point: Point
     state: State
+    operators: Operators
     fine: FineOperators
-    factors: Factors
-    """Of the Jacobian at the state, in units of the unknowns."""
 
     @classmethod
-    def at(cls, coordinate: float, point: Point) -> Anchor:
-        """Return the anchor that a point is."""
-        assert point.state is not None and point.fine is not None
-        return cls(coordinate, point, point.state, point.fine, factors_on(point.state.equations.operators, point.state))
+    def at(cls, coordinate: float, point: Point, operators: Operators, fine: FineOperators) -> Anchor:
+        """Return the anchor that a point is, with the operators of a mesh that resolves it."""
+        assert point.state is not None
+        return cls(coordinate, point, point.state, operators, fine)
 
-    @property
-    def operators(self) -> Operators:
-        """Those of its mesh."""
-        return self.state.equations.operators
+    @cached_property
+    def factors(self) -> Factors:
+        """Those of the Jacobian at the state on the mesh of the operators, in units of the unknowns."""
+        return factors_on(self.operators, self.state)
 
     def on(self, operators: Operators) -> Factors:
-        """Return factors for the mesh of ``operators``."""
+        """Return factors for the mesh of other operators."""
         return self.factors if operators is self.operators else factors_on(operators, self.state)
 
 

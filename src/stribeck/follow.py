@@ -25,6 +25,10 @@ LONGEST_STEP = math.log(10.0)
 SHORTEST_STEP = 1e-3
 PREDICTOR_ORDER = 4
 
+AIM = 3
+
+ROUGH = 1e-2
+
 FILL_ORDER = 5
 """Degree of the interpolation between the steps of a path."""
 
@@ -72,10 +76,10 @@ class Follower:
         if point is None or point.state is None:
             return self._adopt(converge(guess, groups, self.rtol, self.tolerances))
         refined = converge(point.state, groups, self.rtol, self.tolerances)
-        if refined.state is not None:  # what was predicted is the first state on the way to it
-            state = replace(refined.state, prediction_error=point.state.prediction_error)
-            refined = replace(refined, state=state)
-        return self._adopt(refined)
+        adopted = self._adopt(refined)
+        if adopted.state is not None and adopted.outcome.ok and adopted.state.prediction_error > ROUGH:
+            self._coarsen(adopted.state)
+        return adopted
 
     def _on_present_mesh(self, guess: Guess, groups: Groups) -> Point | None:
         if self.operators is None or self.fine is None:
@@ -108,7 +112,7 @@ class Follower:
         except MeshTooLargeError:
             return
         if mesh.size < WORTH_COARSENING * state.mesh.size:
-            self.operators, self.fine = Operators(mesh), FineOperators(mesh)
+            self.operators, self.fine, self.factors = Operators(mesh), FineOperators(mesh), None
 
     def _adopt(self, point: Point) -> Point:
         if point.state is not None and point.outcome.ok:
@@ -140,6 +144,8 @@ class Filling:
             left, right = self.anchors[-1:], self._anchor(s, point)
             if skipped:
                 found = self._found(skipped, left[0], right) | found
+                last = self.anchors[-1]
+                self.follower.factors = last.factors if last.operators is self.follower.operators else None
         for c in [*skipped, s]:
             if c not in found:
                 break
@@ -149,9 +155,9 @@ class Filling:
 
     def _anchor(self, s: float, point: Point) -> Anchor:
         """Return the anchor that a solved point is, and keep it as one to interpolate through."""
-        anchor = Anchor.at(s, point)
+        assert self.follower.operators is not None and self.follower.fine is not None
+        anchor = Anchor.at(s, point, self.follower.operators, self.follower.fine)
         self.anchors = [*self.anchors[-ANCHORS:], anchor]
-        self.follower.factors = anchor.factors if anchor.operators is self.follower.operators else None
         return anchor
 
     def _nearest(self, s: float) -> list[Anchor]:
@@ -204,6 +210,7 @@ def follow(
     """Return the converged points at ``coordinates``, ascending or descending, and those between that the path needed."""
     targets = [float(s) for s in coordinates]
     follower = Follower(groups_at, rtol)
+    moving = bool(groups_at(targets[0]).speed > 0)
     filling = Filling(follower, targets, on_point)
     path = march(
         follower,
@@ -213,8 +220,9 @@ def follow(
         max_step=LONGEST_STEP,
         min_step=SHORTEST_STEP,
         order=PREDICTOR_ORDER,
+        aim=AIM if moving else 4,
         targets=targets,
-        skip=bool(groups_at(targets[0]).speed > 0),
+        skip=moving,
         stop_when=lambda _: filling.lost is not None,
         on_point=filling.arrive,
     )

@@ -144,8 +144,12 @@ def least_gaps(mesh: Mesh, h: Array) -> tuple[Array, Array]:
     panel, node = np.divmod(nodes, mesh.order)
     # Beside the panel of the least node its neighbour, where that node is the outermost.
     beside = panel - (node == 0) + (node == mesh.order - 1)
-    found = [_least_on_panels(mesh, h, np.clip(k, 0, last)) for k in (panel, beside)]
-    position, value = np.where(found[0][1] <= found[1][1], found[0], found[1])
+    position, value = _least_on_panels(mesh, h, np.clip(panel, 0, last))
+    edge = np.flatnonzero(beside != panel)
+    if len(edge):
+        other = _least_on_panels(mesh, h[edge], np.clip(beside[edge], 0, last))
+        lower = other[1] < value[edge]
+        position[edge[lower]], value[edge[lower]] = other[:, lower]
     outside = (panel > last) & (beside > last)
     return np.where(outside, mesh.nodes[nodes], position), np.where(outside, h[rows, nodes], value)
 

@@ -109,6 +109,8 @@ def converge(
         if not state.outcome.ok:
             outcome = state.outcome
             break
+        if isinstance(guess, State):  # what was predicted is the first state on the way to this one
+            state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
         fine, values = FineOperators(mesh), values_of(state, groups)
         [estimate] = error_estimates(state.rows, [values], fine)
         if last is not None and mesh.size >= CLEARLY_FINER * last[0]:

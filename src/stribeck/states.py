@@ -172,9 +172,19 @@ class State:
         """Nodal fields of the guess that this state is for others: :attr:`shape` and fluid pressure."""
         return np.stack([self.shape, self.equations.pressures(self.y)[1]])
 
+    @cached_property
+    def _on_other_mesh(self) -> dict[Mesh, Array]:
+        return {}
+
     def log_gap(self, mesh: Mesh) -> Array:
-        """Return the logarithm of the gap at the nodes of ``mesh``."""
-        return self._log_gap if mesh is self.mesh else np.asarray(self.fields(mesh.nodes)[0])
+        """Return the logarithm of the gap at the nodes of ``mesh``; that on the mesh last asked for is kept."""
+        if mesh is self.mesh:
+            return self._log_gap
+        if mesh not in self._on_other_mesh:
+            shape = self.mesh.interpolate(self.shape, mesh.nodes)
+            self._on_other_mesh.clear()
+            self._on_other_mesh[mesh] = shape + np.log(self.mesh.scale**2 + mesh.nodes**2)
+        return self._on_other_mesh[mesh]
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and the fluid pressure at ``x``."""
