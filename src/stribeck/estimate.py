@@ -210,16 +210,13 @@ def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
 
 def interpolation_errors(states: Rows, minimum_positions: Array) -> Array:
     """Return the absolute errors of the interpolated central and least gap, shape (2, rows)."""
-    mesh, rows = states.equations.operators.mesh, np.arange(len(states.y))
-    gaps = states.y[:, :-2].reshape(len(rows), mesh.panels, -1)
-    central = np.full(len(rows), int(np.searchsorted(mesh.edges, 0.0)))
+    mesh = states.equations.operators.mesh
+    central = int(np.searchsorted(mesh.edges, 0.0))
     least = np.clip(np.searchsorted(mesh.edges, minimum_positions) - 1, 0, mesh.panels - 1)
-    found = []
-    for panel in (central, least):
-        gap = gaps[rows, panel]
-        shape = np.log(gap / mesh.far.reshape(mesh.panels, -1)[panel])
-        found.append(SAFETY * interpolation_error(shape) * gap.min(axis=1))
-    return np.stack(found)
+    panels = np.stack([np.full_like(least, central), least])
+    gap = states.y[:, :-2].reshape(len(least), mesh.panels, -1)[np.arange(len(least)), panels]
+    shape = np.log(gap / mesh.far.reshape(mesh.panels, -1)[panels])
+    return np.asarray(SAFETY * interpolation_error(shape) * gap.min(axis=2))
 
 
 @lru_cache(maxsize=64)

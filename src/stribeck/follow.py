@@ -26,8 +26,11 @@ SHORTEST_STEP = 1e-3
 PREDICTOR_ORDER = 4
 
 AIM = 3
+"""What steps aim at where targets may be passed over: the smaller, the shorter the steps, and the better what lies between is
+interpolated."""
 
 ROUGH = 1e-2
+"""Error of a prediction from which the mesh that was made for it is looked at again: it is finer than need be."""
 
 FILL_ORDER = 5
 """Degree of the interpolation between the steps of a path."""

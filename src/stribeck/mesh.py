@@ -48,14 +48,8 @@ class Reference:
     derivative: Array
     """Legendre coefficients -> those of the derivative."""
 
-    @cached_property
-    def jets(self) -> Array:
-        """Nodal values -> Legendre coefficients of the polynomial and of its first two derivatives, shape (3, n, n)."""
-        slopes = self.derivative @ self.to_legendre
-        return np.stack([self.to_legendre, slopes, self.derivative @ slopes])
-
-    def basis(self, points: Array) -> Array:
-        """Legendre polynomials at ``points``, shape (len(points), n)."""
+    def interpolation(self, points: Array) -> Array:
+        """Matrix from nodal values to the values at ``points`` of the interpolating polynomial."""
         basis = np.empty((len(self.nodes), len(points)))
         basis[0] = 1.0
         basis[1] = points
@@ -63,11 +57,7 @@ class Reference:
             np.multiply(points, basis[n], out=basis[n + 1])
             basis[n + 1] *= (2 * n + 1) / (n + 1)
             basis[n + 1] -= n / (n + 1) * basis[n - 1]
-        return basis.T
-
-    def interpolation(self, points: Array) -> Array:
-        """Matrix from nodal values to the values at ``points`` of the interpolating polynomial."""
-        return self.basis(points) @ self.to_legendre
+        return basis.T @ self.to_legendre
 
 
 @lru_cache(maxsize=32)

@@ -21,7 +21,7 @@ from functools import lru_cache
 import numpy as np
 
 from . import reynolds
-from ._types import Array, Indices, Numbers
+from ._types import Array, Numbers
 from .equations import LOAD, Equations
 from .mesh import Mesh, reference
 
@@ -89,7 +89,7 @@ def observables_of_rows(equations: Equations, y: Array, load: Numbers) -> list[O
     mesh = equations.operators.mesh
     h, h_star = y[:, :-2], y[:, -1:]
     contact = equations.law.pressure(h) @ mesh.weights / LOAD
-    positions, least = least_gaps(mesh, h)
+    positions, least = np.array([least_gap(mesh, row) for row in h]).T
     fluid, friction = np.zeros(len(y)), np.zeros((2, len(y)))
     if equations.moves:
         fluid = (equations.speed * reynolds.gradient(h, h_star)) @ equations.operators.load_of_gradient / LOAD
@@ -132,47 +132,45 @@ def central_gap(mesh: Mesh, h: Array) -> Array:
 
 def least_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
     """Return position and value of the least gap, that of the panels' polynomials around the least node."""
-    positions, values = least_gaps(mesh, h[None])
-    return float(positions[0]), float(values[0])
+    order = mesh.order
+    panel, node = divmod(int(np.argmin(h)), order)
+    panels = {panel, panel - (node == 0), panel + (node == order - 1)}
+    found = [_least_on_panel(mesh, h, k) for k in panels if 0 <= k < mesh.panels - 1]
+    return min(found, key=lambda pair: pair[1]) if found else (float(mesh.nodes[np.argmin(h)]), float(h.min()))
 
 
-def least_gaps(mesh: Mesh, h: Array) -> tuple[Array, Array]:
-    """Return :func:`least_gap` of every row of ``h``, shapes (rows,)."""
-    last = mesh.panels - 2
-    rows = np.arange(len(h))
-    nodes = np.argmin(h, axis=1)
-    panel, node = np.divmod(nodes, mesh.order)
-    # Beside the panel of the least node its neighbour, where that node is the outermost.
-    beside = panel - (node == 0) + (node == mesh.order - 1)
-    position, value = _least_on_panels(mesh, h, np.clip(panel, 0, last))
-    edge = np.flatnonzero(beside != panel)
-    if len(edge):
-        other = _least_on_panels(mesh, h[edge], np.clip(beside[edge], 0, last))
-        lower = other[1] < value[edge]
-        position[edge[lower]], value[edge[lower]] = other[:, lower]
-    outside = (panel > last) & (beside > last)
-    return np.where(outside, mesh.nodes[nodes], position), np.where(outside, h[rows, nodes], value)
-
-
-def _least_on_panels(mesh: Mesh, h: Array, panel: Indices) -> Array:
-    """Return position and value of the least gap of every row on its panel, by Newton's iteration from its least node."""
-    rule, c, d = reference(mesh.order), mesh.centres[panel], mesh.half_widths[panel]
-    rows = np.arange(len(h))
-    on_panel = h.reshape(len(h), mesh.panels, mesh.order)[rows, panel]
-    shape = np.log(on_panel / mesh.far.reshape(mesh.panels, mesh.order)[panel])
-    # Legendre coefficients of the logarithm, of its slope and of its curvature.
-    jets = np.stack([shape @ derivative.T for derivative in rule.jets])
-    s = rule.nodes[np.argmin(on_panel, axis=1)]
+def _least_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
+    """Return position and value of the least gap on a panel, by Newton's iteration from its least node."""
+    nodes = slice(panel * mesh.order, (panel + 1) * mesh.order)
+    rule, c, d = reference(mesh.order), float(mesh.centres[panel]), float(mesh.half_widths[panel])
+    coefficients = (rule.to_legendre @ np.log(h[nodes] / mesh.far[nodes])).tolist()
+    s = float(rule.nodes[np.argmin(h[nodes])])
     for _ in range(NEWTON_STEPS):
-        _, slope, curvature = np.einsum("jrn,rn->jr", jets, rule.basis(s))
+        _, slope, curvature = _legendre_jet(coefficients, s)
         x = c + d * s
         far = mesh.scale**2 + x * x
         slope += 2 * d * x / far
         curvature += 2 * d * d * (mesh.scale**2 - x * x) / far**2
-        step = -slope / np.maximum(np.maximum(curvature, np.abs(slope) / LARGEST_STEP), 1e-300)
-        s = np.clip(s + step, -1.0, 1.0)
+        step = -slope / max(curvature, abs(slope) / LARGEST_STEP, 1e-300)
+        s = min(1.0, max(-1.0, s + step))
     x = c + d * s
-    return np.stack([x, np.exp(np.einsum("rn,rn->r", jets[0], rule.basis(s))) * (mesh.scale**2 + x * x)])
+    return x, math.exp(_legendre_jet(coefficients, s)[0]) * (mesh.scale**2 + x * x)
+
+
+def _legendre_jet(coefficients: list[float], s: float) -> tuple[float, float, float]:
+    """Return a Legendre series and its first two derivatives at ``s``."""
+    p, before = [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+    total = [coefficients[0], 0.0, 0.0]
+    for n, coefficient in enumerate(coefficients[1:]):
+        a, b = (2 * n + 1) / (n + 1), n / (n + 1)
+        ahead = [
+            a * s * p[0] - b * before[0],
+            a * (s * p[1] + p[0]) - b * before[1],
+            a * (s * p[2] + 2 * p[1]) - b * before[2],
+        ]
+        p, before = ahead, p
+        total = [t + coefficient * q for t, q in zip(total, p, strict=True)]
+    return total[0], total[1], total[2]
 
 
 def friction_integrals(mesh: Mesh, h: Array, h_star: Numbers, slopes: Array | None = None) -> Array:
