@@ -24,6 +24,8 @@ from .newton import Outcome, Root, relative_size, root_find
 
 FASTEST_GROWTH = 2.0  # of the step length, per step; also how much a hard step shrinks the next
 
+FASTEST_BEYOND_TARGETS = 4.0  # the same where targets, which cut steps short, may be passed over
+
 
 class State(Protocol):
     """What :func:`march` asks of a state: how its solve ended, and how many factorisations that took."""
@@ -99,7 +101,7 @@ def march(
     history: Sequence[tuple[float, S]] = (),
     accept: Collection[Outcome] = (Outcome.CONVERGED,),
     aim: int = 4,
-    skip: bool = False,
+    skip: int | None = None,
     stop_when: Callable[[S], bool] | None = None,
     on_point: Callable[[float, S], object] | None = None,
 ) -> Path[S]:
@@ -125,8 +127,9 @@ def march(
         Outcomes with which a state counts as a point of the path.
     aim : int, optional
         Effort at which the step length is kept; two less doubles it, two more halves it.
-    skip : bool, optional
-        End each step at the farthest target that it reaches, and leave out those before.
+    skip : int, optional
+        Least number of targets for a step to pass over: where it reaches beyond so many it ends at the farthest target
+        that it reaches, and those before are left out. None leaves out none.
     stop_when : callable, optional
         ``stop_when(state)`` ends the path after a point for which it is true.
     on_point : callable, optional
@@ -180,8 +183,9 @@ def march(
                 on_point(start, state)
         while ahead and not (stop_when is not None and stop_when(points[-1][1])):
             here = points[-1][0]
-            within = bisect.bisect_right(ahead, length, key=lambda s: abs(s - here)) if skip else 1
-            target = ahead[max(within, 1) - 1]
+            within = 1 if skip is None else bisect.bisect_right(ahead, length, key=lambda s: abs(s - here))
+            passed = within - 1 if skip is not None and within > skip else 0
+            target = ahead[passed]
             left = abs(target - here)
             step = left if left <= length else min(length, 0.5 * left)
             s = target if step == left else here + sign * step
@@ -194,10 +198,11 @@ def march(
                 continue
             points.append((s, state))
             if s == target:
-                del ahead[: max(within, 1)]
+                del ahead[: passed + 1]
             if on_point is not None:
                 on_point(s, state)
-            factor = min(FASTEST_GROWTH, max(1.0 / FASTEST_GROWTH, 2.0 ** (0.5 * (aim - state.effort))))
+            fastest = FASTEST_GROWTH if skip is None else FASTEST_BEYOND_TARGETS
+            factor = min(fastest, max(1.0 / FASTEST_GROWTH, 2.0 ** (0.5 * (aim - state.effort))))
             if factor < 1.0:
                 length = max(min_step, factor * step)
             elif may_grow:  # a step cut short by a target does not shorten the next one

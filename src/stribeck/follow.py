@@ -29,6 +29,9 @@ AIM = 3
 """What steps aim at where targets may be passed over: the smaller, the shorter the steps, and the better what lies between is
 interpolated."""
 
+LEAST_SKIPPED = 3
+"""Targets that a step has to pass over: filling fewer costs more than as many steps."""
+
 ROUGH = 1e-2
 """Error of a prediction from which the mesh that was made for it is looked at again: it is finer than need be."""
 
@@ -225,7 +228,7 @@ def follow(
         order=PREDICTOR_ORDER,
         aim=AIM if moving else 4,
         targets=targets,
-        skip=moving,
+        skip=LEAST_SKIPPED if moving else None,
         stop_when=lambda _: filling.lost is not None,
         on_point=filling.arrive,
     )
