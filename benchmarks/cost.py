@@ -4,7 +4,7 @@ Usage::
 
     python benchmarks/cost.py
 
-Prints the tables that docs/numerics.md and docs/convergence.md show.  Times are the best of several runs, one thread.
+Prints the tables that docs/numerics.md shows.  Times are the best of several runs, one thread.
 """
 
 from __future__ import annotations
