@@ -6,3 +6,6 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Flags = NDArray[np.bool_]
+
+Numbers = float | Array
+"""One number, or a column of them where states lie in rows."""

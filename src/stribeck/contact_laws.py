@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, Numbers
 from .parameters import Groups
 
 
@@ -24,7 +24,7 @@ class ContactLaw(Protocol):
         """Name that outputs print."""
 
     @property
-    def decay(self) -> float:
+    def decay(self) -> Numbers:
         """Length over which the pressure falls by a factor e at most [u_Hz]; 0 where there is no contact."""
 
     def pressure(self, gap: Array) -> Array:
@@ -48,7 +48,7 @@ class NoContact:
     """The contact pressure of smooth surfaces: none."""
 
     name: str = "smooth"
-    decay: float = 0.0
+    decay: Numbers = 0.0
 
     def pressure(self, gap: Array) -> Array:
         """Return zeros."""
@@ -74,10 +74,10 @@ class ExponentialLaw:
 
     Parameters
     ----------
-    load : float
-        Load group [-].
-    decay : float
-        Relative roughness kappa, the length of the decay [u_Hz].
+    load : float or ndarray
+        Load group [-]; for states in rows a column of them.
+    decay : float or ndarray
+        Relative roughness kappa, the length of the decay [u_Hz], likewise.
 
     Notes
     -----
@@ -86,8 +86,8 @@ class ExponentialLaw:
     Source: [BP] Eq. (contact_pressure_dl).
     """
 
-    load: float
-    decay: float
+    load: Numbers
+    decay: Numbers
     name: str = "exponential"
 
     def pressure(self, gap: Array) -> Array:
@@ -96,7 +96,7 @@ class ExponentialLaw:
 
     def log_pressure(self, gap: Array) -> Array:
         """Return ``-h/kappa - ln(F)/2``."""
-        return gap / -self.decay - 0.5 * float(np.log(self.load))
+        return np.asarray(gap / -self.decay - 0.5 * np.log(self.load))
 
     def slope(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dh`` = -p_c/kappa."""
@@ -112,7 +112,10 @@ class ExponentialLaw:
 
 
 def contact_law(groups: Groups) -> ContactLaw:
-    """Return the contact law of the paper for scalar ``groups``: exponential, or none where the roughness is zero."""
-    if groups.roughness == 0:
+    """Return the contact law of the paper: exponential, or none where the roughness is zero.
+
+    Groups that are columns give the law of states in rows; none or all of these are smooth.
+    """
+    if not np.any(groups.roughness):
         return NoContact()
-    return ExponentialLaw(float(groups.load), float(groups.roughness / groups.load))
+    return ExponentialLaw(groups.load, groups.relative_roughness)

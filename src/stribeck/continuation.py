@@ -10,6 +10,7 @@ Source: [Allgower & Georg 1990] Numerical Continuation Methods, chapter 6 (step 
 corrector).
 """
 
+import bisect
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
@@ -22,6 +23,8 @@ from ._types import Array
 from .newton import Outcome, Root, relative_size, root_find
 
 FASTEST_GROWTH = 2.0  # of the step length, per step; also how much a hard step shrinks the next
+
+FASTEST_BEYOND_TARGETS = 4.0  # the same where targets, which cut steps short, may be passed over
 
 
 class State(Protocol):
@@ -98,6 +101,7 @@ def march(
     history: Sequence[tuple[float, S]] = (),
     accept: Collection[Outcome] = (Outcome.CONVERGED,),
     aim: int = 4,
+    skip: int | None = None,
     stop_when: Callable[[S], bool] | None = None,
     on_point: Callable[[float, S], object] | None = None,
 ) -> Path[S]:
@@ -123,6 +127,9 @@ def march(
         Outcomes with which a state counts as a point of the path.
     aim : int, optional
         Effort at which the step length is kept; two less doubles it, two more halves it.
+    skip : int, optional
+        Least number of targets for a step to pass over: where it reaches beyond so many it ends at the farthest target
+        that it reaches, and those before are left out. None leaves out none.
     stop_when : callable, optional
         ``stop_when(state)`` ends the path after a point for which it is true.
     on_point : callable, optional
@@ -176,9 +183,12 @@ def march(
                 on_point(start, state)
         while ahead and not (stop_when is not None and stop_when(points[-1][1])):
             here = points[-1][0]
-            left = abs(ahead[0] - here)
+            within = 1 if skip is None else bisect.bisect_right(ahead, length, key=lambda s: abs(s - here))
+            passed = within - 1 if skip is not None and within > skip else 0
+            target = ahead[passed]
+            left = abs(target - here)
             step = left if left <= length else min(length, 0.5 * left)
-            s = ahead[0] if step == left else here + sign * step
+            s = target if step == left else here + sign * step
             state = correct(s, points[-order - 1 :]) if s != here else None
             if state is None or state.outcome not in accept:
                 failures, failure = failures + 1, failure if state is None else state
@@ -187,11 +197,12 @@ def march(
                     return path(Outcome.PATH_LOST)
                 continue
             points.append((s, state))
-            if s == ahead[0]:
-                del ahead[0]
+            if s == target:
+                del ahead[: passed + 1]
             if on_point is not None:
                 on_point(s, state)
-            factor = min(FASTEST_GROWTH, max(1.0 / FASTEST_GROWTH, 2.0 ** (0.5 * (aim - state.effort))))
+            fastest = FASTEST_GROWTH if skip is None else FASTEST_BEYOND_TARGETS
+            factor = min(fastest, max(1.0 / FASTEST_GROWTH, 2.0 ** (0.5 * (aim - state.effort))))
             if factor < 1.0:
                 length = max(min_step, factor * step)
             elif may_grow:  # a step cut short by a target does not shorten the next one

@@ -212,7 +212,8 @@ class StribeckCurve:
     @cached_property
     def minimum(self) -> Landmark | None:
         """The friction minimum, located on solved states where the slope vanishes; None where the curve has none inside."""
-        i = int(np.argmin(self.friction)) if len(self) > 2 else 0
+        moves = bool(np.all(np.asarray(self.groups.speed) > 0))  # at rest friction is that of the dry contact throughout
+        i = int(np.argmin(self.friction)) if moves and len(self) > 2 else 0
         if not 0 < i < len(self) - 1:
             return None
 

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from .curve import Over, StribeckCurve, stribeck_curve
 from .newton import Outcome
 from .parameters import LineContact
@@ -303,8 +305,18 @@ class _Scan:
         wanted = CONTACT_MARK if "hydrodynamic" in (regime, self.present) else FLUID_MARK
         low, high = sorted((near, far))
         marks = [mark.value for mark in curve.transitions if mark.name == wanted]
-        # Where the states' own errors hide the passage it lies within them, at the threshold itself.
-        return regime, next((value for value in marks if low <= value <= high), math.sqrt(low * high))
+        found = next((value for value in marks if low <= value <= high), None)
+        # Where the states' own errors hide the passage it lies within them: at the end that is at the threshold itself.
+        return regime, self._nearest_to_bound(curve, wanted, low, high) if found is None else found
+
+    @staticmethod
+    def _nearest_to_bound(curve: StribeckCurve, mark: str, low: float, high: float) -> float:
+        """Return that of two values of a curve where the share that a mark is about is nearer to its bound."""
+        if mark == CONTACT_MARK:
+            share, bound = curve.friction_contact / np.maximum(curve.friction, 1e-300), HYDRODYNAMIC_CONTACT_SHARE
+        else:
+            share, bound = curve.observable("fluid_load_share"), BOUNDARY_FLUID_SHARE
+        return float(min((low, high), key=lambda value: abs(share[np.flatnonzero(curve.values == value)[0]] - bound)))
 
 
 def _limits(contact: LineContact, name: str) -> tuple[float, float]:

@@ -13,12 +13,13 @@ integration), with
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
 
-from ._types import Array
+from ._types import Array, Flags, Indices
 from .mesh import Mesh, reference
 
 FAR_ACCURACY = 4e-13
@@ -28,6 +29,10 @@ FAR_ACCURACY = 4e-13
 LOST_DIGITS = 1e5
 """Amplification of rounding that the upward recurrence of Q_n may have outside a panel: it falls on the highest degrees, whose
 coefficients are small.  Beyond, the downward recurrence takes over."""
+
+
+MOST_BLOCKS = 20_000
+"""Blocks of integrals that are kept, of 1 to 2 kB each."""
 
 
 def log_moments(points: Array, order: int) -> Array:
@@ -82,6 +87,128 @@ def near_distance(order: int) -> float:
     """Return the distance from its centre, in half-widths, within which a panel is integrated exactly."""
     rho = float(FAR_ACCURACY ** (-0.5 / order))
     return 0.5 * (rho + 1 / rho)
+
+
+Pair = tuple[float, float]
+"""Place of a panel seen from another, in half-widths of that one: its centre and its half-width."""
+
+
+class Blocks:
+    """What panels do at the nodes of others, for each relative place computed once.
+
+    Panels are dyadic: the same few places come again on every mesh.
+
+    Parameters
+    ----------
+    targets : callable
+        ``targets(centres, half_widths, nodes)`` returns where the nodes are, in half-widths of the panel that acts.
+    compute : callable
+        ``compute(s, order)`` with targets s, shape (n,), returns what is done there, shape (n, columns).
+    """
+
+    def __init__(self, targets: Callable[[Array, Array, Array], Array], compute: Callable[[Array, int], Array]) -> None:
+        self.targets = targets
+        self.compute = compute
+        self.known: dict[tuple[Pair, int], Array] = {}
+
+    def at(self, pairs: Sequence[Pair], order: int) -> Array:
+        """Return the blocks of panels with ``order`` nodes, shape (pairs, order, columns)."""
+        missing = list({pair for pair in pairs if (pair, order) not in self.known})
+        if missing:
+            if len(self.known) > MOST_BLOCKS:
+                self.known.clear()
+                missing = list(set(pairs))
+            centres, half_widths = np.array(missing).T[:, :, None]
+            found = self.compute(self.targets(centres, half_widths, reference(order).nodes).ravel(), order)
+            for pair, block in zip(missing, found.reshape(len(missing), order, -1), strict=True):
+                self.known[pair, order] = block
+        return np.stack([self.known[pair, order] for pair in pairs])
+
+
+def near_panels(mesh: Mesh) -> tuple[Indices, Indices, list[Pair]]:
+    """Return targets and sources of all pairs of panels in ``x`` of which the source acts on a near node, and their places."""
+    c, d = mesh.centres[:-1], mesh.half_widths[:-1]
+    offset, ratio = (c[:, None] - c) / d, d[:, None] / d
+    target, source = np.nonzero(np.abs(offset) - ratio < near_distance(mesh.order))
+    return target, source, list(zip(offset[target, source].tolist(), ratio[target, source].tolist(), strict=True))
+
+
+def near_infinity(mesh: Mesh) -> Flags:
+    """Return which panels in ``x`` act on a near node of the panel through infinity."""
+    outermost = np.abs(mesh.centres[:-1]) + near_distance(mesh.order) * mesh.half_widths[:-1]
+    return np.asarray(outermost > mesh.edges[-1])
+
+
+def panels_from_infinity(mesh: Mesh) -> list[Pair]:
+    """Return the places of the panels in ``x`` in units of the edge of the panel through infinity."""
+    edge = mesh.edges[-1]
+    return list(zip((mesh.centres[:-1] / edge).tolist(), (mesh.half_widths[:-1] / edge).tolist(), strict=True))
+
+
+def _beside_panel(s: Array, order: int) -> Array:
+    """Integrals of ``ln|s - t|`` times the nodal basis of a panel at targets s, exact where these are near."""
+    rule = reference(order)
+    distance = np.abs(s[:, None] - rule.nodes)
+    far = np.abs(s) >= near_distance(order)
+    found = log_moments(s, order) @ _from_moments(order)
+    found[far] = np.log(distance[far]) * rule.weights
+    return found
+
+
+def _beside_infinity(x: Array, order: int) -> Array:
+    """Integrals of ``ln|1 - x t|`` times the nodal basis of the panel through infinity, ``-1 < t < 1``, at targets x."""
+    rule = reference(order)
+    close = np.abs(x) * near_distance(order) > 1.0
+    ratio = x[:, None] * rule.nodes
+    ratio[close] = 0.0
+    found = np.log1p(-ratio) * rule.weights
+    if close.any():
+        s = 1 / x[close]
+        found[close] = log_moments(s, order) @ _from_moments(order) - np.log(np.abs(s))[:, None] * rule.weights
+    return found
+
+
+def nodes_on_panel(centre: Array, half_width: Array, nodes: Array) -> Array:
+    """Return the nodes of a panel in ``x``, seen from another."""
+    return centre + half_width * nodes
+
+
+def nodes_at_infinity(centre: Array, half_width: Array, nodes: Array) -> Array:
+    """Return the nodes of the panel through infinity, seen from one in ``x`` whose place is in units of its edge."""
+    return np.asarray((1 / nodes - centre) / half_width)
+
+
+_ON_PANELS = Blocks(nodes_on_panel, _beside_panel)
+_OF_INFINITY = Blocks(nodes_on_panel, _beside_infinity)
+_AT_INFINITY = Blocks(nodes_at_infinity, _beside_panel)
+
+
+def nodal_deflection(mesh: Mesh) -> Array:
+    """Return :func:`deflection_operator` at the nodes of the mesh, shape (size, size), in Fortran order."""
+    order, panels = mesh.order, mesh.panels
+    rule, inner = reference(order), mesh.nodes[:-order]
+    # By columns, so that the operator comes in Fortran order: what panel k does at the nodes of panel l is [k, :, l, :].
+    kernel = np.empty((panels, order, panels, order))
+    columns = kernel.reshape(mesh.size, mesh.size)
+    distance = np.abs(inner[:, None] - mesh.nodes)
+    distance[distance == 0] = 1.0
+    np.multiply(np.log(distance, out=distance), mesh.weights[:-order, None], out=columns[:-order])
+    target, source, places = near_panels(mesh)
+    half = mesh.half_widths[source]
+    near = _ON_PANELS.at(places, order).transpose(0, 2, 1) + (np.log(half)[:, None] * rule.weights)[:, :, None]
+    kernel[source, :, target, :] = half[:, None, None] * near
+    outermost = np.flatnonzero(near_infinity(mesh))
+    places = panels_from_infinity(mesh)
+    half = mesh.half_widths[outermost]
+    near = _AT_INFINITY.at([places[k] for k in outermost], order).transpose(0, 2, 1)
+    kernel[outermost, :, -1, :] = half[:, None, None] * (near + (np.log(half)[:, None] * rule.weights)[:, :, None])
+    tail = _OF_INFINITY.at(places, order).reshape(-1, order)
+    own = _beside_infinity(mesh.nodes[-order:] * mesh.half_widths[-1], order)
+    at_infinity = log_moments(np.zeros(1), order) @ _from_moments(order) + np.log(mesh.half_widths[-1]) * rule.weights
+    factor = mesh.half_widths[-1] * mesh.stretch[-order:]
+    columns[-order:] = (factor * (np.concatenate([tail, own]) - at_infinity)).T
+    columns *= -1 / np.pi
+    return columns.T
 
 
 def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:

@@ -20,9 +20,9 @@ from functools import cached_property
 import numpy as np
 
 from . import reynolds
-from ._types import Array
+from ._types import Array, Numbers
 from .contact_laws import ContactLaw
-from .elasticity import deflection_operator
+from .elasticity import nodal_deflection
 from .mesh import Mesh
 
 LOAD = 0.5 * np.pi
@@ -38,7 +38,7 @@ class Operators:
     @cached_property
     def deflection(self) -> Array:
         """D: nodal pressures -> deflection."""
-        return np.asfortranarray(deflection_operator(self.mesh))
+        return nodal_deflection(self.mesh)
 
     @cached_property
     def deflection_of_gradient(self) -> Array:
@@ -71,44 +71,67 @@ class Equations:
     ----------
     operators : Operators
         Of the mesh.
-    speed : float
+    speed : float or ndarray
         Speed group lambda [-].
     law : ContactLaw
         Contact pressure from the gap.
+    flux_scale : float
+        What the last row is multiplied by.
+
+    Notes
+    -----
+    All but the Jacobian also takes many states at once, the unknowns of each in a row; speed and law then hold columns.
     """
 
     operators: Operators
-    speed: float
+    speed: Numbers
     law: ContactLaw
-    flux_scale: float = 1.0
+    flux_scale: Numbers = 1.0
 
     def pressures(self, y: Array) -> tuple[Array, Array]:
         """Return the contact and the fluid pressure at the nodes [p_Hz]."""
-        h, h_star = y[:-2], y[-1]
-        fluid = self.speed * (self.operators.mesh.integral_from_infinity(reynolds.gradient(h, h_star)))
+        h, h_star = y[..., :-2], y[..., -1:]
+        fluid = np.asarray(self.speed * self.operators.mesh.integral_from_infinity(reynolds.gradient(h, h_star)))
         return self.law.pressure(h), fluid
 
-    def fluid_load(self, y: Array) -> float:
-        """Return the load that the fluid carries, in Hertz units."""
-        return float(self.speed * (self.operators.load_of_gradient @ reynolds.gradient(y[:-2], y[-1])))
+    @cached_property
+    def moves(self) -> bool:
+        """Whether the speed is positive; of states in rows, that of all."""
+        return bool(np.all(self.speed > 0))
 
     def residual(self, y: Array) -> Array:
-        """Return the residual at ``y``, shape (N + 2,)."""
+        """Return the residual at ``y``, shape (..., N + 2)."""
         op = self.operators
-        g = reynolds.gradient(y[:-2], y[-1])
-        p_c = self.law.pressure(y[:-2])
+        h = y[..., :-2]
+        g = reynolds.gradient(h, y[..., -1:])
+        p_c = self.law.pressure(h)
         r = np.empty_like(y)
-        r[:-2] = y[:-2] - y[-2] - op.parabola - op.deflection @ p_c
-        r[-2] = op.mesh.weights @ p_c - LOAD
-        r[-1] = self.flux_scale * (op.mesh.weights @ g)
-        if self.speed > 0:
+        r[..., :-2] = h - y[..., -2:-1] - op.parabola - p_c @ op.deflection.T
+        r[..., -2] = p_c @ op.mesh.weights - LOAD
+        r[..., -1:] = self.flux_scale * (g @ op.mesh.weights)[..., None]
+        if self.moves:
             g *= self.speed
-            r[:-2] -= op.deflection_of_gradient @ g
-            r[-2] += op.load_of_gradient @ g
+            r[..., :-2] -= g @ op.deflection_of_gradient.T
+            r[..., -2] += g @ op.load_of_gradient
         return r
 
-    def jacobian(self, y: Array) -> Array:
-        """Return the derivative of the residual, shape (N + 2, N + 2), in Fortran order.
+    @staticmethod
+    def units(y: Array) -> Array:
+        """Return the gaps and the flux gap themselves, and one for the offset: what unknowns change relative to.
+
+        From one speed to the next films grow as a whole: the derivatives with respect to relative changes of the gap hardly
+        change, and factors of a Jacobian in these units serve many states.
+        """
+        units = np.array(y)
+        units[..., -2] = 1.0
+        return units
+
+    def relative_jacobian(self, y: Array) -> Array:
+        """Return the derivative of the residual in :meth:`units` of the unknowns, :meth:`jacobian` times their diagonal."""
+        return self.jacobian(y, self.units(y))
+
+    def jacobian(self, y: Array, units: Array | None = None) -> Array:
+        """Return the derivative of the residual, shape (N + 2, N + 2), in Fortran order; its columns times ``units``.
 
         ::
 
@@ -119,20 +142,21 @@ class Equations:
         op = self.operators
         n = len(y) - 2
         h, h_star = y[:-2], y[-1]
-        p_slope = self.law.slope(h, self.law.pressure(h))
-        g_h = reynolds.gap_derivative(h, h_star)
-        g_flux = reynolds.flux_derivative(h)
+        u, u_offset, u_flux = (np.ones(n), 1.0, 1.0) if units is None else (units[:n], units[n], units[n + 1])
+        p_slope = self.law.slope(h, self.law.pressure(h)) * u
+        g_h = reynolds.gap_derivative(h, h_star) * u
+        g_flux = reynolds.flux_derivative(h) * u_flux
         matrix = np.zeros((n + 2, n + 2), order="F")
         block = matrix[:n, :n]
         np.multiply(op.deflection, -p_slope, out=block)
         matrix[n, :n] = op.mesh.weights * p_slope
-        if self.speed > 0:
+        if self.moves:
             block -= op.deflection_of_gradient * (self.speed * g_h)
             matrix[:n, n + 1] = op.deflection_of_gradient @ (-self.speed * g_flux)
             matrix[n, :n] += op.load_of_gradient * (self.speed * g_h)
             matrix[n, n + 1] = self.speed * (op.load_of_gradient @ g_flux)
-        block[np.diag_indices(n)] += 1.0
-        matrix[:n, n] = -1.0
+        block[np.diag_indices(n)] += u
+        matrix[:n, n] = -u_offset
         matrix[n + 1, :n] = op.mesh.weights * g_h * self.flux_scale
         matrix[n + 1, n + 1] = self.flux_scale * (op.mesh.weights @ g_flux)
         return matrix
@@ -165,7 +189,7 @@ class Equations:
         part = 0.7 / max(0.7, -float(ratio.min()))
         flux = dy[-1] / y[-1]
         part = min(part, 0.7 / max(0.7, abs(flux)))
-        if self.law.decay > 0:
+        if np.all(self.law.decay > 0):
             log_p = self.law.log_pressure(y[:-2])
             decays = dy[:-2] / self.law.decay
             closing = float((-decays / (3.0 + np.maximum(0.0, -1.0 - log_p))).max())
@@ -175,5 +199,6 @@ class Equations:
 
     @staticmethod
     def size(y: Array, dy: Array) -> float:
-        """Return the relative size of a step: the largest relative change of the gap and of the flux gap."""
-        return float(max(np.abs(dy[:-2] / y[:-2]).max(), abs(dy[-1] / y[-1])))
+        """Return the relative size of a step: the largest relative change of the gap and of the flux gap, in any row."""
+        gaps, fluxes = dy[..., :-2] / y[..., :-2], dy[..., -1] / y[..., -1]
+        return float(max(np.abs(gaps).max(), np.abs(fluxes).max()))

@@ -18,15 +18,23 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
-from scipy.linalg import lapack
 
 from . import reynolds
-from ._types import Array, Indices
-from .elasticity import log_moments, near_distance
+from ._types import Array
+from .elasticity import (
+    Blocks,
+    log_moments,
+    near_distance,
+    near_infinity,
+    near_panels,
+    nodes_at_infinity,
+    nodes_on_panel,
+    panels_from_infinity,
+)
 from .equations import LOAD, Operators
 from .mesh import Mesh, interpolation_error, reference
 from .observables import NAMES, Observables, friction_integrals, friction_scale, gradients
-from .states import State
+from .states import Rows
 
 EXTRA_NODES = 2
 """Nodes that a panel gains where the defect is evaluated."""
@@ -46,6 +54,24 @@ OFFSET_FLOOR = 1e-3
 
 GAP_FLOOR = 1e-3
 """At speed zero the gap crosses zero too: its error is relative to it where it exceeds this part of kappa."""
+
+
+def _by_highest(s: Array, order: int) -> Array:
+    """Moments of the logarithm with the degrees that a panel of ``order`` nodes gains, at the near ones of targets s."""
+    near = np.abs(s) < near_distance(order)
+    found = np.zeros((len(s), EXTRA_NODES))
+    found[near] = log_moments(s[near], order + EXTRA_NODES)[:, order:]
+    return found
+
+
+def _seen_from_infinity(centre: Array, half_width: Array, nodes: Array) -> Array:
+    """Nodes of a panel in ``x``, in units of the edge of the panel through infinity, in the coordinate of that one."""
+    return np.asarray(1 / (centre + half_width * nodes))
+
+
+_ON_PANELS = Blocks(nodes_on_panel, _by_highest)
+_AT_INFINITY = Blocks(nodes_at_infinity, _by_highest)
+_OF_INFINITY = Blocks(_seen_from_infinity, _by_highest)
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,23 +96,25 @@ class FineOperators:
         return legendre.legvander(reference(m).nodes, m - 1) @ reference(self.mesh.order).to_legendre[:m]
 
     @cached_property
-    def _near(self) -> tuple[Indices, Indices, Array]:
-        """Targets, their near panels, and the deflection by the highest degrees of these, shape (pairs, EXTRA_NODES)."""
+    def _of_highest(self) -> Array:
+        """Highest Legendre coefficients on all panels -> the deflection by them, shape (size, panels * EXTRA_NODES)."""
         mesh, m = self.coarse, self.coarse.order
-        s = (mesh.nodes[:, None] - mesh.centres) / mesh.half_widths
-        s[:, -1] = 1 / (mesh.nodes * mesh.half_widths[-1])
-        target, panel = np.nonzero(np.abs(s) < near_distance(m))
-        moments = log_moments(s[target, panel], m + EXTRA_NODES)[:, m:]
-        return target, panel, moments * mesh.half_widths[panel, None] / -np.pi
+        found = np.zeros((mesh.panels, m, mesh.panels, EXTRA_NODES))
+        target, source, places = near_panels(mesh)
+        found[target, :, source] = _ON_PANELS.at(places, m)
+        outermost, places = np.flatnonzero(near_infinity(mesh)), panels_from_infinity(mesh)
+        found[-1, :, outermost] = _AT_INFINITY.at([places[k] for k in outermost], m)
+        found[:-1, :, -1] = _OF_INFINITY.at(places, m)
+        found[-1, :, -1] = _by_highest(reference(m).nodes, m)
+        found *= mesh.half_widths[:, None] / -np.pi
+        return found.reshape(mesh.size, -1)
 
     def deflection(self, pressure: Array, operators: Operators) -> Array:
-        """Return the deflection at the coarse nodes under fine nodal ``pressure``, with the ``operators`` of the mesh."""
-        density = (pressure * self.mesh.stretch).reshape(self.mesh.panels, -1)
-        lowered = (density @ self._lowered.T).ravel() / self.coarse.stretch
+        """Return the deflection at the coarse nodes under rows of fine ``pressure``, by the ``operators`` of the mesh."""
+        density = (pressure * self.mesh.stretch).reshape(len(pressure), self.mesh.panels, -1)
+        lowered = (density @ self._lowered.T).reshape(len(pressure), -1) / self.coarse.stretch
         highest = density @ reference(self.mesh.order).to_legendre[self.coarse.order :].T
-        target, panel, moments = self._near
-        near = np.bincount(target, np.einsum("pk,pk->p", moments, highest[panel]), len(lowered))
-        return operators.deflection @ lowered + near
+        return lowered @ operators.deflection.T + highest.reshape(len(pressure), -1) @ self._of_highest.T
 
 
 @dataclass(frozen=True)
@@ -141,54 +169,54 @@ class ErrorEstimate:
 
 @dataclass(frozen=True)
 class Changes:
-    """What may be wrong with a state.
+    """What may be wrong with states.
 
-    ``unknowns``, shape (1 + 2, len(y)), are the changes that defect and rounding may cause, the defect first; ``friction``,
-    shape (2,), is by how much the two friction integrals change on the finer nodes.
+    ``unknowns``, shape (1 + 2, rows, unknowns), are the changes that defect and rounding may cause, the defect first;
+    ``friction``, shape (2, rows), is by how much the two friction integrals change on the finer nodes.
     """
 
     unknowns: Array = field(repr=False)
     friction: Array = field(repr=False)
 
 
-def changes(state: State, observed: Observables, fine: FineOperators) -> Changes:
-    """Return what defect, quadrature and rounding may change in a state."""
-    equations, op, y = state.equations, state.equations.operators, state.y
-    mesh = fine.mesh
-    h_star = y[-1]
-    gap = np.exp(state.mesh.to_order(state.shape, mesh.order)) * mesh.far
+def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
+    """Return what defect, quadrature and rounding may change in states; ``observed`` as in :func:`error_estimates`."""
+    equations, op, y = states.equations, states.equations.operators, states.y
+    coarse, mesh = fine.coarse, fine.mesh
+    h, z0, h_star = y[:, :-2], y[:, -2:-1], y[:, -1:]
+    gap = np.exp(coarse.to_order(np.log(h / coarse.far), mesh.order)) * mesh.far
     slopes = reynolds.gradient(gap, h_star)
-    flat = np.abs(state.gap - h_star) < FLAT * state.gap
-    flat_panels = flat.reshape(state.mesh.panels, -1).all(axis=1)
-    slopes = np.where(
-        np.repeat(flat_panels, mesh.order), state.mesh.to_order(reynolds.gradient(state.gap, h_star), mesh.order), slopes
-    )
+    flat = (np.abs(h - h_star) < FLAT * h).reshape(len(y), coarse.panels, -1).all(axis=2)
+    if flat.any():
+        smooth = coarse.to_order(reynolds.gradient(h, h_star), mesh.order)
+        slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
     pressure = equations.law.pressure(gap) + equations.speed * mesh.integral_from_infinity(slopes)
     deflection = fine.deflection(pressure, op)
-    residual = np.empty((3, len(y)))
-    residual[0, :-2] = y[:-2] - y[-2] - op.parabola - deflection
-    residual[0, -2] = mesh.weights @ pressure - LOAD
-    residual[0, -1] = equations.flux_scale * (mesh.weights @ slopes)
+    residual = np.empty((3, *y.shape))
+    residual[0, :, :-2] = h - z0 - op.parabola - deflection
+    residual[0, :, -2] = pressure @ mesh.weights - LOAD
+    residual[0, :, -1] = np.ravel(equations.flux_scale) * (slopes @ mesh.weights)
     size = np.finfo(float).eps * ROUNDING_UNITS
-    noise = size * np.append(np.abs(y[-2]) + op.parabola + np.abs(deflection), [LOAD, 0.0])
-    noise[-1] = size * equations.flux_scale * (mesh.weights @ np.abs(slopes))
-    residual[1:] = _signs(len(y)) * noise
-    assert state.root.factors is not None
-    unknowns = -lapack.dgetrs(*state.root.factors, residual.T)[0].T
-    friction = np.zeros(2)
-    if equations.speed > 0:
-        finer = friction_scale(float(state.groups.load), equations.speed) * friction_integrals(mesh, gap, h_star, slopes)
-        friction = np.abs(finer - [observed.viscous_paper, observed.viscous_balanced])
-    return Changes(unknowns, friction)
+    residual[1:, :, :-2] = size * (np.abs(z0) + op.parabola + np.abs(deflection))
+    residual[1:, :, -2] = size * LOAD
+    residual[1:, :, -1] = size * np.ravel(equations.flux_scale) * (np.abs(slopes) @ mesh.weights)
+    residual[1:] *= _signs(y.shape[1])[:, None]
+    friction = np.zeros((2, len(y)))
+    if equations.moves:
+        scale = np.ravel(friction_scale(states.load, equations.speed))
+        friction = np.abs(scale * friction_integrals(mesh, gap, h_star, slopes) - observed[:, -2:].T)
+    return Changes(states.correction(residual), friction)
 
 
-def interpolation_errors(state: State, minimum_position: float) -> tuple[float, float]:
-    """Return the absolute errors of the interpolated central and least gap."""
-    mesh = state.mesh
-    shapes, gaps = state.shape.reshape(mesh.panels, -1), state.gap.reshape(mesh.panels, -1)
+def interpolation_errors(states: Rows, minimum_positions: Array) -> Array:
+    """Return the absolute errors of the interpolated central and least gap, shape (2, rows)."""
+    mesh = states.equations.operators.mesh
     central = int(np.searchsorted(mesh.edges, 0.0))
-    least = min(max(int(np.searchsorted(mesh.edges, minimum_position)) - 1, 0), mesh.panels - 1)
-    return tuple(SAFETY * interpolation_error(shapes[k]) * float(gaps[k].min()) for k in (central, least))  # type: ignore[return-value]
+    least = np.clip(np.searchsorted(mesh.edges, minimum_positions) - 1, 0, mesh.panels - 1)
+    panels = np.stack([np.full_like(least, central), least])
+    gap = states.y[:, :-2].reshape(len(least), mesh.panels, -1)[np.arange(len(least)), panels]
+    shape = np.log(gap / mesh.far.reshape(mesh.panels, -1)[panels])
+    return np.asarray(SAFETY * interpolation_error(shape) * gap.min(axis=2))
 
 
 @lru_cache(maxsize=64)
@@ -198,20 +226,24 @@ def _signs(size: int) -> Array:
     return np.asarray(np.sign(np.stack([np.sin(2.399963 * k * k), np.cos(1.7 * k * k)])))
 
 
-def error_estimate(state: State, observed: Observables, fine: FineOperators) -> ErrorEstimate:
-    """Return the estimated errors of what was ``observed`` on a state.
+def error_estimates(states: Rows, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
+    """Return the estimated errors of what was ``observed`` on states.
 
     At speed zero the values may be those of the same state under another load, see ``refine.quasistatic_shift``.
     """
-    changed = changes(state, observed, fine)
-    effects = np.abs(gradients(state.equations, state.y, float(state.groups.load)) @ changed.unknowns.T)
-    effects[-2:, 0] += changed.friction
-    interpolation = np.zeros(len(NAMES))
-    interpolation[2:4] = interpolation_errors(state, observed.minimum_position)
-    scales = np.abs(observed.array())
-    scales[:2] = 1.0
-    scales[NAMES.index("offset")] = max(scales[NAMES.index("offset")], OFFSET_FLOOR)
-    decay = state.equations.law.decay if state.equations.speed == 0 else 0.0
-    scales[2:4] = np.maximum(scales[2:4], GAP_FLOOR * decay)
+    values = np.array([one.array() for one in observed])
+    changed = changes(states, values, fine)
+    rows = gradients(states.equations, states.y, states.load)
+    effects = np.abs(np.matmul(rows.transpose(1, 0, 2), changed.unknowns.transpose(1, 2, 0)))
+    effects[:, -2:, 0] += changed.friction.T
+    interpolation = np.zeros_like(values)
+    interpolation[:, 2:4] = interpolation_errors(states, np.array([one.minimum_position for one in observed])).T
+    scales = np.abs(values)
+    scales[:, :2] = 1.0
+    offset = NAMES.index("offset")
+    scales[:, offset] = np.maximum(scales[:, offset], OFFSET_FLOOR)
+    if not states.equations.moves:
+        scales[:, 2:4] = np.maximum(scales[:, 2:4], GAP_FLOOR * states.equations.law.decay)
     scales[scales == 0] = 1.0
-    return ErrorEstimate(SAFETY * effects[:, 0], interpolation, effects[:, 1:].max(axis=1), scales)
+    parts = (SAFETY * effects[:, :, 0], interpolation, effects[:, :, 1:].max(axis=2), scales)
+    return [ErrorEstimate(*row) for row in zip(*parts, strict=True)]

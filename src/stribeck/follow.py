@@ -9,12 +9,11 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from .contact_laws import contact_law
 from .continuation import Path, march
 from .equations import Operators
 from .estimate import FineOperators
+from .fill import Anchor, between
 from .mesh import MeshTooLargeError
 from .newton import Factors
 from .parameters import Groups
@@ -25,6 +24,22 @@ from .states import Guess, State, extrapolate, mesh_for, solve_state
 LONGEST_STEP = math.log(10.0)
 SHORTEST_STEP = 1e-3
 PREDICTOR_ORDER = 4
+
+AIM = 3
+"""What steps aim at where targets may be passed over: the smaller, the shorter the steps, and the better what lies between is
+interpolated."""
+
+LEAST_SKIPPED = 3
+"""Targets that a step has to pass over: filling fewer costs more than as many steps."""
+
+ROUGH = 1e-2
+"""Error of a prediction from which the mesh that was made for it is looked at again: it is finer than need be."""
+
+FILL_ORDER = 5
+"""Degree of the interpolation between the steps of a path."""
+
+ANCHORS = 8
+"""Steps of a path that are kept for it."""
 
 MOST_STEPS = 12
 """Newton and chord steps after which the present mesh is given up."""
@@ -64,8 +79,13 @@ class Follower:
         point = self._on_present_mesh(guess, groups)
         if point is not None and point.outcome.ok:
             return self._kept(point)
-        better = guess if point is None or point.state is None else point.state
-        return self._adopt(converge(better, groups, self.rtol, self.tolerances))
+        if point is None or point.state is None:
+            return self._adopt(converge(guess, groups, self.rtol, self.tolerances))
+        refined = converge(point.state, groups, self.rtol, self.tolerances)
+        adopted = self._adopt(refined)
+        if adopted.state is not None and adopted.outcome.ok and adopted.state.prediction_error > ROUGH:
+            self._coarsen(adopted.state)
+        return adopted
 
     def _on_present_mesh(self, guess: Guess, groups: Groups) -> Point | None:
         if self.operators is None or self.fine is None:
@@ -98,7 +118,7 @@ class Follower:
         except MeshTooLargeError:
             return
         if mesh.size < WORTH_COARSENING * state.mesh.size:
-            self.operators, self.fine = Operators(mesh), FineOperators(mesh)
+            self.operators, self.fine, self.factors = Operators(mesh), FineOperators(mesh), None
 
     def _adopt(self, point: Point) -> Point:
         if point.state is not None and point.outcome.ok:
@@ -108,6 +128,85 @@ class Follower:
         return self._kept(point)
 
 
+class Filling:
+    """The points of a path in their order: its steps, and the targets that lie between them."""
+
+    def __init__(
+        self, follower: Follower, targets: Sequence[float], on_point: Callable[[float, Point], object] | None
+    ) -> None:
+        self.follower = follower
+        self.waiting = list(targets)
+        self.on_point = on_point
+        self.anchors: list[Anchor] = []
+        self.done: list[tuple[float, Point]] = []
+        self.lost: Path[Point] | None = None
+
+    def arrive(self, s: float, point: Point) -> None:
+        """Take the next step of the path, and report the points up to it."""
+        found = {s: point}
+        skipped = self.waiting[: self.waiting.index(s)] if s in self.waiting else []
+        self.waiting = self.waiting[len(skipped) + (s in self.waiting) :]
+        if self.waiting or skipped:
+            left, right = self.anchors[-1:], self._anchor(s, point)
+            if skipped:
+                found = self._found(skipped, left[0], right) | found
+                last = self.anchors[-1]
+                self.follower.factors = last.factors if last.operators is self.follower.operators else None
+        for c in [*skipped, s]:
+            if c not in found:
+                break
+            self.done.append((c, found[c]))
+            if self.on_point is not None:
+                self.on_point(c, found[c])
+
+    def _anchor(self, s: float, point: Point) -> Anchor:
+        """Return the anchor that a solved point is, and keep it as one to interpolate through."""
+        assert self.follower.operators is not None and self.follower.fine is not None
+        anchor = Anchor.at(s, point, self.follower.operators, self.follower.fine)
+        self.anchors = [*self.anchors[-ANCHORS:], anchor]
+        return anchor
+
+    def _nearest(self, s: float) -> list[Anchor]:
+        """Return the anchors to interpolate through, the nearest last."""
+        return sorted(self.anchors, key=lambda anchor: -abs(anchor.coordinate - s))[-FILL_ORDER - 1 :]
+
+    def _found(self, coordinates: list[float], left: Anchor, right: Anchor) -> dict[float, Point]:
+        """Return the points between two anchors: all at once on the mesh of either, else on both sides of a step between."""
+        found: dict[float, Point] = {}
+        missing = coordinates
+        for anchor in (right, left) if left.operators is not right.operators else (right,):
+            groups = [self.follower.groups_at(s) for s in missing]
+            through = self._nearest(0.5 * (left.coordinate + right.coordinate))
+            points = between((left, right), anchor, through, missing, groups, self.follower.rtol)
+            found |= {s: p for s, p in zip(missing, points, strict=False) if p.outcome.ok}
+            missing = [s for s in missing if s not in found]
+            if not missing:
+                return found
+        half = len(missing) // 2
+        path = self._step(left, missing[half])
+        if not path.outcome.ok:
+            self.lost = path
+            return found
+        middle = self._anchor(missing[half], path.states[-1])
+        found[middle.coordinate] = middle.point
+        for part, ends in ((missing[:half], (left, middle)), (missing[half + 1 :], (middle, right))):
+            if part and self.lost is None:
+                found |= self._found(part, *ends)
+        return found
+
+    def _step(self, left: Anchor, s: float) -> Path[Point]:
+        """Return the path from an anchor to ``s``, predicted by interpolation."""
+        return march(
+            lambda c, _: self.follower(c, [(a.coordinate, a.point) for a in self._nearest(c)]),
+            left.coordinate,
+            s,
+            first_step=abs(s - left.coordinate),
+            max_step=abs(s - left.coordinate),
+            min_step=min(SHORTEST_STEP, abs(s - left.coordinate)),
+            history=[(left.coordinate, left.point)],
+        )
+
+
 def follow(
     groups_at: Callable[[float], Groups],
     coordinates: Sequence[float],
@@ -115,15 +214,24 @@ def follow(
     on_point: Callable[[float, Point], object] | None = None,
 ) -> Path[Point]:
     """Return the converged points at ``coordinates``, ascending or descending, and those between that the path needed."""
-    targets = np.asarray(coordinates, dtype=float)
-    return march(
-        Follower(groups_at, rtol),
-        float(targets[0]),
-        float(targets[-1]),
+    targets = [float(s) for s in coordinates]
+    follower = Follower(groups_at, rtol)
+    moving = bool(groups_at(targets[0]).speed > 0)
+    filling = Filling(follower, targets, on_point)
+    path = march(
+        follower,
+        targets[0],
+        targets[-1],
         first_step=0.5,
         max_step=LONGEST_STEP,
         min_step=SHORTEST_STEP,
         order=PREDICTOR_ORDER,
-        targets=targets.tolist(),
-        on_point=on_point,
+        aim=AIM if moving else 4,
+        targets=targets,
+        skip=LEAST_SKIPPED if moving else None,
+        stop_when=lambda _: filling.lost is not None,
+        on_point=filling.arrive,
     )
+    end = path if filling.lost is None else filling.lost
+    points = filling.done
+    return Path(tuple(s for s, _ in points), tuple(point for _, point in points), end.outcome, end.failures, end.failure)

@@ -183,24 +183,24 @@ class Mesh:
 
         Parameters
         ----------
-        values : ndarray, shape (size,)
+        values : ndarray, shape (..., size)
             Nodal values.
 
         Returns
         -------
-        ndarray, shape (size,)
+        ndarray, shape (..., size)
             Its integral at the nodes.
         """
-        nodal = values.reshape(self.panels, self.order)
-        result = np.matmul(self._antiderivatives, nodal[:, :, None])[:, :, 0]
-        whole = np.einsum("pn,pn->p", self.weights.reshape(nodal.shape)[:-1], nodal[:-1])
+        nodal = values.reshape(*values.shape[:-1], self.panels, self.order)
+        result = np.matmul(self._antiderivatives, nodal[..., None])[..., 0]
+        whole = np.einsum("pn,...pn->...p", self.weights.reshape(nodal.shape[-2:])[:-1], nodal[..., :-1, :])
         middle = int(np.searchsorted(self.edges, 0.0))
-        left_tail, right_tail = (weights @ nodal[-1] for weights in self._tail_weights)
-        before = left_tail + np.concatenate([[0.0], np.cumsum(whole[: middle - 1])])
-        after = right_tail + np.concatenate([[0.0], np.cumsum(whole[:middle:-1])])[::-1]
-        result[:middle] += before[:, None]
-        result[middle:-1] -= after[:, None]
-        return np.asarray(result.ravel())
+        left_tail, right_tail = ((nodal[..., -1, :] @ weights)[..., None] for weights in self._tail_weights)
+        before = np.cumsum(np.concatenate([left_tail, whole[..., : middle - 1]], axis=-1), axis=-1)
+        after = np.cumsum(np.concatenate([right_tail, whole[..., :middle:-1]], axis=-1), axis=-1)[..., ::-1]
+        result[..., :middle, :] += before[..., None]
+        result[..., middle:-1, :] -= after[..., None]
+        return np.asarray(result.reshape(values.shape))
 
     def after_integral(self, operator: Array) -> Array:
         """Return ``operator @ A`` with A the matrix of :meth:`integral_from_infinity`, in O(rows size order)."""
@@ -256,19 +256,16 @@ def legendre_tail(values: Array, order: int) -> Array:
     return np.asarray(np.abs(last).max(axis=-1))
 
 
-def interpolation_error(values: Array) -> float:
-    """Return by how much the polynomial through the nodal ``values`` of one panel misses them between the nodes.
+def interpolation_error(values: Array) -> Array:
+    """Return by how much the polynomial through the nodal ``values`` (..., order) of one panel misses them between the nodes.
 
     Twice the last Legendre coefficients, for truncation and aliasing, summed as if those beyond fell no faster than the last
     four do, by pairs.
     """
-    order = len(values)
-    c = np.abs(reference(order).to_legendre[-4:] @ values)
-    last, before = max(c[2], c[3]), max(c[0], c[1])
-    if last == 0:
-        return 0.0
-    rate = min(0.7, float(np.sqrt(last / before))) if before > 0 else 0.7
-    return float(2 * last / (1 - rate))
+    c = np.abs(values @ reference(values.shape[-1]).to_legendre[-4:].T)
+    before, last = c[..., :2].max(axis=-1), c[..., 2:].max(axis=-1)
+    rate = np.minimum(0.7, np.sqrt(last / np.maximum(before, 1e-300)))
+    return np.asarray(2 * last / (1 - rate))
 
 
 def base_edges(scale: float, reach: float) -> Array:

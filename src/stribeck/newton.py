@@ -124,6 +124,7 @@ def root_find(
     max_steps: int = 50,
     chord: float | None = None,
     factors: Factors | None = None,
+    units: Callable[[Array], Array] | None = None,
     overwrite_jacobian: bool = False,
     singular_below: float = 2.0**-52,
 ) -> Root:
@@ -150,6 +151,10 @@ def root_find(
         0.1 is a good value. None takes such a step only to end the iteration.
     factors : tuple of ndarray, optional
         LU factors of a nearby Jacobian (``Root.factors`` of a neighbour) for the first step; needs ``chord``.
+    units : callable, optional
+        ``units(x)``, shape (n,), are lengths in which unknowns are measured: ``jacobian`` then returns dF/dx times
+        ``diag(units(x))``. That matters to steps with kept factors, of which the derivative in units of the unknowns
+        is taken to be constant.
     overwrite_jacobian : bool, optional
         Let LAPACK factorise in the array that ``jacobian`` returns, which must fill it anew at each call.
     singular_below : float, optional
@@ -200,6 +205,10 @@ def root_find(
         norm = float(np.abs(r).max())
         return Root(x, outcome, steps, factorisations, s, s / before if before else math.nan, norm, factors)
 
+    def step(factors: Factors, r: Array) -> Array:
+        dx = _solve(factors, r)
+        return dx if units is None else np.multiply(units(x), dx, out=dx)
+
     with np.errstate(all="ignore"):
         r = residual(x)
         if r.shape != x.shape:
@@ -210,7 +219,7 @@ def root_find(
         while steps < max_steps:
             chord_step = False
             if reusable and factors is not None:
-                dx, t = _solve(factors, r), 1.0
+                dx, t = step(factors, r), 1.0
                 s_new = size(x, dx)
                 rate = s_new / s if steps else 0.0  # the caller's factors are taken to be good
                 contracts = rate <= (chord or 0.0) or (s_new <= tolerance and rate <= LAST_CHORD)
@@ -221,7 +230,7 @@ def root_find(
                 factorisations += 1
                 if factors[0].shape != square:
                     raise ValueError(f"jacobian returned shape {factors[0].shape}; it must be {square}")
-                dx = _solve(factors, r)
+                dx = step(factors, r)
                 if not np.isfinite(dx).all():
                     return root(Outcome.SINGULAR if np.isfinite(factors[0]).all() else Outcome.NOT_FINITE)
                 if singular_below > 0.0 and _has_small_pivot(factors[0]):

@@ -21,7 +21,7 @@ from functools import lru_cache
 import numpy as np
 
 from . import reynolds
-from ._types import Array
+from ._types import Array, Numbers
 from .equations import LOAD, Equations
 from .mesh import Mesh, reference
 
@@ -64,13 +64,13 @@ class Observables:
         return np.array([getattr(self, name) for name in NAMES])
 
 
-def friction_scale(load: float, speed: float) -> float:
+def friction_scale(load: Numbers, speed: Numbers) -> Array:
     """Return C = 2 F**(1/2) lambda/(3 pi), the factor of both friction integrals for beta = 1."""
-    return 2 * math.sqrt(load) * speed / (3 * math.pi)
+    return np.asarray(2 * np.sqrt(load) * speed / (3 * math.pi))
 
 
-def friction_integrands(x: Array, h: Array, h_star: float, slopes: Array | None = None) -> Array:
-    """Return the integrands of the two definitions of friction, shape (2, len(x)).
+def friction_integrands(x: Array, h: Array, h_star: Numbers, slopes: Array | None = None) -> Array:
+    """Return the integrands of the two definitions of friction, shape (2, ..., len(x)).
 
     ``slopes`` is the pressure gradient ``(h - h*)/h**3`` over lambda where that is known better than from the gap.
     """
@@ -81,24 +81,21 @@ def friction_integrands(x: Array, h: Array, h_star: float, slopes: Array | None 
 
 def observables(equations: Equations, y: Array, load: float) -> Observables:
     """Return the observables of the unknowns ``y`` of ``equations`` at the load group ``load``."""
+    return observables_of_rows(equations, y[None], load)[0]
+
+
+def observables_of_rows(equations: Equations, y: Array, load: Numbers) -> list[Observables]:
+    """Return the observables of many states, the unknowns ``y`` of each in a row and their load groups in a column."""
     mesh = equations.operators.mesh
-    h, z0, h_star = y[:-2], float(y[-2]), float(y[-1])
-    p_c = equations.law.pressure(h)
-    position, minimum = least_gap(mesh, h)
-    paper = balanced = 0.0
-    if equations.speed > 0:
-        paper, balanced = friction_scale(load, equations.speed) * friction_integrals(mesh, h, h_star)
-    return Observables(
-        contact_load_share=float(mesh.weights @ p_c / LOAD),
-        fluid_load_share=equations.fluid_load(y) / LOAD,
-        central_gap=central_gap(mesh, h),
-        minimum_gap=minimum,
-        minimum_position=position,
-        flux_gap=h_star,
-        offset=z0,
-        viscous_paper=float(paper),
-        viscous_balanced=float(balanced),
-    )
+    h, h_star = y[:, :-2], y[:, -1:]
+    contact = equations.law.pressure(h) @ mesh.weights / LOAD
+    positions, least = np.array([least_gap(mesh, row) for row in h]).T
+    fluid, friction = np.zeros(len(y)), np.zeros((2, len(y)))
+    if equations.moves:
+        fluid = (equations.speed * reynolds.gradient(h, h_star)) @ equations.operators.load_of_gradient / LOAD
+        friction = np.ravel(friction_scale(load, equations.speed)) * friction_integrals(mesh, h, h_star)
+    values = np.stack([contact, fluid, central_gap(mesh, h), least, positions, y[:, -1], y[:, -2], *friction])
+    return [Observables(*row) for row in values.T.tolist()]
 
 
 def gap_at(mesh: Mesh, h: Array, x: Array) -> Array:
@@ -126,11 +123,11 @@ def far_gap(x: Array) -> Array:
     return 0.5 * x**2 - 0.5 * np.log(np.abs(x))
 
 
-def central_gap(mesh: Mesh, h: Array) -> float:
-    """Return the gap at zero, where the panel right of it begins."""
+def central_gap(mesh: Mesh, h: Array) -> Array:
+    """Return the gap at zero, where the panel right of it begins; that of every row of ``h``."""
     first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
     nodes = slice(first, first + mesh.order)
-    return float(np.exp(reference(mesh.order).left_end @ np.log(h[nodes] / mesh.far[nodes])) * mesh.scale**2)
+    return np.asarray(np.exp(np.log(h[..., nodes] / mesh.far[nodes]) @ reference(mesh.order).left_end) * mesh.scale**2)
 
 
 def least_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
@@ -176,21 +173,21 @@ def _legendre_jet(coefficients: list[float], s: float) -> tuple[float, float, fl
     return total[0], total[1], total[2]
 
 
-def friction_integrals(mesh: Mesh, h: Array, h_star: float, slopes: Array | None = None) -> Array:
-    """Return the integrals of :func:`friction_integrands` over the whole line.
+def friction_integrals(mesh: Mesh, h: Array, h_star: Numbers, slopes: Array | None = None) -> Array:
+    """Return the integrals of :func:`friction_integrands` over the whole line, shape (2, ...).
 
     Beyond the panels in ``x`` the gap is ``x**2/2 - ln|x|/2`` plus a smooth function of ``1/x``: that is interpolated, and
     the integrand summed on panels that halve towards infinity.
     """
     order = mesh.order
-    inner_slopes = None if slopes is None else slopes[:-order]
-    inner = friction_integrands(mesh.nodes[:-order], h[:-order], h_star, inner_slopes) @ mesh.weights[:-order]
+    inner_slopes = None if slopes is None else slopes[..., :-order]
+    inner = friction_integrands(mesh.nodes[:-order], h[..., :-order], h_star, inner_slopes) @ mesh.weights[:-order]
     t, weights, to_tail = _towards_infinity(order)
     t = t * mesh.half_widths[-1]
     x_tail = mesh.nodes[-order:]
-    smooth = h[-order:] - far_gap(x_tail)
+    smooth = h[..., -order:] - far_gap(x_tail)
     x = 1 / t
-    h_tail = to_tail @ smooth + far_gap(x)
+    h_tail = smooth @ to_tail.T + far_gap(x)
     tail = friction_integrands(x, h_tail, h_star) @ (weights * mesh.half_widths[-1] * x**2)
     return np.asarray(inner + tail)
 
@@ -207,39 +204,33 @@ def _towards_infinity(order: int) -> tuple[Array, Array, Array]:
     return t, np.concatenate([weights, weights]), rule.interpolation(t)
 
 
-def gradients(equations: Equations, y: Array, load: float) -> Array:
-    """Return the derivatives of the observables with respect to the unknowns, shape (len(NAMES), len(y)).
+def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
+    """Return the derivatives of the observables with respect to the unknowns, shape (len(NAMES), ..., y.shape[-1]).
 
     The position of the least gap is held, to first order without effect.  The projected pressure enters as its moment,
     ``3 int x**2 g dx = -6 int x A g dx`` without the panel through infinity: the two forms respond alike to true changes of
     the gap, but this one is insensitive to what the quadrature of g leaves.
     """
     op, mesh, speed = equations.operators, equations.operators.mesh, equations.speed
-    n = mesh.size
-    h, h_star = y[:-2], y[-1]
-    rows = np.zeros((len(NAMES), n + 2))
-    rows[0, :n] = mesh.weights * equations.law.slope(h, equations.law.pressure(h)) / LOAD
-    if speed > 0:
-        rows[1, :n] = speed * op.load_of_gradient * reynolds.gap_derivative(h, h_star) / LOAD
-        rows[1, -1] = speed * (op.load_of_gradient @ reynolds.flux_derivative(h)) / LOAD
+    h, h_star = y[..., :-2], y[..., -1:]
+    rows = np.zeros((len(NAMES), *y.shape))
+    rows[0, ..., :-2] = mesh.weights / LOAD * equations.law.slope(h, equations.law.pressure(h))
+    if equations.moves:
         u = 1 / h
-        weights = friction_scale(load, speed) * mesh.weights * u * u
-        moment = -6 * friction_scale(load, speed) * op.moment_of_gradient
-        rows[6, :n] = weights * (2 - 6 * h_star * u) + moment * reynolds.gap_derivative(h, h_star)
-        rows[6, -1] = 3 * weights.sum() + moment @ reynolds.flux_derivative(h)
-        rows[7, :n] = weights * (6 * h_star * u - 4)
-        rows[7, -1] = -3 * weights.sum()
-    rows[2] = _at_zero(mesh, h)
-    rows[3, int(np.argmin(h))] = 1.0
-    rows[4, -1] = 1.0
-    rows[5, -2] = 1.0
-    return rows
-
-
-def _at_zero(mesh: Mesh, h: Array) -> Array:
-    """Return the derivative of the central gap with respect to the unknowns."""
+        g_h, g_flux = reynolds.gap_derivative(h, h_star), reynolds.flux_derivative(h)
+        of_load = speed * op.load_of_gradient / LOAD
+        scale = friction_scale(load, speed)
+        weights, moment = scale * mesh.weights * u * u, -6 * scale * op.moment_of_gradient
+        rows[1, ..., :-2] = of_load * g_h
+        rows[1, ..., -1] = (of_load * g_flux).sum(axis=-1)
+        rows[6, ..., :-2] = weights * (2 - 6 * h_star * u) + moment * g_h
+        rows[6, ..., -1] = 3 * weights.sum(axis=-1) + (moment * g_flux).sum(axis=-1)
+        rows[7, ..., :-2] = weights * (6 * h_star * u - 4)
+        rows[7, ..., -1] = -3 * weights.sum(axis=-1)
     first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
-    nodes = slice(first, first + mesh.order)
-    row = np.zeros(mesh.size + 2)
-    row[nodes] = central_gap(mesh, h) * reference(mesh.order).left_end / h[nodes]
-    return row
+    middle = slice(first, first + mesh.order)
+    rows[2, ..., middle] = central_gap(mesh, h)[..., None] * reference(mesh.order).left_end / h[..., middle]
+    np.put_along_axis(rows[3], np.argmin(h, axis=-1)[..., None], 1.0, axis=-1)
+    rows[4, ..., -1] = 1.0
+    rows[5, ..., -2] = 1.0
+    return rows

@@ -11,7 +11,7 @@ from . import reynolds
 from ._types import Array
 from .contact_laws import contact_law
 from .equations import Operators
-from .estimate import ErrorEstimate, FineOperators, error_estimate
+from .estimate import ErrorEstimate, FineOperators, error_estimates
 from .mesh import MeshTooLargeError
 from .newton import Outcome
 from .observables import Observables, observables
@@ -109,8 +109,10 @@ def converge(
         if not state.outcome.ok:
             outcome = state.outcome
             break
+        if isinstance(guess, State):  # what was predicted is the first state on the way to this one
+            state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
         fine, values = FineOperators(mesh), values_of(state, groups)
-        estimate = error_estimate(state, values, fine)
+        [estimate] = error_estimates(state.rows, [values], fine)
         if last is not None and mesh.size >= CLEARLY_FINER * last[0]:
             estimate = estimate.at_most(np.abs(values.array() - last[1]))
         last = mesh.size, values.array()
@@ -141,7 +143,7 @@ def shrink(excess: float) -> float:
 def judge(state: State, groups: Groups, fine: FineOperators, rtol: float) -> Point:
     """Return the state with its observables and their errors; it counts as converged if these are at most ``rtol``."""
     values = values_of(state, groups)
-    estimate = error_estimate(state, values, fine)
+    [estimate] = error_estimates(state.rows, [values], fine)
     return Point(groups, state, values, estimate, reached(estimate, rtol), fine=fine)
 
 

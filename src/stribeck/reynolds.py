@@ -10,17 +10,19 @@ Source: [BP] Eq. (thin-film_dl); isoviscous fluid, no cavitation, no flow factor
 
 from __future__ import annotations
 
-from ._types import Array
+import numpy as np
+
+from ._types import Array, Numbers
 
 
-def gradient(gap: Array, flux_gap: float) -> Array:
+def gradient(gap: Array, flux_gap: Numbers) -> Array:
     """Return ``(h - h*)/h**3``: the pressure gradient over lambda [u_Hz**-2]."""
-    return (gap - flux_gap) / gap**3
+    return np.asarray((gap - flux_gap) / gap**3)
 
 
-def gap_derivative(gap: Array, flux_gap: float) -> Array:
+def gap_derivative(gap: Array, flux_gap: Numbers) -> Array:
     """Return the derivative of :func:`gradient` with respect to the gap, ``(3 h* - 2 h)/h**4``."""
-    return (3.0 * flux_gap - 2.0 * gap) / (gap * gap) ** 2
+    return np.asarray((3.0 * flux_gap - 2.0 * gap) / (gap * gap) ** 2)
 
 
 def flux_derivative(gap: Array) -> Array:

@@ -7,14 +7,15 @@ gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
+from scipy.linalg import lapack
 
-from ._types import Array
+from ._types import Array, Numbers
 from .contact_laws import ContactLaw, contact_law
 from .continuation import extrapolation_weights
 from .equations import Equations, Operators
@@ -56,6 +57,34 @@ class Guess(Protocol):
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """States that share a mesh, as observables and error estimates want them.
+
+    Attributes
+    ----------
+    equations : Equations
+        Theirs; speed and law hold columns where there are several states.
+    y : ndarray, shape (rows, N + 2)
+        The unknowns of each.
+    load : float or ndarray
+        Load group; a column of them where there are several states.
+    correction : callable
+        What removes residuals, shape (..., rows, N + 2), to first order, -J^-1 of each.
+    """
+
+    equations: Equations
+    y: Array
+    load: Numbers
+    correction: Callable[[Array], Array]
+
+
+def correction(factors: Factors, residuals: Array) -> Array:
+    """Return what removes residuals, shape (..., n), by the factors of a Jacobian, in its units of the unknowns."""
+    columns = residuals.reshape(-1, residuals.shape[-1]).T
+    return np.asarray(-lapack.dgetrs(*factors, columns)[0].T.reshape(residuals.shape))
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +146,14 @@ class State:
         return replace(self, root=replace(self.root, factors=None))
 
     @property
+    def rows(self) -> Rows:
+        """The state as the only one of its mesh."""
+        factors = self.root.factors
+        assert factors is not None
+        units = self.equations.units(self.y)
+        return Rows(self.equations, self.y[None], float(self.groups.load), lambda r: units * correction(factors, r))
+
+    @property
     def effort(self) -> float:
         """What :func:`continuation.march` steers by: 4 where the cubic prediction was as good as wanted."""
         return 4.0 + 0.5 * math.log2(max(self.prediction_error, 1e-9) / PREDICTION_GOAL)
@@ -135,9 +172,19 @@ class State:
         """Nodal fields of the guess that this state is for others: :attr:`shape` and fluid pressure."""
         return np.stack([self.shape, self.equations.pressures(self.y)[1]])
 
+    @cached_property
+    def _on_other_mesh(self) -> dict[Mesh, Array]:
+        return {}
+
     def log_gap(self, mesh: Mesh) -> Array:
-        """Return the logarithm of the gap at the nodes of ``mesh``."""
-        return self._log_gap if mesh is self.mesh else np.asarray(self.fields(mesh.nodes)[0])
+        """Return the logarithm of the gap at the nodes of ``mesh``; that on the mesh last asked for is kept."""
+        if mesh is self.mesh:
+            return self._log_gap
+        if mesh not in self._on_other_mesh:
+            shape = self.mesh.interpolate(self.shape, mesh.nodes)
+            self._on_other_mesh.clear()
+            self._on_other_mesh[mesh] = shape + np.log(self.mesh.scale**2 + mesh.nodes**2)
+        return self._on_other_mesh[mesh]
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and the fluid pressure at ``x``."""
@@ -257,6 +304,15 @@ def mesh_for(
     return adapt(fields, scale, reach, order, tolerance, start)
 
 
+def factors_on(operators: Operators, state: State) -> Factors:
+    """Return the factors of the Jacobian at a state, put on the mesh of ``operators``, in units of the unknowns."""
+    flux_gap = state.flux_gap
+    y = np.append(np.exp(state.log_gap(operators.mesh)), [state.offset, flux_gap])
+    equations = Equations(operators, float(state.groups.speed), contact_law(state.groups), flux_gap**2)
+    lu, pivots, _ = lapack.dgetrf(equations.relative_jacobian(y), overwrite_a=True)
+    return lu, pivots
+
+
 def solve_state(
     groups: Groups,
     operators: Operators,
@@ -276,7 +332,7 @@ def solve_state(
     y[-2:] = guess.offset, flux_gap
     root = root_find(
         equations.residual,
-        equations.jacobian,
+        equations.relative_jacobian,
         y,
         fraction=equations.admissible,
         size=equations.size,
@@ -284,6 +340,7 @@ def solve_state(
         max_steps=max_steps,
         chord=CHORD,
         factors=factors,
+        units=equations.units,
         overwrite_jacobian=True,
         singular_below=0.0,
     )

@@ -1,0 +1,91 @@
+"""States between the steps of a curve: solved many at once, and the same as those solved one by one."""
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck import follow as follow_module
+from stribeck.contact_laws import contact_law
+from stribeck.elasticity import deflection_operator, nodal_deflection
+from stribeck.equations import Equations, Operators
+from stribeck.mesh import Mesh, base_edges
+from stribeck.observables import NAMES, gradients, observables, observables_of_rows
+
+SEED = 61_441
+RTOL = 1e-6
+
+
+@pytest.fixture
+def filled(monkeypatch):
+    """Coordinates of the points that were found between steps."""
+    found = []
+    between = follow_module.between
+
+    def counted(ends, on, through, coordinates, groups, rtol):
+        points = between(ends, on, through, coordinates, groups, rtol)
+        found.extend(s for s, p in zip(coordinates, points, strict=False) if p.outcome.ok)
+        return points
+
+    monkeypatch.setattr(follow_module, "between", counted)
+    return found
+
+
+@pytest.mark.parametrize(("load", "roughness"), [(0.1, 1e-4), (2.0, 0.05), (1e-4, 0.0)])
+def test_states_between_steps_are_those_of_single_solves(filled, load, roughness):
+    curve = sb.stribeck_curve(load=load, roughness=roughness, speed=(1e-6, 1e-1), points=101, rtol=RTOL)
+    assert curve.outcome.ok and len(curve) == 101
+    assert len(filled) > 25
+    nearest = [int(np.argmin(np.abs(np.log(curve.values) - s))) for s in filled]
+    for i in np.random.default_rng(SEED).choice(nearest, 6, replace=False):
+        exact = sb.solve(sb.Groups(curve.values[i], load, roughness), rtol=1e-9)
+        for name in NAMES:
+            found, true = (getattr(s.observables, name) for s in (curve.solutions[i], exact))
+            scale = 1.0 if name.endswith("share") else max(abs(true), 1e-3 if name == "offset" else 0.0)
+            assert abs(found - true) <= (curve.solutions[i].errors[name] + 1e-9) * scale, name
+
+
+def test_points_that_cannot_be_found_at_once_are_stepped_to(monkeypatch):
+    whole = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1), points=61)
+    monkeypatch.setattr(follow_module, "between", lambda *arguments: [])
+    alone = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1), points=61)
+    assert alone.outcome.ok and len(alone) == 61
+    np.testing.assert_allclose(alone.friction, whole.friction, rtol=3 * RTOL)
+
+
+def rows(size, load=0.1, roughness=1e-3):
+    """Equations of three states in rows, each state's own, and unknowns."""
+    mesh = Mesh(base_edges(0.5, 8.0), size, 0.5)
+    speeds = np.array([[1e-3], [2e-3], [5e-3]])
+    groups = sb.Groups(speeds, np.full((3, 1), load), np.full((3, 1), roughness))
+    scales = np.array([[0.01], [0.02], [0.03]])
+    together = Equations(Operators(mesh), groups.speed, contact_law(groups), scales)
+    alone = [
+        Equations(together.operators, float(s), contact_law(sb.Groups(float(s), load, roughness)), float(scale))
+        for s, scale in zip(speeds.ravel(), scales.ravel(), strict=True)
+    ]
+    gap = np.random.default_rng(SEED).uniform(0.05, 0.1, (3, 1)) * (1 + mesh.nodes**2 * 6)
+    return together, alone, np.hstack([gap, [[-0.1], [0.2], [0.3]], [[0.06], [0.07], [0.08]]])
+
+
+def test_rows_are_what_each_state_is_alone():
+    together, alone, y = rows(12)
+    residuals, found = together.residual(y), observables_of_rows(together, y, 0.1)
+    slopes = gradients(together, y, 0.1)
+    for i, equations in enumerate(alone):
+        np.testing.assert_allclose(residuals[i], equations.residual(y[i]), rtol=1e-12, atol=1e-13)
+        np.testing.assert_allclose(found[i].array(), observables(equations, y[i], 0.1).array(), rtol=1e-12, atol=1e-17)
+        np.testing.assert_allclose(slopes[:, i], gradients(equations, y[i], 0.1), rtol=1e-11, atol=1e-15)
+
+
+def test_the_jacobian_in_units_of_the_unknowns_is_that_of_relative_changes():
+    _, alone, y = rows(12)
+    units = Equations.units(y[0])
+    np.testing.assert_allclose(alone[0].relative_jacobian(y[0]), alone[0].jacobian(y[0]) * units, rtol=1e-13, atol=1e-18)
+
+
+@pytest.mark.parametrize("order", [10, 12, 16])
+def test_the_deflection_from_known_blocks_is_that_of_the_points(order):
+    edges = np.unique(np.concatenate([base_edges(0.25, 8.0), [-1.0625, -1.125, 0.875, 0.9375, 7.0, 7.5]]))
+    mesh = Mesh(edges, order, 0.25)
+    exact = deflection_operator(mesh, mesh.nodes)
+    assert np.abs(nodal_deflection(mesh) - exact).max() < 1e-14 * np.abs(exact).max()
