@@ -3,6 +3,10 @@
 from . import asymptotics, atlas
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
+from .fit import fit
+from .fit_result import Fit, FitOutcome, FittedInput
+from .fit_settings import FitSettings
+from .measurements import Measurements, read_measurements
 from .newton import Outcome
 from .parameters import Groups, HertzScales, InputError, LineContact
 from .phase_diagram import phase_diagram
@@ -16,12 +20,17 @@ from .sweep_store import SweepError
 
 __all__ = [
     "Case",
+    "Fit",
+    "FitOutcome",
+    "FitSettings",
+    "FittedInput",
     "Friction",
     "Groups",
     "HertzScales",
     "InputError",
     "Landmark",
     "LineContact",
+    "Measurements",
     "Outcome",
     "Profile",
     "Solution",
@@ -33,10 +42,12 @@ __all__ = [
     "SweepProgress",
     "asymptotics",
     "atlas",
+    "fit",
     "load_case",
     "load_sweep",
     "open_sweep",
     "phase_diagram",
+    "read_measurements",
     "regime_of",
     "solve",
     "stribeck_curve",

@@ -260,13 +260,14 @@ def minimise(
     def derivative(x: Array) -> Array:
         return np.concatenate([evaluate(whole(x))[1], rows])[:, moving]
 
-    def loss(z: Any) -> Any:
+    def loss(z: Array) -> Array:
         found = np.stack([z, np.ones_like(z), np.zeros_like(z)])
         data, c = z[:n], CAUCHY**2
         found[:, :n] = c * np.log1p(data / c), 1 / (1 + data / c), -1 / c / (1 + data / c) ** 2
         return found
 
     ended = True
+    chosen: Any = loss if goal.robust else "linear"
     x = np.clip(np.asarray(start, dtype=float)[moving], low[moving] + 1e-9, high[moving] - 1e-9)
     evaluate(whole(x))  # a start that cannot be solved is an error of its own
     if len(moving):
@@ -275,7 +276,7 @@ def minimise(
             x,
             jac=derivative,
             bounds=(low[moving], high[moving]),
-            loss=loss if goal.robust else "linear",
+            loss=chosen,
             ftol=TOLERANCE,
             xtol=TOLERANCE,
             gtol=TOLERANCE,
@@ -299,6 +300,20 @@ def _distance(at: Minimum, free: Array) -> float:
     step = np.linalg.lstsq(J.T @ J, gradient, rcond=1e-12)[0]
     noise = _noise(at) if at.objective.sigma is None else 1.0
     return float(math.sqrt(max(0.0, float(gradient @ step))) / max(noise, 1e-300))
+
+
+def _scaled(at: Minimum) -> Minimum:
+    """Return the same minimum with its residuals in units of their own standard deviation."""
+    noise = _noise(at)
+    if noise == 0:
+        return at
+    return replace(
+        at,
+        value=at.value / noise**2,
+        residuals=at.residuals / noise,
+        jacobian=at.jacobian / noise,
+        objective=replace(at.objective, scale=at.objective.scale * noise),
+    )
 
 
 def _noise(at: Minimum) -> float:
@@ -351,7 +366,8 @@ def settle(goal: Objective, start: Array, on_step: Callable[[int], object] | Non
     count = found.evaluations
     if goal.sigma is not None:
         return found
-    # Without priors and with squares the scale moves nothing: two rounds then.
+    if not goal.robust and not len(goal.priors[0]):
+        return _scaled(found)  # a common factor on all residuals moves nothing
     for _ in range(MOST_ROUNDS):
         noise = _noise(found)
         if noise == 0 or not math.isfinite(noise):
