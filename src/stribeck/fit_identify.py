@@ -121,7 +121,11 @@ def _described(
     else:
         ties = [_tie(names[0], names[j], exponents[0], exponents[j]) for j in range(1, len(part))]
         how = "does not change" if exact else "hardly changes"
-        reasons = [f"{labels[i]}: {_reason(free[i], prediction)}" for i in part if _weak_alone(jacobian[:, i])]
+        reasons = [
+            f"{labels[i]}: {_reason(free[i], prediction)}"
+            for i in part
+            if _weak_alone(jacobian[:, i]) or _off_plateau(free[i], prediction)
+        ]
         because = f" ({'; '.join(reasons)})" if reasons else ""
         message = (
             f"{_listed(names)} are not determined one by one: the predicted friction {how} when {_changed(names, exponents)}"
@@ -132,6 +136,11 @@ def _described(
 
 def _weak_alone(column: Array) -> bool:
     return float(np.linalg.norm(column)) * WIDEST < 1
+
+
+def _off_plateau(free: FreeInput, prediction: Prediction) -> bool:
+    """Return whether a friction coefficient shows in no row by itself."""
+    return free.name == "friction_coefficient" and float(prediction.contact_share.max()) < 0.5
 
 
 def _tie(first: str, other: str, a: float, b: float) -> str:

@@ -32,7 +32,9 @@ CAUCHY = 2.385
 MAD = 1.482602218505602
 """Standard deviation over median absolute deviation of a normal distribution."""
 
-TOLERANCE = 1e-10
+VALUE_TOLERANCE, PLACE_TOLERANCE = 1e-8, 1e-7
+"""Relative change of q and absolute change of a logarithm at which the least squares end; solved states are good to 1e-6."""
+
 MOST_EVALUATIONS = 200
 
 SETTLED = 1e-4
@@ -277,9 +279,9 @@ def minimise(
             jac=derivative,
             bounds=(low[moving], high[moving]),
             loss=chosen,
-            ftol=TOLERANCE,
-            xtol=TOLERANCE,
-            gtol=TOLERANCE,
+            ftol=VALUE_TOLERANCE,
+            xtol=PLACE_TOLERANCE,
+            gtol=VALUE_TOLERANCE,
             max_nfev=most,
         )
         ended, x = found.status > 0, found.x

@@ -146,7 +146,8 @@ def number_of(cell: str, decimal: str = ".") -> tuple[float, str] | None:
     """
     text = cell.replace("\N{MINUS SIGN}", "-").strip()
     unit = ""
-    with_unit = _WITH_UNIT.fullmatch(text)
+    bare = _POINT.fullmatch(text) or _COMMA.fullmatch(text)
+    with_unit = None if bare else _WITH_UNIT.fullmatch(text)
     if with_unit:
         text, unit = with_unit.groups()
     if decimal == "," and _COMMA.fullmatch(text):
