@@ -12,7 +12,7 @@ from ._types import Array
 from .continuation import march
 from .follow import LONGEST_STEP, PREDICTOR_ORDER, SHORTEST_STEP, Follower
 from .newton import Outcome
-from .parameters import Groups, LineContact
+from .parameters import INPUTS, Groups, LineContact
 from .refine import Point
 from .solve import describe, hertz_solution, solution_of
 from .sweep_columns import ERROR, failed_row, row_of
@@ -58,7 +58,7 @@ class Chain:
         """Return the contact of the i-th state, where it has one."""
         if not self.si:
             return None
-        return LineContact(**{name: self.inputs[name][i] for name in LineContact.__dataclass_fields__})
+        return LineContact(**{name: self.inputs[name][i] for name in INPUTS})
 
     def coefficients(self, i: int) -> tuple[float, float]:
         """Return mu0 and beta of the i-th state."""

@@ -17,7 +17,7 @@ import numpy as np
 
 from ._types import Array
 from .case import Case, Law, error_sentence, example_of, read_toml
-from .parameters import QUANTITIES, Groups, LineContact, check_modulus_choice, quantity
+from .parameters import INPUTS, QUANTITIES, Groups, LineContact, check_modulus_choice, quantity
 from .sweep_points import KINDS, RANDOM, Axis, Kind, points_of
 from .units import InputError, show
 
@@ -29,7 +29,6 @@ GROUPS = ("speed", "load", "roughness")
 COEFFICIENTS = {"mu0": "friction_coefficient", "beta": "beta"}
 """What friction needs beside groups, and the quantities that these are."""
 
-INPUTS = tuple(LineContact.__dataclass_fields__)
 ELASTICITY = ("modulus", "youngs_modulus", "poisson_ratio")
 
 
