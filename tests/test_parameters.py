@@ -225,7 +225,7 @@ def test_values_whose_groups_overflow_are_refused(changes):
 
 
 def test_every_quantity_is_an_argument_of_the_contact_and_back():
-    assert set(inspect.signature(LineContact).parameters) == set(QUANTITIES)
+    assert set(inspect.signature(LineContact).parameters) == {*QUANTITIES, "law"}
 
 
 def test_replace_checks_and_keeps_the_rest():

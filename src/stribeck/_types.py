@@ -1,6 +1,6 @@
 """The array types that annotations use, and the shape of a contact law, which a state carries with its groups."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ Numbers = float | Array
 """One number, or a column of them where states lie in rows."""
 
 
+@runtime_checkable
 class LawShape(Protocol):
     r"""A contact law without dimensions: a small frozen object that can be hashed.
 
@@ -39,3 +40,16 @@ class LawShape(Protocol):
 
     def notes(self, separation: float) -> tuple[str, ...]:
         """Return what to know about a state of which this is the least separation, one sentence each."""
+
+
+@runtime_checkable
+class WithArea(LawShape, Protocol):
+    """What a law has besides that knows the spectrum of its surface."""
+
+    def area_fraction_at(self, pressure: Array) -> Array:
+        """Return the real area of contact over the apparent one at the pressure Phi."""
+
+
+def is_exponential(law: LawShape | None) -> bool:
+    """Tell whether a law is that of the paper, for which formulas and atlas hold."""
+    return law is None or law.name == "exponential"

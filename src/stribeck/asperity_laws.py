@@ -9,7 +9,9 @@ of order 3/2 where a rough surface meets a plane one and 5/2 where two rough sur
 :math:`\beta`.
 
 The moments are kept as a spline of order 7 through values of their integral, made on first use.
-Source: [GW] Greenwood and Williamson 1966, Proc. R. Soc. A 295, 300; [GT] Greenwood and Tripp 1970, Proc. Inst. Mech. Eng. 185, 625.
+
+Source: [GW] Greenwood and Williamson, Proc. R. Soc. A 295 (1966) 300; [GT] Greenwood and Tripp, Proc. Inst. Mech. Eng. 185
+(1970) 625; both derived again in theory.md, section 8.
 """
 
 from __future__ import annotations
@@ -145,7 +147,7 @@ class GreenwoodWilliamson(_GaussianHeights):
     measured from their mean plane.  The law is exact for its model at any separation, also below zero, where the model itself
     (asperities that know nothing of each other) no longer holds; notes of a solution say so.
 
-    Source: [GW] Eq. (10); theory.md, section 8.
+    Source: [GW]; theory.md, section 8.
     """
 
     order: ClassVar[float] = 1.5
@@ -189,12 +191,13 @@ class GreenwoodTripp(_GaussianHeights):
 
     Notes
     -----
-    With alpha = 1 the h_rms of the contact is the composite standard deviation :math:`\sigma = (\sigma_1^2 + \sigma_2^2)^{1/2}`
-    of the summit heights.  E* is the modulus of both surfaces together.  The integral is exact: the fit
+    With alpha = 1 the h_rms of the contact is the composite standard deviation of the summit heights,
+    :math:`\sigma = (\sigma_1^2 + \sigma_2^2)^{1/2}`.  E* is the modulus of both surfaces together.
+    The integral is exact: the fit
     :math:`4.4086 \cdot 10^{-5} (4 - s)^{6.804}` that is often used for it is 74 % too large at three standard deviations, and
     zero from four on (``test_asperity_laws.py::test_the_popular_fit_of_greenwood_and_tripp_is_wrong_where_contact_begins``).
 
-    Source: [GT] Eq. (9); theory.md, section 8.
+    Source: [GT]; theory.md, section 8.
     """
 
     order: ClassVar[float] = 2.5

@@ -2,8 +2,8 @@ r"""Contact pressure from the gap: the laws that the equations compose.
 
 A law is a small frozen object with a name, the pressure, and its derivatives beside it.  Everything is in Hertz units
 (gap in u_Hz, pressure in p_Hz).  The exponential law of the paper is the default, and written out for speed.  Any other law is
-a *shape* without dimensions, :class:`stribeck._types.LawShape`, which the groups of a state carry; :class:`ScaledLaw` makes the
-contact law of it.
+a *shape* without dimensions, :class:`stribeck._types.LawShape`, which the groups of a state carry; :class:`ScaledLaw` makes
+the contact law of it.
 """
 
 from __future__ import annotations
@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
+from scipy.special import erf
 
-from ._types import Array, LawShape, Numbers
+from ._types import Array, LawShape, Numbers, is_exponential
 from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
 from .parameters import Groups
 from .units import InputError, show
@@ -274,6 +275,44 @@ def named_law(name: str) -> LawShape | None:
     return NAMED[name]
 
 
+@dataclass(frozen=True)
+class ExponentialShape:
+    r"""The exponential law of a surface of which the spectrum is known, so that the real area of contact is too.
+
+    .. math:: \Phi(s) = e^{-s}, \qquad A/A_0 = \operatorname{erf}(k \Phi)
+
+    Parameters
+    ----------
+    area_slope : float
+        k: beta times the square root of 2 over the rms slope of the surface [-].
+    """
+
+    area_slope: float
+    name: str = "exponential"
+    lowest: float = -np.inf
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """The slope of the area."""
+        return {"area_slope": self.area_slope}
+
+    def log_pressure(self, separation: Array) -> Array:
+        """Return ``-s``."""
+        return -np.asarray(separation)
+
+    def log_slope(self, separation: Array) -> Array:
+        """Return -1."""
+        return np.full_like(separation, -1.0)
+
+    def area_fraction_at(self, pressure: Array) -> Array:
+        """Return ``erf(k Phi)``, the real area of contact over the apparent one."""
+        return np.asarray(erf(self.area_slope * pressure))
+
+    def notes(self, separation: float) -> tuple[str, ...]:
+        """Return none: those of the exponential law are those of the groups."""
+        return ()
+
+
 def contact_law(groups: Groups) -> ContactLaw:
     """Return the contact law of a state: that of its shape, exponential without one, none where the roughness is zero.
 
@@ -281,8 +320,9 @@ def contact_law(groups: Groups) -> ContactLaw:
     """
     if not np.any(groups.roughness):
         return NoContact()
-    if groups.law is None:
+    if is_exponential(groups.law):
         return ExponentialLaw(groups.load, groups.relative_roughness)
+    assert groups.law is not None
     return ScaledLaw(groups.law, groups.load, groups.relative_roughness)
 
 
@@ -306,7 +346,7 @@ def lifted(groups: Groups) -> tuple[Groups, float]:
     Laws that diverge at zero need no shift.
     """
     shape = groups.law
-    if shape is None or shape.lowest > -np.inf or isinstance(shape, ShiftedShape):
+    if shape is None or is_exponential(shape) or shape.lowest > -np.inf or isinstance(shape, ShiftedShape):
         return groups, 0.0
     shift = max(0.0, SAFE_SEPARATION - separation_at(shape, 0.5 * float(np.log(groups.load))))
     if shift == 0.0:

@@ -10,7 +10,7 @@ Source: [Bertin & Pouliquen] Eq. (Hertz_scales) and the definitions of :math:`\l
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Self
 
 import numpy as np
@@ -69,7 +69,7 @@ class Groups:
     speed: float | Array
     load: float | Array
     roughness: float | Array
-    law: LawShape | None = None
+    law: LawShape | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         """Check the groups and make them floats or read-only arrays."""
@@ -211,9 +211,6 @@ QUANTITIES = {
     "poisson_ratio": Quantity("number", zero=True, highest=0.5),
 }
 
-
-LAW_MEMBERS = ("name", "parameters", "lowest", "log_pressure", "log_slope", "notes")
-"""What a contact law has."""
 
 INPUTS = ("radius", "load", "viscosity", "speed", "roughness", "alpha", "beta", "friction_coefficient", "modulus")
 """The quantities of :class:`LineContact`, in its order."""
@@ -478,9 +475,8 @@ def quantity(name: str, value: Any) -> float:
 
 def check_law(law: Any) -> LawShape | None:
     """Return a contact law, or None for the exponential one; refuse what has not the methods of one."""
-    if law is None or (not isinstance(law, type) and all(hasattr(law, name) for name in LAW_MEMBERS)):
-        found: LawShape | None = law
-        return found
+    if law is None or (isinstance(law, LawShape) and not isinstance(law, type)):
+        return law
     advice = f"write {law.__name__}()" if isinstance(law, type) else "give an object such as GreenwoodWilliamson(), or None"
     raise InputError(f"law = {show(law)} is no contact law; {advice}.")
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import reynolds
-from ._types import Array
+from ._types import Array, is_exponential
 from .contact_laws import contact_law, lifted
 from .equations import Operators
 from .estimate import ErrorEstimate, FineOperators, error_estimates
@@ -45,11 +45,11 @@ def solvable(groups: Groups) -> Groups:
 
     The exponential law does so by a lower load, another by a shifted separation.
     """
-    if groups.law is not None:
+    if not is_exponential(groups.law):
         return groups if groups.speed > 0 else lifted(groups)[0]
     if groups.speed > 0 or groups.load <= QUASISTATIC_LOAD:
         return groups
-    return Groups(0.0, QUASISTATIC_LOAD, QUASISTATIC_LOAD * groups.relative_roughness)
+    return Groups(0.0, QUASISTATIC_LOAD, QUASISTATIC_LOAD * groups.relative_roughness, law=groups.law)
 
 
 def quasistatic_shift(groups: Groups) -> float:
@@ -57,10 +57,10 @@ def quasistatic_shift(groups: Groups) -> float:
 
     .. math:: \Delta h = -\frac{\kappa}{2} \ln \frac{\bar F_N}{\bar F_N'}
 
-    Exact at speed zero, where the solution depends on kappa alone but for this shift of gap and offset; for other laws than the
-    exponential one it is that of :func:`contact_laws.lifted`.
+    Exact at speed zero, where the solution depends on kappa alone but for this shift of gap and offset.  For other laws than
+    the exponential one it is that of :func:`contact_laws.lifted`.
     """
-    if groups.law is not None:
+    if not is_exponential(groups.law):
         return 0.0 if groups.speed > 0 else -lifted(groups)[1]
     if solvable(groups) is groups:
         return 0.0

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from . import hertz
-from ._types import Array, LawShape
+from ._types import Array, LawShape, is_exponential
 from .contact_laws import named_law
 from .mesh import Mesh
 from .newton import Outcome
@@ -64,8 +64,8 @@ def solve(
 ) -> Solution:
     r"""Solve one state of the lubricated rough contact, from cold.
 
-    The coupled equations are [BP] Appendix A: contact pressure by the contact law, Reynolds' equation, plane-strain elasticity,
-    fixed load.
+    The coupled equations are [BP] Appendix A: contact pressure by the contact law, Reynolds' equation, plane-strain
+    elasticity, fixed load.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def solve(
 def solved_point(groups: Groups, rtol: float) -> Point:
     """Return the refined state of ``groups`` from cold; raise where no path leads there."""
     path = cold_start(solvable(groups))
-    if not path.outcome.ok and groups.law is not None:
+    if not path.outcome.ok and not is_exponential(groups.law):
         path = start_by_exponential(solvable(groups))
     if not path.outcome.ok:
         raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")

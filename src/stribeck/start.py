@@ -74,12 +74,12 @@ class RigidGuess:
 def unloaded(groups: Groups, log_factor: float) -> Groups:
     """Return the groups at the load divided by ``exp(log_factor)``, all else being held."""
     factor = math.exp(log_factor)
-    return Groups(groups.speed * factor**2, groups.load / factor, groups.roughness, groups.law)
+    return Groups(groups.speed * factor**2, groups.load / factor, groups.roughness, law=groups.law)
 
 
 def faster(groups: Groups, log_factor: float) -> Groups:
     """Return the groups at the speed times ``exp(2 log_factor)``, all else being held."""
-    return Groups(groups.speed * math.exp(2 * log_factor), groups.load, groups.roughness, groups.law)
+    return Groups(groups.speed * math.exp(2 * log_factor), groups.load, groups.roughness, law=groups.law)
 
 
 def rigid_guess(groups: Groups) -> RigidGuess:
