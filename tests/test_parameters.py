@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stribeck.parameters import INPUTS, QUANTITIES, Groups, InputError, LineContact
+from stribeck.parameters import QUANTITIES, Groups, InputError, LineContact
 
 INPUTS = {
     "radius": "10 mm",

@@ -1,10 +1,12 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
 from . import asymptotics, atlas
+from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .newton import Outcome
 from .parameters import Groups, HertzScales, InputError, LineContact
+from .persson import PerssonLaw, persson_law
 from .phase_diagram import phase_diagram
 from .regimes import regime_of
 from .solution import Friction, Profile, Solution
@@ -13,16 +15,21 @@ from .sweep import SweepProgress, sweep
 from .sweep_dataset import Sweep, open_sweep
 from .sweep_design import SweepDesign, load_sweep
 from .sweep_store import SweepError
+from .user_laws import FunctionLaw, TableLaw
 
 __all__ = [
     "Case",
     "Friction",
+    "FunctionLaw",
+    "GreenwoodTripp",
+    "GreenwoodWilliamson",
     "Groups",
     "HertzScales",
     "InputError",
     "Landmark",
     "LineContact",
     "Outcome",
+    "PerssonLaw",
     "Profile",
     "Solution",
     "SolveError",
@@ -31,11 +38,13 @@ __all__ = [
     "SweepDesign",
     "SweepError",
     "SweepProgress",
+    "TableLaw",
     "asymptotics",
     "atlas",
     "load_case",
     "load_sweep",
     "open_sweep",
+    "persson_law",
     "phase_diagram",
     "regime_of",
     "solve",
