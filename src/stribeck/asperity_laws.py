@@ -194,7 +194,7 @@ class GreenwoodTripp(_GaussianHeights):
     With alpha = 1 the h_rms of the contact is the composite standard deviation of the summit heights,
     :math:`\sigma = (\sigma_1^2 + \sigma_2^2)^{1/2}`.  E* is the modulus of both surfaces together.
     The integral is exact: the fit
-    :math:`4.4086 \cdot 10^{-5} (4 - s)^{6.804}` that is often used for it is 74 % too large at three standard deviations, and
+    :math:`4.4086 \cdot 10^{-5} (4 - s)^{6.804}` that is often used for it is 74 % too small at three standard deviations, and
     zero from four on (``test_asperity_laws.py::test_the_popular_fit_of_greenwood_and_tripp_is_wrong_where_contact_begins``).
 
     Source: [GT]; theory.md, section 8.
