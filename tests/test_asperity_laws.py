@@ -68,7 +68,7 @@ def test_the_popular_fit_of_greenwood_and_tripp_is_wrong_where_contact_begins():
     fit = 4.4086e-5 * (4 - np.array([0.5, 1.0, 2.0, 3.0])) ** 6.804
     excess = fit / np.exp(log_moment(2.5, np.array([0.5, 1.0, 2.0, 3.0]))) - 1
     assert excess[-1] == pytest.approx(-0.74, abs=0.005)
-    assert np.abs(excess[:3]).max() < 0.08
+    assert np.abs(excess[:3]).max() < 0.1
     assert float(log_moment(2.5, np.array([4.0]))[0]) > math.log(1e-6)  # where the fit is zero
 
 

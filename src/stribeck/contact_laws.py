@@ -271,7 +271,8 @@ class BlendedShape:
 def named_law(name: str) -> LawShape | None:
     """Return the law of a name; refuse a name that there is not, or of which more must be known."""
     if name not in NAMED:
-        raise InputError(f"law = {show(name)}; names are {', '.join(map(repr, NAMED))}, other laws are given as objects.")
+        known = ", ".join(map(repr, NAMED))
+        raise InputError(f"law = {show(name)}; names are {known}. A law of a surface or table needs a case file or an object.")
     return NAMED[name]
 
 

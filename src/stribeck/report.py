@@ -285,7 +285,7 @@ def _solution_rows(solution: Solution, mu0: float | None, beta: float | None) ->
     yield "Lambda (film over h_rms/alpha)", _digits(solution.lambda_ratio, 1e-4), "", ""
     if not math.isnan(solution.central_area_fraction):
         relative = solution.central_area_fraction_error / solution.central_area_fraction
-        yield "real contact, share of area at x = 0", _digits(solution.central_area_fraction, relative), "", _error(relative)
+        yield "real contact area at x = 0", _digits(solution.central_area_fraction, relative), "", _error(relative)
     regime = regime_of(solution.fluid_load_share, _contact_part(solution.friction(mu0, beta)))
     yield "Hersey number", f"{_hersey(solution, beta):.4g}", "", ""
     yield "regime", regime, "", ""
