@@ -1,6 +1,7 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
 from . import asymptotics, atlas
+from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .fit import fit
@@ -9,6 +10,7 @@ from .fit_settings import FitSettings
 from .measurements import Measurements, read_measurements
 from .newton import Outcome
 from .parameters import Groups, HertzScales, InputError, LineContact
+from .persson import PerssonLaw, persson_law
 from .phase_diagram import phase_diagram
 from .regimes import regime_of
 from .solution import Friction, Profile, Solution
@@ -17,6 +19,7 @@ from .sweep import SweepProgress, sweep
 from .sweep_dataset import Sweep, open_sweep
 from .sweep_design import SweepDesign, load_sweep
 from .sweep_store import SweepError
+from .user_laws import FunctionLaw, TableLaw
 
 __all__ = [
     "Case",
@@ -25,6 +28,9 @@ __all__ = [
     "FitSettings",
     "FittedInput",
     "Friction",
+    "FunctionLaw",
+    "GreenwoodTripp",
+    "GreenwoodWilliamson",
     "Groups",
     "HertzScales",
     "InputError",
@@ -32,6 +38,7 @@ __all__ = [
     "LineContact",
     "Measurements",
     "Outcome",
+    "PerssonLaw",
     "Profile",
     "Solution",
     "SolveError",
@@ -40,12 +47,14 @@ __all__ = [
     "SweepDesign",
     "SweepError",
     "SweepProgress",
+    "TableLaw",
     "asymptotics",
     "atlas",
     "fit",
     "load_case",
     "load_sweep",
     "open_sweep",
+    "persson_law",
     "phase_diagram",
     "read_measurements",
     "regime_of",

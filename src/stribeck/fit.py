@@ -11,11 +11,10 @@ import math
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, is_exponential
 from .case import Case, load_case
 from .fit_identify import Undetermined, undetermined
 from .fit_model import FreeInput, FrictionModel, free_inputs
@@ -118,8 +117,8 @@ def fit(
     model = FrictionModel(contact, data, wanted)
     _check_enough(data, wanted)
     report = on_step or (lambda what, count: None)
-    solved = solved_parts(definition, problem.rtol, problem.law)
-    exponential = problem.law is None
+    solved = solved_parts(definition, problem.rtol, contact.law)
+    exponential = is_exponential(contact.law)
     quick = atlas_or_solved_parts(definition, problem.rtol) if exponential else solved
     goal = objective(model, quick, settings, settings.robust)
 
@@ -141,25 +140,22 @@ def fit(
 
 @dataclass(frozen=True)
 class _Problem:
-    """What a case says to a fit; ``law`` is what the solver takes, None for the exponential one."""
+    """What a case says to a fit."""
 
     contact: LineContact
     settings: FitSettings
     definition: Definition
     rtol: float
-    law: Any
-    law_name: str
 
 
 def _problem(case: str | os.PathLike[str] | Case | LineContact) -> _Problem:
     if isinstance(case, LineContact):
-        return _Problem(case, FitSettings(), "paper", Case.rtol, None, Case.law)
+        return _Problem(case, FitSettings(), "paper", Case.rtol)
     if not isinstance(case, Case):
         if not isinstance(case, str | os.PathLike):
             raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case or a LineContact.")
         case = load_case(case)
-    law = None if case.law == "exponential" else case.law
-    return _Problem(case.contact, case.fit, case.definition, case.rtol, law, str(getattr(case.law, "name", case.law)))
+    return _Problem(case.contact, case.fit, case.definition, case.rtol)
 
 
 def _check_enough(data: Measurements, wanted: Sequence[FreeInput]) -> None:
@@ -334,7 +330,7 @@ def _result(
         contacts=contacts,
         data=data,
         definition=problem.definition,
-        law=problem.law_name,
+        law="exponential" if contact.law is None else contact.law.name,
         friction=at.prediction.friction,
         residuals=at.residuals,
         covariance=covariance,
@@ -378,7 +374,7 @@ def _notes(
                 notes.append(_combination(pair, correlation[i, j], covariance[np.ix_([j, i], [j, i])]))
     for name, contact in zip(at.objective.model.data.curves, contacts, strict=True):
         load = float(contact.groups.load)
-        if load >= 1:
+        if load >= 1 and is_exponential(contact.law):
             where = f" of curve {name}" if len(contacts) > 1 else ""
             notes.append(
                 f"The fitted load group{where} is {load:.3g}, not below 1: the exponential contact law is outside its range."

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from . import atlas
-from ._types import Array
+from ._types import Array, LawShape
 from .curve import stribeck_curve
 from .observables import NAMES
 from .parameters import Groups, InputError
@@ -59,7 +58,7 @@ def atlas_parts(definition: Definition) -> PartsOf:
     return parts
 
 
-def solved_parts(definition: Definition, rtol: float, law: Any = None) -> PartsOf:
+def solved_parts(definition: Definition, rtol: float, law: LawShape | None = None) -> PartsOf:
     """Return the function that solves states, those that differ in speed alone as one curve.
 
     Parameters
@@ -68,15 +67,14 @@ def solved_parts(definition: Definition, rtol: float, law: Any = None) -> PartsO
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of each state.
-    law : object, optional
-        Contact law, as :func:`stribeck.stribeck_curve` takes it; the exponential one by default.
+    law : LawShape, optional
+        Contact law; the exponential one by default.
 
     Returns
     -------
     callable
         Groups of many states -> their :class:`Parts`; raises SolveError where a state cannot be solved.
     """
-    of_law = {} if law is None else {"law": law}
 
     def parts(groups: Groups) -> Parts:
         speed, load, roughness = (np.broadcast_to(g, groups.shape) for g in (groups.speed, groups.load, groups.roughness))
@@ -86,7 +84,7 @@ def solved_parts(definition: Definition, rtol: float, law: Any = None) -> PartsO
         for k, (F, h_rms) in enumerate(pairs):
             rows = np.nonzero(pair_of.ravel() == k)[0]
             speeds, at = np.unique(speed[rows], return_inverse=True)
-            found = _along(speeds, float(F), float(h_rms), definition, rtol, of_law)
+            found = _along(speeds, float(F), float(h_rms), definition, rtol, law)
             values[:, rows], slopes[:, :, rows], errors[:, rows] = (array[..., at.ravel()] for array in found)
         return Parts(values, slopes, errors)
 
@@ -107,13 +105,13 @@ def atlas_or_solved_parts(definition: Definition, rtol: float) -> PartsOf:
 
 
 def _along(
-    speeds: Array, load: float, roughness: float, definition: Definition, rtol: float, of_law: dict[str, Any]
+    speeds: Array, load: float, roughness: float, definition: Definition, rtol: float, law: LawShape | None
 ) -> tuple[Array, Array, Array]:
     """Return values, slopes and errors of the states of a curve at ascending speeds."""
     # A pair would be taken as a range, and one speed is no curve.
     points = speeds if len(speeds) > 1 else np.append(speeds, 1.1 * speeds)
     curve = stribeck_curve(
-        load=load, roughness=roughness, speed=points, points=len(points), rtol=rtol, definition=definition, **of_law
+        load=load, roughness=roughness, speed=points, points=len(points), rtol=rtol, definition=definition, law=law
     )
     row = NAMES.index(f"viscous_{definition}")
     n = len(speeds)
