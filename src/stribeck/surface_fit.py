@@ -32,6 +32,9 @@ __all__ = ["SelfAffineFit", "fit_self_affine"]
 STEP = 0.3
 """Share of the neighbouring spectrum below which the level beyond a cut-off must lie, for it to be one."""
 
+UNSEEN = 0.7
+"""Standard error of the logarithm of a long cut-off beyond the scan: about a factor of two."""
+
 MISFIT = 2.0
 """Deviance over its expectation from which the spectrum is said not to be self-affine."""
 
@@ -170,7 +173,8 @@ class _Trial:
 
     @property
     def score(self) -> float:
-        return self.deviance + self.parameters * math.log(self.weight)
+        # A roll-off is the rule, and costs no more than what chance gives once in twenty.
+        return self.deviance + (self.parameters - self.roll_off) * math.log(self.weight) + 3.84 * self.roll_off
 
 
 def _candidates(data: _Data, q: Array) -> Iterator[_Trial]:
@@ -185,12 +189,20 @@ def _candidates(data: _Data, q: Array) -> Iterator[_Trial]:
         yield from (trial for trial in plain if trial)
         yield from (trial for trial in (_fitted(data, q, roll_off, True, 0, n) for roll_off in (False, True)) if trial)
         return
-    low = _cut(data, q, [(i, n) for i in range(1, n - 6)])
-    start = low.low if low and low.score < best.score else 0
-    high = _cut(data, q, [(start, j) for j in range(start + 6, n)])
-    trials = [*plain, low, high]
-    if high and high.score < min(best.score, low.score if low else math.inf):
-        trials.append(_cut(data, q, [(i, high.high) for i in range(1, high.high - 5)]))
+    trials = list(plain)
+    for first in ("low", "high"):
+        # One end after the other, and the first once more when the other is known.
+        ends, end = (0, n), first
+        for _ in range(3):
+            places = (
+                [(i, ends[1]) for i in range(1, ends[1] - 5)]
+                if end == "low"
+                else [(ends[0], j) for j in range(ends[0] + 6, n)]
+            )
+            found = _cut(data, q, places)
+            trials.append(found)
+            ends = (found.low, found.high) if found else ends
+            end = "high" if end == "low" else "low"
     noisy = min((trial for trial in trials if trial), key=lambda trial: trial.score)
     if noisy.high == n:
         trials.append(_fitted(data, q, noisy.roll_off, True, noisy.low, n))
@@ -208,23 +220,20 @@ def _cut(data: _Data, q: Array, places: list[tuple[int, int]]) -> _Trial | None:
 
 
 def _fitted(data: _Data, q: Array, roll_off: bool, noise: bool, low: int, high: int) -> _Trial | None:
-    """Return the fit with cut-offs before ring ``low`` and after ring ``high`` - 1, each with a free level beyond it."""
+    """Return the fit with cut-offs before ring ``low`` and after ring ``high`` - 1."""
     n = q.size
     inside = np.zeros(n, dtype=bool)
     inside[low:high] = True
     part, centre = data.part(inside), math.log(q[low] * q[high - 1]) / 2
-    beyond, levels = 0.0, 0
-    for outside, edge in ((slice(0, low), low), (slice(high, n), high - 1)):
-        if data.density[outside].size:
-            level = float(np.average(data.density[outside], weights=data.modes[outside]))
-            if level > STEP * data.density[edge]:
-                return None
-            beyond += _deviance(data.density[outside], level, data.modes[outside])
-            levels += 2
+    # Beyond a cut-off only what the window leaks is left: a level of its own for each ring.
+    for outside, edge in ((data.density[:low], low), (data.density[high:], high - 1)):
+        if outside.size and not outside.min() < STEP * data.density[edge]:
+            return None
+    levels = n - (high - low)
     slope, height = np.polyfit(np.log(q[inside]) - centre, np.log(part.density), 1, w=np.sqrt(part.modes))
     steep = 1.0 if data.is_line else 2.0
     values = [height, min(max((-slope - steep) / 2, 0.1), 0.95)]
-    lower, upper = [-np.inf, 0.01], [np.inf, 1.0]
+    lower, upper = [-np.inf, 0.01], [np.inf, 0.9999]
     if roll_off:
         values.append(math.log(q[low]) + 0.3 * math.log(q[high - 1] / q[low]))
         lower.append(math.log(part.inner[0, 0]))
@@ -238,13 +247,13 @@ def _fitted(data: _Data, q: Array, roll_off: bool, noise: bool, low: int, high: 
         upper.append(floor + 2.0)
 
     def residual(theta: Array) -> Array:
-        ratio = part.density / _model(theta, part, centre, roll_off, noise, q[low])
+        ratio = part.density / _model(theta, part, centre, roll_off, noise)
         excess = np.maximum(ratio - 1 - np.log(ratio), 0.0)
         return np.asarray(np.sign(ratio - 1) * np.sqrt(2 * part.modes * excess))
 
     starts = [values]
     if roll_off:
-        starts += [[height, values[1], x, *values[3:]] for x in np.linspace(lower[2], upper[2], 5)[1:-1]]
+        starts += [[height, values[1], lower[2] + share * (upper[2] - lower[2]), *values[3:]] for share in (0.1, 0.6)]
     best: Any = None
     for start in starts:
         first = np.clip(start, np.array(lower) + 1e-9, np.array(upper) - 1e-9)
@@ -254,15 +263,10 @@ def _fitted(data: _Data, q: Array, roll_off: bool, noise: bool, low: int, high: 
     if best is None:
         return None
     weight = float(data.modes.sum())
-    return _Trial(best.x, roll_off, noise, low, high, 2 * best.cost + beyond, len(values) + levels, weight)
+    return _Trial(best.x, roll_off, noise, low, high, 2 * best.cost, len(values) + levels, weight)
 
 
-def _deviance(density: Array, model: Array | float, modes: Array) -> float:
-    ratio = density / model
-    return float(2 * np.sum(modes * (ratio - 1 - np.log(ratio))))
-
-
-def _model(theta: Array, data: _Data, centre: float, roll_off: bool, noise: bool, lowest: float) -> Array:
+def _model(theta: Array, data: _Data, centre: float, roll_off: bool, noise: bool) -> Array:
     """Return the model averaged over each ring, C at its own level exp(theta_0) where ln q = centre."""
     H = float(theta[1])
     if data.is_line:
@@ -287,11 +291,15 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
     centre = math.log(q[trial.low] * q[trial.high - 1]) / 2
     fundamental = measured.lowest / LONGEST
     cuts = {"q0": trial.low > 0, "q1": trial.high < q.size}
-    q0 = math.sqrt(q[trial.low - 1] * q[trial.low]) if cuts["q0"] else fundamental
+    if cuts["q0"]:
+        q0 = float(q[trial.low])
+    else:
+        # A roll-off goes on to the whole scan at least; a power law must not be prolonged to where it was not seen.
+        q0 = fundamental if trial.roll_off else float(measured.lowest)
     q1 = math.sqrt(q[trial.high - 1] * q[trial.high]) if cuts["q1"] else float(measured.highest)
 
     def model(theta: Array) -> Array:
-        return np.log(_model(theta, part, centre, trial.roll_off, trial.noise, q[trial.low]))
+        return np.asarray(np.log(_model(theta, part, centre, trial.roll_off, trial.noise)))
 
     slopes = _jacobian(model, trial.values)
     information = slopes.T @ (part.modes[:, None] * slopes)
@@ -303,6 +311,8 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
     for place, name, ring in ((-2, "q0", trial.low), (-1, "q1", trial.high)):
         if cuts[name]:
             covariance[place, place] = (max(q[ring] - q[ring - 1], fundamental) / q[ring]) ** 2 / 3
+    if trial.roll_off and not cuts["q0"]:
+        covariance[-2, -2] = UNSEEN**2
     theta = np.concatenate((trial.values, [math.log(q0), math.log(q1)]))
 
     def physical(theta: Array) -> Array:

@@ -40,7 +40,7 @@ RINGS = 24
 """Rings in a decade of wave numbers, at most."""
 
 INNER = 8
-"""Wave numbers that stand for those within a ring when a model is averaged over it."""
+"""Wave numbers that stand for those within a ring of a map when a model is averaged over it; along a line 2 do."""
 
 ENDLESS = 14.0
 """Upper end of the integral along a line; the rest is below exp(-14 (1 + 2 H)) of it."""
@@ -59,7 +59,7 @@ class MeasuredSpectrum:
     modes : ndarray
         Effective number of independent modes in each ring; the relative standard error is one over its root.
     inner : ndarray
-        Wave numbers over which a model is averaged to be compared with each ring, of shape (rings, 8) [1/m].
+        Wave numbers over which a model is averaged to be compared with each ring, a row for each ring [1/m].
     is_line : bool
         Whether it is that of a line.
     lowest, highest : float
@@ -141,7 +141,8 @@ def power_spectrum(
     counts = np.diff(np.append(starts, radius.size))
     density = np.add.reduceat(power, starts) / counts
     wavenumber = np.exp(np.add.reduceat(np.log(radius), starts) / counts)
-    places = starts[:, None] + np.floor((np.arange(INNER) + 0.5) / INNER * counts[:, None]).astype(int)
+    inner = INNER if not topography.is_line else 2
+    places = starts[:, None] + np.floor((np.arange(inner) + 0.5) / inner * counts[:, None]).astype(int)
     # Heights are real: half of the modes repeat the other half.  The window binds neighbours together.
     independent = float(square**2 / np.mean(weight**4))
     highest, highest_reason = 2 * math.pi / (PIXELS * max(topography.spacing)), f"{PIXELS:g} points in a wave"
@@ -190,7 +191,7 @@ def line_density(wavenumber: Array, roughness: SelfAffine) -> Array:
     q = np.asarray(wavenumber, dtype=float)[..., None]
     q_r, q0, H = roughness.roll_off or roughness.q0, roughness.q0, roughness.hurst
     level = float(roughness.spectrum.density[0])
-    t, w = np.polynomial.legendre.leggauss(24)
+    t, w = np.polynomial.legendre.leggauss(16)
     start = np.arccosh(np.maximum(q0 / q, 1.0))
     corner = np.arccosh(np.maximum(q_r / q, 1.0))
 
