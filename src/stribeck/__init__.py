@@ -1,6 +1,6 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
-from . import asymptotics, atlas
+from . import asymptotics, atlas, surfaces
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .newton import Outcome
@@ -40,6 +40,7 @@ __all__ = [
     "regime_of",
     "solve",
     "stribeck_curve",
+    "surfaces",
     "sweep",
 ]
 

@@ -19,7 +19,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from ._types import Array, Flags
 from .persson import GAMMA, exponential_limit
@@ -225,6 +224,8 @@ def _fitted(data: _Data, q: Array, roll_off: bool, noise: bool, low: int, high: 
     inside = np.zeros(n, dtype=bool)
     inside[low:high] = True
     part, centre = data.part(inside), math.log(q[low] * q[high - 1]) / 2
+    from scipy.optimize import least_squares  # here, as it takes a fifth of a second to import
+
     # Beyond a cut-off only what the window leaks is left: a level of its own for each ring.
     for outside, edge in ((data.density[:low], low), (data.density[high:], high - 1)):
         if outside.size and not outside.min() < STEP * data.density[edge]:
@@ -279,7 +280,7 @@ def _model(theta: Array, data: _Data, centre: float, roll_off: bool, noise: bool
         x = np.maximum(np.log(data.inner), corner)
         shape = np.exp(-2 * (1 + H) * (x - max(centre, corner)))
     mean = math.exp(theta[0]) * shape.mean(axis=-1)
-    return mean + math.exp(theta[-1]) if noise else mean
+    return np.asarray(mean + math.exp(theta[-1]) if noise else mean)
 
 
 # --- from the parameters of the fit to those of the surface ---
@@ -340,7 +341,7 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
         errors=errors,
         found=tuple(name for name, flag in flags.items() if flag),
         noise=math.exp(trial.values[-1]) if trial.noise else 0.0,
-        deviance=excess,
+        deviance=float(excess),
         band=(float(q[trial.low]), float(q[trial.high - 1])),
         _values=values,
         _covariance=covariance,

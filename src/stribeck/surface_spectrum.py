@@ -21,7 +21,7 @@ from typing import Literal
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, Flags
 from .spectrum import SelfAffine
 from .topography import Topography
 from .units import InputError, show
@@ -82,7 +82,7 @@ class MeasuredSpectrum:
     mean_square: float
 
     @property
-    def reliable(self) -> Array:
+    def reliable(self) -> Flags:
         """Flags of the rings that lie within the reliable wave numbers."""
         return np.asarray((self.wavenumber >= self.lowest) & (self.wavenumber <= self.highest))
 
