@@ -58,7 +58,7 @@ def plot_surface(surface: Surface, path: PathLike | None = None, *, force: bool 
         raise MissingExtraError("a picture", "plot", "matplotlib") from None
     figure = Figure(figsize=(14.0, 5.2), dpi=130, facecolor="white")
     heights, spectrum, law = figure.subplots(1, 3)
-    figure.subplots_adjust(left=0.055, right=0.985, top=0.86, bottom=0.27, wspace=0.3)
+    figure.subplots_adjust(left=0.055, right=0.95, top=0.86, bottom=0.27, wspace=0.42)
     figure.suptitle(title or surface.topography.source or "Surface", x=0.055, ha="left", size=13, color=INK)
     _draw_heights(figure, heights, surface)
     _draw_spectrum(spectrum, surface)

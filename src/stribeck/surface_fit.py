@@ -172,8 +172,9 @@ class _Trial:
 
     @property
     def score(self) -> float:
-        # A roll-off is the rule, and costs no more than what chance gives once in twenty.
-        return self.deviance + (self.parameters - self.roll_off) * math.log(self.weight) + 3.84 * self.roll_off
+        # A roll-off is the rule, and costs no more than what chance gives once in twenty; beside a cut-off it is not.
+        cheap = self.roll_off and self.low == 0
+        return self.deviance + (self.parameters - cheap) * math.log(self.weight) + 3.84 * cheap
 
 
 def _candidates(data: _Data, q: Array) -> Iterator[_Trial]:

@@ -66,20 +66,24 @@ def read_topography(
             raise InputError(f"{path} is plain text without channels; leave out channel = {show(channel)}.")
         return read_text(path, unit=unit, height_unit=height_unit, spacing=spacing)
     try:
-        import SurfaceTopography
-        from SurfaceTopography.Exceptions import ReadFileError
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # it warns of MPI that is not there
+            import SurfaceTopography
+            from SurfaceTopography.Exceptions import ReadFileError
     except ImportError:
         raise MissingExtraError(f"reading {path.name}", "surface", "SurfaceTopography") from None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # its readers warn of metadata that we do not use
-            with SurfaceTopography.open_topography(str(path)) as reader:
+            # A stream of our own, as some readers leave theirs open.
+            with path.open("rb") as stream, SurfaceTopography.open_topography(stream) as reader:
                 return _from_channel(path, reader, _channel(path, reader, channel), unit, height_unit, spacing)
     except InputError:
         raise
     except ReadFileError as problem:
+        detail = "" if "tried " in str(problem) else f" ({_first(problem)})"
         raise InputError(
-            f"{path} is in no format that is known, or damaged ({_first(problem)}); export it as X3P or as text with units."
+            f"{path} is in no format that SurfaceTopography knows, or damaged{detail}; export it as X3P or as text with units."
         ) from None
     except Exception as problem:  # its forty readers leak errors of many kinds, and each means the same to the user
         raise InputError(
