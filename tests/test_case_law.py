@@ -9,7 +9,6 @@ from command_line import CONTACT, call, case_text
 from sweep_files import write
 
 import stribeck as sb
-from stribeck.spectrum import SelfAffine
 
 SURFACE = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"300 um"', "shortest_wavelength": '"0.3 um"'}
 ASPERITIES = {"density": '"1e10 1/m^2"', "radius": '"10 um"', "deviation": '"0.5 um"'}
@@ -34,7 +33,9 @@ def case(tmp_path):
 
 def test_persson_and_its_coefficients_come_from_the_surface(case):
     found = sb.load_case(case("persson", surface=SURFACE))
-    law = sb.persson_law(SelfAffine(h_rms=1e-6, q0=2 * math.pi / 300e-6, q1=2 * math.pi / 0.3e-6, hurst=0.8))
+    law = sb.surfaces.persson_law(
+        sb.surfaces.SelfAffine(h_rms=1e-6, q0=2 * math.pi / 300e-6, q1=2 * math.pi / 0.3e-6, hurst=0.8)
+    )
     assert found.law == found.contact.law.name == "persson"
     assert (found.contact.alpha, found.contact.beta) == pytest.approx((law.alpha, law.beta), rel=1e-9)
     assert found.contact.roughness == pytest.approx(1e-6, rel=1e-12)

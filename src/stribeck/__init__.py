@@ -1,12 +1,11 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
-from . import asymptotics, atlas
+from . import asymptotics, atlas, surfaces
 from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .newton import Outcome
 from .parameters import Groups, HertzScales, InputError, LineContact
-from .persson import PerssonLaw, persson_law
 from .phase_diagram import phase_diagram
 from .regimes import regime_of
 from .solution import Friction, Profile, Solution
@@ -29,7 +28,6 @@ __all__ = [
     "Landmark",
     "LineContact",
     "Outcome",
-    "PerssonLaw",
     "Profile",
     "Solution",
     "SolveError",
@@ -44,11 +42,11 @@ __all__ = [
     "load_case",
     "load_sweep",
     "open_sweep",
-    "persson_law",
     "phase_diagram",
     "regime_of",
     "solve",
     "stribeck_curve",
+    "surfaces",
     "sweep",
 ]
 
