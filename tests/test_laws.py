@@ -16,7 +16,6 @@ from stribeck.distances import transition_distances
 from stribeck.equations import Equations, Operators
 from stribeck.mesh import Mesh
 from stribeck.regimes import friction_elasticities
-from stribeck.spectrum import SelfAffine
 
 EXPONENTIAL = sb.FunctionLaw(lambda s: -s, lambda s: -np.ones_like(s), lowest=-math.inf)
 """The exponential law by the way of any other."""
@@ -26,7 +25,7 @@ EXPONENTIAL = sb.FunctionLaw(lambda s: -s, lambda s: -np.ones_like(s), lowest=-m
 def laws():
     s = np.linspace(0.05, 6.0, 40)
     found = {
-        "persson": sb.persson_law(SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8)),
+        "persson": sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8)),
         "greenwood-williamson": sb.GreenwoodWilliamson(),
         "greenwood-tripp": sb.GreenwoodTripp(),
         "table": sb.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s)),

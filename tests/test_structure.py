@@ -25,6 +25,16 @@ PACKAGE = Path(stribeck.__file__).parent
 EQUATIONS = {"contact_laws", "elasticity", "equations", "mesh", "parameters", "reynolds"}
 ALGORITHMS = {"arclength", "continuation", "newton"}
 RESULTS = {"newton", "parameters", "solution", "solve", "threads", "units"}
+SURFACES = {
+    "detrend",
+    "persson",
+    "rough_surface",
+    "spectrum",
+    "surface_fit",
+    "surface_spectrum",
+    "topography",
+    "topography_files",
+}
 SWEEP = ("chain", "dataset", "design", "lock", "order", "store", "workers")
 
 # Who may import whom; `_types` is open to all, and a module that is not named here is refused.
@@ -49,6 +59,15 @@ MAY_IMPORT = {
     "spectrum": {"units"},
     "persson": {"spectrum", "units"},
     "rough_surface": {"persson", "spectrum", "units"},
+    "topography": {"spectrum", "units"},
+    "topography_text": {"topography", "units"},
+    "topography_files": {"output", "topography", "topography_text", "units"},
+    "surface_spectrum": {"spectrum", "topography", "units"},
+    "detrend": {"spectrum", "surface_spectrum", "topography", "units"},
+    "surface_fit": {"persson", "spectrum", "surface_spectrum", "units"},
+    "surfaces": SURFACES | {"output", "units"},
+    "report_surface": {"surfaces", "units"},
+    "plot_surface": {"output", "plotting", "surfaces", "units"},
     "asymptotics": {"elasticity", "hertz", "mesh", "newton", "parameters", "threads", "units"},
     "elasticity": {"mesh", "parameters"},
     "reynolds": {"mesh", "parameters"},
@@ -103,7 +122,20 @@ MAY_IMPORT = {
 OPEN = {"__init__", "__main__", "app", "cli"}
 
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts)
-HEAVY = {"cyclopts", "dask", "distributed", "matplotlib", "netCDF4", "pandas", "pint", "pydantic", "rich", "xarray", "zarr"}
+HEAVY = {
+    "SurfaceTopography",
+    "cyclopts",
+    "dask",
+    "distributed",
+    "matplotlib",
+    "netCDF4",
+    "pandas",
+    "pint",
+    "pydantic",
+    "rich",
+    "xarray",
+    "zarr",
+}
 
 
 def top_of(path):

@@ -157,7 +157,18 @@ class TableLaw:
         return self._spline[2]
 
     def log_pressure(self, separation: Array) -> Array:
-        """Return ln(Phi) at the separation s."""
+        """Return ln(Phi) at the separation s.
+
+        Parameters
+        ----------
+        separation : ndarray
+            Separation s, of any shape [-].
+
+        Returns
+        -------
+        ndarray
+            Logarithm of p/(beta E*), of the same shape.
+        """
         s = np.asarray(separation, dtype=float)
         first, last, slope_first, slope_last = self._ends
         inside = np.clip(s, first, last)
@@ -165,12 +176,34 @@ class TableLaw:
         return np.asarray(self._spline[0](inside) + np.where(outside < 0, slope_first, slope_last) * outside)
 
     def log_slope(self, separation: Array) -> Array:
-        """Return d ln(Phi)/ds at the separation s."""
+        """Return d ln(Phi)/ds at the separation s.
+
+        Parameters
+        ----------
+        separation : ndarray
+            Separation s, of any shape [-].
+
+        Returns
+        -------
+        ndarray
+            The derivative, negative.
+        """
         first, last, _, _ = self._ends
         return np.asarray(self._spline[1](np.clip(np.asarray(separation, dtype=float), first, last)))
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state of which this is the least separation."""
+        """Return what to know about a state.
+
+        Parameters
+        ----------
+        separation : float
+            Its least separation [-].
+
+        Returns
+        -------
+        tuple of str
+            One sentence each.
+        """
         first, last = self.separation[0], self.separation[-1]
         found = []
         if separation < first:
@@ -244,7 +277,18 @@ class FunctionLaw:
         return {}
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state of which this is the least separation."""
+        """Return what to know about a state.
+
+        Parameters
+        ----------
+        separation : float
+            Its least separation [-].
+
+        Returns
+        -------
+        tuple of str
+            One sentence each.
+        """
         if separation >= self.checked[0] or separation < 0:
             return ()
         return (f"The least separation is {separation:.2g}, below those at which the contact law was checked.",)
