@@ -203,6 +203,14 @@ def test_a_saturated_point_counts_as_dead_and_roughness_does_not():
     assert spiked.repaired(keep_spikes=True).heights[30, 31] == 1e-4
 
 
+@pytest.mark.parametrize("hurst", [0.3, 0.8, 1.0])
+@pytest.mark.parametrize("points", [(64, 64), (1024,)])
+def test_rough_surfaces_have_no_spikes(points, hurst):
+    for seed in range(6):
+        for surface in (SelfAffine(1e-6, 1e4, 3e6, hurst, 1e5), SelfAffine(1e-6, 1e4, 1e6, hurst)):
+            assert synthetic_topography(surface, points, 1e-6, seed).repaired().notes == ()
+
+
 def test_a_synthetic_surface_has_the_moments_of_its_spectrum():
     surface = SelfAffine(1e-6, 1e5, 1.2e6, 0.8, 2e5)
     maps = [synthetic_topography(surface, (128, 128), 1e-6, seed, oversize=1).heights for seed in range(30)]
