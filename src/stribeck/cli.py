@@ -908,11 +908,7 @@ def _line(problem: BaseException) -> str:
 
 
 def _command(tokens: Sequence[str]) -> str:
-<<<<<<< HEAD
-    known = ("solve", "curve", "regimes", "figures", "sweep", "fit")
-=======
-    known = ("solve", "curve", "regimes", "figures", "sweep", "surface")
->>>>>>> laws
+    known = ("solve", "curve", "regimes", "figures", "sweep", "surface", "fit")
     return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
 
 
