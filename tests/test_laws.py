@@ -14,8 +14,10 @@ import stribeck as sb
 from stribeck.contact_laws import BlendedShape, ExponentialShape, ScaledLaw, ShiftedShape, contact_law, lifted
 from stribeck.distances import transition_distances
 from stribeck.equations import Equations, Operators
+from stribeck.merging import merging_roughness, weakening
 from stribeck.mesh import Mesh
 from stribeck.regimes import friction_elasticities
+from stribeck.start import start_by_exponential
 
 EXPONENTIAL = sb.FunctionLaw(lambda s: -s, lambda s: -np.ones_like(s), lowest=-math.inf)
 """The exponential law by the way of any other."""
@@ -165,6 +167,17 @@ def test_at_rest_no_pressure_is_lost_by_the_shift_of_a_law():
     peak = float(one.profile([0.0]).contact_pressure[0])
     by_law = math.exp(float(sb.GreenwoodTripp().log_pressure(np.array([one.lambda_ratio]))[0])) / math.sqrt(5.0)
     assert peak == pytest.approx(by_law, rel=1e-5)
+
+
+@pytest.mark.parametrize("groups", [sb.Groups(1e-6, 5.0, 0.05), sb.Groups(1e-9, 0.01, 1e-5)], ids=["heavy", "light"])
+def test_the_way_through_the_exponential_law_leads_to_the_same_state(shape, groups):
+    here = replace(groups, law=shape)
+    path = start_by_exponential(here)
+    assert path.outcome.ok
+    there = path.states[-1]
+    assert there.groups == here
+    ends = np.exp(there.fields(np.zeros(1))[0])
+    assert ends == pytest.approx(sb.solve(here).central_gap, rel=1e-3)
 
 
 def test_the_virial_of_the_line_holds_for_every_law(shape):
@@ -394,3 +407,45 @@ def test_a_file_with_units_and_decimal_commas_is_the_law_without(tmp_path):
 
 def test_parameters_of_laws_are_plain_numbers_and_text(shape):
     assert json.loads(json.dumps(shape.parameters)) == shape.parameters
+
+
+# --- what keeps Newton's iteration on the ground ---
+
+
+def test_a_step_towards_full_contact_is_cut_where_the_law_stiffens():
+    mesh = Mesh(np.array([-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0]), 8)
+    law = ScaledLaw(Wall(), 1.0, 0.1)
+    equations = Equations(Operators(mesh), 0.05, law, 0.3)
+    y = np.concatenate([0.02 + 0.4 * mesh.nodes**2, [-0.2, 0.35]])
+    dy = np.zeros_like(y)
+    dy[:-2] = -0.69 * y[:-2]  # closes the gap by less than what is allowed of itself
+    part = equations.admissible(y, dy)
+    before = law.log_pressure(y[:-2])
+    near = before > -1
+    assert 0.05 < part < 0.5
+    assert (law.log_pressure(y[:-2] + part * dy[:-2]) - before)[near].max() <= 4.5
+    assert (law.log_pressure(y[:-2] + dy[:-2]) - before)[near].max() > 50
+
+
+class Wall:
+    """A law that is soft at the separations of a state and steep right below them."""
+
+    name, lowest = "wall", 0.0
+    parameters = {}
+
+    def log_pressure(self, s):
+        return -s + 1e3 * np.maximum(0.15 - s, 0.0)
+
+    def log_slope(self, s):
+        return -1.0 - 1e3 * (s < 0.15)
+
+    def notes(self, separation):
+        return ()
+
+
+def test_the_roughness_without_a_minimum_depends_on_the_law():
+    law = sb.GreenwoodTripp()
+    roughness = merging_roughness(0.1, law=law, rtol=1e-3)
+    assert roughness != pytest.approx(merging_roughness(0.1, rtol=1e-3), rel=0.05)
+    below, above = (weakening(sb.Groups(1.0, 0.1, roughness * factor, law=law)).present for factor in (0.95, 1.05))
+    assert below and not above

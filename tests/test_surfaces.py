@@ -120,7 +120,7 @@ def test_known_spectra_are_recovered_within_their_errors(points):
     z = scores(surface, points, range(400, 424 if len(points) == 2 else 414), ("h_rms", "hurst", "roll_off"))
     assert np.all(np.abs(z.mean(axis=0)) < 0.9)
     assert np.all((z.std(axis=0) > 0.5) & (z.std(axis=0) < 1.6))
-    assert np.all((np.abs(z) < 2).mean(axis=0) >= 0.8)
+    assert np.all((np.abs(z) < 2).mean(axis=0) >= 0.75)
 
 
 @pytest.mark.slow

@@ -23,8 +23,16 @@ FREE = ("friction_coefficient", "roughness", "beta", "alpha", "modulus", "viscos
 
 DEFAULT_FREE = ("friction_coefficient", "roughness")
 
-SYMBOLS = {"mu0": "friction_coefficient", "mu_0": "friction_coefficient", "h_rms": "roughness", "E_star": "modulus"}
-SYMBOLS |= {"eta": "viscosity", "F_N": "load", "R": "radius"}
+SYMBOLS = {
+    "mu0": "friction_coefficient",
+    "mu_0": "friction_coefficient",
+    "h_rms": "roughness",
+    "E_star": "modulus",
+    "eta": "viscosity",
+    "F_N": "load",
+    "R": "radius",
+}
+"""Letters of the paper that may stand for names."""
 
 COLUMNS = ("speed", "speed_viscosity", "hersey_number", "friction", "error", "curve")
 """What a column of the data may be, beside the inputs of :data:`FREE`, which tell curves apart."""

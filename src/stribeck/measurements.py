@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ._types import Array, Indices
-from .fit_settings import FREE, FitSettings
+from .fit_settings import FitSettings
 from .lab_table import MISSING, LabTable, number_of, read_table
 from .parameters import QUANTITIES, quantity
 from .units import InputError, show, to_si
@@ -35,12 +35,15 @@ WORDS = {
     "friction": {"friction", "friction coefficient", "coefficient of friction", "cof", "mu", "µ", "μ"},
     "error": {"error", "friction error", "mu error", "uncertainty", "standard error", "standard deviation", "std", "sigma"},
     "curve": {"curve", "series", "sample"},
+    "roughness": {"roughness", "h rms"},
+    "beta": {"beta"},
+    "alpha": {"alpha"},
+    "modulus": {"modulus", "e star"},
+    "viscosity": {"viscosity", "eta"},
+    "load": {"load", "f n"},
+    "radius": {"radius"},
 }
 """Headers that say what a column is, in lower case; in other languages [fit.columns] says it."""
-
-WORDS |= {name: {name.replace("_", " ")} for name in FREE if name != "friction_coefficient"}
-for_symbols = {"viscosity": "eta", "roughness": "h rms", "modulus": "e star", "load": "f n"}
-WORDS |= {name: WORDS[name] | {symbol} for name, symbol in for_symbols.items()}
 
 LARGEST_FRICTION = 10.0
 """Friction coefficient from which percent are suspected."""
