@@ -1,7 +1,8 @@
-"""Which friction force balances the contact, and where the printed one departs from it.
+"""Which friction force balances
+=============================
 
-The identities of theory.md, section 6, on solved states: int p w' dx = 0, int p_c h' dx = 0, and the
-difference of the viscous frictions.  Slopes are differences of the profile.  Runs in half a second.
+And where the printed one departs from it.  The identities of theory.md, section 6, on solved states: int p w' dx = 0,
+int p_c h' dx = 0, and the difference of the viscous frictions.  Slopes are differences of the profile.  Runs in half a second.
 """
 
 import numpy as np
@@ -54,7 +55,6 @@ def plot(rows):
 
 
 if __name__ == "__main__":
-    rows = main()
-    print(f"{'speed group':24}", *(f"{speed:12.0e}" for speed in rows))
+    print(f"{'speed group':24}", *(f"{speed:12.0e}" for speed in (rows := main())))
     for name in rows[min(rows)]:
         print(f"{name:24}", *(f"{row[name]:12.4e}" for row in rows.values()))

@@ -1,4 +1,7 @@
-"""One state in mixed lubrication: who carries the load, and what the film looks like.
+"""One state and its profile
+=========================
+
+In mixed lubrication: who carries the load, and what the film looks like.
 
 Equations: theory.md Eqs. (1)-(5).  Reference: Bertin and Pouliquen, Fig. 8, for its parameters.
 Runs in a tenth of a second.

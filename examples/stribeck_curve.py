@@ -1,4 +1,7 @@
-"""The Stribeck curve of a PDMS cylinder in glycerol-water, from a data sheet to the least friction.
+"""A Stribeck curve
+================
+
+That of a PDMS cylinder in glycerol-water, from a data sheet to the least friction.
 
 Equations: theory.md Eqs. (1)-(5).  Reference: Bertin and Pouliquen, Section "Stribeck curve".
 Runs in about a second.
