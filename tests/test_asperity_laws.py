@@ -49,7 +49,7 @@ def test_the_slope_of_a_moment_is_the_lower_moment(order):
 
 
 def test_far_apart_a_moment_falls_as_a_gaussian_over_a_power():
-    s = np.array([1e3, 1e6, 1e9])
+    s = np.array([1e3, 1e5, 1e6])
     limit = math.log(gamma(2.5) / math.sqrt(2 * math.pi)) - 2.5 * np.log(s) - 0.5 * s * s
     assert log_moment(1.5, s) == pytest.approx(limit, rel=1e-15, abs=1e-5)
     assert np.isfinite(log_moment_slope(1.5, s)).all()
