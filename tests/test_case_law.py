@@ -212,6 +212,15 @@ def test_a_sweep_of_another_law_is_another_sweep(tmp_path):
     assert len(prints) == 3
 
 
+def test_a_sweep_of_another_table_is_another_sweep(tmp_path):
+    text = '[groups]\nlaw = "table"\nload = 0.3\nroughness = 0.003\n[table]\nfile = "law.csv"\n[vary]\nspeed = [0, 1e-5]\n'
+    prints = set()
+    for last in ("0.0003", "0.0004"):
+        (tmp_path / "law.csv").write_text(ROWS.replace("0.0003", last))
+        prints.add(sb.load_sweep(write(tmp_path, text)).fingerprint)
+    assert len(prints) == 2
+
+
 def test_a_sweep_over_groups_has_a_law_too(tmp_path):
     text = '[groups]\nlaw = "greenwood-tripp"\nload = 0.3\nroughness = 0.003\n[vary]\nspeed = [0, 1e-5, 1e-2]\n'
     done = sb.sweep(write(tmp_path, text), tmp_path / "store")
