@@ -20,6 +20,7 @@ ROWS = "separation, pressure\n0, 1\n1, 0.4\n2, 0.15\n4, 0.02\n8, 0.0003\n"
 def case(tmp_path):
     """Return a function that writes a case under a law and returns its path."""
     (tmp_path / "law.csv").write_text(ROWS)
+    (tmp_path / "bad.csv").write_text("wavenumber [1/m], density [m^4]\n1e3, 1e-20\n2e3, 1e-21\n1e3, 1e-22\n")
     (tmp_path / "si.csv").write_text("gap [um], pressure [kPa]\n0, 162\n0.5, 64.8\n1, 24.3\n2, 3.24\n4, 0.0486\n")
 
     def make(law, changes=None, **tables):
@@ -39,6 +40,15 @@ def test_persson_and_its_coefficients_come_from_the_surface(case):
     assert found.law == found.contact.law.name == "persson"
     assert (found.contact.alpha, found.contact.beta) == pytest.approx((law.alpha, law.beta), rel=1e-9)
     assert found.contact.roughness == pytest.approx(1e-6, rel=1e-12)
+
+
+def test_a_measured_spectrum_is_read_beside_its_case(case, tmp_path):
+    spectrum = sb.surfaces.SelfAffine(h_rms=1e-6, q0=2e4, q1=2e7, hurst=0.8).spectrum
+    rows = zip(spectrum.wavenumber * 1e-3, spectrum.density * 1e12, strict=True)
+    (tmp_path / "C.csv").write_text("wavenumber [1/mm]; density [mm^4]\n" + "\n".join(f"{q:.17g}; {c:.17g}" for q, c in rows))
+    found = sb.load_case(case("persson", surface={"spectrum": '"C.csv"', "gamma": "0.5"})).contact.law
+    expected = sb.surfaces.persson_law(spectrum, 0.5)
+    assert (found.alpha, found.beta, found.rms_slope) == pytest.approx((expected.alpha, expected.beta, expected.rms_slope))
 
 
 def test_an_exponential_law_takes_its_coefficients_from_the_surface_and_knows_its_area(case):
@@ -78,6 +88,15 @@ def test_a_table_is_read_beside_its_case_with_or_without_units(case):
         ("persson", {"beta": "0.06"}, {"surface": SURFACE}, "[contact] beta = 0.06 follows from the table [surface]; remove"),
         ("persson", {}, {"surface": SURFACE | {"hurst": "1.5"}}, "[surface] hurst = 1.5"),
         ("persson", {}, {"surface": SURFACE | {"h_rms": '"1 N"'}}, "[surface] h_rms = '1 N' is a force"),
+        ("persson", {}, {"surface": {"spectrum": '"law.csv"'}}, "the first line must be 'wavenumber [1/m], density [m^4]'"),
+        ("persson", {}, {"surface": {"spectrum": '"bad.csv"'}}, "row 3 = 1000 is not above the one before it"),
+        (
+            "persson",
+            {},
+            {"surface": SURFACE | {"spectrum": '"C.csv"'}},
+            "[surface] h_rms = '1 um' follows from the file",
+        ),
+        ("persson", {}, {"surface": {"spectrum": "3"}}, "[surface] spectrum = 3 must be text in quotes"),
         ("persson", {}, {"surface": SURFACE | {"hurst": None}}, "[surface] hurst is missing; add hurst = 0.8."),
         (
             "persson",
@@ -191,6 +210,15 @@ def test_a_sweep_of_another_law_is_another_sweep(tmp_path):
         sb.load_sweep(write(tmp_path, sweep_text().replace("0.8", "0.7", 1).replace("hurst = 0.8", "hurst = 0.7"))).fingerprint
     )
     assert len(prints) == 3
+
+
+def test_a_sweep_of_another_table_is_another_sweep(tmp_path):
+    text = '[groups]\nlaw = "table"\nload = 0.3\nroughness = 0.003\n[table]\nfile = "law.csv"\n[vary]\nspeed = [0, 1e-5]\n'
+    prints = set()
+    for last in ("0.0003", "0.0004"):
+        (tmp_path / "law.csv").write_text(ROWS.replace("0.0003", last))
+        prints.add(sb.load_sweep(write(tmp_path, text)).fingerprint)
+    assert len(prints) == 2
 
 
 def test_a_sweep_over_groups_has_a_law_too(tmp_path):

@@ -11,6 +11,7 @@ import pytest
 from scipy.integrate import quad
 
 import stribeck as sb
+from stribeck import fill, follow
 from stribeck.contact_laws import BlendedShape, ExponentialShape, ScaledLaw, ShiftedShape, contact_law, lifted
 from stribeck.distances import transition_distances
 from stribeck.equations import Equations, Operators
@@ -240,6 +241,22 @@ def test_a_curve_follows_any_law_and_names_it(shape, tmp_path):
     assert {f"contact_law_{name}" for name in shape.parameters} <= set(data.attrs)
 
 
+def test_states_between_the_steps_of_a_curve_have_its_law(monkeypatch):
+    filled = []
+    between = fill.between
+
+    def counted(*arguments):
+        filled.extend(between(*arguments))
+        return between(*arguments)
+
+    monkeypatch.setattr(follow, "between", counted)
+    curve = sb.stribeck_curve(load=0.3, roughness=0.006, speed=(1e-3, 1e-2), points=41, law=laws()["persson"])
+    assert len(filled) > 20
+    for i in (5, 17, 30):
+        alone = sb.solve(curve.solutions[i].groups, rtol=1e-8)
+        assert curve.solutions[i].central_gap == pytest.approx(alone.central_gap, rel=2e-6)
+
+
 def test_curves_over_load_and_roughness_and_at_rest_follow_a_law():
     law = sb.GreenwoodTripp()
     for over in ({"load": (0.1, 8.0), "roughness": 1e-3}, {"load": 0.5, "roughness": (1e-4, 1e-1)}):
@@ -346,6 +363,13 @@ def test_a_table_is_met_and_falls_between_its_rows(rows, degree):
     s = np.linspace(-2, 9, 2000)
     assert (law.log_slope(s) < 0).all()
     assert (np.diff(law.log_pressure(s)) < 0).all()
+
+
+def test_a_table_that_is_flat_at_its_ends_still_falls_there():
+    # The cubics that are monotone between these rows would be level at both ends, and so would all beyond.
+    law = sb.TableLaw([0.0, 1.0, 2.0, 3.0], np.exp([0.0, -0.1, -5.0, -5.1]))
+    assert law.degree == 1
+    assert (law.log_slope(np.array([-1.0, 0.0, 3.0, 9.0])) < -0.05).all()
 
 
 def test_a_state_outside_the_rows_of_its_table_says_so():
