@@ -120,7 +120,20 @@ MAY_IMPORT = {
 OPEN = {"__init__", "__main__", "app", "cli"}
 
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts)
-HEAVY = {"cyclopts", "dask", "distributed", "matplotlib", "netCDF4", "pandas", "pint", "pydantic", "rich", "xarray", "zarr"}
+HEAVY = {
+    "cyclopts",
+    "dask",
+    "distributed",
+    "emcee",
+    "matplotlib",
+    "netCDF4",
+    "pandas",
+    "pint",
+    "pydantic",
+    "rich",
+    "xarray",
+    "zarr",
+}
 
 
 def top_of(path):
