@@ -64,15 +64,28 @@ def test_sensitivities_agree_with_differences(abscissa):
     assert np.all(jacobian[2:, first] == 0) and np.all(jacobian[:2, first + 1] == 0)
 
 
-def test_the_prediction_is_the_friction_of_the_contacts():
-    data = measured([1e-3, 1e-1, 1e-2], np.ones(3), curve=[0, 0, 1], curves=("a", "b"), inputs=({}, {"viscosity": 1e-3}))
-    free = free_inputs(TRUE, data, ("roughness", "viscosity"), FitSettings())
-    model, theta = FrictionModel(TRUE, data, free), np.array([0.2, -0.3])
+@pytest.mark.parametrize("abscissa", ["speed", "speed_viscosity", "hersey_number"])
+def test_the_prediction_is_the_friction_of_the_contacts(abscissa):
+    values = np.array([1e-3, 1e-1, 1e-2]) * {"speed": 1, "speed_viscosity": 0.05, "hersey_number": 0.05 / 30}[abscissa]
+    data = measured(
+        values,
+        np.ones(3),
+        abscissa=abscissa,
+        curve=[0, 0, 1],
+        curves=("a", "b"),
+        inputs=({}, {"viscosity": 0.01, "load": 20.0}),
+    )
+    names = [name for name in FREE if name != "viscosity" or abscissa == "speed"]
+    free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
+    model, theta = FrictionModel(TRUE, data, free), np.linspace(-0.2, 0.3, len(free))
     found = model.predict(theta, solved_parts("balanced", 1e-8))
-    for i, speed in enumerate(data.values):
-        contact = model.contact_of(data.curve[i], theta).replace(speed=speed)
+    for i, value in enumerate(values):
+        contact = model.contact_of(data.curve[i], theta)
+        per_speed = {"speed": 1.0, "speed_viscosity": contact.viscosity, "hersey_number": contact.viscosity / contact.load}
+        contact = contact.replace(speed=value / per_speed[abscissa])
         assert found.friction[i] == pytest.approx(sb.solve(contact).friction(definition="balanced").total, rel=1e-6)
-    assert free[1].is_factor and not free[0].is_factor
+    assert {each.name for each in free if each.is_factor} <= {"viscosity", "load"}
+    assert sum(each.name == "roughness" for each in free) == 2
 
 
 def test_atlas_and_solver_give_the_same_prediction():
