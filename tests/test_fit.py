@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from command_line import call
+from command_line import CONTACT, call
 from fit_data import EXAMPLES, TRUE, exact, measured, noisy
 
 import stribeck as sb
@@ -51,28 +51,41 @@ def test_sensitivities_agree_with_differences(abscissa):
         curves=("a", "b"),
         inputs=({}, {"load": 60.0}),
     )
-    names = FREE if abscissa == "speed" else ("friction_coefficient", "roughness", "load")
+    names = FREE if abscissa == "speed" else ("roughness", "load")
     free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
-    model, parts = FrictionModel(TRUE, data, free), solved_parts("paper", 1e-9)
-    jacobian = model.predict(np.zeros(len(free)), solved_parts("paper", 1e-7)).jacobian
-    step = 1e-4
+    model, parts = FrictionModel(TRUE, data, free), solved_parts("paper", 1e-7)
+    jacobian = model.predict(np.zeros(len(free)), parts).jacobian
+    step = 3e-3
     for i in range(len(free)):
         move = step * np.eye(len(free))[i]
         slope = (model.predict(move, parts).friction - model.predict(-move, parts).friction) / (2 * step)
-        assert jacobian[:, i] == pytest.approx(slope, abs=2e-6)
-    assert free[1].name == free[2].name == "roughness"
-    assert np.all(jacobian[2:, 1] == 0) and np.all(jacobian[:2, 2] == 0)
+        assert jacobian[:, i] == pytest.approx(slope, abs=2e-5)
+    first = [each.name for each in free].index("roughness")
+    assert np.all(jacobian[2:, first] == 0) and np.all(jacobian[:2, first + 1] == 0)
 
 
-def test_the_prediction_is_the_friction_of_the_contacts():
-    data = measured([1e-3, 1e-1, 1e-2], np.ones(3), curve=[0, 0, 1], curves=("a", "b"), inputs=({}, {"viscosity": 1e-3}))
-    free = free_inputs(TRUE, data, ("roughness", "viscosity"), FitSettings())
-    model, theta = FrictionModel(TRUE, data, free), np.array([0.2, -0.3])
+@pytest.mark.parametrize("abscissa", ["speed", "speed_viscosity", "hersey_number"])
+def test_the_prediction_is_the_friction_of_the_contacts(abscissa):
+    values = np.array([1e-3, 1e-1, 1e-2]) * {"speed": 1, "speed_viscosity": 0.05, "hersey_number": 0.05 / 30}[abscissa]
+    data = measured(
+        values,
+        np.ones(3),
+        abscissa=abscissa,
+        curve=[0, 0, 1],
+        curves=("a", "b"),
+        inputs=({}, {"viscosity": 0.01, "load": 20.0}),
+    )
+    names = [name for name in FREE if name != "viscosity" or abscissa == "speed"]
+    free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
+    model, theta = FrictionModel(TRUE, data, free), np.linspace(-0.2, 0.3, len(free))
     found = model.predict(theta, solved_parts("balanced", 1e-8))
-    for i, speed in enumerate(data.values):
-        contact = model.contact_of(data.curve[i], theta).replace(speed=speed)
+    for i, value in enumerate(values):
+        contact = model.contact_of(data.curve[i], theta)
+        per_speed = {"speed": 1.0, "speed_viscosity": contact.viscosity, "hersey_number": contact.viscosity / contact.load}
+        contact = contact.replace(speed=value / per_speed[abscissa])
         assert found.friction[i] == pytest.approx(sb.solve(contact).friction(definition="balanced").total, rel=1e-6)
-    assert free[1].is_factor and not free[0].is_factor
+    assert {each.name for each in free if each.is_factor} <= {"viscosity", "load"}
+    assert sum(each.name == "roughness" for each in free) == 2
 
 
 def test_atlas_and_solver_give_the_same_prediction():
@@ -259,6 +272,17 @@ def test_the_combination_that_the_data_give_is_named():
     assert found["friction_coefficient"].interval_95 == pytest.approx(alone["friction_coefficient"].interval_95, rel=1e-2)
 
 
+def test_inputs_of_a_smooth_contact_that_do_not_matter_stay_where_they_were():
+    smooth = TRUE.replace(roughness=0)
+    found = sb.fit(noisy(4, contact=smooth, low=1e-2, rows=12), smooth, free=["mu0", "modulus", "beta"], intervals=False)
+    assert [weak.names for weak in found.undetermined] in (
+        [("beta",), ("friction_coefficient",)],
+        [("friction_coefficient",), ("beta",)],
+    )
+    assert found["beta"].value == pytest.approx(TRUE.beta, rel=1e-3)
+    assert found["friction_coefficient"].value == pytest.approx(0.7, rel=1e-3)
+
+
 def test_three_tied_inputs_are_told_apart_from_what_is_known():
     found = sb.fit(noisy(1), TRUE, free=["mu0", "modulus", "viscosity", "load"], intervals=False)
     tied = next(weak for weak in found.undetermined if len(weak.names) == 3)
@@ -294,7 +318,7 @@ def test_data_of_greenwood_and_tripp_do_not_pass_for_persson(of_asperities):
     assert persson.quality.structure_probability < 0.001
     assert "do not follow the model" in persson.quality.messages[0]
     exponential = sb.fit(data, contact.replace(law=None), free=["mu0", "h_rms", "beta"], intervals=False)
-    assert exponential.quality.structure_probability < 0.001
+    assert exponential.quality.structure_probability < 0.01
 
 
 def test_data_of_greenwood_and_tripp_pass_for_their_own(of_asperities):
@@ -346,7 +370,7 @@ def test_a_fit_that_ran_out_of_steps_says_so(monkeypatch, tmp_path, capsys):
 def test_a_fit_stopped_short_of_the_optimum_says_so():
     data = noisy(1)
     goal = objective(
-        FrictionModel(START, data, free_inputs(START, data, ("roughness",), FitSettings())),
+        FrictionModel(TRUE, data, free_inputs(TRUE, data, ("roughness",), FitSettings())),
         atlas_parts("paper"),
         FitSettings(),
         False,
@@ -450,18 +474,12 @@ def test_a_youngs_modulus_is_written_back_as_one(tmp_path, capsys):
 
 
 def test_a_case_that_hides_its_values_is_not_written(tmp_path, capsys):
-    inline = re.sub(
-        r"\[contact\]\n(.*?)\n\n", lambda m: "contact = {" + _inline(m[1]) + "}\n\n", CASE.read_text(), flags=re.DOTALL
-    )
+    inline = "contact = {" + ", ".join(f"{key} = {value}" for key, value in CONTACT.items()) + "}"
     (tmp_path / "case.toml").write_text(inline)
     out = tmp_path / "fitted.toml"
     answer = call(capsys, "fit", MEASURED, tmp_path / "case.toml", "--out", out)
     assert answer.code == 2 and "on a line of its own in [contact]" in answer.err
     assert not out.exists()
-
-
-def _inline(text):
-    return ", ".join(line.partition("#")[0].strip() for line in text.splitlines())
 
 
 def test_the_table_says_how_the_fit_ended_and_warns(tmp_path, capsys):

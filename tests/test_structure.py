@@ -145,6 +145,7 @@ HEAVY = {
     "cyclopts",
     "dask",
     "distributed",
+    "emcee",
     "matplotlib",
     "netCDF4",
     "pandas",

@@ -203,6 +203,7 @@ def minimise(
     fixed: dict[int, float] | None = None,
     most: int = MOST_EVALUATIONS,
     on_step: Callable[[int], object] | None = None,
+    tolerance: float = VALUE_TOLERANCE,
 ) -> Minimum:
     """Return the minimum of q near a start, at a given scale of the noise.
 
@@ -218,6 +219,8 @@ def minimise(
         Predictions allowed.
     on_step : callable, optional
         Called with the number of predictions after each.
+    tolerance : float
+        Relative change of q at which the least squares end.
 
     Returns
     -------
@@ -279,7 +282,7 @@ def minimise(
             jac=derivative,
             bounds=(low[moving], high[moving]),
             loss=chosen,
-            ftol=VALUE_TOLERANCE,
+            ftol=tolerance,
             xtol=PLACE_TOLERANCE,
             gtol=VALUE_TOLERANCE,
             max_nfev=most,

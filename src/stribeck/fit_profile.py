@@ -19,8 +19,11 @@ from .fit_objective import Minimum, minimise
 
 __all__ = ["BetterMinimumError", "Ends", "profile_ends"]
 
-ACCURACY = 0.01
+ACCURACY = 0.015
 """What an end may miss, in standard errors."""
+
+ENOUGH = 1e-5
+"""Relative change of q at which a point of a profile is good enough for that."""
 
 MOST_TRIALS = 25
 
@@ -94,7 +97,7 @@ def _side(
         near = min(known, key=lambda point: abs(point[0] - distance))
         guess = near[2] + sign * (distance - near[0]) * follow
         guess = np.clip(guess, bounds[0] + 1e-9, bounds[1] - 1e-9)
-        found = minimise(at.objective, guess, {i: float(at.theta[i]) + sign * distance})
+        found = minimise(at.objective, guess, {i: float(at.theta[i]) + sign * distance}, tolerance=ENOUGH)
         if found.value < at.value - BETTER:
             raise BetterMinimumError(found.theta)
         excess = math.sqrt(max(0.0, found.value - at.value))

@@ -278,11 +278,13 @@ def _columns(table: LabTable, settings: FitSettings) -> dict[str, list[str]]:
                 )
             found[meaning] = [name]
     if "friction" not in found or not any(name in found for name in ABSCISSAS):
-        missing = "friction" if "friction" not in found else "speed"
-        example = next((name for name in table.header if name not in {n for names in found.values() for n in names}), "")
+        missing = ["speed"] * (not any(name in found for name in ABSCISSAS)) + ["friction"] * ("friction" not in found)
+        used = {name for names in found.values() for name in names}
+        unknown = [name for name in table.header if name not in used] or [""]
+        examples = {"speed": unknown[0], "friction": unknown[-1]}
         raise InputError(
-            f"{table.path}: {_listed(table)}, none of which is known as {missing}; say which in [fit.columns] of the case, "
-            f"as in {missing} = {show(example)}."
+            f"{table.path}: {_listed(table)}, none of which is known as {' or '.join(missing)}; say which in [fit.columns] of "
+            f"the case, as in {' and '.join(f'{name} = {show(examples[name])}' for name in missing)}."
         )
     return found
 
