@@ -4,6 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 TOOLS  := $(VENV)/.ready-tools
+DOCS   := $(VENV)/.ready-docs
 
 # One BLAS thread for each test worker: two workers with two threads each slow each other down several times.
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
@@ -19,13 +20,15 @@ define install
 	@touch $@
 endef
 
-.PHONY: help demo test slow lint format types benchmark validity atlas certificate clean
+.PHONY: help demo test slow lint format types benchmark validity atlas certificate docs site notebooks clean
 
 help:
 	@echo "make demo       the Stribeck curve of a PDMS cylinder: curve.png, curve.nc"
 	@echo "make test       the tests      make slow   those that take minutes"
 	@echo "make lint       style          make format apply it"
 	@echo "make types      static types   make benchmark  the tables of the documentation"
+	@echo "make docs       the site, build/docs/index.html, and the code of its pages      make site  the site alone"
+	@echo "make notebooks  the notebooks with results, build/notebooks"
 	@echo "make validity   docs/validity.md: the maps of the errors of all formulas"
 	@echo "make atlas      the table of solved states, 20 minutes on two cores      make certificate  its errors"
 	@echo "make clean      remove what make made"
@@ -35,6 +38,9 @@ $(READY): pyproject.toml requirements.lock
 
 $(TOOLS): pyproject.toml requirements.lock | $(READY)
 	$(call install,dev)
+
+$(DOCS): pyproject.toml requirements.lock | $(READY)
+	$(call install,docs)
 
 demo: $(READY)
 	$(BIN)/stribeck curve examples/pdms_cylinder.toml -o curve.nc --plot curve.png --force
@@ -59,6 +65,21 @@ types: $(TOOLS)
 benchmark: $(READY)
 	@for script in benchmarks/*.py; do echo "# $$script"; $(ONE_THREAD) $(BIN)/python "$$script" || exit 1; done
 
+# The blocks of code of all pages; what else the site shows runs while it is built. Warnings are errors.
+docs: $(DOCS)
+	$(ONE_THREAD) $(BIN)/python -m pytest -q -n auto tests/test_docs.py
+	@$(MAKE) --no-print-directory site
+
+site: $(DOCS)
+	$(ONE_THREAD) $(BIN)/python -m sphinx -b html --fail-on-warning --keep-going --quiet docs build/docs
+	@echo "open build/docs/index.html"
+
+notebooks: $(DOCS)
+	mkdir -p build/notebooks
+	for script in docs/notebooks/*.py; do \
+		$(BIN)/jupytext --quiet --to ipynb --output "build/notebooks/$$(basename "$$script" .py).ipynb" "$$script" || exit 1; done
+	$(ONE_THREAD) $(BIN)/jupyter-execute --inplace build/notebooks/*.ipynb
+
 validity: $(READY)
 	$(ONE_THREAD) $(BIN)/python docs/validity.py
 
@@ -71,7 +92,8 @@ certificate: $(READY)
 
 clean:
 	rm -rf $(VENV) build dist curve.nc curve.png curve.csv .pytest_cache .mypy_cache .ruff_cache .hypothesis
-	find src tests benchmarks examples -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
+	rm -rf docs/gallery docs/generated
+	find src tests benchmarks examples docs -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
 # The newest versions that go together, for requirements.lock; needs uv.
 .PHONY: lock

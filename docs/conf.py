@@ -136,6 +136,8 @@ def complete(app, docname, content):
     for name, page in ABOVE.items():
         text = text.replace(f"](../{name}", f"]({up}generated/{page}.md")
     text = re.sub(r"\]\((?:\.\./)+examples/(\w+)\.py", rf"]({up}gallery/\1.rst", text)
+    # Sources outside this folder are downloads: as links to pages they would be looked for among the notebooks.
+    text = re.sub(r"\[`?([^\]`]+)`?\]\(((?:\.\./)+(?:tests|src|benchmarks)/[\w/]+\.py)\)", r"{download}`\1 <\2>`", text)
     text = text.replace("](../examples/README.rst)", f"]({up}gallery/index.rst)")
     if docname == "figures":
         text += "\n".join(map(figure_entry, sorted((HERE / "generated" / "figures").glob("*.nc"), key=number_of)))

@@ -14,8 +14,7 @@ LOAD, ROUGHNESS = 0.1, 1e-4
 
 def main():
     """Return, for each speed, both identities and both viscous frictions for beta = 1."""
-    states = (sb.solve(sb.Groups(s, LOAD, ROUGHNESS), rtol=1e-9) for s in np.geomspace(1e-8, 1e-3, 6))
-    return {state.groups.speed: balance(state) for state in states}
+    return {s: balance(sb.solve(sb.Groups(s, LOAD, ROUGHNESS), rtol=1e-9)) for s in np.geomspace(1e-8, 1e-3, 6)}
 
 
 def balance(state):
@@ -55,6 +54,7 @@ def plot(rows):
 
 
 if __name__ == "__main__":
-    print(f"{'speed group':24}", *(f"{speed:12.0e}" for speed in (rows := main())))
+    rows = main()
+    print(f"{'speed group':24}", *(f"{speed:12.0e}" for speed in rows))
     for name in rows[min(rows)]:
         print(f"{name:24}", *(f"{row[name]:12.4e}" for row in rows.values()))

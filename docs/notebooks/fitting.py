@@ -1,0 +1,74 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Fitting a measured curve
+#
+# Friction against speed goes in; roughness, modulus and dry friction coefficient come out, with intervals, and with what the data do not say. The data
+# are synthetic, with 4 % of noise: friction coefficient 0.62, roughness 1.3 µm, modulus 2.3 MPa.
+
+# %%
+import matplotlib.pyplot as plt
+
+import stribeck as sb
+from stribeck.plot_fit import plot_fit
+
+data, case = "../../examples/pdms_measured.csv", "../../examples/pdms_fit.toml"
+fit = sb.fit(data, case)
+print(fit.outcome.name)
+truth = {"friction_coefficient": 0.62, "roughness": 1.3e-6, "modulus": 2.3e6}
+for name, value in truth.items():
+    low, high = fit[name].interval_95
+    print(f"{name:22} {fit[name].value:.4g}  95 %: {low:.4g} to {high:.4g}  made with {value:.4g}")
+    assert low < value < high
+
+# %%
+plt.close("all")
+plot_fit(fit)
+
+# %% [markdown]
+# ## Noise or misfit?
+#
+# No interval covers a wrong model. The order of the residuals along each curve tells: by chance it would look like this in so many cases of a hundred.
+
+# %%
+print(f"{100 * fit.quality.structure_probability:.0f} of 100")
+assert fit.quality.structure_probability > 0.01
+
+# %% [markdown]
+# ## What hangs together
+#
+# Roughness and modulus are found together rather than alone: a softer, rougher contact looks nearly the same.
+
+# %%
+print(fit.correlation)
+print(*fit.notes, sep="\n")
+
+# %% [markdown]
+# ## What cannot be known
+#
+# Free `alpha` beside the roughness: friction depends on their quotient alone. The fit says so instead of printing a number.
+
+# %%
+loose = sb.fit(data, case, free=["mu0", "h_rms", "alpha"])
+for weak in loose.undetermined:
+    print(weak.message)
+assert loose.undetermined and loose["alpha"].interval_95 == (0.0, float("inf"))
+
+# %% [markdown]
+# ## Into a prediction
+#
+# The fitted contact is an ordinary contact. Its least friction in the first fluid, solved, not read off the data:
+
+# %%
+curve = sb.stribeck_curve(fit.contact)
+print(f"least friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.value:.1f} mm/s")

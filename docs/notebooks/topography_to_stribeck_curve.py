@@ -1,0 +1,108 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # From a topography to a Stribeck curve
+#
+# A profile from a profilometer goes in, a friction curve with a band of uncertainty comes out. The profile is made, not measured, so that the
+# right answers are known: a cylinder of 8 mm with 0.6 µm of roughness, Hurst exponent 0.8, roll-off at 105 µm.
+
+# %%
+import matplotlib.pyplot as plt
+import numpy as np
+
+import stribeck as sb
+
+scan = sb.surfaces.read_topography("../../examples/cylinder_profile.csv")
+surface = sb.surfaces.analyse(scan)
+for name in ("body_radius", "h_rms", "hurst", "roll_off", "alpha", "beta"):
+    found = surface.to_dict()
+    print(f"{name:12} {found[name]:.4g} +- {found[name + '_error']:.1g}")
+assert abs(surface.roughness.hurst - 0.8) < 2 * surface.fit.errors["hurst"]
+
+# %% [markdown]
+# Heights, the spectrum with its fit, and the contact law that follows from it:
+
+# %%
+from stribeck.plot_surface import plot_surface
+
+plot_surface(surface)
+
+# %% [markdown]
+# ## Into a contact
+#
+# The law brings `alpha`, `beta` and the roughness; the scan brings the radius; the rest stands on data sheets.
+
+
+# %%
+def contact(law, radius=surface.shape.radius):
+    return sb.LineContact(
+        radius=radius,
+        modulus="2.7 MPa",
+        load="30 N/m",
+        viscosity="50 mPa*s",
+        speed="1 mm/s",
+        friction_coefficient=0.7,
+        law=law,
+        **law.coefficients,
+    )
+
+
+curve = sb.stribeck_curve(contact(surface.law), speed=("1 um/s", "1 m/s"), points=41)
+print(f"load group {contact(surface.law).groups.load:.2f}")
+print(f"least friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.value:.2f} mm/s")
+
+# %% [markdown]
+# ## How sure is that
+#
+# The fit of the spectrum has a covariance. Here its two largest errors, those of the height and of the roll-off, go through the whole chain, one at a time.
+
+# %%
+from dataclasses import replace
+
+roughness, errors = surface.roughness, surface.fit.errors
+band = []
+for name in ("h_rms", "roll_off"):
+    for sign in (-1, 1):
+        moved = replace(roughness, **{name: getattr(roughness, name) + sign * errors[name]})
+        law = sb.surfaces.persson_law(moved)
+        band.append(sb.stribeck_curve(contact(law), speed=("1 um/s", "1 m/s"), points=41).friction)
+band = np.array(band)
+spread = np.sqrt(((band[0] - band[1]) ** 2 + (band[2] - band[3]) ** 2) / 4)
+
+figure, axes = plt.subplots()
+axes.fill_between(curve.values, curve.friction - spread, curve.friction + spread, alpha=0.3, label="68 % by the scan")
+axes.loglog(curve.values, curve.friction, label="Persson's law")
+axes.set(xlabel="speed [m/s]", ylabel="friction coefficient")
+axes.legend()
+worst = (spread / curve.friction).max()
+print(f"the scan leaves friction uncertain by {100 * worst:.0f} % at most")
+assert 0.05 < worst < 0.5
+
+# %% [markdown]
+# ## What the exponential law would have said
+#
+# It is the limit of small pressure. With the same `alpha` and `beta`:
+
+# %%
+plain = sb.LineContact(
+    radius=surface.shape.radius,
+    modulus="2.7 MPa",
+    load="30 N/m",
+    viscosity="50 mPa*s",
+    speed="1 mm/s",
+    friction_coefficient=0.7,
+    **surface.law.coefficients,
+)
+other = sb.stribeck_curve(plain, speed=("1 um/s", "1 m/s"), points=41)
+print(f"plateau: {other.friction[0]:.3f} by the exponential law, {curve.friction[0]:.3f} by Persson's")
+print(*other.notes, sep="\n")

@@ -1,0 +1,41 @@
+"""The notebooks run from top to bottom, and read as notebooks; the numbers that they show are asserted in their cells."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parents[1] / "docs" / "notebooks"
+NOTEBOOKS = sorted(FOLDER.glob("*.py"))
+EACH = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+
+CELL = re.compile(r"^# %%(?: \[(\w+)\])?\n", re.MULTILINE)
+
+
+def test_there_are_the_three_notebooks():
+    assert {path.stem for path in NOTEBOOKS} == {"fitting", "paper_in_one_hour", "topography_to_stribeck_curve"}
+
+
+@EACH
+def test_a_notebook_begins_with_its_title_and_explains_its_code(path):
+    _, *parts = CELL.split(path.read_text())
+    kinds, texts = parts[::2], parts[1::2]
+    assert kinds[0] == "markdown" and texts[0].startswith("# # ")
+    assert all(line.startswith("#") for kind, text in zip(kinds, texts, strict=True) if kind for line in text.split("\n") if line)
+    assert kinds.count("markdown") >= kinds.count(None) - 1
+
+
+@EACH
+def test_a_notebook_runs_and_its_claims_hold(path, monkeypatch):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("agg")
+    monkeypatch.chdir(FOLDER)
+    before = {*FOLDER.iterdir()}
+    code = path.read_text()
+    assert "assert " in code
+    try:
+        exec(compile(code, str(path), "exec"), {"__name__": "__main__"})
+        assert pyplot.get_fignums()
+    finally:
+        pyplot.close("all")
+    assert {*FOLDER.iterdir()} == before
