@@ -139,6 +139,8 @@ def complete(app, docname, content):
     # Sources outside this folder are downloads: as links to pages they would be looked for among the notebooks.
     text = re.sub(r"\[`?([^\]`]+)`?\]\(((?:\.\./)+(?:tests|src|benchmarks)/[\w/]+\.py)\)", r"{download}`\1 <\2>`", text)
     text = text.replace("](../examples/README.rst)", f"]({up}gallery/index.rst)")
+    if docname.startswith("gallery/"):
+        text = re.sub(r"(?:docs/)?\b(\w+)\.md\b", r":doc:`/\1`", text)
     if docname == "figures":
         text += "\n".join(map(figure_entry, sorted((HERE / "generated" / "figures").glob("*.nc"), key=number_of)))
     if docname == "symbols":

@@ -2,7 +2,7 @@
 =============================
 
 And where the printed one departs from it.  The identities of theory.md, section 6, on solved states: int p w' dx = 0,
-int p_c h' dx = 0, and the difference of the viscous frictions.  Slopes are differences of the profile.  Runs in half a second.
+int p_c h' dx = 0, and the difference of the viscous frictions.  Slopes are differences.  Runs in half a second.
 """
 
 import numpy as np
@@ -49,8 +49,7 @@ def plot(rows):
     for name in ("paper", "balanced"):
         axes.loglog(list(rows), [row[name] for row in rows.values()], "o-", label=name)
     axes.set(xlabel=r"speed group $\lambda$", ylabel="viscous friction for beta = 1")
-    axes.legend()
-    return axes.figure
+    return axes.legend().figure
 
 
 if __name__ == "__main__":
@@ -58,3 +57,4 @@ if __name__ == "__main__":
     print(f"{'speed group':24}", *(f"{speed:12.0e}" for speed in rows))
     for name in rows[min(rows)]:
         print(f"{name:24}", *(f"{row[name]:12.4e}" for row in rows.values()))
+    plot(rows).savefig("force_balance.png")

@@ -5,6 +5,7 @@ import importlib.util
 import inspect
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 FOLDER = Path(__file__).parents[1] / "examples"
@@ -96,3 +97,38 @@ def test_the_profile_of_the_example_shows_what_it_was_made_with(results):
         (surface.shape.radius, 8e-3, surface.shape.radius_error(r, surface.topography)),
     ):
         assert abs(found - made) < 2 * error < 0.5 * made
+
+
+def test_half_the_roughness_of_a_seal_does_more_than_twice_the_viscosity(results):
+    _, curves = results("levers_of_a_seal")
+    friction = {name: float(np.interp(0.1, curve.values, curve.friction)) for name, curve in curves.items()}
+    assert list(friction.values()) == pytest.approx([0.0344, 0.0251, 0.0119], abs=1e-4)
+    assert curves["oil twice as viscous"].minimum.value == pytest.approx(curves["as it is"].minimum.value / 2, rel=1e-4)
+
+
+def test_the_fit_of_the_example_finds_what_the_data_were_made_with(results):
+    module, fit = results("fit_measured_friction")
+    assert fit.converged
+    for name, truth in module.TRUTH.items():
+        low, high = fit[name].interval_95
+        assert low < truth < high < 1.5 * low
+
+
+def test_a_rougher_contact_changes_its_regimes_at_higher_speeds(results):
+    _, diagram = results("regimes_of_a_contact")
+    for name in ("speed_at_5_percent_fluid", "speed_at_minimum"):
+        assert np.all(np.diff(diagram[name].values.ravel()) > 0)
+    assert float(diagram.speed_at_minimum.sel(roughness=1e-6, method="nearest").squeeze()) == pytest.approx(0.02787, rel=2e-3)
+
+
+def test_the_formula_of_the_example_errs_by_what_is_stated(results):
+    _, errors = results("formula_against_solver")
+    worst = max(abs(error).max() for _, error in errors.values())
+    assert 0.05 < worst < 0.072
+
+
+def test_perssons_law_keeps_the_plateau_where_the_exponential_law_loses_it(results):
+    _, curves = results("two_laws_at_heavy_load")
+    assert curves["exponential"].friction[0] == pytest.approx(0.70, abs=0.005)
+    assert curves["Persson"].friction[0] == pytest.approx(1.0, abs=0.005)
+    assert curves["Persson"].solutions[0].minimum_gap > 0

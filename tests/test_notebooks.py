@@ -21,7 +21,9 @@ def test_a_notebook_begins_with_its_title_and_explains_its_code(path):
     _, *parts = CELL.split(path.read_text())
     kinds, texts = parts[::2], parts[1::2]
     assert kinds[0] == "markdown" and texts[0].startswith("# # ")
-    assert all(line.startswith("#") for kind, text in zip(kinds, texts, strict=True) if kind for line in text.split("\n") if line)
+    assert all(
+        line.startswith("#") for kind, text in zip(kinds, texts, strict=True) if kind for line in text.split("\n") if line
+    )
     assert kinds.count("markdown") >= kinds.count(None) - 1
 
 

@@ -13,7 +13,8 @@
 # %% [markdown]
 # # Fitting a measured curve
 #
-# Friction against speed goes in; roughness, modulus and dry friction coefficient come out, with intervals, and with what the data do not say. The data
+# Friction against speed goes in; roughness, modulus and dry friction coefficient come out, with intervals, and with what
+# the data do not say. The data
 # are synthetic, with 4 % of noise: friction coefficient 0.62, roughness 1.3 µm, modulus 2.3 MPa.
 
 # %%
@@ -38,7 +39,8 @@ plot_fit(fit)
 # %% [markdown]
 # ## Noise or misfit?
 #
-# No interval covers a wrong model. The order of the residuals along each curve tells: by chance it would look like this in so many cases of a hundred.
+# No interval covers a wrong model. The order of the residuals along each curve tells: by chance it would look like this
+# in so many cases of a hundred.
 
 # %%
 print(f"{100 * fit.quality.structure_probability:.0f} of 100")

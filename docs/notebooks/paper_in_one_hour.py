@@ -13,7 +13,8 @@
 # %% [markdown]
 # # The paper in one hour
 #
-# The mean-field model of Bertin and Pouliquen for the friction of a rough, lubricated line contact, from its three groups to the phase
+# The mean-field model of Bertin and Pouliquen for the friction of a rough, lubricated line contact, from its three groups
+# to the phase
 # diagram. Run the cells in order; each takes seconds. All derivations are on the page *Theory*.
 #
 # ## Three numbers
@@ -38,8 +39,10 @@ print(contact.groups)
 # %% [markdown]
 # ## One state
 #
-# The gap $h$ fixes the pressure of the asperities, $p_c = \bar F_N^{-1/2} e^{-h/\kappa}$ with $\kappa = \bar h_\mathrm{rms}/\bar F_N$,
-# and by Reynolds' equation that of the fluid. Both together deform the half-space, which fixes the gap. `solve` finds it, with an error.
+# The gap $h$ fixes the pressure of the asperities, $p_c = \bar F_N^{-1/2} e^{-h/\kappa}$ with $\kappa = \bar
+# h_\mathrm{rms}/\bar F_N$,
+# and by Reynolds' equation that of the fluid. Both together deform the half-space, which fixes the gap. `solve` finds it,
+# with an error.
 
 # %%
 state = sb.solve(sb.Groups(speed=1e-4, load=0.1, roughness=1e-4))
@@ -54,10 +57,11 @@ axes.plot(x, fields.contact_pressure, label="contact")
 axes.plot(x, fields.fluid_pressure, label="fluid")
 axes.plot(x, np.sqrt(np.clip(1 - x**2, 0, None)), "k:", label="Hertz")
 axes.set(xlabel="$x/a$", ylabel=r"$p/p_\mathrm{Hz}$")
-axes.legend()
+_ = axes.legend()
 
 # %% [markdown]
-# The sum of both is nearly the pressure of Hertz: the contact is nearly smooth, $\kappa = 10^{-3}$. Only the sharing changes with speed.
+# The sum of both is nearly the pressure of Hertz: the contact is nearly smooth, $\kappa = 10^{-3}$. Only the sharing
+# changes with speed.
 #
 # ## The Stribeck curve
 #
@@ -71,12 +75,13 @@ axes.loglog(speed, curve.friction, label="solved")
 axes.loglog(speed, curve.friction_viscous, "--", label="viscous part")
 axes.loglog(speed, uniform.friction(curve.groups), ":", label="closed form for every speed")
 axes.set(xlabel=r"speed group $\lambda$", ylabel=r"$\mu$", ylim=(1e-3, 3))
-axes.legend()
+_ = axes.legend()
 print(f"least friction {curve.minimum.friction:.5f} at speed {curve.minimum.value:.3e}")
 assert abs(curve.minimum.friction - 0.02682) < 1e-5
 
 # %% [markdown]
-# For the least friction the article prints a formula that gives 0.0033 here; with the sign of one exponent corrected it gives 0.0219. The errata list 37 such
+# For the least friction the article prints a formula that gives 0.0033 here; with the sign of one exponent corrected it
+# gives 0.0219. The errata list 37 such
 # places, each with a test.
 #
 # ## Slow: the boundary
@@ -122,12 +127,13 @@ figure, axes = plt.subplots()
 for name, label in (("speed_at_5_percent_fluid", "end of boundary"), ("speed_at_minimum", "least friction")):
     axes.loglog(diagram[name].values.ravel(), diagram.roughness, "o-", label=label)
 axes.set(xlabel=r"speed group $\lambda$", ylabel=r"roughness group $\bar h_\mathrm{rms}$")
-axes.legend()
+_ = axes.legend()
 
 # %% [markdown]
 # ## Two frictions
 #
-# The printed force leaves out the slope under the asperities. The one that balances on both bodies differs in the viscous part of boundary lubrication, here 70 times:
+# The printed force leaves out the slope under the asperities. The one that balances on both bodies differs in the viscous
+# part of boundary lubrication, here 70 times:
 
 # %%
 still = sb.solve(sb.Groups(1e-8, 0.1, 1e-4))

@@ -13,7 +13,8 @@
 # %% [markdown]
 # # From a topography to a Stribeck curve
 #
-# A profile from a profilometer goes in, a friction curve with a band of uncertainty comes out. The profile is made, not measured, so that the
+# A profile from a profilometer goes in, a friction curve with a band of uncertainty comes out. The profile is made, not
+# measured, so that the
 # right answers are known: a cylinder of 8 mm with 0.6 µm of roughness, Hurst exponent 0.8, roll-off at 105 µm.
 
 # %%
@@ -64,7 +65,8 @@ print(f"least friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.valu
 # %% [markdown]
 # ## How sure is that
 #
-# The fit of the spectrum has a covariance. Here its two largest errors, those of the height and of the roll-off, go through the whole chain, one at a time.
+# The fit of the spectrum has a covariance. Here its two largest errors, those of the height and of the roll-off, go
+# through the whole chain, one at a time.
 
 # %%
 from dataclasses import replace
@@ -83,7 +85,7 @@ figure, axes = plt.subplots()
 axes.fill_between(curve.values, curve.friction - spread, curve.friction + spread, alpha=0.3, label="68 % by the scan")
 axes.loglog(curve.values, curve.friction, label="Persson's law")
 axes.set(xlabel="speed [m/s]", ylabel="friction coefficient")
-axes.legend()
+_ = axes.legend()
 worst = (spread / curve.friction).max()
 print(f"the scan leaves friction uncertain by {100 * worst:.0f} % at most")
 assert 0.05 < worst < 0.5
