@@ -33,7 +33,6 @@ for name, value in truth.items():
     assert low < value < high
 
 # %%
-plt.close("all")
 plot_fit(fit)
 
 # %% [markdown]
@@ -73,4 +72,8 @@ assert loose.undetermined and loose["alpha"].interval_95 == (0.0, float("inf"))
 
 # %%
 curve = sb.stribeck_curve(fit.contact)
+figure, axes = plt.subplots()
+axes.loglog(1e3 * curve.values, curve.friction)
+axes.plot(1e3 * curve.minimum.value, curve.minimum.friction, "o")
+axes.set(xlabel="speed [mm/s]", ylabel="friction coefficient")
 print(f"least friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.value:.1f} mm/s")

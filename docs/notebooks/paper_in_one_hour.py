@@ -122,7 +122,7 @@ assert abs(formula / half - 1) < 0.1
 # Both transitions over speed and roughness, at one load. Where the lines meet, friction has no minimum any more.
 
 # %%
-diagram = sb.phase_diagram(load=0.1, roughness=np.geomspace(1e-5, 1e-2, 7), speed=(1e-9, 10.0), points={"speed": 41})
+diagram = sb.phase_diagram(load=0.1, roughness=np.geomspace(1e-5, 1e-2, 5), speed=(1e-9, 10.0), points={"speed": 21})
 figure, axes = plt.subplots()
 for name, label in (("speed_at_5_percent_fluid", "end of boundary"), ("speed_at_minimum", "least friction")):
     axes.loglog(diagram[name].values.ravel(), diagram.roughness, "o-", label=label)
