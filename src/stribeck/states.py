@@ -29,6 +29,9 @@ CHORD = 0.25
 LARGEST_AMPLIFICATION = 40.0
 """Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
 
+ROUNDING = 1e-9
+"""Relative rounding of what tells where a panel lies."""
+
 LONG_REACH_ORDER = 14
 """Nodes a panel from which the panel through infinity begins twice as far out, to keep up with them: the logarithm in the
 gap limits its order."""
@@ -292,7 +295,8 @@ def mesh_for(
         pressures = width / np.repeat(edge_scale, x.shape[1]) * np.stack([law.pressure(gap), fluid])
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(x.shape)
         centres = x.mean(axis=1)
-        read_off = (np.abs(centres) <= half_widths) | (np.abs(centres - guess.least_position) <= half_widths)
+        begins_at_zero = np.abs(centres - half_widths) <= ROUNDING * half_widths
+        read_off = begins_at_zero | (np.abs(centres - guess.least_position) <= half_widths)
         read_off &= stretch[:, 0] == 1.0
         weight = max(0.1, tolerance / profile_tolerance)
         shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[:, None]
