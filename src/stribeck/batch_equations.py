@@ -23,7 +23,7 @@ from ._types import Array, Flags
 from .equations import LOAD, Operators
 from .parameters import Groups
 
-MATRICES = 4
+MATRICES = 3
 """Arrays of the size of the Jacobians that live at once."""
 
 MOST_STEPS = 30
@@ -93,7 +93,6 @@ class DeviceOperators:
     weights: Any
     load_of_gradient: Any
     parabola: Any
-    identity: Any
 
     @classmethod
     def of(cls, operators: Operators, device: Device) -> DeviceOperators:
@@ -104,7 +103,6 @@ class DeviceOperators:
             operators.mesh.weights,
             operators.load_of_gradient,
             operators.parabola,
-            np.eye(operators.mesh.size),
         )
         return cls(device, *(device.put(a) for a in arrays))
 
@@ -170,18 +168,21 @@ class DeviceEquations:
         g_h = (3 * h_star - 2 * h) / h**3
         g_flux = -h_star / h**3
         slopes, by_flux = self.speed * g_h, self.speed * g_flux
-        matrix = xp.zeros((y.shape[0], n + 2, n + 2), dtype=xp.float64, device=op.device.device)
-        block = op.identity * h[:, None, :]
-        block -= op.deflection * p_slope[:, None, :]
-        block -= op.deflection_of_gradient * slopes[:, None, :]
-        matrix[:, :n, :n] = block
+        rows, m = y.shape[0], n + 2
+        matrix = xp.empty((rows, m, m), dtype=xp.float64, device=op.device.device)
+        matrix[:, :n, :n] = op.deflection * -p_slope[:, None, :]
+        matrix[:, :n, :n] -= op.deflection_of_gradient * slopes[:, None, :]
         matrix[:, :n, n] = -1.0
         matrix[:, :n, n + 1] = -(by_flux @ op.deflection_of_gradient.T)
         matrix[:, n, :n] = op.weights * p_slope + op.load_of_gradient * slopes
+        matrix[:, n, n] = 0.0
         matrix[:, n, n + 1] = by_flux @ op.load_of_gradient
         matrix[:, n + 1, :n] = self.flux_scale * op.weights * g_h
+        matrix[:, n + 1, n] = 0.0
         matrix[:, n + 1, n + 1] = self.flux_scale[:, 0] * (g_flux @ op.weights)
-        return matrix
+        flat = xp.reshape(matrix, (rows, m * m))  # whose diagonal is a slice
+        flat[:, : n * (m + 1) : m + 1] += h
+        return xp.reshape(flat, (rows, m, m))
 
     def correction(self, y: Any, residuals: Any) -> Any:
         """Return relative changes that remove residuals, shape (rows, N + 2, columns), to first order."""
