@@ -6,46 +6,25 @@ contact.  What neither brings to its tolerance is left to :func:`stribeck.solve`
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
 
 from ._types import Array, Flags, Indices
-from .batch_equations import Device
-from .batch_path import Answer, column_groups, descend, refined, spread
+from .batch_device import Device, device_for, one_torch_thread
+from .batch_guess import column_groups, spread
+from .batch_path import Answer, descend, refined
+from .batch_plan import middle, planned
 from .newton import Outcome
 from .observables import NAMES, Observables
-from .output import MissingExtraError
 from .parameters import Groups, quantity
 from .solution import Definition, check_definition
 from .solve import SolveError, check_rtol, least_estimate, solve
-from .start import SATURATED_LOAD, cold_start
+from .start import cold_start
 from .threads import one_blas_thread
 from .units import InputError, show
-
-BACKENDS = ("numpy", "torch", "cupy")
-"""Array libraries by name; any other that keeps to the standard may be given as its namespace."""
-
-CPU_MEMORY, DEVICE_MEMORY = 4e6, 1e9
-"""Bytes that the Jacobians of a batch may fill: on a processor what its cache holds is fastest, elsewhere many at once."""
-
-CLOSE = 1.0
-"""Extent of states that are reached from one of them, in units of :data:`STRETCH`."""
-
-STRETCH = np.array([0.6, 1.0, 1.0])
-"""How much a decade of speed, relative roughness and load changes the gap: films grow as speed**0.6."""
-
-LEAST_CLOSE, LEAST_DESCENT = 6, 8
-"""States that a batch of each kind must have: for fewer, single solves are faster."""
-
-MOST_CLOSE, MOST_DESCENT = 256, 64
-"""States that it may have."""
-
-ALIKE = 10.0
-"""Ratio of the widths of the layers at the edge of the contact that a descent spans: one mesh has to resolve both."""
 
 Progress = Callable[[int, int], object]
 
@@ -266,114 +245,3 @@ class _Work:
 def _one(groups: Groups, row: int) -> Groups:
     """Return one state of groups that are columns."""
     return Groups(*(float(np.asarray(getattr(groups, name))[row, 0]) for name in ("speed", "load", "roughness")))
-
-
-def coordinates(groups: Groups) -> Array:
-    """Return where states lie, such that neighbours have like gaps, shape (rows, 3)."""
-    kappa = np.asarray(groups.relative_roughness)
-    speed, load = np.asarray(groups.speed), np.asarray(groups.load)
-    return np.log(np.concatenate([speed, np.where(kappa > 0, kappa, 1.0), load], axis=1)) * STRETCH
-
-
-def middle(groups: Groups) -> int:
-    """Return the row of the state nearest to the middle of all."""
-    points = coordinates(groups)
-    return int(np.argmin(((points - 0.5 * (points.min(axis=0) + points.max(axis=0))) ** 2).sum(axis=1)))
-
-
-def planned(groups: Groups) -> tuple[list[Indices], list[Indices], Indices]:
-    """Return the rows of states that are close, of scattered ones that are alike, and of those to be solved one by one."""
-    speed, load, kappa = (np.asarray(a)[:, 0] for a in (groups.speed, groups.load, groups.relative_roughness))
-    moving, smooth = speed > 0, kappa == 0
-    layer = np.maximum(kappa ** (2 / 3), speed**0.4)
-    close: list[Indices] = []
-    scattered: list[Indices] = []
-    single = [np.flatnonzero(~moving)]
-    for kind in (smooth, ~smooth):
-        rows = np.flatnonzero(moving & kind)
-        if not len(rows):
-            continue
-        loose = []
-        for part in _bisected(coordinates(column_groups(groups, rows)), np.arange(len(rows))):
-            (close if len(part) >= LEAST_CLOSE else loose).append(rows[part])
-        rest = np.concatenate(loose) if loose else rows[:0]
-        single.append(rest[load[rest] > SATURATED_LOAD])  # whose paths from the rigid contact are of another kind
-        rest = rest[load[rest] <= SATURATED_LOAD]
-        rest = rest[np.argsort(layer[rest])]
-        while len(rest):
-            alike = int((layer[rest[:MOST_DESCENT]] <= ALIKE * layer[rest[0]]).sum())
-            batch, rest = rest[:alike], rest[alike:]
-            (scattered if alike >= LEAST_DESCENT else single).append(batch)
-    return close, scattered, np.concatenate(single)
-
-
-def _bisected(points: Array, rows: Indices) -> Iterator[Indices]:
-    """Yield parts of the rows whose points are close, halved in the middle of their longest extent until they are."""
-    waiting = [rows]
-    while waiting:
-        rows = waiting.pop()
-        here = points[rows]
-        extent = here.max(axis=0) - here.min(axis=0)
-        axis = int(np.argmax(extent))
-        if extent[axis] <= CLOSE and len(rows) <= MOST_CLOSE:
-            yield rows
-        elif extent[axis] == 0.0:  # one state many times over
-            waiting += np.array_split(rows, 2)
-        else:
-            above = here[:, axis] > here[:, axis].min() + 0.5 * extent[axis]
-            waiting += [rows[above], rows[~above]]
-
-
-def device_for(backend: Any, device: Any, memory: float | None) -> tuple[Device, str]:
-    """Return where the linear algebra runs, and the name of the library; refuse what is not there."""
-    if memory is not None and (isinstance(memory, bool) or not isinstance(memory, int | float) or not 0 < memory < np.inf):
-        raise InputError(f"memory = {show(memory)}; it must be a positive number of bytes, for example 1e9.")
-    if isinstance(backend, str) and backend not in BACKENDS:
-        known = ", ".join(repr(name) for name in BACKENDS)
-        raise InputError(f"backend = {show(backend)}; it must be {known}, or a namespace of the array API standard.")
-    xp: Any = _namespace(backend) if isinstance(backend, str) else backend
-    if not hasattr(xp, "linalg") or not hasattr(xp, "asarray"):
-        raise InputError(f"backend = {show(backend)}; it has no asarray or linalg, and is no namespace of the standard.")
-    name = backend if isinstance(backend, str) else str(getattr(backend, "__name__", backend))
-    try:
-        one = xp.asarray(np.ones((1, 1, 1)), dtype=xp.float64, device=device)
-        xp.linalg.solve(one, one)
-    except Exception as error:  # each library has errors of its own for a device that is not there
-        reason = str(error).strip().split("\n")[0]
-        raise InputError(f"device = {show(device)}; {name} cannot compute on it in double precision: {reason}") from None
-    elsewhere = name == "cupy" or (device is not None and "cpu" not in str(device).lower())
-    return Device(xp, device, memory or (DEVICE_MEMORY if elsewhere else CPU_MEMORY)), name
-
-
-def _namespace(backend: str) -> Any:
-    """Return the namespace of a library that is known by name."""
-    if backend == "numpy" and hasattr(np, "__array_api_version__"):
-        return np
-    from importlib import import_module  # noqa: PLC0415
-
-    try:
-        return import_module(f"array_api_compat.{backend}")
-    except ImportError:
-        libraries = "array-api-compat" if backend == "numpy" else f"array-api-compat and {backend}"
-        if backend == "cupy":
-            raise InputError(
-                "the backend 'cupy' needs array-api-compat and a CuPy for your CUDA; "
-                "install them with: pip install array-api-compat cupy-cuda12x"
-            ) from None
-        raise MissingExtraError(f"the backend {backend!r}", "gpu", libraries) from None
-
-
-@contextmanager
-def one_torch_thread(xp: Any) -> Iterator[None]:
-    """Keep PyTorch to one thread on the processor: with two, its batched LU was seen to fail from 150 unknowns on."""
-    if "torch" not in getattr(xp, "__name__", ""):
-        yield
-        return
-    import torch  # noqa: PLC0415
-
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(before)

@@ -7,80 +7,25 @@ standard alone, so that NumPy, PyTorch or CuPy can run it, on whatever device th
 
 is solved by one batched LU factorisation.  The standard keeps no factors, so that each step factorises anew.
 
-Source: [BP] Appendix A; theory.md Eqs. (1)-(5).  `The standard <https://data-apis.org/array-api/latest/>`_.
+Source: [BP] Appendix A; theory.md Eqs. (1)-(5).
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ._types import Array, Flags
+from .batch_device import Device
 from .equations import LOAD, Operators
 from .parameters import Groups
-
-MATRICES = 3
-"""Arrays of the size of the Jacobians that live at once."""
 
 MOST_STEPS = 30
 
 QUADRATIC = 1e-2
 """Size of a step from which on Newton's iteration is taken to converge quadratically, if two steps say so."""
-
-
-@dataclass(frozen=True)
-class Device:
-    """An array library that keeps to the standard, and a device of it.
-
-    Attributes
-    ----------
-    xp : module
-        Namespace of the array API standard.
-    device : object
-        Device as the library names it; None for its default.
-    memory : float
-        Bytes that one batch of Jacobians may fill.
-    """
-
-    xp: Any
-    device: Any
-    memory: float
-
-    def put(self, values: Array) -> Any:
-        """Return an array of the library from one of NumPy."""
-        return self.xp.asarray(np.array(values, dtype=np.float64), dtype=self.xp.float64, device=self.device)
-
-    def get(self, values: Any) -> Array:
-        """Return an array of NumPy from one of the library."""
-        if isinstance(values, np.ndarray):
-            return values
-        if self.device is not None and hasattr(values, "cpu"):
-            values = values.cpu()
-        elif hasattr(values, "get"):
-            values = values.get()
-        return np.array(np.from_dlpack(values))
-
-    def chunks(self, rows: int, unknowns: int) -> Iterator[slice]:
-        """Yield the rows by as many as the memory allows."""
-        number = max(1, int(self.memory / (8 * MATRICES * unknowns**2)))
-        for first in range(0, rows, number):
-            yield slice(first, min(rows, first + number))
-
-    def solved(self, matrices: Any, columns: Any) -> Any:
-        """Return the solutions of batched linear systems; nan for a matrix that is singular."""
-        try:
-            return self.xp.linalg.solve(matrices, columns)
-        except (np.linalg.LinAlgError, RuntimeError):  # libraries raise for the whole batch if one of it is singular
-            rows = matrices.shape[0]
-            if rows == 1:
-                return columns * math.nan
-            half = rows // 2
-            parts = [self.solved(matrices[part, ...], columns[part, ...]) for part in (slice(0, half), slice(half, rows))]
-            return self.xp.concat(parts, axis=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,7 +171,9 @@ def newton(equations: DeviceEquations, y: Array, tolerance: float) -> tuple[Arra
             relative = own.correction(here, own.residual(here))[:, :, 0]
             part = own.admissible(here, relative)
             step = part[:, None] * relative
-            moved = xp.concat([here[:, :-2] * (1 + step[:, :-2]), (here + step)[:, -2:-1], (here * (1 + step))[:, -1:]], axis=1)
+            moved = xp.concat(
+                [here[:, :-2] * (1 + step[:, :-2]), (here + step)[:, -2:-1], (here * (1 + step))[:, -1:]], axis=1
+            )
             of_gap = xp.max(xp.abs(relative[:, :-2]), axis=1)
             of_flux = xp.abs(relative[:, -1])
             sizes[chunk] = device.get(xp.where(of_flux > of_gap, of_flux, of_gap))

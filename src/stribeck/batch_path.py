@@ -6,25 +6,23 @@ estimates are made by NumPy; Newton's iteration, which is most of the work, runs
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from ._types import Array, Flags, Indices
-from .batch_equations import Device, DeviceEquations, DeviceOperators, newton
+from .batch_device import Device
+from .batch_equations import DeviceEquations, DeviceOperators, newton
+from .batch_guess import Batch, Guesses, column_groups, predicted, rigid_rows
 from .contact_laws import contact_law
-from .continuation import extrapolation_weights
-from .equations import LOAD, Equations, Operators
+from .equations import Equations, Operators
 from .estimate import ErrorEstimate, FineOperators, error_estimates
 from .mesh import Mesh, MeshTooLargeError
 from .observables import Observables, observables_of_rows
 from .parameters import Groups
 from .refine import mesh_tolerances_for, newton_tolerance, order_for
 from .start import MESH_TOLERANCE, ORDER, RIGID_ROUGHNESS, RIGID_SPEED
-from .states import LARGEST_AMPLIFICATION, PREDICTION_GOAL, Rows, RowsGuess, State, correction, mesh_for
+from .states import PREDICTION_GOAL, Rows, mesh_for
 
 FIRST_STEP = 0.3
 LONGEST_STEP = 2.5
@@ -47,141 +45,6 @@ LEAST_ROWS = 3
 """States for which another shared mesh is worth while."""
 
 
-def column_groups(groups: Groups, rows: Indices | Flags | slice = slice(None)) -> Groups:
-    """Return some of the states of groups that are columns."""
-    return Groups(*(np.asarray(getattr(groups, name))[rows] for name in ("speed", "load", "roughness")))
-
-
-@dataclass(frozen=True, eq=False)
-class Batch:
-    """States in rows on one mesh: a guess for others.  The groups are columns."""
-
-    groups: Groups
-    mesh: Mesh
-    y: Array
-
-    @property
-    def flux_gap(self) -> Array:
-        """Flux gaps, a column."""
-        return self.y[:, -1:]
-
-    @property
-    def offset(self) -> Array:
-        """Offsets, a column."""
-        return self.y[:, -2:-1]
-
-    @property
-    def least_position(self) -> Array:
-        """The nodes where the gaps are least, a column."""
-        return self.mesh.nodes[np.argmin(self.y[:, :-2], axis=1)][:, None]
-
-    @cached_property
-    def _nodal(self) -> Array:
-        equations = Equations(Operators(self.mesh), self.groups.speed, contact_law(self.groups))
-        return np.stack([np.log(self.y[:, :-2] / self.mesh.far), equations.pressures(self.y)[1]])
-
-    def fields(self, x: Array) -> Array:
-        """Return the logarithms of the gaps and the fluid pressures at ``x``."""
-        found = self.mesh.interpolate(self._nodal, x)
-        found[0] += np.log(self.mesh.scale**2 + x * x)
-        return found
-
-    def log_gap(self, mesh: Mesh) -> Array:
-        """Return the logarithms of the gaps at the nodes of ``mesh``."""
-        if mesh is self.mesh:
-            return np.asarray(np.log(self.y[:, :-2]))
-        return np.asarray(self.mesh.interpolate(self._nodal[0], mesh.nodes) + np.log(self.mesh.scale**2 + mesh.nodes**2))
-
-    def rows(self, rows: Indices | Flags) -> Batch:
-        """Return some of the states."""
-        return Batch(column_groups(self.groups, rows), self.mesh, self.y[rows])
-
-
-@dataclass(frozen=True, eq=False)
-class Combined:
-    """A guess from batches of the same states: the logarithms of gaps and flux gaps, and the pressures, summed."""
-
-    weights: Array
-    batches: Sequence[Batch]
-
-    def _sum(self, value: Callable[[Batch], Array]) -> Array:
-        return np.asarray(sum(w * value(b) for w, b in zip(self.weights, self.batches, strict=True)))
-
-    @property
-    def flux_gap(self) -> Array:
-        """Flux gaps, a column."""
-        return np.exp(self._sum(lambda b: np.log(b.flux_gap)))
-
-    @property
-    def offset(self) -> Array:
-        """Those of the last batch; Newton's first step corrects them exactly."""
-        return self.batches[-1].offset
-
-    @property
-    def least_position(self) -> Array:
-        """Those of the last batch."""
-        return self.batches[-1].least_position
-
-    def fields(self, x: Array) -> Array:
-        """Return the logarithms of the gaps and the fluid pressures at ``x``."""
-        return self._sum(lambda b: b.fields(x))
-
-    def log_gap(self, mesh: Mesh) -> Array:
-        """Return the logarithms of the gaps at the nodes of ``mesh``."""
-        return self._sum(lambda b: b.log_gap(mesh))
-
-
-@dataclass(frozen=True, eq=False)
-class RigidRows:
-    """Rigid cylinders at columns of speed and height, see :class:`stribeck.start.RigidGuess`."""
-
-    speed: Array
-    height: Array
-
-    @property
-    def flux_gap(self) -> Array:
-        """Flux gaps of the rigid parabola."""
-        return 4 * self.height / 3
-
-    @property
-    def offset(self) -> Array:
-        """The heights."""
-        return self.height
-
-    @property
-    def least_position(self) -> Array:
-        """The middle."""
-        return np.zeros_like(self.height)
-
-    def log_gap(self, mesh: Mesh) -> Array:
-        """Return the logarithms of the gaps at the nodes of ``mesh``."""
-        return np.asarray(self.fields(mesh.nodes)[0])
-
-    def fields(self, x: Array) -> Array:
-        """Return the logarithms of the gaps at ``x``."""
-        b = np.sqrt(2 * self.height)
-        deflection = -2 * self.speed / 3 * x / b / (x * x + b * b)
-        return np.log(self.height + x * x / 2 + deflection)[None]
-
-
-Guesses = Batch | Combined | RigidRows
-
-
-def rigid_rows(groups: Groups) -> RigidRows:
-    """Return the rigid parabolas whose film and contact carry the load, as ``start.rigid_guess`` does, by bisection."""
-    speed, law = np.asarray(groups.speed), contact_law(groups)
-    x, dx = np.linspace(-6, 6, 121, retstep=True)
-    width = np.sqrt(law.decay)
-    low, high = np.full_like(speed, -80.0), np.full_like(speed, 80.0)
-    for _ in range(30):
-        middle = 0.5 * (low + high)
-        height = np.exp(middle)
-        contact = law.pressure(height + (x * width) ** 2 / 2).sum(axis=1, keepdims=True) * dx * width
-        carries = math.pi / 48 * speed**2 / height**3 + contact > LOAD
-        low, high = np.where(carries, middle, low), np.where(carries, high, middle)
-    return RigidRows(speed, np.exp(0.5 * (low + high)))
-
-
 def unloading(groups: Groups) -> Array:
     """Return how far above their end the loading paths of states in rows begin, see :mod:`stribeck.start`; a column."""
     by_film = 0.5 * np.log(RIGID_SPEED / np.asarray(groups.speed))
@@ -199,19 +62,10 @@ def unloaded_rows(groups: Groups, log_factor: Array) -> Groups:
 def on_mesh(guess: Guesses, groups: Groups, mesh: Mesh, device: Device, tolerance: float) -> tuple[Batch, Flags, Array]:
     """Return the states on a mesh nearest to a guess, which of them converged, and by how much their gaps moved."""
     y = np.concatenate([np.exp(guess.log_gap(mesh)), guess.offset, guess.flux_gap], axis=1)
-    equations = DeviceEquations.of(DeviceOperators.of(Operators(mesh), device), groups, y[:, -1:])
+    operators = Operators(mesh)
+    equations = DeviceEquations.of(DeviceOperators.of(operators, device), groups, y[:, -1:])
     found, done, _ = newton(equations, y, tolerance)
-    return Batch(groups, mesh, found), done, np.abs(y[:, :-2] / found[:, :-2] - 1).max(axis=1)
-
-
-def predicted(history: Sequence[tuple[float, Batch]], s: float) -> Guesses:
-    """Return the guess at ``s`` by the highest polynomial through ``history`` that does not amplify errors."""
-    for first in range(len(history) - 1):
-        points = history[first:]
-        weights = extrapolation_weights([c for c, _ in points], s)
-        if np.abs(weights).sum() <= LARGEST_AMPLIFICATION:
-            return Combined(weights, [batch for _, batch in points])
-    return history[-1][1]
+    return Batch(groups, operators, found), done, np.abs(y[:, :-2] / found[:, :-2] - 1).max(axis=1)
 
 
 def descend(groups: Groups, device: Device) -> tuple[Batch | None, Indices]:
@@ -252,23 +106,6 @@ def descend(groups: Groups, device: Device) -> tuple[Batch | None, Indices]:
     return None, rows
 
 
-def spread(pilot: State, groups: Groups) -> Batch:
-    """Return guesses of the neighbours of a solved state, along its derivatives with respect to the logarithms of the groups."""
-    factors = pilot.root.factors
-    assert factors is not None
-    y, equations = pilot.y, pilot.equations
-    change = np.zeros((len(np.asarray(groups.speed)), len(y)))
-    for name in ("speed", "load", "roughness"):
-        here = float(getattr(pilot.groups, name))
-        if here > 0:
-            slope = correction(factors, equations.parameter_derivative(y, name))
-            change += np.log(np.asarray(getattr(groups, name)) / here) * slope
-    units = equations.units(y)
-    guessed = units * np.exp(change)
-    guessed[:, -2] = y[-2] + change[:, -2]
-    return Batch(groups, pilot.mesh, guessed)
-
-
 @dataclass(frozen=True, eq=False)
 class Answer:
     """What a state of a batch came to: its observables and their error."""
@@ -279,7 +116,7 @@ class Answer:
 
 def judged(batch: Batch, device: Device) -> list[Answer]:
     """Return the observables of states and their errors, by the same estimate as any other state."""
-    operators = Operators(batch.mesh)
+    operators = batch.operators
     scale = batch.flux_gap**2
     equations = Equations(operators, batch.groups.speed, contact_law(batch.groups), scale)
     on_device = DeviceEquations.of(DeviceOperators.of(operators, device), batch.groups, batch.flux_gap)
@@ -301,7 +138,8 @@ def judged(batch: Batch, device: Device) -> list[Answer]:
 def refined(guess: Batch, rtol: float, device: Device) -> dict[int, Answer]:
     """Return, by row of the guess, the states that hold the tolerance on a mesh that they share."""
     tail, gap_tail = mesh_tolerances_for(rtol)
-    rows, found = np.arange(len(guess.y)), {}
+    rows = np.arange(len(guess.y))
+    found: dict[int, Answer] = {}
     for _ in range(ROUNDS):
         groups = guess.groups
         try:
