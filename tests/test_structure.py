@@ -90,7 +90,7 @@ MAY_IMPORT = {
     "batch_equations": EQUATIONS | {"batch_device"},
     "batch_guess": EQUATIONS | ALGORITHMS | {"states"},
     "batch_path": EQUATIONS
-    | {"batch_device", "batch_equations", "batch_guess", "estimate", "observables", "refine", "start", "states"},
+    | {"batch_device", "batch_equations", "batch_guess", "estimate", "newton", "observables", "refine", "start", "states"},
     "batch_plan": {"batch_guess", "parameters", "start"},
     "batch": RESULTS | {"batch_device", "batch_guess", "batch_path", "batch_plan", "observables", "start"},
     "atlas_grid": set(),
@@ -104,10 +104,9 @@ MAY_IMPORT = {
 OPEN = {"__init__", "__main__", "app", "cli"}
 
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts)
-HEAVY = {"array_api_compat", "cupy", "cyclopts", "dask", "distributed", "matplotlib", "netCDF4", "pandas", "pint", "pydantic", "rich", "torch", "xarray", "zarr"}
+HEAVY = {
     "array_api_compat",
     "cupy",
-    "torch",
     "cyclopts",
     "dask",
     "distributed",
@@ -117,6 +116,7 @@ HEAVY = {"array_api_compat", "cupy", "cyclopts", "dask", "distributed", "matplot
     "pint",
     "pydantic",
     "rich",
+    "torch",
     "xarray",
     "zarr",
 }

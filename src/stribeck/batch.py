@@ -177,8 +177,10 @@ def solve_batch(
     work = _Work(columns, rtol, target, on_progress)
     with one_torch_thread(target.xp), np.errstate(all="ignore"):
         work.run()
-    values = dict(zip((f.name for f in fields(Observables)), work.values.T.reshape(-1, *shape), strict=True))
-    errors = work.errors.T.reshape(-1, *shape)
+    values = dict(
+        zip((f.name for f in fields(Observables)), work.values.T.reshape(len(fields(Observables)), *shape), strict=True)
+    )
+    errors = work.errors.T.reshape(len(NAMES), *shape)
     outcome, batched = work.outcome.reshape(shape), work.batched.reshape(shape)
     return BatchSolution(groups, rtol, name, outcome, batched, relative_errors=errors, **values)
 
@@ -225,7 +227,7 @@ class _Work:
     def _keep(self, row: int, answer: Answer) -> None:
         self.values[row] = [getattr(answer.values, f.name) for f in fields(Observables)]
         self.errors[row] = np.maximum(answer.estimate.relative, least_estimate(self.rtol))
-        self.outcome[row], self.batched[row] = Outcome.CONVERGED, True
+        self.outcome[row], self.batched[row] = answer.outcome, True
 
     def _alone(self, row: int) -> None:
         try:

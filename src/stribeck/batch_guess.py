@@ -15,7 +15,7 @@ from .continuation import extrapolation_weights
 from .equations import LOAD, Equations, Operators
 from .mesh import Mesh
 from .parameters import Groups
-from .states import LARGEST_AMPLIFICATION, State, correction
+from .states import LARGEST_AMPLIFICATION, State, correction, factors_on
 
 
 def column_groups(groups: Groups, rows: Indices | Flags | slice = slice(None)) -> Groups:
@@ -170,9 +170,8 @@ def predicted(history: Sequence[tuple[float, Batch]], s: float) -> Guesses:
 
 def spread(pilot: State, groups: Groups) -> Batch:
     """Return guesses of the neighbours of a solved state, along its derivatives by the logarithms of the groups."""
-    factors = pilot.root.factors
-    assert factors is not None
     y, equations = pilot.y, pilot.equations
+    factors = factors_on(equations.operators, pilot)  # as those of Newton's last steps are of an earlier iterate
     change = np.zeros((len(np.asarray(groups.speed)), len(y)))
     for name in ("speed", "load", "roughness"):
         here = float(getattr(pilot.groups, name))

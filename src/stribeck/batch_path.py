@@ -18,9 +18,10 @@ from .contact_laws import contact_law
 from .equations import Equations, Operators
 from .estimate import ErrorEstimate, FineOperators, error_estimates
 from .mesh import Mesh, MeshTooLargeError
+from .newton import Outcome
 from .observables import Observables, observables_of_rows
 from .parameters import Groups
-from .refine import mesh_tolerances_for, newton_tolerance, order_for
+from .refine import mesh_tolerances_for, newton_tolerance, order_for, reached
 from .start import MESH_TOLERANCE, ORDER, RIGID_ROUGHNESS, RIGID_SPEED
 from .states import PREDICTION_GOAL, Rows, mesh_for
 
@@ -108,13 +109,14 @@ def descend(groups: Groups, device: Device) -> tuple[Batch | None, Indices]:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What a state of a batch came to: its observables and their error."""
+    """What a state of a batch came to: its observables, their error, and whether that holds the tolerance."""
 
     values: Observables
     estimate: ErrorEstimate
+    outcome: Outcome
 
 
-def judged(batch: Batch, device: Device) -> list[Answer]:
+def judged(batch: Batch, rtol: float, device: Device) -> list[Answer]:
     """Return the observables of states and their errors, by the same estimate as any other state."""
     operators = batch.operators
     scale = batch.flux_gap**2
@@ -132,11 +134,17 @@ def judged(batch: Batch, device: Device) -> list[Answer]:
 
     values = observables_of_rows(equations, batch.y, batch.groups.load)
     estimates = error_estimates(Rows(equations, batch.y, batch.groups.load, of_residuals), values, FineOperators(batch.mesh))
-    return [Answer(v, e) for v, e in zip(values, estimates, strict=True)]
+    return [Answer(v, e, ended(e, rtol)) for v, e in zip(values, estimates, strict=True)]
+
+
+def ended(estimate: ErrorEstimate, rtol: float) -> Outcome:
+    """Return whether an estimate holds the tolerance, and where not, whether rounding or the mesh is in the way."""
+    outcome = reached(estimate, rtol)
+    return outcome if outcome.ok or estimate.total > 3 * estimate.floor else Outcome.ROUNDING
 
 
 def refined(guess: Batch, rtol: float, device: Device) -> dict[int, Answer]:
-    """Return, by row of the guess, the states that hold the tolerance on a mesh that they share."""
+    """Return, by row of the guess, the states that hold the tolerance on a mesh that they share, or that rounding bounds."""
     tail, gap_tail = mesh_tolerances_for(rtol)
     rows = np.arange(len(guess.y))
     found: dict[int, Answer] = {}
@@ -150,9 +158,9 @@ def refined(guess: Batch, rtol: float, device: Device) -> dict[int, Answer]:
         batch, rows = batch.rows(done), rows[done]
         if not len(rows):
             break
-        answers = judged(batch, device)
-        missed = np.array([a.estimate.total > rtol for a in answers])
-        found |= {int(r): a for r, a in zip(rows, answers, strict=True) if a.estimate.total <= rtol}
+        answers = judged(batch, rtol, device)
+        missed = np.array([a.outcome is Outcome.REFINEMENT_LIMIT for a in answers])
+        found |= {int(r): a for r, a, miss in zip(rows, answers, missed, strict=True) if not miss}
         if missed.sum() < LEAST_ROWS:
             break
         guess, rows = batch.rows(missed), rows[missed]
