@@ -11,13 +11,15 @@ import stribeck as sb
 from stribeck.batch_device import Device
 from stribeck.batch_equations import DeviceEquations, DeviceOperators, newton
 from stribeck.batch_guess import Batch, Combined, column_groups, rigid_rows, spread
+from stribeck.batch_path import ended, judged
 from stribeck.batch_plan import planned
 from stribeck.contact_laws import contact_law
 from stribeck.equations import Equations
+from stribeck.estimate import ErrorEstimate, FineOperators, error_estimates
 from stribeck.newton import Outcome
-from stribeck.observables import NAMES
+from stribeck.observables import NAMES, observables
 from stribeck.start import cold_start, rigid_guess
-from stribeck.states import Extrapolation, mesh_for
+from stribeck.states import Extrapolation, Rows, mesh_for
 
 SHARES = ("contact_load_share", "fluid_load_share")
 
@@ -127,6 +129,27 @@ def test_a_spread_guess_misses_by_the_square_of_the_distance(discrete):
     assert abs(np.log2(errors[0] / errors[1]) - 2) < 0.1
 
 
+def test_a_batch_is_judged_as_each_state_is(discrete):
+    for roughness in (0.0, 1e-3):
+        state, groups, _ = discrete(roughness)
+        op = state.equations.operators
+        device = Device(np, None, 1.0)
+        equations = DeviceEquations.of(DeviceOperators.of(op, device), groups, np.full((3, 1), state.flux_gap))
+        y, done, _ = newton(equations, np.tile(state.y, (3, 1)), 1e-12)
+        assert done.all()
+        answers = judged(Batch(groups, op, y), 1e-3, device)
+        for i, answer in enumerate(answers):
+            own = sb.Groups(*(float(getattr(groups, name)[i, 0]) for name in GROUPS))
+            single = Equations(op, own.speed, contact_law(own), y[i, -1] ** 2)
+            inverse = np.linalg.inv(single.jacobian(y[i]))
+            rows = Rows(single, y[i : i + 1], own.load, lambda r, inverse=inverse: -r @ inverse.T)
+            values = observables(single, y[i], own.load)
+            [estimate] = error_estimates(rows, [values], FineOperators(op.mesh))
+            assert answer.estimate.relative == pytest.approx(estimate.relative, rel=1e-6, abs=1e-15)
+            assert answer.values.array() == pytest.approx(values.array(), rel=1e-12)
+            assert answer.outcome.ok == (estimate.total <= 1e-3)
+
+
 def test_states_solved_together_have_the_errors_they_state(by_numpy):
     groups = by_numpy.groups
     assert by_numpy.ok.all()
@@ -196,13 +219,24 @@ def test_smooth_and_rough_states_never_share_a_batch():
 
 
 def test_a_state_that_rounding_bounds_is_kept_with_its_outcome():
-    thin = sb.Groups(1e-12 * np.linspace(1, 1.2, 6), 1e-3, 0.0)
-    found = sb.solve_batch(joined(crowd(), thin), rtol=1e-9)
-    missed = ~found.ok
-    assert missed.tolist() == [False] * 12 + [True] * 6
-    assert set(found.outcome[missed]) == {Outcome.ROUNDING}
-    assert (found.error_estimate[missed] > 1e-9).all()
+    found = sb.solve_batch(sb.Groups(np.array([1e-6, 1e6]), 0.1, 0.0), rtol=1e-11)
+    assert found.outcome.tolist() == [Outcome.ROUNDING, Outcome.CONVERGED]
+    assert found.ok.tolist() == [False, True]
+    assert found.error_estimate[0] > 1e-11 >= found.error_estimate[1]
     assert np.isfinite(found.central_gap).all()
+
+
+@pytest.mark.parametrize(
+    ("defect", "rounding", "outcome"),
+    [
+        (8e-7, 1e-7, Outcome.CONVERGED),
+        (3e-6, 1e-7, Outcome.REFINEMENT_LIMIT),
+        (1e-6, 9e-7, Outcome.ROUNDING),
+    ],
+)
+def test_a_batch_tells_what_is_in_the_way_of_a_tolerance(defect, rounding, outcome):
+    parts = (np.full(8, size) for size in (defect, 0.0, rounding, 1.0))
+    assert ended(ErrorEstimate(*parts), 1e-6) is outcome
 
 
 def test_an_interrupted_run_keeps_what_is_done():
