@@ -1,4 +1,4 @@
-"""States per second of `solve_batch`, a sweep in one process and single solves, on the same states; the table of docs/batch.md.
+"""States per second of `solve_batch`, a sweep in one process and single solves, on the same states; table of docs/batch.md.
 
 Three sets of random states at rtol 1e-6: one contact whose inputs scatter by a tenth, a study over six decades of speed,
 1.7 of load and two of roughness, and the whole box.  Processor time is counted, of one thread: other work on the machine

@@ -11,7 +11,7 @@ import stribeck as sb
 from stribeck.batch_device import Device
 from stribeck.batch_equations import DeviceEquations, DeviceOperators, newton
 from stribeck.batch_guess import Batch, Combined, column_groups, rigid_rows, spread
-from stribeck.batch_path import ended, judged
+from stribeck.batch_path import ended, judged, refined
 from stribeck.batch_plan import planned
 from stribeck.contact_laws import contact_law
 from stribeck.equations import Equations
@@ -81,7 +81,8 @@ def test_the_equations_in_rows_are_those_of_each_state(discrete, xp, roughness):
     state, groups, y = discrete(roughness)
     device = Device(xp, None, 1e9)
     rows = DeviceEquations.of(DeviceOperators.of(state.equations.operators, device), groups, y[:, -1:])
-    steps = np.random.default_rng(5).normal(size=y.shape) * np.array([[0.1], [1.0], [10.0]])
+    steps = np.random.default_rng(5).normal(size=y.shape) * np.array([[0.1], [0.1], [10.0]])
+    steps[1, -1] = -5.0  # the flux gap limits this one, the gap or the contact pressure the last
     residuals = device.get(rows.residual(device.put(y)))[:, :, 0]
     jacobians = device.get(rows.jacobian(device.put(y)))
     parts = device.get(rows.admissible(device.put(y), device.put(steps)))
@@ -93,6 +94,7 @@ def test_the_equations_in_rows_are_those_of_each_state(discrete, xp, roughness):
         expected = single.relative_jacobian(y[i])
         assert np.abs(jacobians[i] - expected).max() < 1e-12 * np.abs(expected).max()
         assert parts[i] == pytest.approx(single.admissible(y[i], steps[i] * single.units(y[i])), rel=1e-12)
+    assert parts[1] == pytest.approx(0.14, rel=1e-12)
     assert parts[2] < 1.0
 
 
@@ -145,7 +147,7 @@ def test_a_batch_is_judged_as_each_state_is(discrete):
             rows = Rows(single, y[i : i + 1], own.load, lambda r, inverse=inverse: -r @ inverse.T)
             values = observables(single, y[i], own.load)
             [estimate] = error_estimates(rows, [values], FineOperators(op.mesh))
-            assert answer.estimate.relative == pytest.approx(estimate.relative, rel=1e-6, abs=1e-15)
+            assert answer.estimate.relative == pytest.approx(estimate.relative, rel=1e-4)
             assert answer.values.array() == pytest.approx(values.array(), rel=1e-12)
             assert answer.outcome.ok == (estimate.total <= 1e-3)
 
@@ -206,6 +208,15 @@ def test_what_does_not_fit_a_batch_is_solved_alone_and_in_its_place():
             assert found.errors["offset"][i, j] == single.errors["offset"]
 
 
+def test_what_a_batch_misses_is_solved_alone(by_numpy, monkeypatch):
+    monkeypatch.setattr("stribeck.batch.refined", lambda *given: {k: v for k, v in refined(*given).items() if k != 3})
+    found = sb.solve_batch(crowd())
+    assert np.flatnonzero(~found.batched).tolist() == [3]
+    assert found.ok.all()
+    assert found.central_gap[3] == sb.solve(one(crowd(), 3)).central_gap
+    assert (found.central_gap[4:] == by_numpy.central_gap[4:12]).all()
+
+
 def test_smooth_and_rough_states_never_share_a_batch():
     rough = crowd()
     both = joined(rough, sb.Groups(rough.speed, rough.load, np.zeros(12)))
@@ -230,7 +241,7 @@ def test_a_state_that_rounding_bounds_is_kept_with_its_outcome():
     ("defect", "rounding", "outcome"),
     [
         (8e-7, 1e-7, Outcome.CONVERGED),
-        (3e-6, 1e-7, Outcome.REFINEMENT_LIMIT),
+        (2e-6, 1e-7, Outcome.REFINEMENT_LIMIT),
         (1e-6, 9e-7, Outcome.ROUNDING),
     ],
 )
@@ -294,6 +305,7 @@ def test_every_state_is_planned_once():
     assert all(len(rows) >= 6 for rows in close)
     assert all(len(rows) >= 8 and (load[rows] <= 0.5).all() for rows in alike)
     assert set(range(7)) <= set(single.tolist())
+    assert all(len(set((kappa[rows] == 0).ravel().tolist())) == 1 for rows in [*close, *alike])
 
 
 @pytest.mark.parametrize(

@@ -185,7 +185,7 @@ def newton(equations: DeviceEquations, y: Array, tolerance: float) -> tuple[Arra
         small = (sizes <= tolerance) | ((sizes <= QUADRATIC) & (coming <= 0.1 * tolerance))
         done[active[undamped & small]] = True
         before[active] = np.where(undamped, sizes, np.inf)
-        going = ~(undamped & small) & np.isfinite(sizes) & np.isfinite(y[active]).all(axis=1)
+        going = ~(undamped & small) & np.isfinite(y[active]).all(axis=1)
         active = active[going]
         if not len(active):
             break
