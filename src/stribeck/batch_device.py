@@ -108,13 +108,13 @@ def _namespace(backend: str) -> Any:
     try:
         return import_module(f"array_api_compat.{backend}")
     except ImportError:
-        libraries = "array-api-compat" if backend == "numpy" else f"array-api-compat and {backend}"
-        if backend == "cupy":
-            raise InputError(
-                "the backend 'cupy' needs array-api-compat and a CuPy for your CUDA; "
-                "install them with: pip install array-api-compat cupy-cuda12x"
-            ) from None
-        raise MissingExtraError(f"the backend {backend!r}", "gpu", libraries) from None
+        if backend == "torch":
+            raise MissingExtraError("the backend 'torch'", "gpu", "array-api-compat and torch") from None
+        needs, packages = {
+            "numpy": ("array-api-compat, as this NumPy is older than the standard", "array-api-compat"),
+            "cupy": ("array-api-compat and a CuPy for your CUDA", "array-api-compat cupy-cuda12x"),
+        }[backend]
+        raise InputError(f"the backend {backend!r} needs {needs}; install with: pip install {packages}") from None
 
 
 @contextmanager
