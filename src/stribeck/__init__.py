@@ -1,6 +1,7 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
 from . import asymptotics, atlas
+from .batch import BatchSolution, solve_batch
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .newton import Outcome
@@ -15,6 +16,7 @@ from .sweep_design import SweepDesign, load_sweep
 from .sweep_store import SweepError
 
 __all__ = [
+    "BatchSolution",
     "Case",
     "Friction",
     "Groups",
@@ -39,6 +41,7 @@ __all__ = [
     "phase_diagram",
     "regime_of",
     "solve",
+    "solve_batch",
     "stribeck_curve",
     "sweep",
 ]
