@@ -25,6 +25,16 @@ PACKAGE = Path(stribeck.__file__).parent
 EQUATIONS = {"contact_laws", "elasticity", "equations", "mesh", "parameters", "reynolds"}
 ALGORITHMS = {"arclength", "continuation", "newton"}
 RESULTS = {"newton", "parameters", "solution", "solve", "threads", "units"}
+SURFACES = {
+    "detrend",
+    "persson",
+    "rough_surface",
+    "spectrum",
+    "surface_fit",
+    "surface_spectrum",
+    "topography",
+    "topography_files",
+}
 SWEEP = ("chain", "dataset", "design", "lock", "order", "store", "workers")
 
 # Who may import whom; `_types` is open to all, and a module that is not named here is refused.
@@ -43,6 +53,18 @@ MAY_IMPORT = {
     "continuation": {"newton"},
     "arclength": {"continuation", "newton"},
     "contact_laws": {"parameters"},
+    "spectrum": {"units"},
+    "persson": {"spectrum", "units"},
+    "rough_surface": {"persson", "spectrum", "units"},
+    "topography": {"spectrum", "units"},
+    "topography_text": {"topography", "units"},
+    "topography_files": {"output", "topography", "topography_text", "units"},
+    "surface_spectrum": {"spectrum", "topography", "units"},
+    "detrend": {"spectrum", "surface_spectrum", "topography", "units"},
+    "surface_fit": {"persson", "spectrum", "surface_spectrum", "units"},
+    "surfaces": SURFACES | {"output", "units"},
+    "report_surface": {"surfaces", "units"},
+    "plot_surface": {"output", "plotting", "report_surface", "surfaces", "units"},
     "asymptotics": {"elasticity", "hertz", "mesh", "newton", "parameters", "threads", "units"},
     "elasticity": {"mesh", "parameters"},
     "reynolds": {"mesh", "parameters"},
@@ -107,6 +129,7 @@ FILES = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in pa
 HEAVY = {
     "array_api_compat",
     "cupy",
+    "SurfaceTopography",
     "cyclopts",
     "dask",
     "distributed",
@@ -215,8 +238,9 @@ MEMBERS = (types.FunctionType, classmethod, staticmethod, property, functools.ca
 
 
 def public(*kinds):
-    """Return the public functions and classes of the wanted kinds."""
+    """Return the public functions and classes of the wanted kinds, with those of ``stribeck.surfaces``."""
     things = [getattr(stribeck, name) for name in stribeck.__all__]
+    things += [getattr(stribeck.surfaces, name) for name in stribeck.surfaces.__all__]
     return [thing for thing in things if isinstance(thing, kinds)]
 
 

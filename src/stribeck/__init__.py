@@ -1,6 +1,6 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
-from . import asymptotics, atlas
+from . import asymptotics, atlas, surfaces
 from .batch import BatchSolution, solve_batch
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
@@ -43,6 +43,7 @@ __all__ = [
     "solve",
     "solve_batch",
     "stribeck_curve",
+    "surfaces",
     "sweep",
 ]
 

@@ -51,6 +51,7 @@ def _prefixed(unit: str, powers: tuple[int, ...]) -> dict[int, str]:
 
 DIMENSIONS = {
     "length": Dimension("a length", "m", "10 mm", _prefixed("m", (-12, -9, -6, -3, 0, 3))),
+    "wavenumber": Dimension("a wave number", "1/m", "1e5 1/m", {0: "1/m", 3: "1/mm", 6: "1/µm", 9: "1/nm"}),
     "speed": Dimension("a speed", "m/s", "0.1 m/s", _prefixed("m/s", (-12, -9, -6, -3, 0, 3))),
     "pressure": Dimension("a pressure", "Pa", "2.1 MPa", _prefixed("Pa", (-3, 0, 3, 6, 9))),
     "viscosity": Dimension("a viscosity", "Pa*s", "10 mPa*s", _prefixed("Pa*s", (-6, -3, 0, 3, 6))),
@@ -61,6 +62,7 @@ DIMENSIONS = {
 # What pint may find in the text, so that a sentence can name it; wider than what the package accepts.
 _NOUNS = {
     "m": "a length",
+    "1/m": "a wave number",
     "m^2": "an area",
     "m/s": "a speed",
     "s": "a time",
@@ -78,7 +80,7 @@ _NOUNS = {
 # Bounded, because the number becomes an exact fraction and 1e999999999 would fill the memory.
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][+-]?[0-9]{1,3})?)\s*(.*?)\s*", re.DOTALL)
 _EXPONENT = re.compile(r"(?:\^|\*\*)\s*(?:[+-]?[0-9]|\(\s*[+-]?[0-9]\s*\))")
-_UNIT = re.compile(r"[A-Za-zµμÅ_#()*/ ]*", re.ASCII)
+_UNIT = re.compile(r"(?:1 ?/)?[A-Za-zµμÅ_#()*/ ]*", re.ASCII)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _LONGEST_UNIT = 40
 

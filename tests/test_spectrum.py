@@ -1,0 +1,134 @@
+"""Power spectra: moments in closed form, tables checked, shapes that scale."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import stribeck as sb
+from stribeck.rough_surface import RoughSurface
+from stribeck.spectrum import SelfAffine, Spectrum
+
+SHAPES = [
+    SelfAffine(h_rms=1e-6, q0=1e4, q1=1e8, hurst=0.8),
+    SelfAffine(h_rms=3e-7, q0=1e4, q1=1e7, hurst=0.5, roll_off=8e4),
+    SelfAffine(h_rms=2e-6, q0=5e3, q1=1e6, hurst=1.0, roll_off=6e3),
+]
+
+
+@pytest.mark.parametrize("surface", SHAPES)
+@pytest.mark.parametrize("order", [0, 1, 2, 4])
+def test_moments_are_the_integrals_of_the_definition(surface, order):
+    H, q_r = surface.hurst, surface.roll_off
+    ends = [math.log(surface.q0), math.log(q_r), math.log(surface.q1)]
+
+    def density(q):
+        return min(1.0, (q / q_r) ** (-2 * (1 + H)))
+
+    def integral(n):
+        parts = zip(ends[:-1], ends[1:], strict=True)
+        return sum(quad(lambda v: math.exp(v * (n + 1)) * density(math.exp(v)), a, b, epsrel=1e-12)[0] for a, b in parts)
+
+    expected = surface.h_rms**2 * integral(order + 1) / integral(1)
+    assert surface.spectrum.moment(order) == pytest.approx(expected, rel=1e-11, abs=0)
+
+
+def test_height_slope_and_curvature_of_hurst_one():
+    # C = A q^-4: h_rms^2 = pi A (q0^-2 - q1^-2), slope^2 = 2 pi A ln(q1/q0), Laplacian^2 = pi A (q1^2 - q0^2).
+    spectrum = SelfAffine(h_rms=1.0, q0=1.0, q1=100.0, hurst=1.0).spectrum
+    A = 1 / (math.pi * (1 - 1e-4))
+    assert spectrum.rms_height == pytest.approx(1.0, rel=1e-14, abs=0)
+    assert spectrum.rms_slope == pytest.approx(math.sqrt(2 * math.pi * A * math.log(100)), rel=1e-13, abs=0)
+    assert spectrum.rms_curvature == pytest.approx(0.5 * math.sqrt(math.pi * A * (1e4 - 1)), rel=1e-13, abs=0)
+
+
+def test_a_table_of_a_power_law_has_its_moments():
+    surface = SHAPES[1]
+    q = np.union1d(np.geomspace(surface.q0, surface.q1, 57), [surface.roll_off])
+    table = Spectrum(q, surface.spectrum.at(q))
+    assert table.moment(2) == pytest.approx(surface.spectrum.moment(2), rel=1e-11, abs=0)
+
+
+def test_the_parts_of_a_spectrum_add_up():
+    spectrum = SHAPES[1].spectrum
+    parts = spectrum.between(1e3, 3e5), spectrum.between(3e5, 1e9)
+    assert sum(part.moment(2) for part in parts) == pytest.approx(spectrum.moment(2), rel=1e-12, abs=0)
+    assert parts[0].lowest == spectrum.lowest and parts[0].highest == 3e5
+
+
+def test_the_spectrum_ends_at_its_cut_offs():
+    assert SHAPES[0].spectrum.at(np.array([9.9e3, 2e8])).tolist() == [0.0, 0.0]
+
+
+def test_scaling_keeps_the_shape():
+    scaled = SHAPES[1].scaled(5e-6)
+    assert scaled.spectrum.rms_height == pytest.approx(5e-6, rel=1e-13, abs=0)
+    ratio = scaled.spectrum.density / SHAPES[1].spectrum.density
+    assert ratio == pytest.approx((5e-6 / 3e-7) ** 2, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("wavenumber", "density", "words"),
+    [
+        ([1, 2, 2], [1, 1, 1], "wavenumber in row 3 = 2 is not above the one before it"),
+        ([1, 2, 3], [1, 0, 1], "density in row 2 of the spectrum = 0"),
+        ([1, 2, 3], [1, np.nan, 1], "gaps"),
+        ([1, -2, 3], [1, 1, 1], "wavenumber in row 2"),
+        ([1], [1], "fewer than two points"),
+        ([1, 2], [1], "2 wave numbers and 1 densities"),
+        (["a", "b"], [1, 1], "not a column of numbers"),
+        ([[1, 2]], [1, 2], r"shape \(1, 2\)"),
+    ],
+)
+def test_a_table_that_is_no_spectrum_is_refused_by_row(wavenumber, density, words):
+    with pytest.raises(sb.InputError, match=words):
+        Spectrum(wavenumber, density)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"hurst": 1.2}, "hurst = 1.2 is above 1"),
+        ({"hurst": 0.0}, "hurst = 0.0 is not a positive number"),
+        ({"q1": 10.0}, "q1 = 10 is not above q0 = 100"),
+        ({"roll_off": 50.0}, "roll_off = 50 lies outside"),
+        ({"h_rms": -1.0}, "h_rms = -1.0"),
+        ({"q0": float("nan")}, "q0 = nan"),
+    ],
+)
+def test_an_impossible_self_affine_surface_is_refused(change, words):
+    with pytest.raises(sb.InputError, match=words):
+        SelfAffine(**{"h_rms": 1.0, "q0": 100.0, "q1": 1e4, "hurst": 0.8} | change)
+
+
+# --- the table [surface] of a case ---
+
+
+def test_wavelengths_and_wave_numbers_say_the_same():
+    by_length = RoughSurface(
+        h_rms="1 um", hurst=0.8, longest_wavelength="100 um", roll_off_wavelength="20 um", shortest_wavelength="50 nm"
+    )
+    q0, q1, q_r = (2 * math.pi / length for length in (1e-4, 5e-8, 2e-5))
+    by_number = RoughSurface(h_rms=1e-6, hurst=0.8, q0=q0, q1=f"{q1!r} 1/m", roll_off=f"{q_r / 1e6!r} um^-1")
+    assert (by_length.q0, by_length.q1) == (by_number.q0, by_number.q1)
+    assert by_length.roughness.roll_off == pytest.approx(by_number.roughness.roll_off, rel=1e-14, abs=0)
+    assert by_length.law.alpha == pytest.approx(by_number.law.alpha, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"q0": None}, "q0 is missing"),
+        ({"q1": None}, "q1 is missing"),
+        ({"longest_wavelength": "1 mm"}, "say the same"),
+        ({"q0": "60 um"}, "q0 = '60 um' is a length; a wave number such as"),
+        ({"q0": "-1 1/m"}, "not above zero"),
+        ({"gamma": 0.0}, "gamma = 0 must be above 0"),
+        ({"h_rms": "1"}, "no unit"),
+        ({"h_rms": "0 um"}, "not above zero"),
+    ],
+)
+def test_an_impossible_table_surface_is_refused(change, words):
+    with pytest.raises(sb.InputError, match=words):
+        RoughSurface(**{"h_rms": "1 um", "hurst": 0.8, "q0": "1e5 1/m", "q1": "1e8 1/m"} | change)
