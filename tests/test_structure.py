@@ -68,7 +68,7 @@ MAY_IMPORT = {
     "surface_fit": {"persson", "spectrum", "surface_spectrum", "units"},
     "surfaces": SURFACES | {"output", "units"},
     "report_surface": {"surfaces", "units"},
-    "plot_surface": {"output", "plotting", "surfaces", "units"},
+    "plot_surface": {"output", "plotting", "report_surface", "surfaces", "units"},
     "asymptotics": {"elasticity", "hertz", "mesh", "newton", "parameters", "threads", "units"},
     "elasticity": {"mesh", "parameters"},
     "reynolds": {"mesh", "parameters"},
@@ -232,8 +232,9 @@ MEMBERS = (types.FunctionType, classmethod, staticmethod, property, functools.ca
 
 
 def public(*kinds):
-    """Return the public functions and classes of the wanted kinds."""
+    """Return the public functions and classes of the wanted kinds, with those of ``stribeck.surfaces``."""
     things = [getattr(stribeck, name) for name in stribeck.__all__]
+    things += [getattr(stribeck.surfaces, name) for name in stribeck.surfaces.__all__]
     return [thing for thing in things if isinstance(thing, kinds)]
 
 

@@ -468,7 +468,7 @@ def surface_command(
 ) -> int:
     """Evaluate a measured topography: rms height, spectrum, alpha and beta of the contact law, with errors.
 
-    Example: stribeck surface examples/ground_steel.csv --plot surface.png --out surface.toml
+    Example: stribeck surface examples/cylinder_profile.csv --plot surface.png --out surface.toml
 
     Example: stribeck surface scan.xyz --unit um --height-unit nm --resolution "1 um"
 

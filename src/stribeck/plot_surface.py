@@ -13,6 +13,7 @@ import numpy as np
 
 from .output import MissingExtraError, PathLike, replacing
 from .plotting import CONTACT, FLUID, GREY, INK, MARK, PICTURES
+from .report_surface import error_text
 from .surfaces import Surface
 from .units import DIMENSIONS, format_si
 
@@ -168,7 +169,7 @@ def _footer(figure: Figure, surface: Surface) -> None:
 
     found = surface.to_dict()
     parts = [
-        rf"$h_\mathrm{{rms}}$ = {format_si(found['h_rms'], 'length')} $\pm$ {format_si(found['h_rms_error'], 'length', 2)}",
+        rf"$h_\mathrm{{rms}}$ = {format_si(found['h_rms'], 'length')} $\pm$ {error_text(found['h_rms_error'])}",
         rf"$H$ = {found['hurst']:.3f} $\pm$ {found['hurst_error']:.2g}",
         rf"$\alpha$ = {found['alpha']:.3f} $\pm$ {found['alpha_error']:.2g}",
         rf"$\beta$ = {found['beta']:.3g} $\pm$ {found['beta_error']:.2g}",

@@ -87,6 +87,12 @@ def _row(label: str, value: str, remark: str) -> str:
     return f"  {label:<30}{value:<14}{remark}".rstrip()
 
 
+def error_text(error: float) -> str:
+    """Return a length with two digits and no power of ten."""
+    number, _, unit = format_si(error, "length", 2).partition(" ")
+    return f"{float(number):g} {unit}"
+
+
 def _length(label: str, value: float, error: float | None, remark: str) -> str:
-    parts = [f"+- {format_si(error, 'length', 2)}" if error is not None else "", remark]
+    parts = [f"+- {error_text(error)}" if error is not None else "", remark]
     return _row(label, format_si(value, "length"), ", ".join(filter(None, parts)))

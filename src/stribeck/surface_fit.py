@@ -172,8 +172,9 @@ class _Trial:
 
     @property
     def score(self) -> float:
-        # A roll-off is the rule, and costs no more than what chance gives once in twenty; beside a cut-off it is not.
-        cheap = self.roll_off and self.low == 0
+        # Roll-off and noise are the rule, and cost no more than what chance gives once in twenty; a roll-off beside a
+        # cut-off is not.
+        cheap = (self.roll_off and self.low == 0) + self.noise
         return self.deviance + (self.parameters - cheap) * math.log(self.weight) + 3.84 * cheap
 
 

@@ -188,23 +188,27 @@ def line_density(wavenumber: Array, roughness: SelfAffine) -> Array:
     ndarray
         C_1 [m^3].
     """
-    q = np.asarray(wavenumber, dtype=float)[..., None]
+    k = np.asarray(wavenumber, dtype=float)
     q_r, q0, H = roughness.roll_off or roughness.q0, roughness.q0, roughness.hurst
     level = float(roughness.spectrum.density[0])
+    # Beyond the roll-off the integral of a power law is a closed form.
+    falling = level * (np.maximum(k, q_r) / q_r) ** (-2 * (1 + H)) * k
+    result = falling * math.sqrt(math.pi) * math.gamma(H + 0.5) / math.gamma(H + 1)
+    flat = k < q_r
+    if not flat.any():
+        return np.asarray(result)
     t, w = np.polynomial.legendre.leggauss(16)
-    start = np.arccosh(np.maximum(q0 / q, 1.0))
-    corner = np.arccosh(np.maximum(q_r / q, 1.0))
-
-    def integral(low: Array, high: Array) -> Array:
-        v = low + 0.5 * (high - low) * (t + 1)
-        k = q * np.cosh(v)
-        density = level * np.maximum(k / q_r, 1.0) ** (-2 * (1 + H))
-        return np.asarray(np.sum(0.5 * (high - low) * w * density * k, axis=-1))
-
-    total = integral(start, corner)
+    q = k[flat][:, None]
+    corner = np.arccosh(q_r / q)
+    # The plateau from q_0 to q_r, and the power law from there on.
+    total = q_r * np.tanh(corner) - q0 * np.tanh(np.arccosh(np.maximum(q0 / q, 1.0)))
     for low, high in ((0.0, 1.0), (1.0, 3.0), (3.0, ENDLESS)):
-        total = total + integral(corner + low, corner + high)
-    return 2 * total
+        v = corner + low + 0.5 * (high - low) * (t + 1)
+        inner = q * np.cosh(v)
+        total = total + 0.5 * (high - low) * np.sum(w * (inner / q_r) ** (-2 * (1 + H)) * inner, axis=-1, keepdims=True)
+    result = np.asarray(result)
+    result[flat] = 2 * level * total[:, 0]
+    return result
 
 
 def _window(window: str, shape: tuple[int, ...]) -> Array:

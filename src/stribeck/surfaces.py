@@ -47,6 +47,9 @@ __all__ = [
     "write_surface_table",
 ]
 
+APART = 1.3
+"""Ratio of the rms heights of scan and fit from which a note says that they differ."""
+
 
 @dataclass(frozen=True, eq=False)
 class Surface:
@@ -265,7 +268,7 @@ def surface_table(surface: Surface) -> str:
     return "\n".join(rows) + "\n"
 
 
-def _notes(topography: Topography, shape: Shape, measured: MeasuredSpectrum, fit: SelfAffineFit) -> list[str]:
+def _notes(topography: Topography, body: Shape, measured: MeasuredSpectrum, fit: SelfAffineFit) -> list[str]:
     notes = []
     if "roll_off" not in fit.found and "q0" not in fit.found:
         notes.append(
@@ -284,13 +287,25 @@ def _notes(topography: Topography, shape: Shape, measured: MeasuredSpectrum, fit
             f"The spectrum is not self-affine: its deviance is {fit.deviance:.1f} times that of chance, and the errors were "
             "widened by the root of it; compare alpha and beta with those of the measured spectrum."
         )
+    H = fit.roughness.hurst
+    if not 0.02 < H < 0.999:
+        shape_of = "flatter" if H < 0.5 else "steeper"
+        notes.append(
+            f"The Hurst exponent is at the end of its range: the spectrum is {shape_of} than that of self-affine roughness."
+        )
+    scan, fitted = float(np.sqrt(np.mean(topography.heights**2))), fit.roughness.h_rms
+    if not 1 / APART < fitted / scan < APART:
+        notes.append(
+            f"The rms height of the scan is {format_si(scan, 'length')}, that of the fit {format_si(fitted, 'length')}: "
+            "noise, waves too long for the fit, or a spectrum of another shape make the difference."
+        )
     if not topography.is_line:
         ratio = max(topography.spacing) / min(topography.spacing)
         if ratio > 2:
             notes.append(f"Steps along the two axes differ {ratio:.1f} times; the larger one limits the short wavelengths.")
-    radius = shape.radius
+    radius = body.radius
     if radius is not None:
-        error = shape.radius_error(fit.roughness, topography)
+        error = body.radius_error(fit.roughness, topography)
         if error is not None and error > 0.5 * radius:
             notes.append("The curvature of the body is within what the roughness makes by chance: the scan is flat.")
     return notes

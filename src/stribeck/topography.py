@@ -23,7 +23,7 @@ MOST_MISSING = 0.1
 """Largest share of missing points that is filled."""
 
 SPIKE = 12.0
-"""Deviation from the median of the neighbourhood, over its robust standard deviation, from which a point is dead."""
+"""Deviation from the neighbours, over its robust standard deviation, from which a point is dead."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,9 +117,9 @@ class Topography:
 
         Notes
         -----
-        A spike is further from the median of its 5 neighbours (a map: 5 x 5) than 12 robust standard deviations of that
-        difference.  Filled heights solve Laplace's equation, so that they have the heights around as boundary values; they
-        are smoother than the surface, which lowers the spectrum at short wavelengths by about their share.
+        A spike is further than 12 robust standard deviations from the median of its 24 neighbours in a map, and from the
+        straight lines through its neighbours in a profile.  Filled heights solve Laplace's equation with the heights around
+        as boundary values; they are smoother than the surface, which lowers short waves by about their share.
         """
         dead, spikes = np.isnan(self.heights), np.zeros(self.heights.shape, dtype=bool)
         if not keep_spikes:
@@ -198,11 +198,20 @@ def _spikes(heights: Array) -> Flags:
 
     dead = np.isnan(heights)
     z = np.where(dead, np.nanmedian(heights), heights)
-    middle = ndimage.median_filter(z, size=5, mode="nearest")
-    deviation = np.where(dead, 0.0, np.abs(z - middle))
-    spread = 1.4826 * float(np.median(deviation[~dead]))
+    if z.ndim == 1:
+        # Off the straight lines through the next and the next but one: beside a spike only one of them is spoilt.
+        line = np.pad(z, 2, mode="reflect", reflect_type="odd")
+        next_one, next_but_one = (
+            np.abs(z - 0.5 * (line[2 - i : z.size + 2 - i] + line[2 + i : z.size + 2 + i])) for i in (1, 2)
+        )
+        deviation, usual = np.minimum(next_one, next_but_one), next_one
+    else:
+        around = np.ones((5, 5), dtype=bool)
+        around[2, 2] = False
+        deviation = usual = np.abs(z - ndimage.median_filter(z, footprint=around, mode="nearest"))
+    spread = 1.4826 * float(np.median(usual[~dead]))
     # Heights in a few steps may have no spread at all; then nothing can be told.
-    return np.asarray(deviation > SPIKE * spread) if spread > 0 else np.zeros(z.shape, dtype=bool)
+    return np.asarray(~dead & (deviation > SPIKE * spread)) if spread > 0 else np.zeros(z.shape, dtype=bool)
 
 
 def _filled(heights: Array, holes: Flags) -> Array:
