@@ -112,6 +112,13 @@ MAY_IMPORT = {
     "sweep_workers": RESULTS | {"output", "sweep_chain", "sweep_columns", "sweep_store"},
     "sweep": RESULTS | {"output"} | {f"sweep_{part}" for part in SWEEP},
     "report_sweep": RESULTS | {"sweep", "sweep_columns", "sweep_dataset"},
+    "batch_device": {"output", "units"},
+    "batch_equations": EQUATIONS | {"batch_device"},
+    "batch_guess": EQUATIONS | ALGORITHMS | {"states"},
+    "batch_path": EQUATIONS
+    | {"batch_device", "batch_equations", "batch_guess", "estimate", "newton", "observables", "refine", "start", "states"},
+    "batch_plan": {"batch_guess", "parameters", "start"},
+    "batch": RESULTS | {"batch_device", "batch_guess", "batch_path", "batch_plan", "observables", "start"},
     "atlas_grid": set(),
     "atlas_table": {"atlas_grid"},
     "atlas": {"atlas_grid", "atlas_table", "hertz", "parameters", "solution", "threads", "units"},
@@ -125,6 +132,8 @@ OPEN = {"__init__", "__main__", "app", "cli"}
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts)
 HEAVY = {
     "SurfaceTopography",
+    "array_api_compat",
+    "cupy",
     "cyclopts",
     "dask",
     "distributed",
@@ -134,6 +143,7 @@ HEAVY = {
     "pint",
     "pydantic",
     "rich",
+    "torch",
     "xarray",
     "zarr",
 }

@@ -2,6 +2,7 @@
 
 from . import asymptotics, atlas, surfaces
 from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
+from .batch import BatchSolution, solve_batch
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .newton import Outcome
@@ -17,6 +18,7 @@ from .sweep_store import SweepError
 from .user_laws import FunctionLaw, TableLaw
 
 __all__ = [
+    "BatchSolution",
     "Case",
     "Friction",
     "FunctionLaw",
@@ -45,6 +47,7 @@ __all__ = [
     "phase_diagram",
     "regime_of",
     "solve",
+    "solve_batch",
     "stribeck_curve",
     "surfaces",
     "sweep",
