@@ -39,8 +39,8 @@ RTOL = 1e-7
 """Relative tolerance of the states that judge."""
 
 SMALL_SHARE = 1e-3
-"""Share of the load that the fluid carries below which a state is not taken from a row: the errors of shares are absolute, and on
-a mesh that was made for faster states so small a share can be off by 1e-3 of itself."""
+"""Share of the load that the fluid carries below which a state is not taken from a row: the errors of shares are absolute, and
+on a mesh that was made for faster states so small a share can be off by 1e-3 of itself."""
 
 CURVE_POINTS = 41
 """Points of the curve on which a minimum or a load share is looked for, which is then located exactly."""
