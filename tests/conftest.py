@@ -1,5 +1,6 @@
 """What several test modules share: solved states, and what a finer and wider mesh makes of them."""
 
+import dataclasses
 import math
 from functools import cache
 
@@ -8,11 +9,14 @@ import pytest
 
 import stribeck as sb
 from stribeck import reynolds
-from stribeck.contact_laws import contact_law
+from stribeck.contact_laws import ShiftedShape, contact_law
 from stribeck.equations import Equations, Operators
 from stribeck.mesh import Mesh
 from stribeck.newton import root_find
 from stribeck.observables import NAMES, observables
+
+LIFT = 5.0
+"""Separations by which states at rest are lifted under laws that go on below zero."""
 
 
 @cache
@@ -43,9 +47,14 @@ def _refined_values(solution, extra_nodes=6, doublings=5):
     edges = np.concatenate([-out[::-1], coarse.edges, out])
     mesh = Mesh(edges, coarse.order + extra_nodes, coarse.scale)
     # At speed zero a light load keeps all gaps positive; a heavier one only shifts them.
-    light = min(groups.load, 1e-2) if groups.speed == 0 else groups.load
-    shift = -0.5 * groups.relative_roughness * math.log(groups.load / light)
-    base = sb.Groups(groups.speed, light, light * groups.relative_roughness)
+    if groups.law is None:
+        light = min(groups.load, 1e-2) if groups.speed == 0 else groups.load
+        shift = -0.5 * groups.relative_roughness * math.log(groups.load / light)
+        base = sb.Groups(groups.speed, light, light * groups.relative_roughness)
+    else:
+        light, lift = groups.load, LIFT if groups.speed == 0 and math.isinf(groups.law.lowest) else 0.0
+        shift = -lift * groups.relative_roughness
+        base = dataclasses.replace(groups, law=ShiftedShape(groups.law, lift))
     gap = np.maximum(solution.profile(mesh.nodes).gap - shift, 1e-3 * solution.nodal_gap.min())
     flux_gap = reynolds.flux_gap(gap, mesh.weights)
     equations = Equations(Operators(mesh), base.speed, contact_law(base), flux_gap**2)

@@ -94,7 +94,7 @@ BAD_CONTACTS = {
         {"youngs_modulus": '"2 MPa"', "poisson_ratio": "0.5"},
         "modulus = '2.7 MPa' (which is E*) and youngs_modulus = '2 MPa'",
     ),
-    "law": ({"law": '"linear"'}, "law = 'linear' must be 'exponential'"),
+    "law": ({"law": '"linear"'}, "law = 'linear' must be one of 'exponential', "),
     "range of double precision": ({"beta": "1e-200"}, "leave the range of double precision"),
 }
 BAD_TABLES = {

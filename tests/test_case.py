@@ -147,7 +147,7 @@ def test_a_case_knows_every_quantity(write):
             {"contact": {"poisson_ratio": "0.4"}},
             "[contact] modulus = '2.7 MPa' (which is E*) and poisson_ratio =",
         ),
-        ({"contact": {"law": '"greenwood"'}}, "[contact] law = 'greenwood' must be 'exponential'"),
+        ({"contact": {"law": '"greenwood"'}}, "[contact] law = 'greenwood' must be one of 'exponential'"),
         ({"contact": {"spede": "1"}}, "[contact] spede = 1 is not a known key; did you mean speed."),
         ({"contact": {"eta": "1"}}, "[contact] eta = 1 is not a known key; write viscosity."),
         (

@@ -67,6 +67,7 @@ def test_the_json_of_a_state_has_exactly_these_keys(capsys):
         "load",
         "roughness",
         "contact_law",
+        "contact_law_parameters",
         "contact_load_share",
         "fluid_load_share",
         "central_gap",
@@ -202,7 +203,7 @@ def test_the_json_of_a_curve_holds_its_points_and_landmarks(capsys, tmp_path):
     assert set(found) == {
         *("title", "over", "unit", "definition", "rtol", "mu0", "beta", "inputs", "units", "minimum", "transitions"),
         *("regimes", "points", "requested_points", "complete", "error_estimate", "outcome", "message", "notes"),
-        "files",
+        *("files", "contact_law", "contact_law_parameters"),
     }
     assert {len(values) for values in found["points"].values()} == {6}
     assert found["minimum"]["value"] == pytest.approx(0.0278716, rel=1e-5)

@@ -145,7 +145,7 @@ def test_the_table_of_symbols_names_every_variable_of_a_sweep(tmp_path):
 
 def test_the_table_of_symbols_names_every_observable():
     state = sb.solve(sb.Groups(speed=0.0, load=0.1, roughness=0.0))
-    inputs = {"contact_law", "message", "nodes"}
+    inputs = {"message", "nodes"}
     assert set(state.to_dict()) - inputs - set(names_in_tables_of("4. Symbols")) == set()
 
 

@@ -1,6 +1,7 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
 from . import asymptotics, atlas, surfaces
+from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
 from .batch import BatchSolution, solve_batch
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
@@ -14,11 +15,15 @@ from .sweep import SweepProgress, sweep
 from .sweep_dataset import Sweep, open_sweep
 from .sweep_design import SweepDesign, load_sweep
 from .sweep_store import SweepError
+from .user_laws import FunctionLaw, TableLaw
 
 __all__ = [
     "BatchSolution",
     "Case",
     "Friction",
+    "FunctionLaw",
+    "GreenwoodTripp",
+    "GreenwoodWilliamson",
     "Groups",
     "HertzScales",
     "InputError",
@@ -33,6 +38,7 @@ __all__ = [
     "SweepDesign",
     "SweepError",
     "SweepProgress",
+    "TableLaw",
     "asymptotics",
     "atlas",
     "load_case",

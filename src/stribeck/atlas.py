@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from . import hertz
-from ._types import Array
+from ._types import Array, is_exponential
 from .atlas_grid import HEAVY, LEAST_LOAD, LEAST_SPEED, NEARLY_SMOOTH, region_at
 from .atlas_table import TABULATED, Values, load_table, solver_hash
 from .parameters import Groups, InputError, quantity
@@ -305,6 +305,7 @@ def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> t
     """Return speed, load and relative roughness as flat arrays inside the box, and the functions of the table there."""
     if not isinstance(groups, Groups):
         raise InputError(f"groups = {show(groups)}; it must be Groups(speed, load, roughness).")
+    check_law(groups)
     speed, load, kappa = (
         np.broadcast_to(np.asarray(value, dtype=float), groups.shape).ravel()
         for value in (groups.speed, groups.load, groups.relative_roughness)
@@ -331,6 +332,23 @@ def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> t
             found.values[row, closing] = np.log(np.exp(found.values[row, closing]) + shift)
         found.values[row, dry] = hertz.OFFSET if function == DEFLECTION else -math.inf
     return (speed, load, kappa), found
+
+
+def check_law(groups: Groups) -> None:
+    """Refuse rough states of another law than the exponential one.
+
+    Parameters
+    ----------
+    groups : Groups
+        The states.
+
+    Raises
+    ------
+    InputError
+        If the atlas does not hold their law.
+    """
+    if groups.law is not None and not is_exponential(groups.law) and np.any(groups.roughness):
+        raise InputError(f"the atlas holds states of the exponential contact law, not of {groups.law.name}; use the solver.")
 
 
 def _check(name: str, values: Array, low: float, high: float, zero: bool) -> None:

@@ -72,6 +72,10 @@ class AtlasCurve:
     beta: float
     definition: Definition
 
+    def __post_init__(self) -> None:
+        """Refuse a law that the atlas does not hold."""
+        atlas.check_law(self.groups_at(self.values[:1]))
+
     def __len__(self) -> int:
         """Return the number of points."""
         return len(self.values)

@@ -22,7 +22,7 @@ def fill(diagram: Diagram) -> None:
     for i in range(len(diagram.axes["load"])):
         for j in range(len(diagram.axes["roughness"])):
             _, groups, unit = diagram.problem(i, j)
-            _enter(diagram, (i, j), Groups(unit * speeds, groups.load, groups.roughness))
+            _enter(diagram, (i, j), Groups(unit * speeds, groups.load, groups.roughness, law=groups.law))
             diagram.velocity_weakening[i, j] = 0
             if float(groups.roughness) > 0:
                 _enter_lines(diagram, (i, j), groups, unit)
@@ -57,7 +57,7 @@ def _enter_lines(diagram: Diagram, row: tuple[int, int], groups: Groups, unit: f
     low, high = atlas.BOX["speed"]
 
     def groups_at(speed: Array) -> Groups:
-        return Groups(speed, groups.load, groups.roughness)
+        return Groups(speed, groups.load, groups.roughness, law=groups.law)
 
     speeds = np.geomspace(low, high, 1 + DENSITY * round(np.log10(high / low)))
     curve = AtlasCurve("speed", speeds, groups_at, None, diagram.mu0, diagram.beta, diagram.definition)

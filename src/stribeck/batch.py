@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ._types import Array, Flags, Indices
+from ._types import Array, Flags, Indices, is_exponential
 from .batch_device import Device, device_for, one_torch_thread
 from .batch_guess import column_groups, spread
 from .batch_path import Answer, descend, refined
@@ -168,6 +168,8 @@ def solve_batch(
     """
     if not isinstance(groups, Groups):
         raise InputError(f"groups = {show(groups)}; they must be Groups(speed, load, roughness) of arrays.")
+    if groups.law is not None and not is_exponential(groups.law):
+        raise InputError(f"batches hold the exponential contact law, not {groups.law.name}; use solve, or a sweep.")
     check_rtol(rtol)
     target, name = device_for(backend, device, memory)
     shape = groups.shape

@@ -12,13 +12,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+from .case_law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
 from .parameters import QUANTITIES, InputError, LineContact, check_modulus_choice, quantity
 from .units import DIMENSIONS, show
 
 __all__ = ["Case", "CurveSettings", "curve_range", "error_sentence", "example_of", "load_case", "read_toml"]
 
 Axis = Literal["speed", "load", "roughness"]
-Law = Literal["exponential"]
 Definition = Literal["paper", "balanced"]
 
 _LARGEST_FILE = 1_000_000  # [byte]
@@ -67,8 +67,8 @@ class Case:
         The file.
     contact : LineContact
         The quantities of the ``[contact]`` table.
-    law : {"exponential"}
-        The contact law of the ``[contact]`` table.
+    law : {"exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"}
+        Name of the contact law of the ``[contact]`` table; the law itself is ``contact.law``.
     curve : CurveSettings
         The ``[curve]`` table.
     rtol : float
@@ -97,9 +97,9 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     Parameters
     ----------
     path : str or path-like
-        A TOML file: a table ``[contact]`` (the arguments of :class:`LineContact`, and ``law``), and where
-        wanted ``[curve]`` (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``),
-        ``title`` and ``notes``.
+        A TOML file: a table ``[contact]`` (the arguments of :class:`LineContact`, and ``law`` by its name), a table
+        ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and where wanted ``[curve]``
+        (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``), ``title`` and ``notes``.
 
     Returns
     -------
@@ -122,14 +122,14 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         checked = model(**table).model_dump()
     except pydantic.ValidationError as failure:
         problems = [error_sentence(model, error) for error in failure.errors(include_url=False)]
-    problems += _elasticity_problem(table.get("contact"))
+    problems += _elasticity_problem(table.get("contact")) + _missing_from_surface(table)
     if not problems:
-        inputs = checked["contact"]
-        law = inputs.pop("law")
+        law = checked["contact"]["law"]
         try:
-            contact = LineContact(**inputs)
+            contact = LineContact(**contact_inputs(checked, path.parent))
         except InputError as problem:
-            problems = [f"[contact] {problem}"]
+            text = str(problem)
+            problems = [line if line.startswith(("[", "the table")) else f"[contact] {line}" for line in text.splitlines()]
     if problems:
         raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
     return Case(
@@ -141,6 +141,67 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         notes=checked["notes"],
         **checked["solver"],
     )
+
+
+def contact_inputs(checked: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the arguments of :class:`LineContact` in a checked file, with the contact law made of its tables.
+
+    Parameters
+    ----------
+    checked : dict
+        The tables ``contact``, ``surface``, ``asperities`` and ``table``.
+    folder : pathlib.Path
+        Where files that they name lie.
+
+    Returns
+    -------
+    dict
+        The arguments that are given, and ``law``.
+
+    Raises
+    ------
+    InputError
+        Where the law or its tables are wrong, or an input is missing that they do not give.
+    """
+    inputs = dict(checked["contact"])
+    tables = {name: checked[name] for name in ("surface", "asperities", "table")}
+    found = law_of_file(inputs.pop("law"), inputs, tables, folder)
+    inputs = {name: value for name, value in inputs.items() if value is not None} | found.coefficients
+    return inputs | {"law": found.shape}
+
+
+def group_inputs(checked: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the groups and coefficients in a checked file, and ``law``, of which tables give nothing but the shape.
+
+    Parameters
+    ----------
+    checked : dict
+        The tables ``groups``, ``surface``, ``asperities`` and ``table``.
+    folder : pathlib.Path
+        Where files that they name lie.
+
+    Returns
+    -------
+    dict
+        Those that are given, and ``law``.
+
+    Raises
+    ------
+    InputError
+        Where the law or its tables are wrong.
+    """
+    inputs = {name: value for name, value in checked["groups"].items() if value is not None}
+    tables = {name: checked[name] for name in ("surface", "asperities", "table")}
+    return inputs | {"law": law_of_file(inputs.pop("law"), {}, tables, folder).shape}
+
+
+@functools.cache
+def surface_table(keys: tuple[str, ...]) -> Any:
+    """Return the pydantic model of a table with optional keys, which its own reader checks."""
+    from pydantic import ConfigDict, create_model
+
+    fields: dict[str, Any] = dict.fromkeys(keys, (Any, None))
+    return create_model("_".join(keys), __config__=ConfigDict(extra="forbid"), **fields)
 
 
 def read_toml(path: Path, kind: str = "case file", needed: str = "[contact]") -> dict[str, Any]:
@@ -209,14 +270,14 @@ def _model() -> Any:
         load: number
         viscosity: number
         speed: number
-        roughness: number
-        alpha: number
-        beta: number
+        roughness: number | None = None
+        alpha: number | None = None
+        beta: number | None = None
         friction_coefficient: number
         modulus: number | None = None
         youngs_modulus: number | None = None
         poisson_ratio: number | None = None
-        law: Annotated[Law, Field(description="'exponential', the only contact law so far")] = Case.law
+        law: Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")] = Case.law
 
     class Curve(Table):
         over: Annotated[Axis, Field(description="'speed', 'load' or 'roughness'")] = CurveSettings.over
@@ -236,6 +297,9 @@ def _model() -> Any:
         contact: Annotated[Contact, Field(description="a table, [contact]")]
         curve: Annotated[Curve, Field(description="a table, [curve]", default_factory=Curve)]
         solver: Annotated[Solver, Field(description="a table, [solver]", default_factory=Solver)]
+        surface: Annotated[surface_table(SURFACE), Field(description="a table, [surface]")] = None  # type: ignore[valid-type]
+        asperities: Annotated[surface_table(ASPERITIES), Field(description="a table, [asperities]")] = None  # type: ignore[valid-type]
+        table: Annotated[surface_table(TABLE), Field(description="a table, [table]")] = None  # type: ignore[valid-type]
         title: text = Case.title
         notes: text = Case.notes
 
@@ -288,6 +352,14 @@ def _elasticity_problem(contact: Any) -> list[str]:
     except InputError as problem:
         return [f"[contact] {problem}"]
     return []
+
+
+def _missing_from_surface(table: dict[str, Any]) -> list[str]:
+    """Return sentences for inputs that neither ``[contact]`` nor a table of the surface gives."""
+    contact = table.get("contact")
+    if not isinstance(contact, dict) or "surface" in table or "asperities" in table or contact.get("law") == "persson":
+        return []
+    return [f"[contact] {key} is missing; {example_of(key)}." for key in FROM_TABLES if key not in contact]
 
 
 def error_sentence(file: Any, error: Any) -> str:

@@ -138,6 +138,7 @@ def solve_command(
     groups: Triple = None,
     mu0: Number = None,
     beta: Number = None,
+    law: Word = None,
     rtol: Number = None,
     plot: File = None,
     json: Flag = False,
@@ -159,6 +160,8 @@ def solve_command(
         Dry friction coefficient; only with --groups, 1 if not given.
     beta
         Coefficient of the contact law; only with --groups, 1 if not given.
+    law
+        Contact law: exponential, greenwood-williamson or greenwood-tripp; only with --groups, exponential if not given.
     rtol
         Largest relative error of the results, 1e-11 to 1e-2; that of the case or 1e-6 if not given.
     plot
@@ -168,14 +171,14 @@ def solve_command(
     force
         Replace an existing file.
     """
-    loaded = _case(case, groups, mu0, beta)
+    loaded = _case(case, groups, mu0, beta, law)
     tolerance = _rtol(rtol, loaded)
     mu, b = _number("mu0", mu0), _number("beta", beta)
     with _named("friction_coefficient", "mu0", loaded is None):
         coefficients(loaded.contact if loaded else None, mu, b)
     pictures = _pictures(plot, force)
     problem = loaded.contact if loaded else Groups(*map(_group, AXES, groups or ()))
-    solution = solve(problem, rtol=tolerance)
+    solution = solve(problem, rtol=tolerance, law=law)
     title = loaded.title if loaded else ""
     for picture in pictures:
         from .plotting import plot_profile
@@ -206,6 +209,7 @@ def curve_command(
     groups: Pair = None,
     mu0: Number = None,
     beta: Number = None,
+    law: Word = None,
     json: Flag = False,
     force: Flag = False,
 ) -> int:
@@ -241,14 +245,17 @@ def curve_command(
         Dry friction coefficient; only with --groups, 1 if not given.
     beta
         Coefficient of the contact law; only with --groups, 1 if not given.
+    law
+        Contact law: exponential, greenwood-williamson or greenwood-tripp; only with --groups, exponential if not given.
     json
         Print the curve as JSON.
     force
         Replace existing files.
     """
-    loaded = _case(case, groups, mu0, beta)
+    loaded = _case(case, groups, mu0, beta, law)
     outputs, pictures = _outputs(output or [], plot, force)
     arguments = _curve_arguments(loaded, over, range, points, rtol, groups, mu0, beta)
+    arguments["law"] = law
     title = loaded.title if loaded else ""
     with _interruptible() as progress, _named("friction_coefficient", "mu0", loaded is None):
         curve = stribeck_curve(on_point=progress, **arguments)
@@ -529,7 +536,7 @@ def surface_command(
 # --- arguments ---
 
 
-def _case(path: Path | None, groups: Sequence[str] | None, mu0: str | None, beta: str | None) -> Case | None:
+def _case(path: Path | None, groups: Sequence[str] | None, mu0: str | None, beta: str | None, law: str | None) -> Case | None:
     """Return the case, or None where groups are given instead."""
     if path is not None and groups is not None:
         if re.fullmatch(r"[-+0-9.eE]+", str(path)):
@@ -539,7 +546,7 @@ def _case(path: Path | None, groups: Sequence[str] | None, mu0: str | None, beta
         raise InputError("CASE is missing; give a case file, or groups with --groups.")
     if path is None:
         return None
-    for name, key, value in (("--mu0", "friction_coefficient", mu0), ("--beta", "beta", beta)):
+    for name, key, value in (("--mu0", "friction_coefficient", mu0), ("--beta", "beta", beta), ("--law", "law", law)):
         if value is not None:
             raise InputError(f"{name} = {value} goes with --groups only; in {path} it is the key {key}.")
     return load_case(path)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._types import Array
+from ._types import Array, LawShape
 from .asymptotics import hydrodynamic
 from .atlas_curve import AtlasCurve
 from .follow import Follower, follow
@@ -22,7 +22,7 @@ from .refine import Point
 from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Method, Regime, check_method, regime_of
 from .sensitivity import GROUPS, friction_slopes
 from .solution import Definition, Solution, check_definition, coefficients
-from .solve import SolveError, as_groups, check_rtol, describe, finish, solution_of
+from .solve import SolveError, as_groups, check_rtol, describe, finish, solution_of, with_law
 from .span import automatic_speeds
 from .threads import one_blas_thread
 from .units import InputError, format_si, show, to_si
@@ -109,7 +109,13 @@ class StribeckCurve:
     @property
     def groups(self) -> Groups:
         """Groups of the points, as arrays."""
-        return Groups(*(np.array([float(getattr(s.groups, name)) for s in self.solutions]) for name in GROUPS))
+        columns = (np.array([float(getattr(s.groups, name)) for s in self.solutions]) for name in GROUPS)
+        return Groups(*columns, law=self.law)
+
+    @property
+    def law(self) -> LawShape | None:
+        """Contact law of all points; None is the exponential one."""
+        return self._path.base.law
 
     def observable(self, name: str) -> Array:
         """Return an attribute of every solution as an array.
@@ -390,12 +396,13 @@ class _Coordinate:
         if contact is not None:
             return contact.groups
         assert isinstance(self.base, Groups)
-        return replace(self.base, **{self.over: math.exp(s)})
+        varied: dict[str, Any] = {self.over: math.exp(s)}
+        return replace(self.base, **varied)
 
     def groups_along(self, values: Array) -> Groups:
         """Return the groups at many values of what varies, as arrays."""
         groups = [self.groups_at(s) for s in np.log(values).tolist()]
-        return Groups(*(np.array([float(getattr(g, name)) for g in groups]) for name in GROUPS))
+        return Groups(*(np.array([float(getattr(g, name)) for g in groups]) for name in GROUPS), law=self.base.law)
 
     @property
     def direction(self) -> Array:
@@ -418,6 +425,7 @@ def stribeck_curve(
     beta: float | None = ...,
     definition: Definition = ...,
     on_point: Callable[[int, int], object] | None = ...,
+    law: str | LawShape | None = ...,
     method: Literal["solver"] = ...,
 ) -> StribeckCurve: ...
 
@@ -435,6 +443,7 @@ def stribeck_curve(
     beta: float | None = ...,
     definition: Definition = ...,
     on_point: Callable[[int, int], object] | None = ...,
+    law: str | LawShape | None = ...,
     method: Literal["atlas"],
 ) -> AtlasCurve: ...
 
@@ -452,6 +461,7 @@ def stribeck_curve(
     beta: float | None = None,
     definition: Definition = "paper",
     on_point: Callable[[int, int], object] | None = None,
+    law: str | LawShape | None = None,
     method: Method = "solver",
 ) -> StribeckCurve | AtlasCurve:
     """Solve the contact along speed, load or roughness.
@@ -474,6 +484,8 @@ def stribeck_curve(
         Definition of the viscous friction, see :meth:`Solution.friction`.
     on_point : callable, optional
         ``on_point(done, points)`` is called after each point, for progress.
+    law : str or LawShape, optional
+        Contact law as in :func:`stribeck.solve`; that of the problem if omitted.
     method : {"solver", "atlas"}
         Whether each state is solved, or read off :mod:`stribeck.atlas`: within 1e-4, thousands of times as fast, without
         fields; ``rtol`` and ``on_point`` then have no effect.
@@ -499,6 +511,7 @@ def stribeck_curve(
     definition = check_definition(definition)
     given: dict[Over, Any] = {"speed": speed, "load": load, "roughness": roughness}
     base, over, ends = _problem(problem, given)
+    base = with_law(base, law)
     contact = base if isinstance(base, LineContact) else None
     mu0, beta = coefficients(contact, mu0, beta)
     if isinstance(points, bool) or not isinstance(points, int) or not POINTS_RANGE[0] <= points <= POINTS_RANGE[1]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ._types import is_exponential
 from .curve import Over, StribeckCurve, stribeck_curve
 from .newton import Outcome
 from .parameters import LineContact
@@ -25,6 +26,9 @@ REACH = 1e6
 
 BOX = {"speed": (1e-12, 1e6), "load": (1e-8, 1.0), "relative_roughness": (1e-6, 1e3)}
 """Groups between which is searched: where the solver is tested, and the load as far as the contact law holds."""
+
+HIGHEST_LOAD = 10.0
+"""Largest load group where another law than the exponential one holds the gap open, or says where it does not."""
 
 DECADE = math.log(10.0)
 """Length of one step outwards in the logarithm of an input."""
@@ -175,7 +179,7 @@ def transition_distances(
         notes.append("Smooth surfaces touch at no speed and no load: there is no boundary and no mixed lubrication.")
     if contact.friction_coefficient == 0:
         notes.append("Without dry friction all friction is that of the fluid, and every state counts as hydrodynamic.")
-    if contact.groups.load >= 1 and contact.roughness > 0:
+    if contact.groups.load >= 1 and contact.roughness > 0 and is_exponential(contact.law):
         notes.append("From load group 1 on the fluid must carry a part at any speed; there may be no boundary lubrication.")
     found = [scan.along(name) for name in SCANNED]
     found.append(_of_viscosity(contact, found[0]))
@@ -321,6 +325,7 @@ class _Scan:
 
 def _limits(contact: LineContact, name: str) -> tuple[float, float]:
     """Return the logarithms of the factors of an input between which the groups stay in the box."""
+    box = BOX if is_exponential(contact.law) else BOX | {"load": (BOX["load"][0], HIGHEST_LOAD)}
     n_speed, n_load, n_roughness = EXPONENTS[name]
     groups = contact.groups
     low, high = -math.inf, math.inf
@@ -328,7 +333,7 @@ def _limits(contact: LineContact, name: str) -> tuple[float, float]:
         value = float(getattr(groups, group))
         if n == 0 or value == 0:
             continue
-        ends = sorted(math.log(end / value) / n for end in BOX[group])
+        ends = sorted(math.log(end / value) / n for end in box[group])
         low, high = max(low, ends[0]), min(high, ends[1])
     return min(low, 0.0), max(high, 0.0)
 

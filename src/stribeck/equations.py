@@ -25,6 +25,8 @@ from .contact_laws import ContactLaw
 from .elasticity import nodal_deflection
 from .mesh import Mesh
 
+MOST_HALVINGS = 20
+
 LOAD = 0.5 * np.pi
 """Load in Hertz units: the integral of the pressure."""
 
@@ -191,11 +193,24 @@ class Equations:
         part = min(part, 0.7 / max(0.7, abs(flux)))
         if np.all(self.law.decay > 0):
             log_p = self.law.log_pressure(y[:-2])
-            decays = dy[:-2] / self.law.decay
-            closing = float((-decays / (3.0 + np.maximum(0.0, -1.0 - log_p))).max())
+            decays = dy[:-2] / self.law.local_decay(y[:-2])
+            allowed = 3.0 + np.maximum(0.0, -1.0 - log_p)
+            closing = float((-decays / allowed).max())
             opening = float((decays * (log_p > -7.0)).max()) / 3.0
             part = min(part, 1.0 / max(1.0, closing, opening))
+            if not self.law.uniform:
+                part = self._held_by_law(y, dy, float(part), log_p, allowed)
         return float(part)
+
+    def _held_by_law(self, y: Array, dy: Array, part: float, log_p: Array, allowed: Array) -> float:
+        """Return the part halved until the pressure of a law that stiffens grows by no more than half as much again."""
+        for _ in range(MOST_HALVINGS):
+            with np.errstate(all="ignore"):
+                growth = self.law.log_pressure(y[:-2] + part * dy[:-2]) - log_p
+            if (growth <= 1.5 * allowed).all():
+                break
+            part *= 0.5
+        return part
 
     @staticmethod
     def size(y: Array, dy: Array) -> float:

@@ -116,7 +116,8 @@ def between(
     y = weights @ known
     y[:, :-2] = np.exp(y[:, :-2])
     y[:, -1] = np.exp(y[:, -1])
-    column = Groups(*(np.array([[float(getattr(g, name))] for g in groups]) for name in ("speed", "load", "roughness")))
+    columns = (np.array([[float(getattr(g, name))] for g in groups]) for name in ("speed", "load", "roughness"))
+    column = Groups(*columns, law=groups[0].law)
     equations = Equations(operators, column.speed, contact_law(column), y[:, -1:] ** 2)
     first, second = ends
     parts = (np.array(coordinates)[:, None] - first.coordinate) / (second.coordinate - first.coordinate)

@@ -16,6 +16,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from ._types import LawShape
 from .follow import Follower
 from .newton import Outcome
 from .parameters import Groups
@@ -177,6 +178,7 @@ def merging_roughness(
     *,
     criterion: Criterion = "slope",
     rtol: float = 1e-6,
+    law: LawShape | None = None,
 ) -> float:
     r"""Return the roughness at which the solved Stribeck curve loses its minimum, and the lines of transition merge.
 
@@ -193,6 +195,8 @@ def merging_roughness(
         where there still is one, lies above mu0 (the words of [BP]); always the smaller.
     rtol : float
         Relative tolerance of the states, and of the result.
+    law : LawShape, optional
+        Contact law; the exponential one if omitted.
 
     Returns
     -------
@@ -225,7 +229,7 @@ def merging_roughness(
         return 0.0
 
     def excess(log_kappa: float) -> float:
-        found = weakening(Groups(1.0, F, F * math.exp(log_kappa)), mu0, beta, definition, rtol=rtol)
+        found = weakening(Groups(1.0, F, F * math.exp(log_kappa), law=law), mu0, beta, definition, rtol=rtol)
         if criterion == "slope" or not found.present:
             return found.slope
         return found.minimum_friction / mu0 - 1

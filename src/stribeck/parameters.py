@@ -10,26 +10,28 @@ Source: [Bertin & Pouliquen] Eq. (Hertz_scales) and the definitions of :math:`\l
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Self
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, LawShape
 from .units import InputError, show, to_si
 
 __all__ = [
     "QUANTITIES",
     "Groups",
     "HertzScales",
+    "INPUTS",
     "InputError",
     "LineContact",
+    "check_law",
     "check_modulus_choice",
     "quantity",
 ]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Groups:
     r"""The dimensionless groups of the model: one state, or arrays of states that broadcast.
 
@@ -47,11 +49,14 @@ class Groups:
         :math:`\bar F_N > 0` [-]; from one on, the exponential contact law is outside its range.
     roughness : float or array_like
         :math:`\bar h_\mathrm{rms} \ge 0` [-]; zero is the smooth contact.
+    law : LawShape, optional
+        Contact law :math:`\Phi`, the pressure over :math:`\beta E^*` at the separation :math:`\alpha h/h_\mathrm{rms}`; the
+        exponential law of the paper by default.
 
     Raises
     ------
     InputError
-        Where a group is no real number, not finite or out of range, or the three shapes do not broadcast.
+        Where a group is no real number, not finite or out of range, or the three shapes do not broadcast, or the law is none.
 
     Notes
     -----
@@ -64,9 +69,11 @@ class Groups:
     speed: float | Array
     load: float | Array
     roughness: float | Array
+    law: LawShape | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         """Check the groups and make them floats or read-only arrays."""
+        check_law(self.law)
         for name, positive in (("speed", False), ("load", True), ("roughness", False)):
             object.__setattr__(self, name, _group(name, getattr(self, name), positive))
         try:
@@ -139,12 +146,18 @@ class Groups:
         if not isinstance(other, Groups):
             return NotImplemented
         names = ("speed", "load", "roughness")
-        return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
+        same = all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
+        return same and self.law == other.law
 
     def __hash__(self) -> int:
         """Hash by value."""
         values = (np.asarray(value) for value in (self.speed, self.load, self.roughness))
-        return hash(tuple((value.shape, value.tobytes()) for value in values))
+        return hash((*((value.shape, value.tobytes()) for value in values), self.law))
+
+    def __repr__(self) -> str:
+        """Return the groups, and the law where it is not the exponential one."""
+        law = "" if self.law is None else f", law={self.law!r}"
+        return f"Groups(speed={self.speed!r}, load={self.load!r}, roughness={self.roughness!r}{law})"
 
 
 @dataclass(frozen=True)
@@ -199,6 +212,10 @@ QUANTITIES = {
 }
 
 
+INPUTS = ("radius", "load", "viscosity", "speed", "roughness", "alpha", "beta", "friction_coefficient", "modulus")
+"""The quantities of :class:`LineContact`, in its order."""
+
+
 @dataclass(frozen=True, init=False)
 class LineContact:
     r"""A rigid rough cylinder sliding on a lubricated elastic half-space, in SI units.
@@ -231,6 +248,8 @@ class LineContact:
         Young's modulus :math:`E > 0` of the half-space [Pa].
     poisson_ratio : float, optional
         Poisson ratio :math:`0 \le \nu \le 1/2` of the half-space [-].
+    law : LawShape, optional
+        Contact law :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
 
     Attributes
     ----------
@@ -271,6 +290,7 @@ class LineContact:
     beta: float
     friction_coefficient: float
     modulus: float
+    law: LawShape | None
 
     def __init__(
         self,
@@ -286,6 +306,7 @@ class LineContact:
         modulus: str | float | None = None,
         youngs_modulus: str | float | None = None,
         poisson_ratio: float | None = None,
+        law: LawShape | None = None,
     ) -> None:
         check_modulus_choice(modulus, youngs_modulus, poisson_ratio)
         if modulus is None:
@@ -303,6 +324,7 @@ class LineContact:
         }
         for name, value in given.items():
             object.__setattr__(self, name, quantity(name, value))
+        object.__setattr__(self, "law", check_law(law))
         self._check_scales()
 
     @property
@@ -314,6 +336,7 @@ class LineContact:
             speed=3 * math.pi**2 / 4 * (eta * U / F_N) * (R / F_N * E_star),
             load=F_N / R / E_star / self.beta / self.beta / math.pi,
             roughness=self.roughness / R / self.beta / self.beta / self.alpha / 4,
+            law=self.law,
         )
 
     @property
@@ -406,6 +429,7 @@ class LineContact:
             beta=beta,
             friction_coefficient=friction_coefficient,
             modulus=E_star,
+            law=groups.law,
         )
 
     def _check_scales(self) -> None:
@@ -413,7 +437,7 @@ class LineContact:
         try:
             _ = self.groups, self.hertz
         except (InputError, ZeroDivisionError):
-            values = ", ".join(f"{name} = {getattr(self, name):g}" for name in self.__dataclass_fields__)
+            values = ", ".join(f"{name} = {getattr(self, name):g}" for name in INPUTS)
             raise InputError(
                 f"the dimensionless groups of this contact leave the range of double precision; check {values} (all in SI)."
             ) from None
@@ -447,6 +471,14 @@ def quantity(name: str, value: Any) -> float:
         allowed = "zero or positive" if wanted.zero else "positive"
         raise InputError(f"{name} = {show(value)} must be {allowed}.")
     return result
+
+
+def check_law(law: Any) -> LawShape | None:
+    """Return a contact law, or None for the exponential one; refuse what has not the methods of one."""
+    if law is None or (isinstance(law, LawShape) and not isinstance(law, type)):
+        return law
+    advice = f"write {law.__name__}()" if isinstance(law, type) else "give an object such as GreenwoodWilliamson(), or None"
+    raise InputError(f"law = {show(law)} is no contact law; {advice}.")
 
 
 def check_modulus_choice(modulus: Any, youngs_modulus: Any, poisson_ratio: Any) -> None:

@@ -33,6 +33,9 @@ __all__ = ["GAMMA", "PerssonLaw", "exponential_limit", "persson_law"]
 GAMMA = 0.45
 """Reduction of the elastic energy; 0.42 to 0.45 fit simulations [YP08]."""
 
+NEARLY_FULL = 0.42
+"""Share of the surface in contact from which fluid no longer finds a way through [Dapp 2012]."""
+
 TOLERANCE = 1e-11
 """Largest error of the logarithm of the pressure that the table may have between its points."""
 
@@ -90,6 +93,48 @@ class PerssonLaw:
     _knots: Array = field(repr=False)
     _coefficients: Array = field(repr=False)
     name: str = "persson"
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """Numbers of the surface that the law comes from, for outputs."""
+        names = ("alpha", "beta", "rms_height", "rms_slope", "gamma")
+        return {name: float(getattr(self, name)) for name in names}
+
+    @property
+    def lowest(self) -> float:
+        """Zero: the pressure diverges towards full contact."""
+        return 0.0
+
+    @property
+    def area_slope(self) -> float:
+        """Factor of the pressure Phi in the error function that is the share of the area in contact."""
+        return self.beta * math.sqrt(2) / self.rms_slope
+
+    @property
+    def coefficients(self) -> dict[str, float]:
+        """What a line contact needs of the surface: ``alpha``, ``beta`` and ``roughness`` [1, 1, m]."""
+        return {"alpha": self.alpha, "beta": self.beta, "roughness": self.rms_height}
+
+    def notes(self, separation: float) -> tuple[str, ...]:
+        """Return what to know about a state of which this is the least separation.
+
+        Parameters
+        ----------
+        separation : float
+            Least separation s of the state [-].
+
+        Returns
+        -------
+        tuple of str
+            One sentence where nearly all of the surface is in contact there, else none.
+        """
+        share = float(self.area_fraction(np.array([separation]))[0]) if separation > 0 else 1.0
+        if share < NEARLY_FULL:
+            return ()
+        return (
+            f"Up to {share:.3g} of the surface is in real contact: fluid passes hardly or not at all there, and Reynolds' "
+            "equation with the mean gap is outside its range.",
+        )
 
     def log_pressure(self, separation: Array) -> Array:
         r"""Return :math:`\ln\Phi(s)`.

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, is_exponential
 from .output import MissingExtraError
 from .parameters import Groups
 from .phase_grid import AXES, MARKS, REGIMES, Diagram
 from .regimes import BOUNDARY_FLUID_SHARE
-from .store import GROUPS, INPUTS, OBSERVABLES, unit_of
+from .store import GROUPS, INPUTS, OBSERVABLES, law_attributes, unit_of
 
 if TYPE_CHECKING:
     import xarray
@@ -135,7 +135,7 @@ def _row_groups(diagram: Diagram) -> tuple[Groups, Array]:
     rows, columns = (len(diagram.axes[name]) for name in AXES[:2])
     states = [[diagram.problem(i, j)[1] for j in range(columns)] for i in range(rows)]
     speed, load, roughness = (np.array([[getattr(g, name) for g in row] for row in states], dtype=float) for name in GROUPS)
-    return Groups(speed, load, roughness), speed
+    return Groups(speed, load, roughness, law=states[0][0].law), speed
 
 
 def _formula_speeds(diagram: Diagram) -> dict[str, Array]:
@@ -154,7 +154,7 @@ def _formula_speeds(diagram: Diagram) -> dict[str, Array]:
             "printed_speed_boundary_to_mixed": transitions.speed_boundary_to_mixed.function(groups, printed=True),
             "printed_speed_at_minimum": transitions.speed_at_minimum.function(groups, mu0, beta, printed=True),
         }
-        smooth = np.asarray(groups.roughness) == 0
+        smooth = (np.asarray(groups.roughness) == 0) | (not is_exponential(groups.law))
         return {name: np.where(smooth, np.nan, np.broadcast_to(values, unit.shape) / unit) for name, values in found.items()}
 
 
@@ -163,6 +163,8 @@ def _formula_merging(diagram: Diagram) -> Array:
 
     groups, _ = _row_groups(diagram)
     loads = np.asarray(groups.load)[:, 0]
+    if not is_exponential(groups.law):
+        return np.full(len(loads), np.nan)
     line = np.asarray(transitions.merging_roughness(loads, diagram.mu0, diagram.beta))
     if diagram.contact is None:
         return line
@@ -177,6 +179,7 @@ def _attributes(diagram: Diagram) -> dict[str, Any]:
         "outcome": diagram.outcome.value,
         "complete": int(complete),
         "definition": diagram.definition,
+        **law_attributes(_row_groups(diagram)[0].law),
         "rtol": diagram.rtol,
         "mu0": diagram.mu0,
         "beta": diagram.beta,

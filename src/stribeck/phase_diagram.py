@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import atlas_phase
-from ._types import Array
+from ._types import Array, LawShape
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .merging import merging_roughness, weakening
 from .newton import Outcome
@@ -50,6 +50,7 @@ def phase_diagram(
     rtol: float = 1e-4,
     merging: bool = False,
     on_point: Callable[[int, int], object] | None = None,
+    law: str | LawShape | None = None,
     method: Method = "solver",
 ) -> xarray.Dataset:
     """Solve a grid of speeds, loads and roughnesses, and locate the transitions between its regimes.
@@ -75,6 +76,9 @@ def phase_diagram(
         :func:`stribeck.merging.merging_roughness`; about a second each.
     on_point : callable, optional
         ``on_point(done, points)`` is called as points are finished, for progress.
+    law : str or LawShape, optional
+        Contact law as in :func:`stribeck.solve`; that of the problem if omitted.  What formulas give is nan for another law
+        than the exponential one.
     method : {"solver", "atlas"}
         Whether points and transitions are solved, or read off :mod:`stribeck.atlas`, within 1e-4 and a hundred times as fast.
 
@@ -101,7 +105,7 @@ def phase_diagram(
     """
     check_rtol(rtol)
     diagram = empty_diagram(
-        problem, {"load": load, "roughness": roughness, "speed": speed}, points, mu0, beta, definition, rtol
+        problem, {"load": load, "roughness": roughness, "speed": speed}, points, mu0, beta, definition, rtol, law
     )
     from .phase_dataset import diagram_dataset, import_xarray
 
@@ -215,7 +219,7 @@ def _merging_line(diagram: Diagram) -> Array:
     for i in range(len(line)):
         _, groups, _ = diagram.problem(i, 0)
         try:
-            group = merging_roughness(float(groups.load), diagram.mu0, diagram.beta, diagram.definition)
+            group = merging_roughness(float(groups.load), diagram.mu0, diagram.beta, diagram.definition, law=groups.law)
         except SolveError:
             continue
         line[i] = group if diagram.contact is None else _in_metres(diagram.contact, group)

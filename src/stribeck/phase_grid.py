@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, LawShape
+from .contact_laws import named_law
 from .newton import Outcome
-from .parameters import QUANTITIES, Groups, LineContact
+from .parameters import QUANTITIES, Groups, LineContact, check_law
 from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
 from .solution import Definition, check_definition, coefficients
-from .solve import as_groups
+from .solve import as_groups, with_law
 from .span import automatic_speeds
 from .units import InputError, show, to_si
 
@@ -67,6 +68,8 @@ class Diagram:
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of the states.
+    law : LawShape or None
+        Contact law; None is the exponential one.
     outcome : Outcome
         CONVERGED, or INTERRUPTED.
     """
@@ -77,6 +80,7 @@ class Diagram:
     beta: float
     definition: Definition
     rtol: float
+    law: LawShape | None = None
     outcome: Outcome = Outcome.CONVERGED
     fields: dict[str, Array] = field(init=False)
     regime: Any = field(init=False)
@@ -100,7 +104,7 @@ class Diagram:
         """Return contact or groups of a row at speed 1 of its axis, the groups, and the speed group for that speed."""
         load, roughness = float(self.axes["load"][i]), float(self.axes["roughness"][j])
         if self.contact is None:
-            groups = Groups(1.0, load, roughness)
+            groups = Groups(1.0, load, roughness, law=self.law)
             return groups, groups, 1.0
         row = self.contact.replace(load=load, roughness=roughness, speed=1.0)
         return row, row.groups, float(row.groups.speed)
@@ -114,8 +118,10 @@ def empty_diagram(
     beta: float | None,
     definition: Definition,
     rtol: float,
+    law: str | LawShape | None = None,
 ) -> Diagram:
     """Return the empty diagram that the arguments ask for."""
+    problem = problem if problem is None else with_law(problem, law)
     contact = problem if isinstance(problem, LineContact) else None
     mu0, beta = coefficients(contact, mu0, beta)
     definition = check_definition(definition)
@@ -127,12 +133,15 @@ def empty_diagram(
         raise InputError(f"{' and '.join(missing)} missing; give numbers or ranges, or a LineContact.")
     counts = _points(points)
     axes = {name: _axis(name, given[name], contact is not None, counts[name]) for name in ("load", "roughness")}
-    corners = Diagram(contact, axes | {"speed": np.ones(1)}, mu0, beta, definition, rtol)
+    law = named_law(law) if isinstance(law, str) else check_law(law)
+    if law is None and problem is not None:
+        law = problem.law
+    corners = Diagram(contact, axes | {"speed": np.ones(1)}, mu0, beta, definition, rtol, law)
     if given["speed"] is None:
         axes["speed"] = _automatic_axis(corners, counts["speed"])
     else:
         axes["speed"] = _axis("speed", given["speed"], contact is not None, counts["speed"])
-    return Diagram(contact, axes, mu0, beta, definition, rtol)
+    return Diagram(contact, axes, mu0, beta, definition, rtol, law)
 
 
 def _points(points: int | Mapping[str, int] | None) -> dict[str, int]:

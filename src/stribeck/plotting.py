@@ -424,7 +424,7 @@ def _si(value: float, name: str, digits: int) -> str:
 
 def _curve_footer(curve: StribeckCurve) -> list[tuple[str, str]]:
     count = f"{len(curve)} points" if len(curve) == curve.requested else f"{len(curve)} of {curve.requested} points"
-    law = curve.solutions[0].law if len(curve) else ""
+    law = _law(curve.solutions[0]) if len(curve) else ""
     first = [*_inputs(curve.contact, None if curve.over != "speed" else "speed", curve.over)]
     if curve.contact is None:
         first += [rf"$\mu_0$ = {curve.mu0:.4g}", rf"$\beta$ = {curve.beta:.4g}"]
@@ -434,7 +434,7 @@ def _curve_footer(curve: StribeckCurve) -> list[tuple[str, str]]:
         if np.ptp(values) <= 1e-12 * values[0]:
             first.append(f"{name} group {values[0]:.4g}")
     second = [
-        f"{law} contact law" if law else "",
+        law,
         f"viscous friction: definition {curve.definition}",
         f"rtol {curve.rtol:g}",
         f"estimated error {curve.error_estimate:.1e}",
@@ -448,13 +448,24 @@ def _curve_footer(curve: StribeckCurve) -> list[tuple[str, str]]:
 def _profile_footer(solution: Solution) -> list[tuple[str, str]]:
     groups = [f"{name} group {float(getattr(solution.groups, name)):.4g}" for name in ("speed", "load", "roughness")]
     second = [
-        solution.law + (" contact law" if solution.law == "exponential" else ""),
+        _law(solution),
         f"rtol {solution.rtol:g}",
         f"estimated error {solution.error_estimate:.1e}",
         f"stribeck {version('stribeck')}",
     ]
     notes = list(solution.notes) if solution.outcome.ok else [solution.outcome.value, *solution.notes]
     return _lines([[*_inputs(solution.contact), *groups], second], notes, 112)
+
+
+def _law(solution: Solution) -> str:
+    """Return name and parameters of the contact law."""
+    if solution.law in ("dry contact", "smooth"):
+        return solution.law
+    numbers = ", ".join(
+        f"{name.replace('_', ' ')} {value if isinstance(value, str) else f'{value:.4g}'}"
+        for name, value in solution.law_parameters.items()
+    )
+    return f"{solution.law} contact law" + (f" ({numbers})" if numbers else "")
 
 
 def _inputs(contact: LineContact | None, *without: str | None) -> list[str]:

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import reynolds
-from ._types import Array
-from .contact_laws import contact_law
+from ._types import Array, is_exponential
+from .contact_laws import contact_law, lifted
 from .equations import Operators
 from .estimate import ErrorEstimate, FineOperators, error_estimates
 from .mesh import MeshTooLargeError
@@ -41,10 +41,15 @@ def mesh_tolerances_for(rtol: float) -> tuple[float, float]:
 
 
 def solvable(groups: Groups) -> Groups:
-    """Return the groups that are solved for: at speed zero the load is lowered until all gaps are positive."""
+    """Return the groups that are solved for: at speed zero the gap is lifted until it is positive everywhere.
+
+    The exponential law does so by a lower load, another by a shifted separation.
+    """
+    if not is_exponential(groups.law):
+        return groups if groups.speed > 0 else lifted(groups)[0]
     if groups.speed > 0 or groups.load <= QUASISTATIC_LOAD:
         return groups
-    return Groups(0.0, QUASISTATIC_LOAD, QUASISTATIC_LOAD * groups.relative_roughness)
+    return Groups(0.0, QUASISTATIC_LOAD, QUASISTATIC_LOAD * groups.relative_roughness, law=groups.law)
 
 
 def quasistatic_shift(groups: Groups) -> float:
@@ -52,8 +57,11 @@ def quasistatic_shift(groups: Groups) -> float:
 
     .. math:: \Delta h = -\frac{\kappa}{2} \ln \frac{\bar F_N}{\bar F_N'}
 
-    Exact at speed zero, where the solution depends on kappa alone but for this shift of gap and offset.
+    Exact at speed zero, where the solution depends on kappa alone but for this shift of gap and offset.  For other laws than
+    the exponential one it is that of :func:`contact_laws.lifted`.
     """
+    if not is_exponential(groups.law):
+        return 0.0 if groups.speed > 0 else -lifted(groups)[1]
     if solvable(groups) is groups:
         return 0.0
     return -0.5 * float(groups.relative_roughness) * math.log(float(groups.load / solvable(groups).load))
@@ -160,9 +168,9 @@ def newton_tolerance(rtol: float) -> float:
 def values_of(state: State, groups: Groups) -> Observables:
     """Return the observables of ``groups`` from the state solved for it."""
     values = observables(state.equations, state.y, float(groups.load))
-    if solvable(groups) is groups:
-        return values
     shift = quasistatic_shift(groups)
+    if shift == 0.0:
+        return values
     gap = state.gap + shift
     return replace(
         values,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._types import LawShape
 from .curve import Landmark, StribeckCurve
 from .distances import Crossing, Distance, TransitionDistances
 from .parameters import QUANTITIES, Groups, LineContact
@@ -128,6 +129,7 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[s
         "over": curve.over,
         "unit": "1" if curve.contact is None else unit_of(curve.over),
         "definition": curve.definition,
+        **law_json(curve.law),
         "rtol": curve.rtol,
         "mu0": curve.mu0,
         "beta": curve.beta,
@@ -201,6 +203,7 @@ def regimes_json(
         "distances": {distance.name: _distance(distance) for distance in distances.distances},
         "elasticities": elasticities,
         "moves_friction_most": _strongest(elasticities),
+        **law_json(solution.groups.law),
         "inputs": _inputs(solution.contact),
         "units": _units(),
         "error_estimate": max(solution.error_estimate, curve.error_estimate),
@@ -208,6 +211,24 @@ def regimes_json(
         "message": curve.outcome.value,
         "notes": [*solution.notes, *distances.notes],
     }
+
+
+def law_json(law: LawShape | None) -> dict[str, Any]:
+    """Return name and parameters of a contact law.
+
+    Parameters
+    ----------
+    law : LawShape or None
+        The law; None is the exponential one.
+
+    Returns
+    -------
+    dict
+        ``contact_law`` and ``contact_law_parameters``.
+    """
+    if law is None:
+        return {"contact_law": "exponential", "contact_law_parameters": {}}
+    return {"contact_law": law.name, "contact_law_parameters": law.parameters}
 
 
 def print_solution(
@@ -262,6 +283,9 @@ def _solution_rows(solution: Solution, mu0: float | None, beta: float | None) ->
     si = "" if scales is None else _length(solution.minimum_position * scales.half_width, 1e-4)
     yield "place of the least film", f"{solution.minimum_position:.4g} a", si, ""
     yield "Lambda (film over h_rms/alpha)", _digits(solution.lambda_ratio, 1e-4), "", ""
+    if not math.isnan(solution.central_area_fraction):
+        relative = solution.central_area_fraction_error / solution.central_area_fraction
+        yield "real contact area at x = 0", _digits(solution.central_area_fraction, relative), "", _error(relative)
     regime = regime_of(solution.fluid_load_share, _contact_part(solution.friction(mu0, beta)))
     yield "Hersey number", f"{_hersey(solution, beta):.4g}", "", ""
     yield "regime", regime, "", ""
@@ -437,6 +461,28 @@ def _print_head(console: Console, title: str, contact: LineContact | None, group
         if values.ndim == 0 or (len(values) and np.ptp(values) <= 1e-12 * values[0]):
             constant.append(f"{name} {float(values.flat[0]):.6g}")
     _say(console, f"Groups: {', '.join(constant)}.")
+    if groups.law is not None:
+        _say(console, law_sentence(groups.law))
+
+
+def law_sentence(law: LawShape) -> str:
+    """Return name and parameters of a contact law as a sentence.
+
+    Parameters
+    ----------
+    law : LawShape
+        The law.
+
+    Returns
+    -------
+    str
+        Such as ``"Contact law: persson (alpha 2.09, beta 0.0143)."``
+    """
+    numbers = ", ".join(
+        f"{name.replace('_', ' ')} {value if isinstance(value, str) else f'{value:.4g}'}"
+        for name, value in law.parameters.items()
+    )
+    return f"Contact law: {law.name}{f' ({numbers})' if numbers else ''}."
 
 
 def _print_outcome(console: Console, outcome: str, error: float, notes: Sequence[str]) -> None:

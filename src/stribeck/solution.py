@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -9,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from ._types import Array, Indices
+from ._types import Array, Indices, WithArea, is_exponential
 from .mesh import Mesh
 from .newton import Outcome
 from .observables import NAMES, Observables, gap_at
@@ -223,6 +224,43 @@ class Solution:
         return self.central_gap / kappa if kappa > 0 else float("inf")
 
     @property
+    def separation(self) -> Array:
+        """Separation ``s = alpha h/h_rms`` at :attr:`x` [-], in which contact laws are given; infinite for smooth surfaces."""
+        kappa = float(self.groups.relative_roughness)
+        return self.gap / kappa if kappa > 0 else np.full_like(self.x, np.inf)
+
+    @property
+    def area_fraction(self) -> Array | None:
+        """Real area of contact over the apparent one at :attr:`x` [-]; None where the law knows no spectrum of the surface."""
+        if not isinstance(self.groups.law, WithArea) or self.groups.roughness == 0:
+            return None
+        return self.groups.law.area_fraction_at(self.contact_pressure * math.sqrt(float(self.groups.load)))
+
+    @property
+    def central_area_fraction(self) -> float:
+        """Real area of contact over the apparent one at x = 0 [-]; nan where the law knows no spectrum of the surface."""
+        return self._central_area()[0]
+
+    @property
+    def central_area_fraction_error(self) -> float:
+        """Estimated absolute error of :attr:`central_area_fraction` [-], by that of the central gap."""
+        return self._central_area()[1]
+
+    def _central_area(self) -> tuple[float, float]:
+        law = self.groups.law
+        if not isinstance(law, WithArea) or self.groups.roughness == 0:
+            return math.nan, math.nan
+        error = abs(self.central_gap) * self.errors["central_gap"]
+        gaps = np.array([self.central_gap, self.central_gap - error, self.central_gap + error])
+        found = law.area_fraction_at(np.exp(law.log_pressure(gaps / float(self.groups.relative_roughness))))
+        return float(found[0]), float(np.abs(found[1:] - found[0]).max())
+
+    @property
+    def law_parameters(self) -> dict[str, float | str]:
+        """Parameters of the contact law beside alpha, beta and h_rms; none of the exponential one."""
+        return {} if self.groups.law is None else self.groups.law.parameters
+
+    @property
     def hersey_number(self) -> float:
         """Hersey number eta U/F_N [-]: of the contact, or for beta = 1 where only groups are known."""
         return float(self.groups.hersey_number() if self.contact is None else self.contact.hersey_number)
@@ -346,8 +384,12 @@ class Solution:
             "load": float(self.groups.load),
             "roughness": float(self.groups.roughness),
             "contact_law": self.law,
+            "contact_law_parameters": self.law_parameters,
         }
         result |= {name: getattr(self, name) for name in (*names, "offset", "hersey_number", "lambda_ratio")}
+        if isinstance(self.groups.law, WithArea):
+            result["central_area_fraction"] = self.central_area_fraction
+            result["central_area_fraction_error"] = self.central_area_fraction_error
         for definition in DEFINITIONS:
             f = self.friction(mu0, beta, definition)
             parts = {"contact": f.contact, "viscous": f.viscous, "total": f.total, "error": f.error}
@@ -376,9 +418,14 @@ def check_definition(definition: str) -> Definition:
 
 
 def law_notes(groups: Groups, contact: LineContact | None, values: Observables) -> tuple[str, ...]:
-    """Return the sentences that say where the exponential contact law leaves its range."""
+    """Return the sentences that say where the contact law leaves its range."""
     if groups.roughness == 0:
         return ()
+    if groups.law is not None and not is_exponential(groups.law):
+        said = groups.law.notes(values.minimum_gap / float(groups.relative_roughness))
+        return ("The gap is negative: asperities alone cannot carry this load at a positive gap.", *said)[
+            values.minimum_gap > 0 :
+        ]
     notes = []
     if groups.load >= 1:
         notes.append(

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import Literal
 
 import numpy as np
 
 from . import hertz
-from ._types import Array
+from ._types import Array, LawShape, is_exponential
+from .contact_laws import named_law
 from .mesh import Mesh
 from .newton import Outcome
 from .observables import NAMES, Observables
 from .parameters import Groups, LineContact
 from .refine import Point, converge, order_for, quasistatic_shift, solvable
 from .solution import Solution, law_notes
-from .start import cold_start
+from .start import cold_start, start_by_exponential
 from .threads import one_blas_thread
 from .units import InputError, show
 
@@ -53,10 +55,16 @@ class SolveError(RuntimeError):
 
 
 @one_blas_thread
-def solve(problem: Groups | LineContact, *, rtol: float = 1e-6, on_failure: Literal["raise", "return"] = "raise") -> Solution:
+def solve(
+    problem: Groups | LineContact,
+    *,
+    rtol: float = 1e-6,
+    law: str | LawShape | None = None,
+    on_failure: Literal["raise", "return"] = "raise",
+) -> Solution:
     r"""Solve one state of the lubricated rough contact, from cold.
 
-    The coupled equations are [BP] Appendix A: contact pressure exponential in the gap, Reynolds' equation, plane-strain
+    The coupled equations are [BP] Appendix A: contact pressure by the contact law, Reynolds' equation, plane-strain
     elasticity, fixed load.
 
     Parameters
@@ -65,6 +73,9 @@ def solve(problem: Groups | LineContact, *, rtol: float = 1e-6, on_failure: Lite
         The state.  Speed zero (quasistatic), roughness zero (smooth) and both (Hertz, closed form) are ordinary inputs.
     rtol : float
         Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2.
+    law : str or LawShape, optional
+        Contact law: an object such as :class:`stribeck.GreenwoodWilliamson`, or the name of one that needs no parameters; that
+        of the problem if omitted, which is the exponential one unless it says otherwise.
     on_failure : {"raise", "return"}
         What to do where the tolerance was not reached: raise :class:`SolveError` or return what there is, with its outcome.
 
@@ -87,7 +98,7 @@ def solve(problem: Groups | LineContact, *, rtol: float = 1e-6, on_failure: Lite
 
     Source: [BP] Appendix A; theory.md Eqs. (1)-(5); numerics.md for the scheme.
     """
-    groups, contact = as_groups(problem)
+    groups, contact = as_groups(with_law(problem, law))
     check_rtol(rtol)
     if on_failure not in ("raise", "return"):
         raise InputError(f"on_failure = {show(on_failure)}; it must be 'raise' or 'return'.")
@@ -99,9 +110,19 @@ def solve(problem: Groups | LineContact, *, rtol: float = 1e-6, on_failure: Lite
 def solved_point(groups: Groups, rtol: float) -> Point:
     """Return the refined state of ``groups`` from cold; raise where no path leads there."""
     path = cold_start(solvable(groups))
+    if not path.outcome.ok and not is_exponential(groups.law):
+        path = start_by_exponential(solvable(groups))
     if not path.outcome.ok:
         raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
     return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+
+
+def with_law(problem: Groups | LineContact, law: str | LawShape | None) -> Groups | LineContact:
+    """Return the problem with another contact law, unless none is given."""
+    if law is None or not isinstance(problem, Groups | LineContact):
+        return problem
+    shape = named_law(law) if isinstance(law, str) else law
+    return replace(problem, law=shape) if isinstance(problem, Groups) else problem.replace(law=shape)
 
 
 def as_groups(problem: Groups | LineContact) -> tuple[Groups, LineContact | None]:

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import brentq
 
 from ._types import Array
-from .contact_laws import contact_law
+from .contact_laws import BlendedShape, contact_law
 from .continuation import Path, march
 from .equations import LOAD, Operators
 from .mesh import Mesh, MeshTooLargeError
@@ -74,12 +74,12 @@ class RigidGuess:
 def unloaded(groups: Groups, log_factor: float) -> Groups:
     """Return the groups at the load divided by ``exp(log_factor)``, all else being held."""
     factor = math.exp(log_factor)
-    return Groups(groups.speed * factor**2, groups.load / factor, groups.roughness)
+    return Groups(groups.speed * factor**2, groups.load / factor, groups.roughness, law=groups.law)
 
 
 def faster(groups: Groups, log_factor: float) -> Groups:
     """Return the groups at the speed times ``exp(2 log_factor)``, all else being held."""
-    return Groups(groups.speed * math.exp(2 * log_factor), groups.load, groups.roughness)
+    return Groups(groups.speed * math.exp(2 * log_factor), groups.load, groups.roughness, law=groups.law)
 
 
 def rigid_guess(groups: Groups) -> RigidGuess:
@@ -135,3 +135,26 @@ def cold_start(groups: Groups) -> Path[State]:
 
     path = march(correct, top, 0.0, first_step=0.3, max_step=2.5, min_step=1e-3, order=3)
     return path
+
+
+def start_by_exponential(groups: Groups) -> Path[State]:
+    """Return the path from the state of the exponential law to that of another, which changes the one into the other.
+
+    The way out where :func:`cold_start` fails.
+    """
+    start = cold_start(replace(groups, law=None))
+    if not start.outcome.ok:
+        return start
+    shape = groups.law
+    assert shape is not None
+
+    def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
+        here = replace(groups, law=shape if part == 1.0 else BlendedShape(shape, part))
+        guess: Guess = extrapolate(history, part) if history else start.states[-1]
+        try:
+            mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
+        except MeshTooLargeError:
+            return None
+        return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
+
+    return march(correct, 0.0, 1.0, first_step=0.25, max_step=0.5, min_step=1e-4, order=3)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._types import LawShape, WithArea
 from .output import MissingExtraError, PathLike, replacing
 from .parameters import QUANTITIES
 from .solution import DEFINITIONS, Solution
@@ -62,6 +63,13 @@ OBSERVABLES = {
     ),
 }
 """Attributes of a solution that a dataset holds: unit and name of each."""
+
+
+AREA = {
+    "central_area_fraction": ("1", "real area of contact over the apparent one, at the centre"),
+    "central_area_fraction_error": ("1", "estimated absolute error of central_area_fraction"),
+}
+"""What a solution has besides, of which the contact law knows the spectrum of the surface."""
 
 
 def curve_dataset(curve: StribeckCurve, title: str = "") -> xarray.Dataset:
@@ -223,6 +231,9 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
             "1",
             f"{label}: estimated absolute error",
         )
+    if isinstance(curve.law, WithArea):
+        for name, (unit, label) in AREA.items():
+            columns[name] = (curve.observable(name), unit, label)
     films = [si_films(solution) for solution in curve.solutions]
     for name, (_, unit, label) in (films[0] if films else {}).items():
         columns[name] = (np.array([film[name][0] for film in films]), unit, label)
@@ -271,7 +282,7 @@ def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
         "requested_points": curve.requested,
         "over": curve.over,
         "definition": curve.definition,
-        "contact_law": curve.solutions[0].law if len(curve) else "",
+        **law_attributes(curve.law, bool(len(curve)) and curve.solutions[0].law == "smooth"),
         "rtol": curve.rtol,
         "error_estimate": curve.error_estimate,
         "mu0": curve.mu0,
@@ -288,6 +299,26 @@ def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
     found |= _landmark_attributes(curve)
     found["notes"] = "\n".join(curve.notes)
     return found
+
+
+def law_attributes(law: LawShape | None, smooth: bool = False) -> dict[str, Any]:
+    """Return name and parameters of a contact law as attributes of a dataset.
+
+    Parameters
+    ----------
+    law : LawShape or None
+        The law; None is the exponential one.
+    smooth : bool
+        Whether the surfaces are smooth and have none.
+
+    Returns
+    -------
+    dict
+        ``contact_law``, and its parameters by their names after ``contact_law_``.
+    """
+    if smooth or law is None:
+        return {"contact_law": "smooth" if smooth else "exponential"}
+    return {"contact_law": law.name} | {f"contact_law_{name}": value for name, value in law.parameters.items()}
 
 
 def _landmark_attributes(curve: StribeckCurve) -> dict[str, Any]:

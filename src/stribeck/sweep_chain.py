@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, LawShape
 from .continuation import march
 from .follow import LONGEST_STEP, PREDICTOR_ORDER, SHORTEST_STEP, Follower
 from .newton import Outcome
-from .parameters import Groups, LineContact
+from .parameters import INPUTS, Groups, LineContact
 from .refine import Point
 from .solve import describe, hertz_solution, solution_of
 from .sweep_columns import ERROR, failed_row, row_of
@@ -46,6 +46,8 @@ class Chain:
         Which of the two.
     rtol : float
         Relative tolerance of each state.
+    law : LawShape or None
+        Contact law of all; None is the exponential one.
     """
 
     rows: tuple[int, ...]
@@ -53,12 +55,13 @@ class Chain:
     inputs: dict[str, tuple[float, ...]]
     si: bool
     rtol: float
+    law: LawShape | None = None
 
     def contact(self, i: int) -> LineContact | None:
         """Return the contact of the i-th state, where it has one."""
         if not self.si:
             return None
-        return LineContact(**{name: self.inputs[name][i] for name in LineContact.__dataclass_fields__})
+        return LineContact(**{name: self.inputs[name][i] for name in INPUTS}, law=self.law)
 
     def coefficients(self, i: int) -> tuple[float, float]:
         """Return mu0 and beta of the i-th state."""
@@ -86,12 +89,12 @@ def solve_chain(chain: Chain, on_row: OnRow) -> None:
     first = 0
     while first < len(groups):
         if groups[first, 0] == groups[first, 2] == 0:  # the dry smooth contact
-            here = Groups(*chain.groups[first])
+            here = Groups(*chain.groups[first], law=chain.law)
             contact = chain.contact(first)
             on_row(chain.rows[first], *row_of(hertz_solution(here, contact, chain.rtol), *chain.coefficients(first)))
             first += 1
             continue
-        path = _Polyline(groups[first : _end(groups, first)])
+        path = _Polyline(groups[first : _end(groups, first)], chain.law)
         finished, outcome, failure, error = _follow(chain, first, path, on_row)
         if outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
@@ -153,23 +156,23 @@ def _follow(chain: Chain, first: int, path: _Polyline, on_row: OnRow) -> tuple[i
 
 def _failure(chain: Chain, i: int, outcome: Outcome, failure: Point | None, error: str) -> tuple[Array, str]:
     """Return the row of a state that failed from cold: what was reached where there is a state, else its outcome alone."""
-    contact, where = chain.contact(i), describe(Groups(*chain.groups[i]))
+    contact, where = chain.contact(i), describe(Groups(*chain.groups[i], law=chain.law))
     if error:
-        return failed_row(contact, ERROR, f"{where}: {error}")
+        return failed_row(contact, chain.law, ERROR, f"{where}: {error}")
     if failure is not None:
         outcome = failure.outcome
         solution = solution_of(failure, contact, chain.rtol)
         if solution is not None:
             values, text = row_of(solution, *chain.coefficients(i))
             return values, f"{where}: {text}"
-    return failed_row(contact, outcome.name, f"{where}: {outcome.value}")
+    return failed_row(contact, chain.law, outcome.name, f"{where}: {outcome.value}")
 
 
 class _Polyline:
     """The way from state to state, straight in the logarithms of the groups that are not zero."""
 
-    def __init__(self, groups: Array) -> None:
-        self.groups = groups
+    def __init__(self, groups: Array, law: LawShape | None) -> None:
+        self.groups, self.law = groups, law
         self.z = np.log(np.where(groups > 0, groups, 1.0))
         steps = np.diff(self.z, axis=0)
         lengths = np.abs(steps).max(axis=1) if len(steps) else np.zeros(0)
@@ -205,8 +208,8 @@ class _Polyline:
         """Return the groups at ``s``, exactly those of a state where it is one."""
         i = int(np.searchsorted(self.knots, s))
         if i < len(self) and self.knots[i] == s:
-            return Groups(*self.groups[i].tolist())
+            return Groups(*self.groups[i].tolist(), law=self.law)
         k = self._step(s)
         part = (s - self.knots[k]) / (self.knots[k + 1] - self.knots[k])
         here = np.exp((1 - part) * self.z[k] + part * self.z[k + 1])
-        return Groups(*np.where(self.groups[k] > 0, here, 0.0).tolist())
+        return Groups(*np.where(self.groups[k] > 0, here, 0.0).tolist(), law=self.law)

@@ -15,9 +15,10 @@ from typing import Annotated, Any, get_args
 
 import numpy as np
 
-from ._types import Array
-from .case import Case, Law, error_sentence, example_of, read_toml
-from .parameters import QUANTITIES, Groups, LineContact, check_modulus_choice, quantity
+from ._types import Array, LawShape
+from .case import Case, contact_inputs, error_sentence, example_of, group_inputs, read_toml, surface_table
+from .case_law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
+from .parameters import INPUTS, QUANTITIES, Groups, LineContact, check_modulus_choice, quantity
 from .sweep_points import KINDS, RANDOM, Axis, Kind, points_of
 from .units import InputError, show
 
@@ -29,7 +30,6 @@ GROUPS = ("speed", "load", "roughness")
 COEFFICIENTS = {"mu0": "friction_coefficient", "beta": "beta"}
 """What friction needs beside groups, and the quantities that these are."""
 
-INPUTS = tuple(LineContact.__dataclass_fields__)
 ELASTICITY = ("modulus", "youngs_modulus", "poisson_ratio")
 
 
@@ -59,8 +59,10 @@ class SweepDesign:
         Whether the states are contacts in SI units.
     rtol : float
         Relative tolerance of each state.
-    law : {"exponential"}
-        The contact law.
+    law : {"exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"}
+        Name of the contact law.
+    contact_law : LawShape or None
+        The law itself; None is the exponential one.
     """
 
     path: Path
@@ -74,6 +76,7 @@ class SweepDesign:
     si: bool
     rtol: float
     law: Law
+    contact_law: LawShape | None = None
 
     def __len__(self) -> int:
         """Return the number of states."""
@@ -82,7 +85,9 @@ class SweepDesign:
     @functools.cached_property
     def fingerprint(self) -> str:
         """What tells this design from another: of its states and settings, not of comments in its file."""
-        settings = [sorted(self.inputs), self.si, self.rtol, self.law, self.kind, self.shape]
+        settings: list[Any] = [sorted(self.inputs), self.si, self.rtol, self.law, self.kind, self.shape]
+        if self.contact_law is not None:
+            settings += [repr(self.contact_law), self.contact_law.parameters]
         parts = [json.dumps(settings).encode(), self.groups.tobytes()]
         parts += [self.inputs[name].tobytes() for name in sorted(self.inputs)]
         return hashlib.sha256(b"".join(parts)).hexdigest()
@@ -143,14 +148,23 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         if not raw_vary:
             problems.append("[vary] is empty; say what varies, for example: load = ['10 N/m', '30 N/m'].")
         base = table.get("contact" if si else "groups", {})
-        problems += _missing(base if isinstance(base, dict) else {}, raw_vary, si)
+        given = FROM_TABLES if si and ("surface" in table or "asperities" in table) else ()
+        problems += _missing(base if isinstance(base, dict) else {}, raw_vary, si, given)
     if checked is None or problems:
         return None
     problems += _design_problems(checked["design"], axes)
     if problems:
         return None
-    fixed = {name: value for name, value in checked["contact" if si else "groups"].items() if value is not None}
-    law = fixed.pop("law", Case.law)
+    law = checked["contact" if si else "groups"]["law"]
+    try:
+        for axis in axes:  # what varies is not also said by a table of the surface
+            if si and axis.name in FROM_TABLES and law != "table" and checked[TABLES_OF[law]] is not None:
+                raise InputError(f"[vary] {axis.name} follows from the table [{TABLES_OF[law]}]; remove one of them.")
+        fixed = contact_inputs(checked, path.parent) if si else group_inputs(checked, path.parent)
+        shape: LawShape | None = fixed.pop("law")
+    except InputError as problem:
+        problems += str(problem).splitlines()
+        return None
     varying = points_of(checked["design"]["kind"], axes, checked["design"]["points"] or 0, checked["design"]["seed"] or 0)
     try:
         inputs, groups = (_contacts if si else _groups)(fixed, varying)
@@ -169,6 +183,7 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         si=si,
         rtol=checked["solver"]["rtol"],
         law=law,
+        contact_law=shape,
     )
 
 
@@ -202,7 +217,7 @@ def _model() -> Any:
         modulus: si | None = None
         youngs_modulus: si | None = None
         poisson_ratio: si | None = None
-        law: Annotated[Law, Field(description="'exponential', the only contact law so far")] = Case.law
+        law: Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")] = Case.law
 
     class GroupTable(Table):
         speed: number | None = None
@@ -210,6 +225,7 @@ def _model() -> Any:
         roughness: number | None = None
         mu0: number | None = None
         beta: number | None = None
+        law: Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")] = Case.law
 
     class Design(Table):
         kind: Annotated[Kind, Field(description=f"one of {', '.join(map(repr, KINDS))}")] = "grid"
@@ -232,6 +248,9 @@ def _model() -> Any:
         vary: Annotated[dict[str, Any], Field(description="a table, [vary]")]
         design: Annotated[Design, Field(description="a table, [design]", default_factory=Design)]
         solver: Annotated[Solver, Field(description="a table, [solver]", default_factory=Solver)]
+        surface: Annotated[surface_table(SURFACE), Field(description="a table, [surface]")] = None  # type: ignore[valid-type]
+        asperities: Annotated[surface_table(ASPERITIES), Field(description="a table, [asperities]")] = None  # type: ignore[valid-type]
+        table: Annotated[surface_table(TABLE), Field(description="a table, [table]")] = None  # type: ignore[valid-type]
         title: text = Case.title
         notes: text = Case.notes
 
@@ -306,8 +325,8 @@ def _design_problems(design: dict[str, Any], axes: list[Axis]) -> list[str]:
     return problems
 
 
-def _missing(fixed: dict[str, Any], varied: dict[str, Any], si: bool) -> list[str]:
-    """Return what is given twice or not at all."""
+def _missing(fixed: dict[str, Any], varied: dict[str, Any], si: bool, by_tables: tuple[str, ...]) -> list[str]:
+    """Return what is given twice or not at all; ``by_tables`` are the inputs that the surface gives."""
     table = "contact" if si else "groups"
     problems = []
     for name in varied:
@@ -317,7 +336,7 @@ def _missing(fixed: dict[str, Any], varied: dict[str, Any], si: bool) -> list[st
     if not si:
         return problems + [f"[groups] {name} is missing; add it there or to [vary]." for name in GROUPS if name not in given]
     for name in INPUTS:
-        if name not in given and name not in ELASTICITY:
+        if name not in given and name not in ELASTICITY and name not in by_tables:
             problems.append(f"[contact] {name} is missing; {example_of(name)}, or let it vary in [vary].")
     try:
         check_modulus_choice(*(given.get(name) for name in ELASTICITY))
@@ -341,7 +360,7 @@ def _group(name: str, value: Any) -> float:
     return float(getattr(Groups(**{**dict.fromkeys(GROUPS, 1.0), name: value}), name))
 
 
-def _contacts(fixed: dict[str, float], varying: dict[str, Array]) -> tuple[dict[str, Array], Array]:
+def _contacts(fixed: dict[str, Any], varying: dict[str, Array]) -> tuple[dict[str, Array], Array]:
     """Return inputs and groups of contacts, each of which is checked."""
     contacts = []
     for i, values in enumerate(zip(*(column.tolist() for column in varying.values()), strict=True)):

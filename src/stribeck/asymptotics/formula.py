@@ -15,8 +15,8 @@ from typing import Concatenate, Generic, Literal, ParamSpec
 
 import numpy as np
 
-from .._types import Array, Flags
-from ..parameters import Groups
+from .._types import Array, Flags, is_exponential
+from ..parameters import Groups, InputError
 from .constants import FILM_CONSTANT
 
 Value = float | Array
@@ -161,7 +161,8 @@ class Formula(Generic[Arguments]):
         return found
 
     def __call__(self, groups: Groups, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Value:
-        """Return the value, and warn where it is outside the range or missing."""
+        """Return the value, and warn where it is outside the range or missing; refuse another law than the exponential one."""
+        self.check_law(groups)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
             value = self.function(groups, *args, **kwargs)
         if np.isnan(value).any():
@@ -169,6 +170,22 @@ class Formula(Generic[Arguments]):
         elif not np.all(self.valid(groups)):
             self._warn("is used")
         return value
+
+    def check_law(self, groups: Groups) -> None:
+        """Refuse a contact law for which the formula was not derived; smooth contacts have none.
+
+        Parameters
+        ----------
+        groups : Groups
+            States.
+
+        Raises
+        ------
+        InputError
+            If the law is not the exponential one.
+        """
+        if self.plane != "smooth" and groups.law is not None and not is_exponential(groups.law):
+            raise InputError(f"{self.name} holds for the exponential contact law, not for {groups.law.name}; use solve.")
 
     def _warn(self, what: str) -> None:
         # One text for all values, so that Python's default filter shows it once.

@@ -1,0 +1,182 @@
+"""Make the picture and the tables of contact_laws.md anew: the full law of Persson against the exponential law.
+
+Usage::
+
+    python docs/contact_laws.py
+
+Takes about three minutes on one core.  What stands in the page between marks is replaced, all other text is kept.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import stribeck as sb
+from stribeck.threads import one_blas_thread
+
+FOLDER = Path(__file__).parent
+PAGE = FOLDER / "contact_laws.md"
+PICTURE = FOLDER / "images" / "contact_laws.png"
+
+KAPPA = 0.01
+"""Relative roughness of all states."""
+
+LOADS = (0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 2.0, 3.0, 5.0, 10.0)
+SHOWN = (0.1, 1.0, 3.0, 10.0)
+TOLD = (0.1, 0.3, 1.0, 3.0, 10.0)
+SPEEDS = (1e-11, 1.0)
+POINTS = 111
+
+MARKS = {
+    "fluid carries 5% of the load": "boundary",
+    "asperities cause 10% of the friction": "hydrodynamic",
+}
+"""The two transitions, by the names that curves give them."""
+
+ROOM = 1e-2
+"""Relative difference of friction from which two laws are said to part."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """One load under one law: the state at rest and the curve over the speed."""
+
+    rest: sb.Solution
+    curve: sb.StribeckCurve
+
+    def speed(self, name: str) -> float:
+        """Return the speed group of a landmark, nan where the curve has none."""
+        return next((mark.value for mark in self.curve.transitions if mark.name == name), math.nan)
+
+
+def persson() -> sb.surfaces.PerssonLaw:
+    """Return the law of a self-affine surface over three decades of wave numbers, Hurst exponent 0.8."""
+    return sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e7, hurst=0.8))
+
+
+def solved(load: float, law: sb.surfaces.PerssonLaw | None, beta: float) -> Pair:
+    """Return state at rest and curve at one load."""
+    groups = sb.Groups(0.0, load, KAPPA * load, law=law)
+    curve = sb.stribeck_curve(groups, speed=SPEEDS, points=POINTS, mu0=1.0, beta=beta)
+    if not curve.outcome.ok:
+        raise RuntimeError(f"load {load}: {curve.outcome.value}")
+    return Pair(sb.solve(groups), curve)
+
+
+def number(value: float, digits: int = 3) -> str:
+    """Return a number as text; a dash where there is none."""
+    if math.isnan(value):
+        return "none"
+    text = f"{value:.{digits}g}"
+    return re.sub(r"e([+-])0*(\d)", lambda found: "e" + found[1].replace("+", "") + found[2], text)
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table in Markdown."""
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in [head, ["---"] * len(head), *rows])
+
+
+def comparison(pairs: dict[float, tuple[Pair, Pair]]) -> str:
+    """Return what both laws make of a state at rest, of the plateau, of both transitions and of the minimum."""
+    rows = []
+    for load in TOLD:
+        one, other = pairs[load]
+        cells = [number(load)]
+        for pair in (one, other):
+            cells += [number(pair.rest.lambda_ratio), number(float(pair.curve.friction[0]), 4)]
+            cells += [number(pair.speed(name)) for name in MARKS]
+        rows.append(cells)
+    head = ["$F$"]
+    for law in ("exponential", "Persson"):
+        head += [f"{law}: $s$ at rest", "plateau $\\mu/\\mu_0$", "speed at 5 % fluid", "speed at 10 % contact friction"]
+    return table(head, rows)
+
+
+def parting(pairs: dict[float, tuple[Pair, Pair]]) -> str:
+    """Return where along each curve the friction of both laws differs, and by how much at most."""
+    rows = []
+    for load in TOLD:
+        one, other = pairs[load]
+        speeds = one.curve.values
+        difference = one.curve.friction / other.curve.friction - 1
+        apart = np.nonzero(np.abs(difference) > ROOM)[0]
+        worst = int(np.argmax(np.abs(difference)))
+        fluid = one.curve.observable("fluid_load_share")[worst]
+        ends = f"{number(float(speeds[apart[0]]), 2)} to {number(float(speeds[apart[-1]]), 2)}" if len(apart) else "nowhere"
+        minimum = [pair.curve.minimum.friction if pair.curve.minimum else math.nan for pair in (one, other)]
+        rows.append(
+            [number(load), ends, f"{100 * difference[worst]:+.0f} %", number(float(speeds[worst]), 2), f"{100 * fluid:.0f} %"]
+            + [number(value, 4) for value in minimum]
+        )
+    head = ["$F$", "speeds where $\\mu$ differs by over 1 %", "largest difference", "at speed", "fluid's share there"]
+    return table([*head, "least $\\mu/\\mu_0$, exponential", "Persson"], rows)
+
+
+def draw(pairs: dict[float, tuple[Pair, Pair]]) -> None:
+    """Draw curves, separation at rest and transitions."""
+    import matplotlib.pyplot as plt
+
+    colours = dict(zip(SHOWN, ("#0072b2", "#d55e00", "#cc79a7", "#1d2129"), strict=True))
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(13, 4.4), layout="constrained")
+    for load, colour in colours.items():
+        one, other = pairs[load]
+        left.loglog(other.curve.values, other.curve.friction, color=colour, lw=1.8, label=f"load {load:g}")
+        left.loglog(one.curve.values, one.curve.friction, color=colour, lw=1.2, ls=(0, (5, 2)))
+    left.set(xlabel=r"speed group $\lambda$", ylabel=r"friction $\mu/\mu_0$", title="Stribeck curves")
+    left.legend(frameon=False, loc="lower left")
+    loads = np.array(LOADS)
+    for k, style in (
+        (1, {"color": "#1d2129", "lw": 1.8, "label": "Persson"}),
+        (0, {"color": "#d55e00", "lw": 1.2, "ls": (0, (5, 2))}),
+    ):
+        label = style.get("label", "exponential")
+        middle.semilogx(loads, [pairs[load][k].rest.lambda_ratio for load in LOADS], **(style | {"label": label}))
+        for name, colour in zip(MARKS, ("#0072b2", "#cc79a7"), strict=True):
+            speeds = [pairs[load][k].speed(name) for load in LOADS]
+            shown = {"color": colour, "lw": style["lw"], "ls": style.get("ls", "-")}
+            right.loglog(loads, speeds, **shown, label=name.replace("%", " %") if k else None)
+    middle.axhline(0, color="#6b7280", lw=0.8)
+    middle.set(xlabel="load group $F$", ylabel=r"separation $\alpha h(0)/h_\mathrm{rms}$", title="At rest")
+    middle.legend(frameon=False)
+    right.set(xlabel="load group $F$", ylabel=r"speed group $\lambda$", title="Both transitions")
+    right.legend(frameon=False, loc="lower left")
+    figure.text(
+        0.5,
+        -0.03,
+        f"Relative roughness {KAPPA:g}; solid lines law of Persson (H = 0.8, three decades), broken lines exponential law.",
+        ha="center",
+        color="#6b7280",
+        size=9,
+    )
+    figure.savefig(PICTURE, dpi=130, bbox_inches="tight")
+    plt.close(figure)
+
+
+def filled(text: str, blocks: dict[str, str]) -> str:
+    """Return a page with new text between its marks."""
+    for name, body in blocks.items():
+        block = f"<!-- begin {name} -->\n{body}\n<!-- end {name} -->"
+        text = re.sub(rf"<!-- begin {name} -->\n.*?<!-- end {name} -->", lambda _: block, text, flags=re.DOTALL)  # noqa: B023
+    return text
+
+
+@one_blas_thread
+def main() -> None:
+    """Solve, draw, and write the page."""
+    law = persson()
+    pairs = {}
+    for load in LOADS:
+        pairs[load] = solved(load, None, law.beta), solved(load, law, law.beta)
+        print(f"load {load:g} done", flush=True)
+    draw(pairs)
+    PAGE.write_text(filled(PAGE.read_text(), {"comparison": comparison(pairs), "parting": parting(pairs)}))
+
+
+if __name__ == "__main__":
+    main()

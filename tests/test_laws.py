@@ -1,0 +1,477 @@
+"""Any contact law: its derivatives, what the equations make of it, user's laws, and the law in every part of the package."""
+
+import json
+import math
+import pickle
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import stribeck as sb
+from stribeck import fill, follow
+from stribeck.contact_laws import BlendedShape, ExponentialShape, ScaledLaw, ShiftedShape, contact_law, lifted
+from stribeck.distances import transition_distances
+from stribeck.equations import Equations, Operators
+from stribeck.merging import merging_roughness, weakening
+from stribeck.mesh import Mesh
+from stribeck.regimes import friction_elasticities
+from stribeck.start import start_by_exponential
+
+EXPONENTIAL = sb.FunctionLaw(lambda s: -s, lambda s: -np.ones_like(s), lowest=-math.inf)
+"""The exponential law by the way of any other."""
+
+
+@cache
+def laws():
+    s = np.linspace(0.05, 6.0, 40)
+    found = {
+        "persson": sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8)),
+        "greenwood-williamson": sb.GreenwoodWilliamson(),
+        "greenwood-tripp": sb.GreenwoodTripp(),
+        "table": sb.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s)),
+        "function": sb.FunctionLaw(lambda s: -s - np.log(s), lambda s: -1 - 1 / s),
+    }
+    return found | {
+        "shifted": ShiftedShape(found["greenwood-tripp"], 0.7),
+        "blended": BlendedShape(found["persson"], 0.3),
+        "exponential": ExponentialShape(0.1),
+    }
+
+
+@pytest.fixture(params=list(laws()))
+def shape(request):
+    return laws()[request.param]
+
+
+# --- derivatives ---
+
+
+def test_the_slope_of_a_shape_is_its_derivative(shape):
+    s = np.concatenate([np.linspace(0.06, 5.9, 50), [8.0, 30.0]])
+    step = 1e-4 * s
+    difference = (shape.log_pressure(s + step) - shape.log_pressure(s - step)) / (2 * step)
+    assert np.abs(shape.log_slope(s) / difference - 1).max() < 1e-6
+    assert (shape.log_slope(s) < 0).all()
+
+
+def test_the_derivatives_of_a_scaled_law_are_those_of_its_pressure(shape):
+    load, kappa, d = 0.7, 0.02, 1e-5
+    h = kappa * np.random.default_rng(3).uniform(0.1, 8, 40)
+
+    def law(load, roughness):
+        return ScaledLaw(shape, load, roughness / load)
+
+    here = law(load, kappa * load)
+    p = here.pressure(h)
+    slope = (here.pressure(h * (1 + d)) - here.pressure(h * (1 - d))) / (2 * d * h)
+    assert np.abs(here.slope(h, p) / slope - 1).max() < 1e-6
+    by_load = (law(load * math.exp(d), kappa * load).pressure(h) - law(load * math.exp(-d), kappa * load).pressure(h)) / (
+        2 * d
+    )
+    assert np.abs(here.load_derivative(h, p) - by_load).max() < 1e-7 * np.abs(by_load).max()
+    by_roughness = (law(load, kappa * load * math.exp(d)).pressure(h) - law(load, kappa * load * math.exp(-d)).pressure(h)) / (
+        2 * d
+    )
+    assert np.abs(here.roughness_derivative(h, p) - by_roughness).max() < 1e-7 * np.abs(by_roughness).max()
+    assert np.abs(np.log(p) - here.log_pressure(h)).max() < 1e-12
+    assert here.local_decay(h) == pytest.approx(-p / here.slope(h, p), rel=1e-12)
+
+
+def test_the_jacobian_under_a_law_is_the_derivative_of_the_residual(shape):
+    mesh = Mesh(np.array([-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0]), 8)
+    law = ScaledLaw(shape, 0.3, 0.2)
+    equations = Equations(Operators(mesh), 0.05, law, 0.3)
+    y = np.concatenate([0.3 + 0.4 * mesh.nodes**2, [-0.2, 0.35]])
+    direction = np.random.default_rng(5).standard_normal(len(y)) * np.append(y[:-2], [1.0, 1.0])
+    step = 1e-6
+    difference = (equations.residual(y + step * direction) - equations.residual(y - step * direction)) / (2 * step)
+    assert np.abs(equations.jacobian(y) @ direction - difference).max() < 1e-6 * np.abs(difference).max()
+    columns = Equations(
+        Operators(mesh), np.array([[0.05], [0.1]]), ScaledLaw(shape, np.array([[0.3], [0.4]]), np.array([[0.2]] * 2))
+    )
+    second = Equations(Operators(mesh), 0.1, ScaledLaw(shape, 0.4, 0.2))
+    assert columns.residual(np.stack([y, y]))[1] == pytest.approx(second.residual(y), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["persson", "greenwood-tripp", "table"])
+def test_elasticities_under_a_law_are_the_differences_of_solved_friction(name):
+    contact = line_contact(law=laws()[name])
+    _, found = friction_elasticities(contact, rtol=1e-9)
+    for key in ("speed", "load", "roughness", "beta"):
+        d, value = 1e-4, getattr(contact, key)
+        ahead, behind = (
+            math.log(sb.solve(contact.replace(**{key: value * math.exp(sign * d)}), rtol=1e-9).friction().total)
+            for sign in (1, -1)
+        )
+        assert found[key] == pytest.approx((ahead - behind) / (2 * d), abs=2e-5), key
+
+
+# --- limits ---
+
+
+@pytest.mark.parametrize(
+    "groups",
+    [sb.Groups(1e-5, 0.1, 1e-3), sb.Groups(0.0, 2.0, 0.02), sb.Groups(1e-3, 3.0, 0.03)],
+    ids=["mixed", "rest", "heavy"],
+)
+def test_the_exponential_law_by_the_way_of_others_is_the_exponential_law(groups):
+    one, other = (sb.solve(groups, rtol=1e-9, law=law) for law in (None, EXPONENTIAL))
+    for name in ("contact_load_share", "central_gap", "minimum_gap", "offset", "flux_gap"):
+        assert getattr(other, name) == pytest.approx(getattr(one, name), rel=3e-9, nan_ok=True), name
+    assert (one.law, other.law) == ("exponential", "function")
+
+
+def test_greenwood_and_williamson_with_exponential_heights_is_the_exponential_law():
+    # Their integral over exponential heights, Gamma(5/2) exp(-s), as a table; the factor is a larger beta.
+    s = np.linspace(0.5, 8.0, 31)
+    p = [quad(lambda z, d=d: (z - d) ** 1.5 * math.exp(-z), d, d + 60, epsabs=0, epsrel=1e-12, limit=200)[0] for d in s]
+    groups, factor = sb.Groups(1e-5, 0.1, 1e-3), math.gamma(2.5)
+    table = sb.solve(groups, law=sb.TableLaw(s, p), rtol=1e-8)
+    scaled = sb.Groups(groups.speed, groups.load / factor**2, groups.roughness / factor**2)
+    assert table.central_gap == pytest.approx(sb.solve(scaled, rtol=1e-8).central_gap, rel=1e-7)
+
+
+def test_a_table_of_persson_goes_where_persson_goes():
+    persson = laws()["persson"]
+    s = np.geomspace(1e-3, 12, 200)
+    table = sb.TableLaw(s, np.exp(persson.log_pressure(s)))
+    groups = sb.Groups(1e-6, 3.0, 0.03)
+    assert sb.solve(groups, law=table).central_gap == pytest.approx(sb.solve(groups, law=persson).central_gap, rel=1e-5)
+
+
+def test_at_large_separation_persson_is_exponential_and_at_small_it_is_stiffer():
+    persson = laws()["persson"]
+    thin, thick = sb.Groups(1e-6, 1.0, 0.01), sb.Groups(1e-3, 1e-6, 1e-6)
+    assert sb.solve(thick, law=persson).central_gap == pytest.approx(sb.solve(thick).central_gap, rel=1e-3)
+    assert sb.solve(thin, law=persson).central_gap > 1.5 * sb.solve(thin).central_gap
+
+
+@pytest.mark.parametrize("load", [0.1, 1.0, 10.0, 100.0])
+def test_under_perssons_law_the_gap_is_positive_at_rest_at_any_load(load):
+    s = sb.solve(sb.Groups(0.0, load, 0.01 * load), law=laws()["persson"])
+    assert s.minimum_gap > 0
+    assert s.contact_load_share == pytest.approx(1.0, abs=1e-9)
+    if load > 1:
+        assert sb.solve(sb.Groups(0.0, load, 0.01 * load)).minimum_gap < 0
+
+
+def test_at_rest_no_pressure_is_lost_by_the_shift_of_a_law():
+    # The shift is no part of the answer: a law shifted by hand gives the same state, shifted.
+    groups = sb.Groups(0.0, 5.0, 0.05, law=sb.GreenwoodTripp())
+    shifted = replace(groups, law=ShiftedShape(sb.GreenwoodTripp(), 4.0))
+    one, other = sb.solve(groups, rtol=1e-8), sb.solve(shifted, rtol=1e-8)
+    assert lifted(groups)[1] > 0
+    assert one.central_gap + 4.0 * 0.01 == pytest.approx(other.central_gap, rel=1e-7)
+    peak = float(one.profile([0.0]).contact_pressure[0])
+    by_law = math.exp(float(sb.GreenwoodTripp().log_pressure(np.array([one.lambda_ratio]))[0])) / math.sqrt(5.0)
+    assert peak == pytest.approx(by_law, rel=1e-5)
+
+
+@pytest.mark.parametrize("groups", [sb.Groups(1e-6, 5.0, 0.05), sb.Groups(1e-9, 0.01, 1e-5)], ids=["heavy", "light"])
+def test_the_way_through_the_exponential_law_leads_to_the_same_state(shape, groups):
+    here = replace(groups, law=shape)
+    path = start_by_exponential(here)
+    assert path.outcome.ok
+    there = path.states[-1]
+    assert there.groups == here
+    ends = np.exp(there.fields(np.zeros(1))[0])
+    assert ends == pytest.approx(sb.solve(here).central_gap, rel=1e-3)
+
+
+def test_the_virial_of_the_line_holds_for_every_law(shape):
+    # theory.md Eq. (7) before the exponential law is put in: int x**2 p = pi/8 + int P dx with P' = -p, P(inf) = 0.
+    s = sb.solve(sb.Groups(0.0, 0.4, 0.4 * 0.05), law=shape, rtol=1e-9, on_failure="return")
+    x, w = s.mesh.nodes, s.mesh.weights
+    p, _ = s.nodal_pressures()
+    h = s.nodal_gap + s.gap_shift
+    law = contact_law(s.groups)
+    integral = [quad(lambda g: float(law.pressure(np.array([g]))[0]), gap, gap + 40 * 0.05, epsrel=1e-10)[0] for gap in h]
+    inner = np.abs(x) < 3
+    left = w[inner] @ (x[inner] ** 2 * p[inner])
+    assert left == pytest.approx(math.pi / 8 + w[inner] @ np.array(integral)[inner], rel=1e-6)
+
+
+# --- the law in every part ---
+
+
+def line_contact(**changes):
+    given = {
+        "radius": "10 mm",
+        "modulus": "2.7 MPa",
+        "load": "30 N/m",
+        "viscosity": "50 mPa*s",
+        "speed": "1 mm/s",
+        "roughness": "1 um",
+        "alpha": 2.0,
+        "beta": 0.06,
+        "friction_coefficient": 0.7,
+    }
+    return sb.LineContact(**(given | changes))
+
+
+def test_a_contact_and_its_groups_carry_the_law_through_copies():
+    contact = line_contact(law=sb.GreenwoodTripp())
+    assert contact.groups.law == contact.replace(load=3.0).groups.law == sb.GreenwoodTripp()
+    assert contact != line_contact()
+    assert contact.groups != line_contact().groups
+    assert pickle.loads(pickle.dumps(contact)) == contact
+    assert "GreenwoodTripp()" in repr(contact.groups)
+    assert "law" not in repr(line_contact().groups)
+
+
+@pytest.mark.parametrize("law", ["persson ", 3, sb.GreenwoodTripp])
+def test_what_is_no_law_is_refused(law):
+    with pytest.raises(sb.InputError, match="^law = "):
+        sb.solve(sb.Groups(1e-3, 0.1, 1e-3), law=law)
+
+
+def test_a_curve_follows_any_law_and_names_it(shape, tmp_path):
+    curve = sb.stribeck_curve(load=0.3, roughness=0.006, speed=(1e-8, 1.0), points=13, law=shape, beta=0.05)
+    assert curve.outcome.ok and len(curve) == 13
+    assert curve.law is shape
+    middle = sb.solve(curve.solutions[6].groups, rtol=1e-8)
+    assert middle.law == shape.name
+    assert curve.friction[6] == pytest.approx(middle.friction(1.0, 0.05).total, rel=1e-5)
+    assert curve.minimum is not None
+    data = curve.to_dataset()
+    assert data.attrs["contact_law"] == shape.name
+    assert {f"contact_law_{name}" for name in shape.parameters} <= set(data.attrs)
+
+
+def test_states_between_the_steps_of_a_curve_have_its_law(monkeypatch):
+    filled = []
+    between = fill.between
+
+    def counted(*arguments):
+        filled.extend(between(*arguments))
+        return between(*arguments)
+
+    monkeypatch.setattr(follow, "between", counted)
+    curve = sb.stribeck_curve(load=0.3, roughness=0.006, speed=(1e-3, 1e-2), points=41, law=laws()["persson"])
+    assert len(filled) > 20
+    for i in (5, 17, 30):
+        alone = sb.solve(curve.solutions[i].groups, rtol=1e-8)
+        assert curve.solutions[i].central_gap == pytest.approx(alone.central_gap, rel=2e-6)
+
+
+def test_curves_over_load_and_roughness_and_at_rest_follow_a_law():
+    law = sb.GreenwoodTripp()
+    for over in ({"load": (0.1, 8.0), "roughness": 1e-3}, {"load": 0.5, "roughness": (1e-4, 1e-1)}):
+        for speed in (1e-4, 0.0):
+            curve = sb.stribeck_curve(**over, speed=speed, points=5, law=law)
+            last = sb.solve(curve.solutions[-1].groups, rtol=1e-8)
+            assert curve.observable("central_gap")[-1] == pytest.approx(last.central_gap, rel=1e-5)
+
+
+def test_a_phase_diagram_is_made_with_a_law():
+    found = sb.phase_diagram(load=0.3, roughness=0.003, speed=[0.0, 1e-6, 1e-2], law=laws()["persson"])
+    assert found.attrs["contact_law"] == "persson"
+    assert (found["outcome"] == "CONVERGED").all()
+    assert np.isnan(found["formula_speed_at_half_fluid"]).all()
+    speed = float(found["speed_at_half_fluid"][0, 0])
+    state = sb.solve(sb.Groups(speed, 0.3, 0.003, law=laws()["persson"]))
+    assert state.fluid_load_share == pytest.approx(0.5, abs=1e-5)
+
+
+def test_atlas_formulas_and_batches_refuse_another_law_in_one_sentence():
+    groups = sb.Groups(1e-5, 0.1, 1e-4, law=sb.GreenwoodWilliamson())
+    with pytest.raises(sb.InputError, match="exponential contact law, not of greenwood-williamson; use the solver"):
+        sb.atlas.friction(groups)
+    with pytest.raises(sb.InputError, match="exponential contact law, not of greenwood-williamson"):
+        sb.stribeck_curve(groups, speed=(1e-5, 1e-3), points=3, method="atlas")
+    with pytest.raises(sb.InputError, match="exponential contact law, not for greenwood-williamson; use solve"):
+        sb.asymptotics.boundary.gap(groups, 0.0)
+    with pytest.raises(sb.InputError, match="exponential contact law, not greenwood-williamson; use solve, or a sweep"):
+        sb.solve_batch(groups)
+    smooth = sb.asymptotics.hydrodynamic.friction
+    assert smooth(groups) == smooth(replace(groups, law=None))
+
+
+def test_distances_reach_beyond_load_one_under_a_law_that_holds_there():
+    contact = line_contact(law=laws()["persson"])
+    found = transition_distances(contact, rtol=1e-4)
+    highest = next(d for d in found.distances if d.name == "load").searched[1]
+    factor = highest / contact.load
+    assert float(contact.groups.load) * factor == pytest.approx(10.0, rel=1e-6)
+
+
+# --- real contact ---
+
+
+def test_the_real_area_is_that_of_perssons_theory_and_only_where_a_spectrum_is_known():
+    persson = laws()["persson"]
+    s = sb.solve(sb.Groups(1e-6, 0.5, 5e-3), law=persson)
+    w = math.sqrt(2) / persson.rms_slope
+    pressure = float(s.profile([0.0]).contact_pressure[0]) * math.sqrt(0.5) * persson.beta
+    assert s.central_area_fraction == pytest.approx(math.erf(w * pressure), rel=1e-5)
+    assert s.area_fraction.max() == pytest.approx(s.central_area_fraction, rel=1e-2)
+    assert s.area_fraction.shape == s.x.shape
+    finer = sb.solve(sb.Groups(1e-6, 0.5, 5e-3), law=persson, rtol=1e-9)
+    assert abs(s.central_area_fraction - finer.central_area_fraction) <= s.central_area_fraction_error
+    assert s.to_dict()["central_area_fraction"] == s.central_area_fraction
+    bare = sb.solve(sb.Groups(1e-6, 0.5, 5e-3))
+    assert bare.area_fraction is None and math.isnan(bare.central_area_fraction)
+    assert "central_area_fraction" not in bare.to_dict()
+
+
+def test_the_exponential_law_of_a_known_surface_has_an_area_and_the_same_states():
+    groups = sb.Groups(1e-6, 0.1, 1e-3)
+    with_area = sb.solve(groups, law=ExponentialShape(laws()["persson"].area_slope))
+    bare = sb.solve(groups)
+    assert with_area.central_gap == bare.central_gap
+    assert with_area.law == "exponential"
+    expected = math.erf(laws()["persson"].area_slope * math.exp(-with_area.lambda_ratio))
+    assert with_area.central_area_fraction == pytest.approx(expected, rel=1e-12)
+    assert sb.atlas.friction(with_area.groups) == sb.atlas.friction(groups)
+
+
+def test_a_state_pressed_to_near_full_contact_says_that_no_fluid_passes():
+    heavy = sb.solve(sb.Groups(0.0, 100.0, 1.0), law=laws()["persson"])
+    assert any("real contact" in note and "outside its range" in note for note in heavy.notes)
+    assert sb.solve(sb.Groups(1e-4, 0.1, 1e-3), law=laws()["persson"]).notes == ()
+
+
+# --- tables and functions of a user ---
+
+S = [0.0, 1.0, 2.0, 3.0, 4.0, 6.0]
+P = [1.0, 0.4, 0.15, 0.05, 0.02, 0.002]
+
+
+@pytest.mark.parametrize(
+    ("s", "p", "sentence"),
+    [
+        (S, P[:-1], "separation has 6 rows and pressure 5"),
+        (S[:3], P[:3], "has 3 rows; at least 4"),
+        ([0.0, 1.0, 1.0, 3.0], P[:4], "row 3 of the contact law's table: separation 1 must exceed that of the row before, 1"),
+        (S[:4], [1.0, 0.4, 0.5, 0.05], "row 3 of the contact law's table: pressure 0.5 must be below that of the row before"),
+        (S[:4], [1.0, 0.4, 0.0, -1], "row 3 of the contact law's table: pressure 0 must be positive"),
+        (S[:4], [1.0, math.nan, 0.1, 0.05], "row 2 of the contact law's table, 1 and nan, is not finite"),
+        (S[:4], "abcd", "^pressure = 'abcd'; it must be a list of numbers"),
+    ],
+)
+def test_a_table_that_is_no_law_is_refused_with_its_row(s, p, sentence):
+    with pytest.raises(sb.InputError, match=sentence):
+        sb.TableLaw(s, p)
+
+
+@pytest.mark.parametrize(("rows", "degree"), [(S, 5), (S[:4], 3), ([0.0, 0.1, 2.0, 2.1, 4.0, 4.1], 1)])
+def test_a_table_is_met_and_falls_between_its_rows(rows, degree):
+    law = sb.TableLaw(rows, P[: len(rows)])
+    assert law.degree == degree
+    assert np.exp(law.log_pressure(np.array(rows))) == pytest.approx(P[: len(rows)], rel=1e-12)
+    s = np.linspace(-2, 9, 2000)
+    assert (law.log_slope(s) < 0).all()
+    assert (np.diff(law.log_pressure(s)) < 0).all()
+
+
+def test_a_table_that_is_flat_at_its_ends_still_falls_there():
+    # The cubics that are monotone between these rows would be level at both ends, and so would all beyond.
+    law = sb.TableLaw([0.0, 1.0, 2.0, 3.0], np.exp([0.0, -0.1, -5.0, -5.1]))
+    assert law.degree == 1
+    assert (law.log_slope(np.array([-1.0, 0.0, 3.0, 9.0])) < -0.05).all()
+
+
+def test_a_state_outside_the_rows_of_its_table_says_so():
+    below = sb.solve(sb.Groups(1e-6, 0.9, 9e-3), law=sb.TableLaw([0.5, 1, 2, 3, 9], np.exp([-0.5, -1, -2, -3, -9])))
+    assert any("below the first row" in note for note in below.notes)
+    short = sb.solve(sb.Groups(1e-6, 0.1, 1e-3), law=sb.TableLaw(S[:4], P[:4]))
+    assert any("still has" in note for note in short.notes)
+    inside = sb.solve(sb.Groups(1e-5, 0.01, 1e-4), law=sb.TableLaw(np.linspace(0, 12, 25), np.exp(-np.linspace(0, 12, 25))))
+    assert inside.notes == ()
+
+
+@pytest.mark.parametrize(
+    ("f", "slope", "sentence"),
+    [
+        (lambda s: -s, lambda s: -2 * np.ones_like(s), "^log_slope is -2 at separation 0.001; it must be the derivative"),
+        (lambda s: s, lambda s: np.ones_like(s), "^log_slope is 1 at separation 0.001; it must be negative"),
+        (lambda s: -s, lambda s: -1.0, "^log_slope must return a number for each separation"),
+        (lambda s: np.log(5 - s), lambda s: -1 / (5 - s), "^log_pressure is nan at separation 5.*; it must be finite"),
+        (lambda s: "x", lambda s: -s, "^log_pressure must return a number"),
+    ],
+)
+def test_functions_that_are_no_law_are_refused(f, slope, sentence):
+    with pytest.raises(sb.InputError, match=sentence):
+        sb.FunctionLaw(f, slope)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("", "is empty; the first line must be 'separation, pressure'"),
+        ("0, 1\n1, 0.5\n", "the header is '0, 1'; the first line must be"),
+        ("Abstand, Druck\n0, 1\n", "the header is 'Abstand, Druck'"),
+        ("separation, pressure\n0, 1\n1, 0.5\n2; 0.2\n3, 0.1\n", r"line 4, second column: '2; 0.2' is not|line 4: 1 columns"),
+        ("separation, pressure\n0, 1\n1, x\n2, 0.2\n3, 0.1\n", "line 3, second column: 'x' is not a number"),
+        ("separation, pressure\n0, 1\n1, 0.5, 3\n", "line 3: 3 columns where two are expected"),
+        ("gap [um], pressure [m]\n0, 1\n", "^pressure = '1 m' is a length"),
+        ("gap [um], pressure\n0, 1\n", "the header is 'gap \\[um\\], pressure'"),
+        ("separation, pressure\n0, 1\n1, 2\n2, 0.2\n3, 0.1\n", "row 2 of the contact law's table: pressure 2 must be below"),
+    ],
+)
+def test_a_file_that_is_no_table_is_refused_with_its_line(tmp_path, text, sentence):
+    (tmp_path / "law.csv").write_text(text)
+    with pytest.raises(sb.InputError, match=sentence):
+        sb.TableLaw.read(tmp_path / "law.csv", alpha=1, beta=1, roughness=1, modulus=1)
+
+
+def test_a_file_with_units_and_decimal_commas_is_the_law_without(tmp_path):
+    (tmp_path / "plain.csv").write_text("# measured\nseparation, pressure\n0, 1\n1, 0.4\n2, 0.15\n4, 0.02\n")
+    (tmp_path / "units.csv").write_text("Gap (um); Pressure (kPa)\n0; 200\n0,5; 80\n1; 30\n2; 4\n")
+    plain = sb.TableLaw.read(tmp_path / "plain.csv")
+    units = sb.TableLaw.read(tmp_path / "units.csv", alpha=2.0, beta=0.1, roughness=1e-6, modulus=2e6)
+    assert units.separation == pytest.approx(plain.separation, abs=1e-14)
+    assert units.pressure == pytest.approx(plain.pressure, rel=1e-14)
+    with pytest.raises(sb.InputError, match="alpha and modulus of the contact must be given"):
+        sb.TableLaw.read(tmp_path / "units.csv", beta=0.1, roughness=1e-6)
+    with pytest.raises(sb.InputError, match="cannot be read"):
+        sb.TableLaw.read(tmp_path / "none.csv")
+
+
+def test_parameters_of_laws_are_plain_numbers_and_text(shape):
+    assert json.loads(json.dumps(shape.parameters)) == shape.parameters
+
+
+# --- what keeps Newton's iteration on the ground ---
+
+
+def test_a_step_towards_full_contact_is_cut_where_the_law_stiffens():
+    mesh = Mesh(np.array([-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0]), 8)
+    law = ScaledLaw(Wall(), 1.0, 0.1)
+    equations = Equations(Operators(mesh), 0.05, law, 0.3)
+    y = np.concatenate([0.02 + 0.4 * mesh.nodes**2, [-0.2, 0.35]])
+    dy = np.zeros_like(y)
+    dy[:-2] = -0.69 * y[:-2]  # closes the gap by less than what is allowed of itself
+    part = equations.admissible(y, dy)
+    before = law.log_pressure(y[:-2])
+    near = before > -1
+    assert 0.05 < part < 0.5
+    assert (law.log_pressure(y[:-2] + part * dy[:-2]) - before)[near].max() <= 4.5
+    assert (law.log_pressure(y[:-2] + dy[:-2]) - before)[near].max() > 50
+
+
+class Wall:
+    """A law that is soft at the separations of a state and steep right below them."""
+
+    name, lowest = "wall", 0.0
+    parameters = {}
+
+    def log_pressure(self, s):
+        return -s + 1e3 * np.maximum(0.15 - s, 0.0)
+
+    def log_slope(self, s):
+        return -1.0 - 1e3 * (s < 0.15)
+
+    def notes(self, separation):
+        return ()
+
+
+def test_the_roughness_without_a_minimum_depends_on_the_law():
+    law = sb.GreenwoodTripp()
+    roughness = merging_roughness(0.1, law=law, rtol=1e-3)
+    assert roughness != pytest.approx(merging_roughness(0.1, rtol=1e-3), rel=0.05)
+    below, above = (weakening(sb.Groups(1.0, 0.1, roughness * factor, law=law)).present for factor in (0.95, 1.05))
+    assert below and not above
