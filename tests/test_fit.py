@@ -13,6 +13,7 @@ from command_line import CONTACT, call
 from fit_data import EXAMPLES, TRUE, exact, measured, noisy
 
 import stribeck as sb
+from stribeck.fit_file import write_fitted_case
 from stribeck.fit_model import FrictionModel, free_inputs
 from stribeck.fit_objective import minimise, objective
 from stribeck.fit_posterior import draw_posterior
@@ -362,6 +363,8 @@ def test_a_fit_that_ran_out_of_steps_says_so(monkeypatch, tmp_path, capsys):
     found = sb.fit(noisy(1), START, intervals=False)
     assert not found.converged and "did not converge" in found.outcome.value
     assert found.to_dict()["converged"] is False
+    with pytest.raises(sb.InputError, match="did not converge"):
+        write_fitted_case(found, sb.load_case(CASE), tmp_path / "fitted.toml")
     answer = call(capsys, "fit", MEASURED, CASE, "--out", tmp_path / "fitted.toml")
     assert answer.code == 1 and "did not converge" in answer.err and "did not converge" in answer.out
     assert not (tmp_path / "fitted.toml").exists()
