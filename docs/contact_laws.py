@@ -18,7 +18,6 @@ from pathlib import Path
 import numpy as np
 
 import stribeck as sb
-from stribeck.spectrum import SelfAffine
 from stribeck.threads import one_blas_thread
 
 FOLDER = Path(__file__).parent
@@ -56,12 +55,12 @@ class Pair:
         return next((mark.value for mark in self.curve.transitions if mark.name == name), math.nan)
 
 
-def persson() -> sb.PerssonLaw:
+def persson() -> sb.surfaces.PerssonLaw:
     """Return the law of a self-affine surface over three decades of wave numbers, Hurst exponent 0.8."""
-    return sb.persson_law(SelfAffine(h_rms=1e-6, q0=1e4, q1=1e7, hurst=0.8))
+    return sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e7, hurst=0.8))
 
 
-def solved(load: float, law: sb.PerssonLaw | None, beta: float) -> Pair:
+def solved(load: float, law: sb.surfaces.PerssonLaw | None, beta: float) -> Pair:
     """Return state at rest and curve at one load."""
     groups = sb.Groups(0.0, load, KAPPA * load, law=law)
     curve = sb.stribeck_curve(groups, speed=SPEEDS, points=POINTS, mu0=1.0, beta=beta)

@@ -49,7 +49,7 @@ def test_the_slope_of_a_moment_is_the_lower_moment(order):
 
 
 def test_far_apart_a_moment_falls_as_a_gaussian_over_a_power():
-    s = np.array([1e3, 1e6, 1e9])
+    s = np.array([1e3, 1e5, 1e6])
     limit = math.log(gamma(2.5) / math.sqrt(2 * math.pi)) - 2.5 * np.log(s) - 0.5 * s * s
     assert log_moment(1.5, s) == pytest.approx(limit, rel=1e-15, abs=1e-5)
     assert np.isfinite(log_moment_slope(1.5, s)).all()
@@ -122,6 +122,6 @@ def test_a_state_below_the_mean_plane_says_that_the_model_is_left():
     heavy = sb.solve(sb.Groups(speed=0.0, load=1.0, roughness=0.01), law=sb.GreenwoodWilliamson())
     assert heavy.central_gap < 0
     assert any("below their mean plane" in note for note in heavy.notes)
-    assert any(note.startswith("The gap is negative") for note in heavy.notes)
+    assert any(note.startswith("The gap is negative: asperities") for note in heavy.notes)
     light = sb.solve(sb.Groups(speed=0.0, load=0.01, roughness=1e-4), law=sb.GreenwoodWilliamson())
     assert light.notes == ()

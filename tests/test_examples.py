@@ -84,3 +84,15 @@ def test_the_forces_balance_and_the_printed_one_is_71_times_too_large_at_low_spe
     slowest = rows[min(rows)]
     assert slowest["paper"] / slowest["balanced"] == pytest.approx(70.55, abs=0.01)
     assert max(row["paper, total"] for row in rows.values()) == pytest.approx(1.003, abs=1e-3)
+
+
+def test_the_profile_of_the_example_shows_what_it_was_made_with(results):
+    _, surface = results("surface_to_contact_law")
+    r, errors = surface.roughness, surface.fit.errors
+    for found, made, error in (
+        (r.h_rms, 0.6e-6, errors["h_rms"]),
+        (r.hurst, 0.8, errors["hurst"]),
+        (r.roll_off, 6e4, errors["roll_off"]),
+        (surface.shape.radius, 8e-3, surface.shape.radius_error(r, surface.topography)),
+    ):
+        assert abs(found - made) < 2 * error < 0.5 * made

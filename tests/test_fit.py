@@ -19,6 +19,7 @@ from stribeck.fit_objective import minimise, objective
 from stribeck.fit_posterior import draw_posterior
 from stribeck.fit_settings import FREE, FitSettings, Prior
 from stribeck.fit_states import atlas_parts, solved_parts
+from stribeck.persson import persson_law
 from stribeck.spectrum import SelfAffine
 
 START = TRUE.replace(friction_coefficient=0.3, roughness="2 um", modulus="1.5 MPa")
@@ -313,7 +314,7 @@ def of_asperities():
 
 def test_data_of_greenwood_and_tripp_do_not_pass_for_persson(of_asperities):
     data, contact = of_asperities
-    law = sb.persson_law(SelfAffine(h_rms=1e-6, q0=4e4, q1=4e7, hurst=0.8))
+    law = persson_law(SelfAffine(h_rms=1e-6, q0=4e4, q1=4e7, hurst=0.8))
     persson = sb.fit(data, contact.replace(law=law, **law.coefficients), intervals=False)
     assert persson.law == "persson" and persson.converged and math.isnan(persson.solver_shift)
     assert persson.quality.structure_probability < 0.001

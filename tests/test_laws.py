@@ -11,12 +11,14 @@ import pytest
 from scipy.integrate import quad
 
 import stribeck as sb
+from stribeck import fill, follow
 from stribeck.contact_laws import BlendedShape, ExponentialShape, ScaledLaw, ShiftedShape, contact_law, lifted
 from stribeck.distances import transition_distances
 from stribeck.equations import Equations, Operators
+from stribeck.merging import merging_roughness, weakening
 from stribeck.mesh import Mesh
 from stribeck.regimes import friction_elasticities
-from stribeck.spectrum import SelfAffine
+from stribeck.start import start_by_exponential
 
 EXPONENTIAL = sb.FunctionLaw(lambda s: -s, lambda s: -np.ones_like(s), lowest=-math.inf)
 """The exponential law by the way of any other."""
@@ -26,7 +28,7 @@ EXPONENTIAL = sb.FunctionLaw(lambda s: -s, lambda s: -np.ones_like(s), lowest=-m
 def laws():
     s = np.linspace(0.05, 6.0, 40)
     found = {
-        "persson": sb.persson_law(SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8)),
+        "persson": sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8)),
         "greenwood-williamson": sb.GreenwoodWilliamson(),
         "greenwood-tripp": sb.GreenwoodTripp(),
         "table": sb.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s)),
@@ -168,6 +170,17 @@ def test_at_rest_no_pressure_is_lost_by_the_shift_of_a_law():
     assert peak == pytest.approx(by_law, rel=1e-5)
 
 
+@pytest.mark.parametrize("groups", [sb.Groups(1e-6, 5.0, 0.05), sb.Groups(1e-9, 0.01, 1e-5)], ids=["heavy", "light"])
+def test_the_way_through_the_exponential_law_leads_to_the_same_state(shape, groups):
+    here = replace(groups, law=shape)
+    path = start_by_exponential(here)
+    assert path.outcome.ok
+    there = path.states[-1]
+    assert there.groups == here
+    ends = np.exp(there.fields(np.zeros(1))[0])
+    assert ends == pytest.approx(sb.solve(here).central_gap, rel=1e-3)
+
+
 def test_the_virial_of_the_line_holds_for_every_law(shape):
     # theory.md Eq. (7) before the exponential law is put in: int x**2 p = pi/8 + int P dx with P' = -p, P(inf) = 0.
     s = sb.solve(sb.Groups(0.0, 0.4, 0.4 * 0.05), law=shape, rtol=1e-9, on_failure="return")
@@ -228,6 +241,22 @@ def test_a_curve_follows_any_law_and_names_it(shape, tmp_path):
     assert {f"contact_law_{name}" for name in shape.parameters} <= set(data.attrs)
 
 
+def test_states_between_the_steps_of_a_curve_have_its_law(monkeypatch):
+    filled = []
+    between = fill.between
+
+    def counted(*arguments):
+        filled.extend(between(*arguments))
+        return between(*arguments)
+
+    monkeypatch.setattr(follow, "between", counted)
+    curve = sb.stribeck_curve(load=0.3, roughness=0.006, speed=(1e-3, 1e-2), points=41, law=laws()["persson"])
+    assert len(filled) > 20
+    for i in (5, 17, 30):
+        alone = sb.solve(curve.solutions[i].groups, rtol=1e-8)
+        assert curve.solutions[i].central_gap == pytest.approx(alone.central_gap, rel=2e-6)
+
+
 def test_curves_over_load_and_roughness_and_at_rest_follow_a_law():
     law = sb.GreenwoodTripp()
     for over in ({"load": (0.1, 8.0), "roughness": 1e-3}, {"load": 0.5, "roughness": (1e-4, 1e-1)}):
@@ -247,7 +276,7 @@ def test_a_phase_diagram_is_made_with_a_law():
     assert state.fluid_load_share == pytest.approx(0.5, abs=1e-5)
 
 
-def test_atlas_and_formulas_refuse_another_law_in_one_sentence():
+def test_atlas_formulas_and_batches_refuse_another_law_in_one_sentence():
     groups = sb.Groups(1e-5, 0.1, 1e-4, law=sb.GreenwoodWilliamson())
     with pytest.raises(sb.InputError, match="exponential contact law, not of greenwood-williamson; use the solver"):
         sb.atlas.friction(groups)
@@ -255,6 +284,8 @@ def test_atlas_and_formulas_refuse_another_law_in_one_sentence():
         sb.stribeck_curve(groups, speed=(1e-5, 1e-3), points=3, method="atlas")
     with pytest.raises(sb.InputError, match="exponential contact law, not for greenwood-williamson; use solve"):
         sb.asymptotics.boundary.gap(groups, 0.0)
+    with pytest.raises(sb.InputError, match="exponential contact law, not greenwood-williamson; use solve, or a sweep"):
+        sb.solve_batch(groups)
     smooth = sb.asymptotics.hydrodynamic.friction
     assert smooth(groups) == smooth(replace(groups, law=None))
 
@@ -336,6 +367,13 @@ def test_a_table_is_met_and_falls_between_its_rows(rows, degree):
     assert (np.diff(law.log_pressure(s)) < 0).all()
 
 
+def test_a_table_that_is_flat_at_its_ends_still_falls_there():
+    # The cubics that are monotone between these rows would be level at both ends, and so would all beyond.
+    law = sb.TableLaw([0.0, 1.0, 2.0, 3.0], np.exp([0.0, -0.1, -5.0, -5.1]))
+    assert law.degree == 1
+    assert (law.log_slope(np.array([-1.0, 0.0, 3.0, 9.0])) < -0.05).all()
+
+
 def test_a_state_outside_the_rows_of_its_table_says_so():
     below = sb.solve(sb.Groups(1e-6, 0.9, 9e-3), law=sb.TableLaw([0.5, 1, 2, 3, 9], np.exp([-0.5, -1, -2, -3, -9])))
     assert any("below the first row" in note for note in below.notes)
@@ -395,3 +433,45 @@ def test_a_file_with_units_and_decimal_commas_is_the_law_without(tmp_path):
 
 def test_parameters_of_laws_are_plain_numbers_and_text(shape):
     assert json.loads(json.dumps(shape.parameters)) == shape.parameters
+
+
+# --- what keeps Newton's iteration on the ground ---
+
+
+def test_a_step_towards_full_contact_is_cut_where_the_law_stiffens():
+    mesh = Mesh(np.array([-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0]), 8)
+    law = ScaledLaw(Wall(), 1.0, 0.1)
+    equations = Equations(Operators(mesh), 0.05, law, 0.3)
+    y = np.concatenate([0.02 + 0.4 * mesh.nodes**2, [-0.2, 0.35]])
+    dy = np.zeros_like(y)
+    dy[:-2] = -0.69 * y[:-2]  # closes the gap by less than what is allowed of itself
+    part = equations.admissible(y, dy)
+    before = law.log_pressure(y[:-2])
+    near = before > -1
+    assert 0.05 < part < 0.5
+    assert (law.log_pressure(y[:-2] + part * dy[:-2]) - before)[near].max() <= 4.5
+    assert (law.log_pressure(y[:-2] + dy[:-2]) - before)[near].max() > 50
+
+
+class Wall:
+    """A law that is soft at the separations of a state and steep right below them."""
+
+    name, lowest = "wall", 0.0
+    parameters = {}
+
+    def log_pressure(self, s):
+        return -s + 1e3 * np.maximum(0.15 - s, 0.0)
+
+    def log_slope(self, s):
+        return -1.0 - 1e3 * (s < 0.15)
+
+    def notes(self, separation):
+        return ()
+
+
+def test_the_roughness_without_a_minimum_depends_on_the_law():
+    law = sb.GreenwoodTripp()
+    roughness = merging_roughness(0.1, law=law, rtol=1e-3)
+    assert roughness != pytest.approx(merging_roughness(0.1, rtol=1e-3), rel=0.05)
+    below, above = (weakening(sb.Groups(1.0, 0.1, roughness * factor, law=law)).present for factor in (0.95, 1.05))
+    assert below and not above

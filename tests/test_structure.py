@@ -25,6 +25,16 @@ PACKAGE = Path(stribeck.__file__).parent
 EQUATIONS = {"contact_laws", "elasticity", "equations", "mesh", "parameters", "reynolds"}
 ALGORITHMS = {"arclength", "continuation", "newton"}
 RESULTS = {"newton", "parameters", "solution", "solve", "threads", "units"}
+SURFACES = {
+    "detrend",
+    "persson",
+    "rough_surface",
+    "spectrum",
+    "surface_fit",
+    "surface_spectrum",
+    "topography",
+    "topography_files",
+}
 SWEEP = ("chain", "dataset", "design", "lock", "order", "store", "workers")
 
 FIT = ("identify", "model", "objective", "profile", "quality", "result", "settings", "states")
@@ -38,10 +48,11 @@ MAY_IMPORT = {
     "units": set(),
     "parameters": {"units"},
     "fit_settings": {"parameters", "units"},
-    "case": {"fit_settings", "case_law", "parameters", "units"},
-    "case_law": {"asperity_laws", "contact_laws", "rough_surface", "units", "user_laws"},
+    "case": {"case_law", "fit_settings", "parameters", "units"},
+    "case_law": {"asperity_laws", "contact_laws", "persson", "rough_surface", "spectrum", "two_columns", "units", "user_laws"},
+    "two_columns": {"units"},
     "asperity_laws": {"units"},
-    "user_laws": {"units"},
+    "user_laws": {"two_columns", "units"},
     "threads": set(),
     "hertz": set(),
     "mesh": set(),
@@ -52,6 +63,15 @@ MAY_IMPORT = {
     "spectrum": {"units"},
     "persson": {"spectrum", "units"},
     "rough_surface": {"persson", "spectrum", "units"},
+    "topography": {"spectrum", "units"},
+    "topography_text": {"topography", "units"},
+    "topography_files": {"output", "topography", "topography_text", "units"},
+    "surface_spectrum": {"spectrum", "topography", "units"},
+    "detrend": {"spectrum", "surface_spectrum", "topography", "units"},
+    "surface_fit": {"persson", "spectrum", "surface_spectrum", "units"},
+    "surfaces": SURFACES | {"output", "units"},
+    "report_surface": {"surfaces", "units"},
+    "plot_surface": {"output", "plotting", "report_surface", "surfaces", "units"},
     "asymptotics": {"elasticity", "hertz", "mesh", "newton", "parameters", "threads", "units"},
     "elasticity": {"mesh", "parameters"},
     "reynolds": {"mesh", "parameters"},
@@ -109,6 +129,13 @@ MAY_IMPORT = {
     "fit_file": RESULTS | {"case", "fit_result", "output"},
     "report_fit": {"fit_file", "fit_posterior", "fit_result"},
     "plot_fit": RESULTS | {"fit_file", "fit_result", "output", "plotting"},
+    "batch_device": {"output", "units"},
+    "batch_equations": EQUATIONS | {"batch_device"},
+    "batch_guess": EQUATIONS | ALGORITHMS | {"states"},
+    "batch_path": EQUATIONS
+    | {"batch_device", "batch_equations", "batch_guess", "estimate", "newton", "observables", "refine", "start", "states"},
+    "batch_plan": {"batch_guess", "parameters", "start"},
+    "batch": RESULTS | {"batch_device", "batch_guess", "batch_path", "batch_plan", "observables", "start"},
     "atlas_grid": set(),
     "atlas_table": {"atlas_grid"},
     "atlas": {"atlas_grid", "atlas_table", "hertz", "parameters", "solution", "threads", "units"},
@@ -121,6 +148,9 @@ OPEN = {"__init__", "__main__", "app", "cli"}
 
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts)
 HEAVY = {
+    "SurfaceTopography",
+    "array_api_compat",
+    "cupy",
     "cyclopts",
     "dask",
     "distributed",
@@ -131,6 +161,7 @@ HEAVY = {
     "pint",
     "pydantic",
     "rich",
+    "torch",
     "xarray",
     "zarr",
 }
@@ -229,8 +260,9 @@ MEMBERS = (types.FunctionType, classmethod, staticmethod, property, functools.ca
 
 
 def public(*kinds):
-    """Return the public functions and classes of the wanted kinds."""
+    """Return the public functions and classes of the wanted kinds, with those of ``stribeck.surfaces``."""
     things = [getattr(stribeck, name) for name in stribeck.__all__]
+    things += [getattr(stribeck.surfaces, name) for name in stribeck.surfaces.__all__]
     return [thing for thing in things if isinstance(thing, kinds)]
 
 

@@ -1,7 +1,8 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
-from . import asymptotics, atlas
+from . import asymptotics, atlas, surfaces
 from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
+from .batch import BatchSolution, solve_batch
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .fit import fit
@@ -10,7 +11,6 @@ from .fit_settings import FitSettings
 from .measurements import Measurements, read_measurements
 from .newton import Outcome
 from .parameters import Groups, HertzScales, InputError, LineContact
-from .persson import PerssonLaw, persson_law
 from .phase_diagram import phase_diagram
 from .regimes import regime_of
 from .solution import Friction, Profile, Solution
@@ -22,6 +22,7 @@ from .sweep_store import SweepError
 from .user_laws import FunctionLaw, TableLaw
 
 __all__ = [
+    "BatchSolution",
     "Case",
     "Fit",
     "FitOutcome",
@@ -38,7 +39,6 @@ __all__ = [
     "LineContact",
     "Measurements",
     "Outcome",
-    "PerssonLaw",
     "Profile",
     "Solution",
     "SolveError",
@@ -54,12 +54,13 @@ __all__ = [
     "load_case",
     "load_sweep",
     "open_sweep",
-    "persson_law",
     "phase_diagram",
     "read_measurements",
     "regime_of",
     "solve",
+    "solve_batch",
     "stribeck_curve",
+    "surfaces",
     "sweep",
 ]
 

@@ -29,7 +29,8 @@ from .units import InputError, show, to_si
 LEAST_KNOT = -12.0
 """Separation below which a moment is continued by its tangent; the pressure there is above 40 beta E*."""
 
-LARGEST_KNOT = 1e8
+LARGEST_KNOT = 1e4
+"""Separation from which the spline goes on straight in arsinh(s), as the moment does to within 1e-7."""
 
 KNOT_STEP = 0.02
 """Distance of the knots of the spline in arsinh(s); chosen where halving it changes no value by more than rounding."""

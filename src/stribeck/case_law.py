@@ -9,7 +9,10 @@ from typing import Any, Literal, get_args
 from ._types import LawShape
 from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
 from .contact_laws import ExponentialShape
+from .persson import GAMMA, PerssonLaw, persson_law
 from .rough_surface import RoughSurface
+from .spectrum import Spectrum
+from .two_columns import read_two_columns
 from .units import InputError, show
 from .user_laws import TableLaw
 
@@ -29,6 +32,7 @@ SURFACE = (
     "shortest_wavelength",
     "roll_off_wavelength",
     "gamma",
+    "spectrum",
 )
 """Keys of the table ``[surface]``."""
 
@@ -109,7 +113,7 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
             f"[contact] {doubled[0]} = {contact[doubled[0]]:g} follows from the table [{name}]; remove one of them."
         )
     try:
-        return _of_asperities(law, given[name]) if name == "asperities" else _of_surface(law, given[name])
+        return _of_asperities(law, given[name]) if name == "asperities" else _of_surface(law, given[name], folder)
     except InputError as problem:
         raise InputError(f"[{name}] {problem}") from None
 
@@ -119,14 +123,33 @@ def _without_table(law: Law) -> LawShape | None:
     return shapes.get(law)
 
 
-def _of_surface(law: Law, entries: dict[str, Any]) -> LawOfFile:
-    for name in ("h_rms", "hurst"):
-        if name not in entries:
-            raise InputError(f"{name} is missing; add {name} = {'0.8' if name == 'hurst' else repr('1 um')}.")
-    full = RoughSurface(**entries).law
+def _of_surface(law: Law, entries: dict[str, Any], folder: Path) -> LawOfFile:
+    if "spectrum" in entries:
+        full = _of_spectrum(entries, folder)
+    else:
+        for name in ("h_rms", "hurst"):
+            if name not in entries:
+                raise InputError(f"{name} is missing; add {name} = {'0.8' if name == 'hurst' else repr('1 um')}.")
+        full = RoughSurface(**entries).law
     if law == "persson":
         return LawOfFile(full, full.coefficients)
     return LawOfFile(ExponentialShape(full.area_slope), full.coefficients)
+
+
+def _of_spectrum(entries: dict[str, Any], folder: Path) -> PerssonLaw:
+    extra = [name for name in entries if name not in ("spectrum", "gamma")]
+    if extra:
+        raise InputError(f"{extra[0]} = {show(entries[extra[0]])} follows from the file of the spectrum; remove one of them.")
+    if not isinstance(entries["spectrum"], str):
+        raise InputError(f"spectrum = {show(entries['spectrum'])} must be text in quotes, the name of a CSV file.")
+    path = folder / entries["spectrum"]
+    rows, units = read_two_columns(path, None, {"wavenumber": "wavenumber", "density": "spectral density"})
+    assert units is not None
+    try:
+        spectrum = Spectrum(rows[:, 0] * units[0], rows[:, 1] * units[1])
+        return persson_law(spectrum, entries.get("gamma", GAMMA))
+    except InputError as problem:
+        raise InputError(f"{path}: {problem}") from None
 
 
 def _of_asperities(law: Law, entries: dict[str, Any]) -> LawOfFile:

@@ -125,7 +125,15 @@ def make_app() -> App:
         help_format="plaintext",
         suppress_keyboard_interrupt=False,
     )
-    for command in (solve_command, curve_command, regimes_command, figures_command, sweep_command, fit_command):
+    for command in (
+        solve_command,
+        curve_command,
+        regimes_command,
+        figures_command,
+        sweep_command,
+        surface_command,
+        fit_command,
+    ):
         app.command(command, name=command.__name__.removesuffix("_command"))
     app.register_install_completion_command()
     return app
@@ -526,6 +534,91 @@ def fit_command(
     return 0
 
 
+def surface_command(
+    file: Annotated[Path | None, Parameter(name="FILE", show_default=False)] = None,
+    /,
+    *,
+    unit: Word = None,
+    height_unit: Word = None,
+    spacing: Word = None,
+    channel: Word = None,
+    trend: Word = None,
+    window: Word = None,
+    resolution: Word = None,
+    gamma: Number = None,
+    keep_spikes: Flag = False,
+    plot: File = None,
+    out: File = None,
+    json: Flag = False,
+    force: Flag = False,
+) -> int:
+    """Evaluate a measured topography: rms height, spectrum, alpha and beta of the contact law, with errors.
+
+    Example: stribeck surface examples/cylinder_profile.csv --plot surface.png --out surface.toml
+
+    Example: stribeck surface scan.xyz --unit um --height-unit nm --resolution "1 um"
+
+    Text files (.csv, .tsv, .txt, .dat, .xyz) are read directly; .x3p, .sur, .opd, .sdf, .plux and some forty other formats
+    through SurfaceTopography (pip install 'stribeck[surface]').
+
+    Parameters
+    ----------
+    file
+        File of heights: a line or a map.
+    unit
+        Unit of lengths where the file does not declare it, such as um.
+    height_unit
+        Unit of heights, where it is another one.
+    spacing
+        Distance between points, such as '0.5 um', where the file has no positions.
+    channel
+        Name of the channel, where the file has several.
+    trend
+        Shape of the body to take away: none, mean, tilt or curvature; curvature if not given.
+    window
+        Window of the spectrum: hann, or none for periodic heights; hann if not given.
+    resolution
+        Shortest wavelength that the instrument resolves; that of the file or four points if not given.
+    gamma
+        Reduction of the elastic energy in Persson's theory, 0 to 1; 0.45 if not given.
+    keep_spikes
+        Keep points far off all their neighbours; otherwise they count as dead.
+    plot
+        Draw heights, spectrum and contact law to this file (.png, .svg or .pdf).
+    out
+        Write the table [surface] of a case file to this file (.toml).
+    json
+        Print JSON in SI units.
+    force
+        Replace existing files.
+    """
+    from . import report_surface, surfaces
+
+    if file is None:
+        raise InputError("FILE is missing; give a file of heights, as in: stribeck surface scan.x3p.")
+    pictures = _pictures(plot, force)
+    if out is not None:
+        check_output(out, (".toml",), force=force)
+    given = {"trend": trend, "window": window, "resolution": resolution, "gamma": _number("gamma", gamma)}
+    arguments: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    scan = surfaces.read_topography(file, unit=unit, height_unit=height_unit, spacing=spacing, channel=channel)
+    surface = surfaces.analyse(scan, keep_spikes=keep_spikes, **arguments)
+    for picture in pictures:
+        from .plot_surface import plot_surface
+
+        plot_surface(surface, picture, force=force)
+    if out is not None:
+        surfaces.write_surface_table(surface, out, force=force)
+    written = [str(name) for name in (*pictures, *([out] if out is not None else []))]
+    if json:
+        from . import report
+
+        print(report.dump({**surface.to_dict(), "files": written}))
+    else:
+        report_surface.print_surface(_console(), surface, written)
+    return 0
+
+
 # --- arguments ---
 
 
@@ -811,7 +904,7 @@ def _line(problem: BaseException) -> str:
 
 
 def _command(tokens: Sequence[str]) -> str:
-    known = ("solve", "curve", "regimes", "figures", "sweep", "fit")
+    known = ("solve", "curve", "regimes", "figures", "sweep", "surface", "fit")
     return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
 
 

@@ -8,7 +8,7 @@ With :math:`G(q) = (\pi \int_{q_0}^q q'^3 C\, \mathrm{d}q')^{1/2}`, the mean sep
     u(P) = \frac{2}{\sqrt\pi} \int_0^{G(q_1)} J(P/G) \frac{\mathrm{d}G}{q}, \qquad
     J(t) = \int_t^\infty \left[\gamma + 3 (1 - \gamma) \operatorname{erf}^2 t'\right] e^{-t'^2} \frac{\mathrm{d}t'}{t'}
 
-which is Eq. (26) of theory.md with :math:`G` as variable, so that nothing is singular.  At small pressure
+which is the published integral with :math:`G` as variable (docs/surfaces.md), so that nothing is singular.  At small pressure
 :math:`p = \beta E^* \exp(-\alpha u/h_\mathrm{rms})`.  The law is tabulated once as :math:`\ln\Phi + s` over :math:`\ln s`,
 where :math:`s = \alpha u/h_\mathrm{rms}` and :math:`\Phi = p/(\beta E^*)`.
 
@@ -28,7 +28,7 @@ from ._types import Array, Indices
 from .spectrum import SelfAffine, Spectrum, positive
 from .units import InputError, show
 
-__all__ = ["GAMMA", "PerssonLaw", "persson_law"]
+__all__ = ["GAMMA", "PerssonLaw", "exponential_limit", "persson_law"]
 
 GAMMA = 0.45
 """Reduction of the elastic energy; 0.42 to 0.45 fit simulations [YP08]."""
@@ -81,7 +81,7 @@ class PerssonLaw:
     -----
     Valid for every positive separation.  ``log_pressure`` is twice continuously differentiable and falls strictly; it
     grows as half of ln ln(1/s) towards full contact.  Its shape does not depend on the rms height, only beta does.
-    Source: [YP08]; theory.md section 12.
+    Source: [YP08]; docs/surfaces.md, "The law of Persson".
     """
 
     alpha: float
@@ -280,12 +280,7 @@ def persson_law(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> Persso
     >>> round(law.alpha, 2), round(law.beta / (1e4 * 1e-6), 2)
     (2.09, 1.43)
     """
-    if isinstance(gamma, bool | str) or not 0 < gamma <= 1:
-        raise InputError(f"gamma = {show(gamma)} is not a number above 0 and at most 1; 0.45 fits simulations.")
-    table = spectrum.spectrum if isinstance(spectrum, SelfAffine) else spectrum
-    # Lengths in units of 1/q_0 and of the rms height, so that nothing overflows; the shape does not depend on them.
-    unit = Spectrum(table.wavenumber / table.lowest, table.density / table.density.max()).scaled(1.0)
-    integral = _Integral.of(unit, float(gamma))
+    integral, table = _prepared(spectrum, gamma)
     knots, coefficients, error = _tabulate(integral)
     return PerssonLaw(
         alpha=integral.alpha,
@@ -297,6 +292,49 @@ def persson_law(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> Persso
         _knots=knots,
         _coefficients=coefficients,
     )
+
+
+def exponential_limit(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> tuple[float, float]:
+    r"""Return alpha and beta of the exponential law, without the table of the whole law.
+
+    .. math::
+
+        \alpha = \frac{h_\mathrm{rms}}{\gamma \pi^{1/2} \int q^2 C w\, \mathrm{d}q}, \quad
+        \beta = 0.7493 \exp\left[-\langle\ln w\rangle + 3\, \tfrac{1 - \gamma}{\gamma}\, 0.40713\right]
+
+    Parameters
+    ----------
+    spectrum : Spectrum or SelfAffine
+        Power spectrum of the roughness of both surfaces together.
+    gamma : float
+        Reduction of the elastic energy, above 0 and at most 1 [-].
+
+    Returns
+    -------
+    tuple of float
+        alpha and beta [-].
+
+    Raises
+    ------
+    InputError
+        Where gamma is out of range.
+
+    Notes
+    -----
+    With w = 1/G and the mean weighted by q^2 C w.
+    Source: [Persson07].
+    """
+    integral, table = _prepared(spectrum, gamma)
+    return integral.alpha, integral.beta * table.lowest * table.rms_height
+
+
+def _prepared(spectrum: Spectrum | SelfAffine, gamma: float) -> tuple[_Integral, Spectrum]:
+    """Return the integral for unit rms height and unit q_0, on which the shape does not depend, and the spectrum."""
+    if isinstance(gamma, bool | str) or not 0 < gamma <= 1:
+        raise InputError(f"gamma = {show(gamma)} is not a number above 0 and at most 1; 0.45 fits simulations.")
+    table = spectrum.spectrum if isinstance(spectrum, SelfAffine) else spectrum
+    unit = Spectrum(table.wavenumber / table.lowest, table.density / table.density.max()).scaled(1.0)
+    return _Integral.of(unit, float(gamma)), table
 
 
 # --- the integral over the spectrum ---

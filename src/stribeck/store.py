@@ -65,6 +65,13 @@ OBSERVABLES = {
 """Attributes of a solution that a dataset holds: unit and name of each."""
 
 
+AREA = {
+    "central_area_fraction": ("1", "real area of contact over the apparent one, at the centre"),
+    "central_area_fraction_error": ("1", "estimated absolute error of central_area_fraction"),
+}
+"""What a solution has besides, of which the contact law knows the spectrum of the surface."""
+
+
 def curve_dataset(curve: StribeckCurve, title: str = "") -> xarray.Dataset:
     """Return a Stribeck curve as an xarray Dataset.
 
@@ -225,10 +232,8 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
             f"{label}: estimated absolute error",
         )
     if isinstance(curve.law, WithArea):
-        label = "real area of contact over the apparent one, at the centre"
-        columns["central_area_fraction"] = (curve.observable("central_area_fraction"), "1", label)
-        label = "estimated absolute error of central_area_fraction"
-        columns["central_area_fraction_error"] = (curve.observable("central_area_fraction_error"), "1", label)
+        for name, (unit, label) in AREA.items():
+            columns[name] = (curve.observable(name), unit, label)
     films = [si_films(solution) for solution in curve.solutions]
     for name, (_, unit, label) in (films[0] if films else {}).items():
         columns[name] = (np.array([film[name][0] for film in films]), unit, label)

@@ -158,14 +158,14 @@ def _failure(chain: Chain, i: int, outcome: Outcome, failure: Point | None, erro
     """Return the row of a state that failed from cold: what was reached where there is a state, else its outcome alone."""
     contact, where = chain.contact(i), describe(Groups(*chain.groups[i], law=chain.law))
     if error:
-        return failed_row(contact, ERROR, f"{where}: {error}")
+        return failed_row(contact, chain.law, ERROR, f"{where}: {error}")
     if failure is not None:
         outcome = failure.outcome
         solution = solution_of(failure, contact, chain.rtol)
         if solution is not None:
             values, text = row_of(solution, *chain.coefficients(i))
             return values, f"{where}: {text}"
-    return failed_row(contact, outcome.name, f"{where}: {outcome.value}")
+    return failed_row(contact, chain.law, outcome.name, f"{where}: {outcome.value}")
 
 
 class _Polyline:

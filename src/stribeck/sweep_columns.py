@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from ._types import Array
+from ._types import Array, LawShape, WithArea
 from .newton import Outcome
 from .observables import NAMES
 from .parameters import QUANTITIES, LineContact
 from .solution import DEFINITIONS, Solution
-from .store import OBSERVABLES, si_films, unit_of
+from .store import AREA, OBSERVABLES, si_films, unit_of
 
 __all__ = ["OUTCOMES", "columns_of", "failed_row", "input_columns", "row_of"]
 
@@ -34,13 +34,15 @@ FILMS = {
 }
 
 
-def columns_of(si: bool) -> dict[str, tuple[str, str]]:
+def columns_of(si: bool, law: LawShape | None = None) -> dict[str, tuple[str, str]]:
     """Return unit and meaning of each number of a row, in their order.
 
     Parameters
     ----------
     si : bool
         Whether the states are contacts in SI units, so that films have lengths.
+    law : LawShape or None
+        Contact law of the states; one that knows its spectrum has the real area of contact.
 
     Returns
     -------
@@ -61,6 +63,8 @@ def columns_of(si: bool) -> dict[str, tuple[str, str]]:
     found["hersey_number"] = ("1", "Hersey number, viscosity times speed over load")
     if si:
         found |= FILMS
+    if isinstance(law, WithArea):
+        found |= AREA
     found["nodes"] = ("1", "unknown gaps in the discretisation")
     found["newton_steps"] = ("1", "steps of the Newton iteration")
     found["outcome"] = ("1", "how the solve of the state ended")
@@ -89,13 +93,15 @@ def row_of(solution: Solution, mu0: float, beta: float) -> tuple[Array, str]:
         values += [friction.total, friction.viscous, friction.error]
     values.append(float(solution.groups.hersey_number(beta)))
     values += [value for value, _, _ in si_films(solution).values()]
+    if isinstance(solution.groups.law, WithArea):
+        values += [getattr(solution, name) for name in AREA]
     values += [solution.nodes, solution.newton_steps, OUTCOMES.index(solution.outcome.name)]
     said = solution.notes if solution.outcome.ok else (solution.outcome.value, *solution.notes)
     return np.array(values), "\n".join(said)
 
 
-def failed_row(contact: LineContact | None, outcome: str, message: str) -> tuple[Array, str]:
+def failed_row(contact: LineContact | None, law: LawShape | None, outcome: str, message: str) -> tuple[Array, str]:
     """Return the row of a state of which nothing is known but how its solve ended."""
-    values = np.full(len(columns_of(contact is not None)), math.nan)
+    values = np.full(len(columns_of(contact is not None, law)), math.nan)
     values[-1] = OUTCOMES.index(outcome)
     return values, message

@@ -111,6 +111,7 @@ class Sweep:
                 "finished": self.finished,
                 "failed": self.failed,
                 "contact_law": self.about["contact_law"],
+                **{f"contact_law_{name}": value for name, value in self.about.get("contact_law_parameters", {}).items()},
                 "rtol": self.about["rtol"],
                 "kind": self.about["kind"],
                 "shape": self.about["shape"],

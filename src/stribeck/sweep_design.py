@@ -16,7 +16,7 @@ from typing import Annotated, Any, get_args
 import numpy as np
 
 from ._types import Array, LawShape
-from .case import Case, contact_inputs, error_sentence, example_of, read_toml, surface_table
+from .case import Case, contact_inputs, error_sentence, example_of, group_inputs, read_toml, surface_table
 from .case_law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
 from .parameters import INPUTS, QUANTITIES, Groups, LineContact, check_modulus_choice, quantity
 from .sweep_points import KINDS, RANDOM, Axis, Kind, points_of
@@ -155,16 +155,13 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
     problems += _design_problems(checked["design"], axes)
     if problems:
         return None
-    law = checked["contact"]["law"] if si else Case.law
-    shape: LawShape | None = None
-    fixed = {name: value for name, value in checked["groups"].items() if value is not None}
+    law = checked["contact" if si else "groups"]["law"]
     try:
-        if si:
-            for axis in axes:  # what varies is not also said by a table of the surface
-                if axis.name in FROM_TABLES and law != "table" and checked[TABLES_OF[law]] is not None:
-                    raise InputError(f"[vary] {axis.name} follows from the table [{TABLES_OF[law]}]; remove one of them.")
-            fixed = contact_inputs(checked, path.parent)
-            shape = fixed.pop("law")
+        for axis in axes:  # what varies is not also said by a table of the surface
+            if si and axis.name in FROM_TABLES and law != "table" and checked[TABLES_OF[law]] is not None:
+                raise InputError(f"[vary] {axis.name} follows from the table [{TABLES_OF[law]}]; remove one of them.")
+        fixed = contact_inputs(checked, path.parent) if si else group_inputs(checked, path.parent)
+        shape: LawShape | None = fixed.pop("law")
     except InputError as problem:
         problems += str(problem).splitlines()
         return None
@@ -228,6 +225,7 @@ def _model() -> Any:
         roughness: number | None = None
         mu0: number | None = None
         beta: number | None = None
+        law: Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")] = Case.law
 
     class Design(Table):
         kind: Annotated[Kind, Field(description=f"one of {', '.join(map(repr, KINDS))}")] = "grid"

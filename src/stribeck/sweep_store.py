@@ -164,7 +164,7 @@ def create_or_open(path: PathLike, design: SweepDesign) -> Path:
 
 def _make(zarr: Any, path: Path, design: SweepDesign) -> None:
     """Write everything but the states."""
-    n, columns = len(design), columns_of(design.si)
+    n, columns = len(design), columns_of(design.si, design.contact_law)
     inputs = {
         **design.inputs,
         **{f"{name}_group": design.groups[:, k] for k, name in enumerate(("speed", "load", "roughness"))},
@@ -181,6 +181,7 @@ def _make(zarr: Any, path: Path, design: SweepDesign) -> None:
         "si": design.si,
         "rtol": design.rtol,
         "contact_law": design.law,
+        "contact_law_parameters": {} if design.contact_law is None else design.contact_law.parameters,
         "outcomes": list(OUTCOMES),
     }
     group = zarr.create_group(str(path), zarr_format=3, attributes=attributes)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import os
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -19,9 +18,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._types import Array
-from .units import InputError, show, to_si
+from .two_columns import read_two_columns
+from .units import InputError, show
 
 LEAST_ROWS = 4
+
+PLAIN, WITH_UNITS = ("separation", "pressure"), {"gap": "length", "pressure": "pressure"}
+"""Headers of a file."""
 
 STRAY = 3.0
 """Factor by which the slope between two rows may leave those of the straight lines around it: a cubic that is monotone keeps
@@ -103,7 +106,7 @@ class TableLaw:
         InputError
             If the file cannot be read or is no such table; the sentence names line and column.
         """
-        rows, units = _read_rows(Path(path))
+        rows, units = read_two_columns(Path(path), PLAIN, WITH_UNITS)
         s, p = rows[:, 0], rows[:, 1]
         if units is not None:
             needed = {"alpha": alpha, "beta": beta, "roughness": roughness, "modulus": modulus}
@@ -157,7 +160,18 @@ class TableLaw:
         return self._spline[2]
 
     def log_pressure(self, separation: Array) -> Array:
-        """Return ln(Phi) at the separation s."""
+        """Return ln(Phi) at the separation s.
+
+        Parameters
+        ----------
+        separation : ndarray
+            Separation s, of any shape [-].
+
+        Returns
+        -------
+        ndarray
+            Logarithm of p/(beta E*), of the same shape.
+        """
         s = np.asarray(separation, dtype=float)
         first, last, slope_first, slope_last = self._ends
         inside = np.clip(s, first, last)
@@ -165,12 +179,34 @@ class TableLaw:
         return np.asarray(self._spline[0](inside) + np.where(outside < 0, slope_first, slope_last) * outside)
 
     def log_slope(self, separation: Array) -> Array:
-        """Return d ln(Phi)/ds at the separation s."""
+        """Return d ln(Phi)/ds at the separation s.
+
+        Parameters
+        ----------
+        separation : ndarray
+            Separation s, of any shape [-].
+
+        Returns
+        -------
+        ndarray
+            The derivative, negative.
+        """
         first, last, _, _ = self._ends
         return np.asarray(self._spline[1](np.clip(np.asarray(separation, dtype=float), first, last)))
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state of which this is the least separation."""
+        """Return what to know about a state.
+
+        Parameters
+        ----------
+        separation : float
+            Its least separation [-].
+
+        Returns
+        -------
+        tuple of str
+            One sentence each.
+        """
         first, last = self.separation[0], self.separation[-1]
         found = []
         if separation < first:
@@ -244,7 +280,18 @@ class FunctionLaw:
         return {}
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state of which this is the least separation."""
+        """Return what to know about a state.
+
+        Parameters
+        ----------
+        separation : float
+            Its least separation [-].
+
+        Returns
+        -------
+        tuple of str
+            One sentence each.
+        """
         if separation >= self.checked[0] or separation < 0:
             return ()
         return (f"The least separation is {separation:.2g}, below those at which the contact law was checked.",)
@@ -318,58 +365,3 @@ def _interpolant(s: Array, f: Array) -> tuple[Any, Any, int]:
             slopes[end] = secant
     cubics = CubicHermiteSpline(s, f, slopes)
     return cubics, cubics.derivative(), 1
-
-
-# --- files ---
-
-_HEADER = re.compile(r"\s*([^\[\](),;]*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
-_PLAIN, _WITH_UNITS = ("separation", "pressure"), ("gap", "pressure")
-_ADVICE = "the first line must be 'separation, pressure', or with units such as 'gap [um], pressure [MPa]'"
-LARGEST_FILE = 10_000_000
-
-
-def _read_rows(path: Path) -> tuple[Array, tuple[float, float] | None]:
-    """Return the numbers of a file in two columns, and the SI values of their units if it has any."""
-    try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(f"{path} is not text in UTF-8; save the table as CSV.") from None
-    except (OSError, ValueError) as problem:
-        raise InputError(f"{path} cannot be read ({getattr(problem, 'strerror', problem)}); give a CSV file.") from None
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"{path} has more than {LARGEST_FILE} bytes; a contact law needs some hundred rows.")
-    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip() and not line.lstrip().startswith("#")]
-    if not lines:
-        raise InputError(f"{path} is empty; {_ADVICE}.")
-    separator = next((sign for sign in ";\t," if sign in lines[0][1]), None)
-    units = _units(path, lines[0][1].split(separator))
-    return np.array([_row(path, i, line.split(separator), separator) for i, line in lines[1:]]).reshape(-1, 2), units
-
-
-def _units(path: Path, header: list[str]) -> tuple[float, float] | None:
-    found = [_HEADER.fullmatch(cell) for cell in header]
-    names = tuple(match.group(1).strip().lower() if match else "" for match in found)
-    units = [match.group(2) for match in found if match]
-    if names == _PLAIN and units == [None, None]:
-        return None
-    if names != _WITH_UNITS or not all(units):
-        raise InputError(f"{path}: the header is {show(', '.join(cell.strip() for cell in header))}; {_ADVICE}.")
-    length, pressure = (
-        to_si(f"1 {unit}", kind, name) for unit, kind, name in zip(units, ("length", "pressure"), names, strict=True)
-    )
-    return length, pressure
-
-
-def _row(path: Path, number: int, cells: list[str], separator: str | None) -> tuple[float, float]:
-    if len(cells) != 2:
-        raise InputError(f"{path}, line {number}: {len(cells)} columns where two are expected.")
-    values = []
-    for column, cell in zip(("first", "second"), cells, strict=True):
-        written = cell.strip().replace(",", ".") if separator != "," else cell.strip()
-        try:
-            values.append(float(written))
-        except ValueError:
-            raise InputError(f"{path}, line {number}, {column} column: {show(cell.strip())} is not a number.") from None
-    return values[0], values[1]

@@ -1,0 +1,235 @@
+"""Contact laws in case and sweep files and on the command line: named, read from their tables, and told in every output."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from command_line import CONTACT, call, case_text
+from sweep_files import write
+
+import stribeck as sb
+
+SURFACE = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"300 um"', "shortest_wavelength": '"0.3 um"'}
+ASPERITIES = {"density": '"1e10 1/m^2"', "radius": '"10 um"', "deviation": '"0.5 um"'}
+OF_SURFACE = {"alpha": None, "beta": None, "roughness": None}
+ROWS = "separation, pressure\n0, 1\n1, 0.4\n2, 0.15\n4, 0.02\n8, 0.0003\n"
+
+
+@pytest.fixture
+def case(tmp_path):
+    """Return a function that writes a case under a law and returns its path."""
+    (tmp_path / "law.csv").write_text(ROWS)
+    (tmp_path / "bad.csv").write_text("wavenumber [1/m], density [m^4]\n1e3, 1e-20\n2e3, 1e-21\n1e3, 1e-22\n")
+    (tmp_path / "si.csv").write_text("gap [um], pressure [kPa]\n0, 162\n0.5, 64.8\n1, 24.3\n2, 3.24\n4, 0.0486\n")
+
+    def make(law, changes=None, **tables):
+        contact = {"law": f'"{law}"'} | (OF_SURFACE if {"surface", "asperities"} & set(tables) else {}) | (changes or {})
+        path = tmp_path / "case.toml"
+        path.write_text(case_text(contact, **tables))
+        return path
+
+    return make
+
+
+def test_persson_and_its_coefficients_come_from_the_surface(case):
+    found = sb.load_case(case("persson", surface=SURFACE))
+    law = sb.surfaces.persson_law(
+        sb.surfaces.SelfAffine(h_rms=1e-6, q0=2 * math.pi / 300e-6, q1=2 * math.pi / 0.3e-6, hurst=0.8)
+    )
+    assert found.law == found.contact.law.name == "persson"
+    assert (found.contact.alpha, found.contact.beta) == pytest.approx((law.alpha, law.beta), rel=1e-9)
+    assert found.contact.roughness == pytest.approx(1e-6, rel=1e-12)
+
+
+def test_a_measured_spectrum_is_read_beside_its_case(case, tmp_path):
+    spectrum = sb.surfaces.SelfAffine(h_rms=1e-6, q0=2e4, q1=2e7, hurst=0.8).spectrum
+    rows = zip(spectrum.wavenumber * 1e-3, spectrum.density * 1e12, strict=True)
+    (tmp_path / "C.csv").write_text("wavenumber [1/mm]; density [mm^4]\n" + "\n".join(f"{q:.17g}; {c:.17g}" for q, c in rows))
+    found = sb.load_case(case("persson", surface={"spectrum": '"C.csv"', "gamma": "0.5"})).contact.law
+    expected = sb.surfaces.persson_law(spectrum, 0.5)
+    assert (found.alpha, found.beta, found.rms_slope) == pytest.approx((expected.alpha, expected.beta, expected.rms_slope))
+
+
+def test_an_exponential_law_takes_its_coefficients_from_the_surface_and_knows_its_area(case):
+    found = sb.load_case(case("exponential", surface=SURFACE)).contact
+    full = sb.load_case(case("persson", surface=SURFACE)).contact
+    assert (found.alpha, found.beta) == (full.alpha, full.beta)
+    assert sb.solve(found).law == "exponential"
+    assert 0 < sb.solve(found).central_area_fraction < 1
+
+
+@pytest.mark.parametrize(
+    ("law", "kind"), [("greenwood-williamson", sb.GreenwoodWilliamson), ("greenwood-tripp", sb.GreenwoodTripp)]
+)
+def test_asperities_give_the_coefficients_or_the_contact_does(case, law, kind):
+    found = sb.load_case(case(law, asperities=ASPERITIES)).contact
+    expected = kind.coefficients(density=1e10, radius=1e-5, deviation=5e-7)
+    assert {name: getattr(found, name) for name in expected} == pytest.approx(expected, rel=1e-12)
+    assert found.law == kind()
+    bare = sb.load_case(case(law)).contact
+    assert (bare.alpha, bare.beta, bare.law) == (2.0, 0.06, kind())
+
+
+def test_a_table_is_read_beside_its_case_with_or_without_units(case):
+    plain = sb.load_case(case("table", table={"file": '"law.csv"'})).contact.law
+    units = sb.load_case(case("table", table={"file": '"si.csv"'})).contact.law
+    poisson = {"modulus": None, "youngs_modulus": '"2.025 MPa"', "poisson_ratio": "0.5"}
+    other = sb.load_case(case("table", poisson, table={"file": '"si.csv"'})).contact.law
+    for law in (units, other):
+        assert law.separation == pytest.approx(plain.separation)
+        assert law.pressure == pytest.approx(plain.pressure, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("law", "changes", "tables", "sentence"),
+    [
+        ("persson", OF_SURFACE, {}, "the table [surface] is missing, which law = 'persson' needs; give h_rms"),
+        ("persson", {"beta": "0.06"}, {"surface": SURFACE}, "[contact] beta = 0.06 follows from the table [surface]; remove"),
+        ("persson", {}, {"surface": SURFACE | {"hurst": "1.5"}}, "[surface] hurst = 1.5"),
+        ("persson", {}, {"surface": SURFACE | {"h_rms": '"1 N"'}}, "[surface] h_rms = '1 N' is a force"),
+        ("persson", {}, {"surface": {"spectrum": '"law.csv"'}}, "the first line must be 'wavenumber [1/m], density [m^4]'"),
+        ("persson", {}, {"surface": {"spectrum": '"bad.csv"'}}, "row 3 = 1000 is not above the one before it"),
+        (
+            "persson",
+            {},
+            {"surface": SURFACE | {"spectrum": '"C.csv"'}},
+            "[surface] h_rms = '1 um' follows from the file",
+        ),
+        ("persson", {}, {"surface": {"spectrum": "3"}}, "[surface] spectrum = 3 must be text in quotes"),
+        ("persson", {}, {"surface": SURFACE | {"hurst": None}}, "[surface] hurst is missing; add hurst = 0.8."),
+        (
+            "persson",
+            {},
+            {"surface": SURFACE | {"Hurst": "0.8"}},
+            "[surface] Hurst = 0.8 is not a known key; did you mean",
+        ),
+        ("persson", {}, {"asperities": ASPERITIES}, "the table [asperities] is of no use to law = 'persson'; it belongs to"),
+        ("greenwood-tripp", {}, {"asperities": ASPERITIES | {"radius": None}}, "[asperities] radius is missing; add radius"),
+        ("greenwood-tripp", {}, {"asperities": ASPERITIES | {"density": "0"}}, "[asperities] density = 0 must be positive"),
+        ("greenwood-tripp", {"beta": None}, {}, "[contact] beta is missing; add"),
+        ("table", {}, {}, "the table [table] is missing, which law = 'table' needs; give file there."),
+        ("table", {}, {"table": {"file": '"none.csv"'}}, "none.csv cannot be read"),
+        ("table", {}, {"table": {"file": "3"}}, "[table] file = 3 must be text in quotes"),
+        ("table", {}, {"table": {}}, "[table] file is missing; add the name of a CSV file"),
+        ("linear", {}, {}, "[contact] law = 'linear' must be one of 'exponential', 'persson'"),
+    ],
+)
+def test_what_is_wrong_with_a_law_is_told_in_one_sentence(case, capsys, law, changes, tables, sentence):
+    answer = call(capsys, "solve", case(law, changes, **tables))
+    assert answer.code == 2 and answer.out == ""
+    assert len(answer.err.strip().splitlines()) == 1
+    assert sentence in answer.err
+
+
+def test_every_output_names_the_law_and_its_parameters(case, capsys, tmp_path):
+    path = case("persson", surface=SURFACE, curve={"range": '["1 um/s", "0.1 m/s"]', "points": "5"})
+    law = sb.load_case(path).contact.law
+    state = call(capsys, "solve", path, "--json").out
+    assert json.loads(state)["contact_law"] == "persson"
+    assert json.loads(state)["contact_law_parameters"]["beta"] == law.beta
+    assert 0 < json.loads(state)["central_area_fraction"] < 1
+    said = call(capsys, "solve", path).out
+    assert f"Contact law: persson (alpha {law.alpha:.4g}, beta {law.beta:.4g}" in said
+    assert "real contact area at x = 0" in said
+    curve = call(capsys, "curve", path, "--json", "-o", tmp_path / "c.csv", "--plot", tmp_path / "c.svg").out
+    assert json.loads(curve)["contact_law_parameters"]["gamma"] == 0.45
+    text = (tmp_path / "c.csv").read_text()
+    assert "# contact_law: persson\n" in text and f"# contact_law_beta: {law.beta}\n" in text
+    assert "central_area_fraction [1]" in text
+    assert "persson contact law (alpha" in " ".join((tmp_path / "c.svg").read_text().split())
+    regimes = json.loads(call(capsys, "regimes", path, "--json").out)
+    assert (regimes["contact_law"], regimes["contact_law_parameters"]["gamma"]) == ("persson", 0.45)
+
+
+def test_groups_take_the_name_of_a_law_without_parameters(capsys):
+    tokens = ("solve", "--groups", "1e-5", "0.1", "1e-4", "--json")
+    found = json.loads(call(capsys, *tokens, "--law", "greenwood-tripp").out)
+    assert found["contact_law"] == "greenwood-tripp"
+    assert found["central_gap"] == sb.solve(sb.Groups(1e-5, 0.1, 1e-4), law="greenwood-tripp").central_gap
+    refused = call(capsys, *tokens, "--law", "persson")
+    assert refused.code == 2 and "law = 'persson'; names are 'exponential'" in refused.err
+    curve = call(
+        capsys,
+        "curve",
+        "--groups",
+        "0.1",
+        "1e-3",
+        "--range",
+        "1e-6",
+        "1",
+        "--points",
+        "5",
+        "--json",
+        "--law",
+        "greenwood-tripp",
+    )
+    assert json.loads(curve.out)["contact_law"] == "greenwood-tripp"
+
+
+def test_a_law_on_the_command_line_is_for_groups(case, capsys):
+    answer = call(capsys, "solve", case("persson", surface=SURFACE), "--law", "exponential")
+    assert answer.code == 2 and "--law = exponential goes with --groups only" in answer.err
+
+
+SWEEP = """
+[contact]
+{}
+[surface]
+{}
+[vary]
+load = ["10 N/m", "100 N/m"]
+speed = {{ range = ["1 um/s", "0.1 m/s"], points = 3 }}
+"""
+
+
+def sweep_text(law="persson"):
+    contact = {"law": f'"{law}"'} | {
+        k: v for k, v in CONTACT.items() if k not in ("load", "speed", "alpha", "beta", "roughness")
+    }
+    return SWEEP.format(*("\n".join(f"{k} = {v}" for k, v in table.items()) for table in (contact, SURFACE)))
+
+
+def test_a_sweep_solves_its_states_under_the_law_of_its_file(tmp_path):
+    done = sb.sweep(write(tmp_path, sweep_text()), tmp_path / "store")
+    assert done.finished == 6 and not done.failed
+    design = sb.load_sweep(tmp_path / "sweep.toml")
+    data = done.to_dataset()
+    assert data.attrs["contact_law"] == "persson"
+    assert data.attrs["contact_law_gamma"] == 0.45
+    assert ((data["central_area_fraction"] > 0) & (data["central_area_fraction_error"] < 1e-6)).all()
+    groups = sb.Groups(*design.groups[1], law=design.contact_law)
+    gaps = data["central_gap"].values.ravel()
+    assert gaps[1] == pytest.approx(sb.solve(groups, rtol=1e-8).central_gap, rel=1e-5)
+    assert np.abs(gaps[1] / sb.solve(sb.Groups(*design.groups[1])).central_gap - 1) > 1e-3
+
+
+def test_a_sweep_of_another_law_is_another_sweep(tmp_path):
+    prints = {sb.load_sweep(write(tmp_path, text)).fingerprint for text in (sweep_text(), sweep_text("exponential"))}
+    prints.add(
+        sb.load_sweep(write(tmp_path, sweep_text().replace("0.8", "0.7", 1).replace("hurst = 0.8", "hurst = 0.7"))).fingerprint
+    )
+    assert len(prints) == 3
+
+
+def test_a_sweep_of_another_table_is_another_sweep(tmp_path):
+    text = '[groups]\nlaw = "table"\nload = 0.3\nroughness = 0.003\n[table]\nfile = "law.csv"\n[vary]\nspeed = [0, 1e-5]\n'
+    prints = set()
+    for last in ("0.0003", "0.0004"):
+        (tmp_path / "law.csv").write_text(ROWS.replace("0.0003", last))
+        prints.add(sb.load_sweep(write(tmp_path, text)).fingerprint)
+    assert len(prints) == 2
+
+
+def test_a_sweep_over_groups_has_a_law_too(tmp_path):
+    text = '[groups]\nlaw = "greenwood-tripp"\nload = 0.3\nroughness = 0.003\n[vary]\nspeed = [0, 1e-5, 1e-2]\n'
+    done = sb.sweep(write(tmp_path, text), tmp_path / "store")
+    gaps = done.to_dataset()["central_gap"].values
+    for speed, gap in zip((0.0, 1e-5, 1e-2), gaps, strict=True):
+        assert gap == pytest.approx(sb.solve(sb.Groups(speed, 0.3, 0.003), law="greenwood-tripp").central_gap, rel=2e-6)
+
+
+def test_what_varies_in_a_sweep_is_not_also_said_by_its_surface(tmp_path):
+    text = sweep_text().replace("[vary]", '[vary]\nroughness = ["1 um", "2 um"]')
+    with pytest.raises(sb.InputError, match=r"\[vary\] roughness follows from the table \[surface\]"):
+        sb.load_sweep(write(tmp_path, text))

@@ -1,0 +1,341 @@
+"""From heights to a contact law: the spectrum's identities, known spectra recovered within their errors, bodies taken away."""
+
+import json
+import math
+import tomllib
+
+import numpy as np
+import pytest
+from command_line import call
+from scipy.integrate import quad
+
+import stribeck as sb
+from stribeck.plot_surface import plot_surface
+from stribeck.surface_spectrum import line_density
+from stribeck.surfaces import (
+    RoughSurface,
+    SelfAffine,
+    Topography,
+    analyse,
+    detrended,
+    exponential_limit,
+    fit_self_affine,
+    power_spectrum,
+    synthetic_topography,
+    write_surface_table,
+)
+
+STEP = 1e-6
+FUNDAMENTAL = 2 * math.pi / 128e-6
+ROLLED = SelfAffine(1e-6, FUNDAMENTAL / 2, 3e6, 0.8, 7 * FUNDAMENTAL)
+
+
+def fitted(surface, points, seed, **options):
+    flat, _ = detrended(synthetic_topography(surface, points, STEP, seed, **options))
+    return fit_self_affine(power_spectrum(flat))
+
+
+# --- the spectrum ---
+
+
+@pytest.mark.parametrize("window", ["hann", "none"])
+def test_the_spectrum_of_white_noise_is_its_variance_over_the_band(window):
+    z = np.random.default_rng(91).standard_normal((200, 160)) * 1e-7
+    spectrum = power_spectrum(Topography(z, (1e-6, 2e-6)), window)
+    level = np.average(spectrum.density, weights=spectrum.modes)
+    assert level == pytest.approx(1e-14 * 1e-6 * 2e-6 / (2 * math.pi) ** 2, rel=0.03, abs=0)
+    line = power_spectrum(Topography(z[:, :100].ravel(), (1e-6,)), window)
+    assert np.average(line.density, weights=line.modes) == pytest.approx(1e-14 * 1e-6 / (2 * math.pi), rel=0.04, abs=0)
+
+
+def test_one_wave_has_all_its_power_in_its_ring():
+    x = np.arange(256) * 1e-6
+    q = 40 * 2 * math.pi / 256e-6
+    z = 1e-7 * np.cos(q * x)[:, None] * np.ones(256)
+    spectrum = power_spectrum(Topography(z, (1e-6, 1e-6)), "none")
+    ring = int(np.argmax(spectrum.density))
+    assert spectrum.inner[ring].min() <= q <= spectrum.inner[ring].max() * 1.05
+    cell = (2 * math.pi / 256e-6) ** 2
+    assert spectrum.density[ring] * 2 * spectrum.modes[ring] * cell == pytest.approx(0.5e-14, rel=1e-9, abs=0)
+    assert spectrum.mean_square == pytest.approx(0.5e-14, rel=1e-12, abs=0)
+
+
+def test_the_power_of_all_rings_is_the_mean_square_of_smooth_heights():
+    smooth = SelfAffine(1e-6, 8e4, 1.5e6, 0.8, 2e5)
+    surface = synthetic_topography(smooth, (256, 256), 1e-6, 92, oversize=1)
+    spectrum = power_spectrum(surface, "none")
+    cell = (2 * math.pi / 256e-6) ** 2
+    total = float(np.sum(spectrum.density * 2 * spectrum.modes) * cell)
+    assert total == pytest.approx(float(np.mean(surface.heights**2)), rel=1e-3, abs=0)
+
+
+def test_the_spectrum_along_a_line_is_the_integral_of_that_of_the_map():
+    # Without roll-off: C_1 = C(q) q pi^(1/2) Gamma(H + 1/2)/Gamma(H + 1).
+    for H in (0.3, 0.8, 1.0):
+        surface = SelfAffine(1.0, 1.0, 1e12, H)
+        q = np.geomspace(1.0, 1e3, 7)
+        expected = surface.spectrum.at(q) * q * math.sqrt(math.pi) * math.gamma(H + 0.5) / math.gamma(H + 1)
+        assert line_density(q, surface) == pytest.approx(expected, rel=1e-6, abs=0)
+    # With a roll-off, against quadrature of the definition.
+    rolled = SelfAffine(1.0, 1.0, 1e9, 0.7, 20.0)
+    level = rolled.spectrum.density[0]
+    for q in (1e-3, 0.9, 5.0, 19.0, 40.0):
+
+        def density(k, q=q):
+            r = math.hypot(q, k)
+            return level * max(r / 20, 1.0) ** -3.4 if r >= 1 else 0.0
+
+        breaks = [math.sqrt(r * r - q * q) for r in (1.0, 20.0) if r > q]
+        parts = zip([0.0, *breaks], [*breaks, np.inf], strict=True)
+        expected = 2 * sum(quad(density, a, b, epsabs=0, epsrel=1e-9, limit=200)[0] for a, b in parts if b > 1.0 or q > 1.0)
+        assert line_density(np.array([q]), rolled)[0] == pytest.approx(expected, rel=1e-6, abs=0)
+
+
+def test_reliable_wavelengths_end_at_the_scan_and_at_the_instrument():
+    surface = synthetic_topography(ROLLED, (128, 128), STEP, 93)
+    by_grid, by_tip = power_spectrum(surface), power_spectrum(surface, resolution=10e-6)
+    assert 2 * math.pi / by_grid.lowest == pytest.approx(128e-6 / 2.5)
+    assert 2 * math.pi / by_grid.highest == pytest.approx(4e-6)
+    assert 2 * math.pi / by_tip.highest == pytest.approx(10e-6)
+    assert by_tip.highest_reason == "resolution of the instrument"
+    with pytest.raises(sb.InputError, match="too few for a spectrum"):
+        power_spectrum(surface, resolution=50e-6)
+
+
+# --- the fit ---
+
+
+def scores(surface, points, seeds, names):
+    fits = [fitted(surface, points, seed) for seed in seeds]
+    found = [fit for fit in fits if "roll_off" in fit.found]
+    assert len(found) >= 0.9 * len(fits)
+
+    def truth(name, fit):  # the height is that of waves that the scan resolves
+        whole = surface.spectrum.between(surface.q0, fit.roughness.q1).rms_height
+        return whole if name == "h_rms" else getattr(surface, name)
+
+    return np.array(
+        [[(getattr(fit.roughness, name) - truth(name, fit)) / fit.errors[name] for name in names] for fit in found]
+    )
+
+
+@pytest.mark.parametrize("points", [(128, 128), (1024,)])
+def test_known_spectra_are_recovered_within_their_errors(points):
+    surface = ROLLED if len(points) == 2 else SelfAffine(1e-6, FUNDAMENTAL / 32, 3e6, 0.8, 3 * FUNDAMENTAL)
+    z = scores(surface, points, range(400, 416 if len(points) == 2 else 408), ("h_rms", "hurst", "roll_off"))
+    assert np.all(np.abs(z.mean(axis=0)) < 0.9)
+    assert np.all((z.std(axis=0) > 0.5) & (z.std(axis=0) < 1.6))
+    assert np.all((np.abs(z) < 2).mean(axis=0) >= 0.75)
+
+
+@pytest.mark.slow
+def test_the_errors_of_a_fit_cover_as_they_say():
+    z = scores(ROLLED, (128, 128), range(1000, 1200), ("h_rms", "hurst", "roll_off"))
+    within = (np.abs(z) < 1).mean(axis=0), (np.abs(z) < 2).mean(axis=0)
+    assert np.all(within[0] > 0.6) and np.all(within[1] > 0.92)
+    assert np.all(np.abs(z.mean(axis=0)) < 0.5)
+
+
+def test_sharp_cut_offs_inside_the_scan_are_found():
+    surface = SelfAffine(1e-6, 4 * FUNDAMENTAL, 20 * FUNDAMENTAL, 0.8)
+    for seed in (1, 2):
+        fit = fitted(surface, (256, 256), seed)
+        assert {"q0", "q1"} <= set(fit.found)
+        for name in ("h_rms", "q0", "q1"):
+            assert abs(getattr(fit.roughness, name) - getattr(surface, name)) < 3 * fit.errors[name]
+
+
+def test_a_power_law_without_end_is_not_given_a_roll_off():
+    fits = [fitted(SelfAffine(1e-6, FUNDAMENTAL / 4, 3e6, 0.6), (128, 128), seed) for seed in range(8)]
+    assert sum("roll_off" in fit.found for fit in fits) <= 2
+    assert all("q0" not in fit.found and "q1" not in fit.found for fit in fits)
+
+
+def test_noise_of_the_instrument_is_taken_for_noise():
+    clean = synthetic_topography(ROLLED, (128, 128), STEP, 95)
+    noise = np.random.default_rng(96).standard_normal((128, 128)) * 5e-7
+    fit = fit_self_affine(power_spectrum(Topography(clean.heights + noise, clean.spacing)))
+    assert "noise" in fit.found
+    # What lies beyond the grid folds back and looks like noise too.
+    assert 0.8 < fit.noise / (25e-14 * STEP**2 / (2 * math.pi) ** 2) < 1.4
+    assert abs(fit.roughness.hurst - 0.8) < 3 * fit.errors["hurst"]
+
+
+def test_errors_of_alpha_and_beta_follow_from_those_of_the_fit():
+    fits = [fitted(ROLLED, (128, 128), seed) for seed in range(500, 508)]
+    limits = np.array([fit.exponential_limit() for fit in fits])
+    alpha, beta = exponential_limit(ROLLED.spectrum.between(ROLLED.q0, math.pi / (2 * STEP)))
+    assert np.mean(np.abs(limits[:, 0] - alpha) < 2 * limits[:, 1]) >= 0.85
+    assert np.mean(np.abs(limits[:, 2] - beta) < 2 * limits[:, 3]) >= 0.85
+    assert np.all(limits[:, 1] < 0.1 * alpha) and np.all(limits[:, 3] < 0.3 * beta)
+
+
+def test_what_is_not_self_affine_is_said_to_be_so():
+    x = np.arange(512)
+    noise = np.random.default_rng(105).standard_normal(512) * 1e-7
+    flat = analyse(Topography(noise, (STEP,)))
+    assert any("flatter than that of self-affine" in note or "rms height of the scan is" in note for note in flat.notes)
+    wave = analyse(Topography(1e-6 * np.sin(x / 5) + 1e-9 * noise, (STEP,)))
+    assert any("not self-affine" in note for note in wave.notes)
+    assert not any("self-affine" in note for note in analyse(synthetic_topography(ROLLED, (128, 128), STEP, 97)).notes)
+
+
+# --- the body ---
+
+
+def on_cylinder(surface, radius, angle=0.0, tilt=0.0):
+    x, y = (np.arange(n) * STEP for n in surface.heights.shape)
+    across = (x[:, None] - x.mean()) * math.cos(angle) + (y - y.mean()) * math.sin(angle)
+    return Topography(surface.heights - across**2 / (2 * radius) + tilt * x[:, None], surface.spacing)
+
+
+def test_the_radius_of_the_cylinder_comes_out_within_its_error():
+    scores = []
+    for seed in range(8):
+        rough = synthetic_topography(ROLLED.scaled(1e-7), (128, 128), STEP, 700 + seed)
+        surface = analyse(on_cylinder(rough, 2e-3, angle=0.5, tilt=0.03))
+        error = surface.shape.radius_error(surface.roughness, surface.topography)
+        scores.append((surface.shape.radius - 2e-3) / error)
+        assert surface.shape.curvatures[0] < 0
+        assert abs(surface.shape.direction - 0.5) < 0.2
+        assert surface.shape.tilt[0] == pytest.approx(0.03, abs=3e-3)
+    assert np.mean(np.abs(scores) < 2) >= 0.8
+    assert 0.5 < np.std(scores) < 1.6
+
+
+def test_a_tilted_scan_has_the_roughness_of_a_level_one():
+    level = synthetic_topography(ROLLED, (128, 128), STEP, 97)
+    tilted = on_cylinder(level, math.inf, tilt=0.2)
+    assert analyse(tilted).roughness.h_rms == pytest.approx(analyse(level).roughness.h_rms, rel=1e-6, abs=0)
+    curved = analyse(on_cylinder(level, 1e-3, angle=1.0))
+    assert curved.roughness.hurst == pytest.approx(analyse(level).roughness.hurst, rel=1e-5, abs=0)
+    assert analyse(level).notes[-1].endswith("the scan is flat.")
+
+
+def test_a_profile_across_the_cylinder_gives_its_radius():
+    line = synthetic_topography(SelfAffine(1e-7, 1e3, 3e6, 0.8, 1e5), (1024,), STEP, 98)
+    x = (np.arange(1024) - 511.5) * STEP
+    surface = analyse(Topography(line.heights + x**2 / (2 * 5e-3), line.spacing))
+    error = surface.shape.radius_error(surface.roughness, surface.topography)
+    assert abs(surface.shape.radius - 5e-3) < 3 * error < 1e-4
+    assert surface.shape.curvatures[0] > 0
+
+
+def test_dead_points_change_the_roughness_by_less_than_its_error():
+    whole = synthetic_topography(ROLLED, (128, 128), STEP, 99)
+    z = whole.heights.copy()
+    dead = np.random.default_rng(100).random(z.shape) < 0.02
+    z[dead] = np.nan
+    z[64, 70] = 1.0
+    fits = [analyse(Topography(heights, whole.spacing)) for heights in (whole.heights, z)]
+    for name in ("h_rms", "hurst", "roll_off"):
+        values = [getattr(fit.roughness, name) for fit in fits]
+        assert abs(values[1] - values[0]) < 0.5 * fits[0].fit.errors[name]
+    assert any("without a height" in note for note in fits[1].notes)
+    assert any("taken for dead" in note for note in fits[1].notes)
+
+
+def test_a_line_and_the_map_that_it_was_cut_from_agree():
+    surface = SelfAffine(1e-6, FUNDAMENTAL / 8, 3e6, 0.8, 7 * FUNDAMENTAL)
+    whole = synthetic_topography(surface, (512, 128), STEP, 101)
+    of_map = analyse(whole).to_dict()
+    of_lines = [analyse(Topography(whole.heights[:, j], (STEP,))).to_dict() for j in (10, 60, 110)]
+    for name in ("hurst", "beta", "h_rms"):
+        mean = np.mean([line[name] for line in of_lines])
+        error = math.hypot(of_map[f"{name}_error"], np.mean([line[f"{name}_error"] for line in of_lines]))
+        assert abs(mean - of_map[name]) < 2 * error
+
+
+# --- bad arguments ---
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"trend": "cubic"}, "detrend = 'cubic' is not known"),
+        ({"window": "kaiser"}, "window = 'kaiser' is not known"),
+        ({"gamma": 2.0}, "gamma = 2 must be above 0"),
+        ({"resolution": "1 kg"}, "a length such as"),
+        ({"resolution": 0.0}, "not above zero"),
+    ],
+)
+def test_an_impossible_argument_is_refused(options, words):
+    with pytest.raises(sb.InputError, match=words):
+        analyse(synthetic_topography(ROLLED, (64, 64), STEP, 1), **options)
+
+
+def test_a_plane_has_no_roughness():
+    plane = np.arange(64.0)[:, None] + np.zeros(64)
+    with pytest.raises(sb.InputError, match="nothing is left after the tilt"):
+        detrended(Topography(plane, (1.0, 1.0)), "tilt")
+
+
+# --- the command, the table and the picture ---
+
+
+@pytest.fixture(scope="module")
+def scan(tmp_path_factory):
+    path = tmp_path_factory.mktemp("scan") / "scan.csv"
+    rough = on_cylinder(synthetic_topography(ROLLED, (128, 96), STEP, 102), 5e-3)
+    x, y = np.meshgrid(*(np.arange(n) * 1.0 for n in rough.heights.shape), indexing="ij")
+    table = np.stack((x.ravel(), y.ravel(), rough.heights.ravel() * 1e9), axis=1)
+    np.savetxt(path, table, fmt="%.6g", delimiter=",", header="x (um),y (um),z (nm)")
+    return path
+
+
+def test_the_command_prints_and_writes_what_analyse_finds(capsys, scan, tmp_path):
+    out, plot = tmp_path / "surface.toml", tmp_path / "surface.png"
+    words = call(capsys, "surface", scan, "--out", out, "--plot", plot)
+    assert words.code == 0, words.err
+    numbers = json.loads(call(capsys, "surface", scan, "--json").out)
+    expected = analyse(sb.surfaces.read_topography(scan)).to_dict()
+    assert numbers["alpha"] == expected["alpha"] and numbers["hurst_error"] == expected["hurst_error"]
+    for text in ("radius of the body", "Hurst exponent", f"alpha                         {expected['alpha']:.3f}"):
+        assert text in words.out
+    table = tomllib.loads(out.read_text())["surface"]
+    again = RoughSurface(**table)
+    assert exponential_limit(again.roughness) == pytest.approx((expected["alpha"], expected["beta"]), rel=1e-5, abs=0)
+    assert plot.read_bytes()[:4] == b"\x89PNG"
+    refused = call(capsys, "surface", scan, "--out", out)
+    assert refused.code == 2 and "--force" in refused.err
+
+
+@pytest.mark.parametrize(
+    ("tokens", "words"),
+    [
+        ((), "FILE is missing"),
+        (("none.csv",), "none.csv is no file"),
+        (("SCAN", "--unit", "mm"), "declares its"),
+        (("SCAN", "--trend", "cubic"), "detrend = 'cubic'"),
+        (("SCAN", "--gamma", "x"), "gamma = 'x' is not a number"),
+        (("SCAN", "--out", "a.txt"), "must end in .toml"),
+    ],
+)
+def test_the_command_refuses_nonsense_in_one_line(capsys, scan, tokens, words):
+    answer = call(capsys, "surface", *(scan if token == "SCAN" else token for token in tokens))
+    assert answer.code == 2
+    assert words in answer.err and len(answer.err.splitlines()) == 1
+
+
+def test_the_table_is_whole_or_not_there(tmp_path):
+    surface = analyse(synthetic_topography(ROLLED, (64, 64), STEP, 103))
+    write_surface_table(surface, tmp_path / "a.toml")
+    with pytest.raises(sb.InputError, match="kept"):
+        write_surface_table(surface, tmp_path / "a.toml")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.toml"]
+
+
+@pytest.mark.parametrize("points", [(64, 64), (512,)])
+def test_the_picture_shows_heights_spectrum_and_law(points):
+    surface = analyse(synthetic_topography(ROLLED, points, STEP, 104))
+    figure = plot_surface(surface, title="A surface")
+    heights, spectrum, law = figure.axes[:3]
+    assert heights.images or heights.lines
+    fit = next(line for line in spectrum.lines if line.get_label().startswith("fit"))
+    q, density = fit.get_data()
+    assert density == pytest.approx(surface.fit.at(q, is_line=surface.topography.is_line), rel=1e-9, abs=0)
+    persson, exponential = law.lines[:2]
+    u, p = persson.get_data()
+    expected = surface.law.beta * np.exp(surface.law.log_pressure(surface.law.alpha * u))
+    assert p == pytest.approx(expected, rel=1e-9, abs=0)
+    assert p[0] > exponential.get_data()[1][0]

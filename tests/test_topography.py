@@ -1,0 +1,219 @@
+"""Heights from files: real formats, plain text as laboratories write it, dead points, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+from topography_files import write_gwy, write_sdf, write_x3p
+
+import stribeck as sb
+from stribeck.surfaces import SelfAffine, Topography, read_topography, synthetic_topography
+
+
+@pytest.fixture(scope="module")
+def heights():
+    return np.random.default_rng(83).standard_normal((40, 36)) * 1e-7
+
+
+# --- the formats of instruments ---
+
+
+@pytest.mark.parametrize(("name", "write"), [("a.x3p", write_x3p), ("a.sdf", write_sdf), ("a.gwy", write_gwy)])
+def test_a_map_in_a_real_format_is_read_back(tmp_path, heights, name, write):
+    z = heights.copy()
+    if name != "a.gwy":  # which has no mark for a missing point
+        z[3, 4] = np.nan
+    write(tmp_path / name, z, 1e-6, 2e-6)
+    read = read_topography(tmp_path / name)
+    assert read.spacing == pytest.approx((1e-6, 2e-6), rel=1e-12, abs=0)
+    assert np.nanmax(np.abs(read.heights - z)) < 1e-15
+    assert np.array_equal(np.isnan(read.heights), np.isnan(z))
+    assert read.source == f"{name} ({name[2:]})"
+
+
+def test_a_format_without_units_is_refused_until_they_are_given(tmp_path, heights):
+    np.save(tmp_path / "z.npy", heights * 1e9)
+    with pytest.raises(sb.InputError, match="does not say its unit; add --unit um"):
+        read_topography(tmp_path / "z.npy")
+    with pytest.raises(sb.InputError, match="distance between points; add --spacing"):
+        read_topography(tmp_path / "z.npy", unit="nm")
+    read = read_topography(tmp_path / "z.npy", unit="um", height_unit="nm", spacing="0.5 um")
+    assert read.spacing == pytest.approx((5e-7, 5e-7))
+    assert read.heights == pytest.approx(heights)
+
+
+def test_what_a_file_declares_cannot_be_overruled(tmp_path, heights):
+    write_x3p(tmp_path / "a.x3p", heights, 1e-6, 1e-6)
+    with pytest.raises(sb.InputError, match="declares its unit, m; leave out unit = 'um'"):
+        read_topography(tmp_path / "a.x3p", unit="um")
+    with pytest.raises(sb.InputError, match="leave out spacing"):
+        read_topography(tmp_path / "a.x3p", spacing="1 um")
+    with pytest.raises(sb.InputError, match="no channel of heights called 'Phase'; it has"):
+        read_topography(tmp_path / "a.x3p", channel="Phase")
+
+
+@pytest.mark.parametrize("name", ["a.x3p", "a.sur"])
+def test_a_damaged_file_is_refused_in_one_sentence(tmp_path, name):
+    (tmp_path / name).write_bytes(b"PK\x03\x04 not heights")
+    with pytest.raises(sb.InputError, match="no format that SurfaceTopography knows, or damaged"):
+        read_topography(tmp_path / name)
+    with pytest.raises(sb.InputError, match="no file"):
+        read_topography(tmp_path / "b.x3p")
+
+
+# --- plain text ---
+
+
+def grid_rows(z, step):
+    return [(i * step, j * step, z[i, j]) for i in range(z.shape[0]) for j in range(z.shape[1])]
+
+
+DIALECTS = {
+    "semicolon, decimal comma": ("x (um);y (um);z (nm)", ";", ","),
+    "German header": ("Länge [um];Breite [um];Höhe [nm]", ";", ","),
+    "tabs": ("x (um)\ty (um)\tz (nm)", "\t", "."),
+    "tabs, decimal comma": ("x (um)\ty (um)\tz (nm)", "\t", ","),
+    "comma": ("x (um),y (um),z (nm)", ",", "."),
+    "spaces": ("# x (um) y (um) z (nm)", "   ", "."),
+    "spaces, decimal comma": ("# x (um) y (um) z (nm)", " ", ","),
+}
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_a_map_in_any_dialect_of_text_is_read_back(tmp_path, heights, dialect):
+    header, separator, point = DIALECTS[dialect]
+    rows = grid_rows(heights, 2.5)
+    np.random.default_rng(84).shuffle(rows)
+    lines = [separator.join(f"{v:.9g}" for v in (x, y, z * 1e9)).replace(".", point) for x, y, z in rows]
+    (tmp_path / "map.csv").write_text("\n".join(["Profilometer 7", header, *lines]), encoding="latin-1")
+    read = read_topography(tmp_path / "map.csv")
+    assert read.spacing == pytest.approx((2.5e-6, 2.5e-6))
+    assert np.abs(read.heights - heights).max() < 1e-15
+
+
+def test_points_that_are_absent_or_empty_are_missing(tmp_path, heights):
+    lines = [f"{x:g};{y:g};{z * 1e9:.6f}" for x, y, z in grid_rows(heights, 2.5)]
+    lines[5] = lines[5].rpartition(";")[0] + ";"
+    lines[6] = lines[6].rpartition(";")[0] + ";---"
+    del lines[100]
+    (tmp_path / "map.txt").write_text("\n".join(["x [um];y [um];z [nm]", *lines]))
+    read = read_topography(tmp_path / "map.txt")
+    assert list(zip(*np.nonzero(np.isnan(read.heights)), strict=True)) == [(0, 5), (0, 6), (2, 28)]
+
+
+def test_a_line_has_its_positions_or_a_spacing(tmp_path):
+    x, z = np.arange(80) * 0.25, np.random.default_rng(85).standard_normal(80)
+    (tmp_path / "line.csv").write_text("\n".join(f"{a},{b}" for a, b in zip(x[::-1], z[::-1], strict=True)))
+    (tmp_path / "z.csv").write_text("\n".join(map(str, z)))
+    (tmp_path / "matrix.csv").write_text("\n".join(" ".join(map(str, row)) for row in z.reshape(2, 40).repeat(20, 0)))
+    line = read_topography(tmp_path / "line.csv", unit="mm", height_unit="um")
+    assert line.spacing == pytest.approx((2.5e-4,))
+    assert line.heights == pytest.approx(z * 1e-6)
+    assert read_topography(tmp_path / "z.csv", unit="um", spacing="2 um").spacing == (2e-6,)
+    matrix = read_topography(tmp_path / "matrix.csv", unit="um", spacing="2 um")
+    assert matrix.heights.shape == (40, 40)
+    assert matrix.heights[:, 0] == pytest.approx(z[:40] * 1e-6)
+
+
+def test_an_uneven_line_is_interpolated_and_says_so(tmp_path):
+    x = np.cumsum(np.random.default_rng(86).uniform(0.8, 1.2, 200))
+    (tmp_path / "line.csv").write_text("\n".join(f"{a} {math.sin(a / 20)}" for a in x))
+    line = read_topography(tmp_path / "line.csv", unit="um")
+    assert "uneven" in line.notes[0]
+    even = x[0] + np.arange(line.heights.size) * line.spacing[0] * 1e6
+    assert np.abs(line.heights * 1e6 - np.sin(even / 20)).max() < 0.05
+    assert line.resolution == pytest.approx(8 * line.spacing[0])
+
+
+TEXTS = {
+    "no unit": ("1,2\n2,3.5\n3,4\n", {}, "does not say the unit of its heights; add --unit um"),
+    "contradiction": (
+        "x (um);z (nm)\n1;2\n2;3\n",
+        {"height_unit": "um"},
+        "declares its heights in nm, but height_unit = 'um'",
+    ),
+    "wrong unit": ("1;2\n2;3\n", {"unit": "kg"}, "a length such as"),
+    "unknown unit in the header": ("x (um);z (foo)\n1;2\n2;3\n", {}, "unit of heights"),
+    "ragged": ("1;2\n2;3\n3;4;5\n", {"unit": "um"}, "line 3 has 3 columns where the lines above have 2"),
+    "word": ("1;2\n2;oops\n3;4\n", {"unit": "um"}, "line 2, column 2 is 'oops', not a number"),
+    "no numbers": ("hello\nworld\n", {"unit": "um"}, "no line of numbers"),
+    "empty": ("", {"unit": "um"}, "no line of numbers"),
+    "no position": ("1;2\n;3\n3;4\n", {"unit": "um"}, "line 2 has no position"),
+    "same position": ("1;2\n2;3\n2;4\n", {"unit": "um"}, "line 3 has the same position"),
+    "no spacing": ("1\n2\n3\n", {"unit": "um"}, "say the distance between points with --spacing"),
+    "spacing twice": ("1;2\n2;3\n", {"unit": "um", "spacing": "1 um"}, "has positions"),
+    "no grid": ("0;0;1\n1;0;1\n2;0;1\n3.4;0;1\n0;1;2\n", {"unit": "um"}, "line 4 does not lie on an even grid in x"),
+    "same point": ("0;0;1\n1;0;1\n0;1;1\n1;1;2\n1;1;3\n", {"unit": "um"}, "line 5 repeats the position"),
+    "no area": ("0;0;1\n0;0;1\n", {"unit": "um"}, "all points have the same x"),
+    "either comma": ("1,5\n2,5\n", {"unit": "um"}, "may be two columns or one number"),
+    "two points": ("1;2\n2;3\n", {"unit": "um"}, "2 points are too few"),
+    "binary": ("1\0;2\n", {"unit": "um"}, "is no text"),
+    "channel": ("1;2\n", {"channel": "Height"}, "plain text without channels"),
+}
+
+
+@pytest.mark.parametrize("case", TEXTS)
+def test_text_that_is_no_topography_is_refused_by_line(tmp_path, case):
+    text, options, words = TEXTS[case]
+    (tmp_path / "scan.csv").write_text(text)
+    with pytest.raises(sb.InputError, match=words) as caught:
+        read_topography(tmp_path / "scan.csv", **options)
+    assert "\n" not in str(caught.value)
+
+
+# --- what a topography is ---
+
+
+@pytest.mark.parametrize(
+    ("z", "spacing", "words"),
+    [
+        (np.ones(100), (1e-6,), "all heights are the same"),
+        (np.arange(20.0), (1e-6,), "too few for a spectrum"),
+        (np.where(np.arange(100) % 4, np.arange(100.0), np.nan), (1e-6,), "25 % of the points are missing"),
+        (np.arange(100.0), (0.0,), "is not positive"),
+        (np.arange(100.0), (1e-6, 1e-6), "no line and no map"),
+    ],
+)
+def test_heights_that_have_no_spectrum_are_refused(z, spacing, words):
+    with pytest.raises(sb.InputError, match=words):
+        Topography(z, spacing)
+
+
+def test_dead_points_are_filled_by_the_plane_around_them():
+    x, y = np.meshgrid(np.arange(40.0), np.arange(36.0), indexing="ij")
+    plane = 2 * x - y
+    holes = plane.copy()
+    holes[10:13, 20:24] = np.nan
+    holes[0, 0] = np.nan
+    filled = Topography(holes, (1.0, 1.0)).repaired(keep_spikes=True)
+    inner = filled.heights[10:13, 20:24]
+    assert inner == pytest.approx(plane[10:13, 20:24], abs=1e-12)
+    assert filled.missing == 0
+    assert filled.notes == ("13 of 1440 points are without a height, filled from the neighbours.",)
+
+
+def test_a_saturated_point_counts_as_dead_and_roughness_does_not():
+    rough = synthetic_topography(SelfAffine(1e-6, 2e4, 3e6, 0.8, 1e5), (64, 64), 1e-6, 5)
+    assert rough.repaired().notes == ()
+    z = rough.heights.copy()
+    z[30, 31] = 1e-4
+    spiked = Topography(z, rough.spacing)
+    assert "1 of 4096 points is taken for dead" in spiked.repaired().notes[0]
+    assert abs(spiked.repaired().heights[30, 31] - rough.heights[30, 31]) < 5e-7
+    assert spiked.repaired(keep_spikes=True).heights[30, 31] == 1e-4
+
+
+@pytest.mark.parametrize("hurst", [0.3, 0.8, 1.0])
+@pytest.mark.parametrize("points", [(64, 64), (1024,)])
+def test_rough_surfaces_have_no_spikes(points, hurst):
+    for seed in range(6):
+        for surface in (SelfAffine(1e-6, 1e4, 3e6, hurst, 1e5), SelfAffine(1e-6, 1e4, 1e6, hurst)):
+            assert synthetic_topography(surface, points, 1e-6, seed).repaired().notes == ()
+
+
+def test_a_synthetic_surface_has_the_moments_of_its_spectrum():
+    surface = SelfAffine(1e-6, 1e5, 1.2e6, 0.8, 2e5)
+    maps = [synthetic_topography(surface, (128, 128), 1e-6, seed, oversize=1).heights for seed in range(30)]
+    assert np.mean([np.mean(z**2) for z in maps]) == pytest.approx(1e-12, rel=0.03, abs=0)
+    slope = [(np.roll(z, -1, 0) - np.roll(z, 1, 0)) / 2e-6 for z in maps]
+    assert np.mean([2 * np.mean(s**2) for s in slope]) == pytest.approx(surface.spectrum.moment(2), rel=0.15, abs=0)
