@@ -282,8 +282,8 @@ def number_in_comments(path, name):
     return float(stated), 0.5 * 10.0 ** -len(stated.partition(".")[2])
 
 
-def test_the_three_examples_are_there():
-    assert [path.stem for path in EXAMPLES] == ["nitrile_seal", "pdms_cylinder", "wiper_blade"]
+def test_the_four_examples_are_there():
+    assert [path.stem for path in EXAMPLES] == ["nitrile_seal", "pdms_cylinder", "pdms_fit", "wiper_blade"]
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

@@ -118,7 +118,17 @@ def names_in_tables_of(section):
 
 
 RESULTS = (sb.Groups, sb.LineContact, sb.HertzScales, sb.Friction, sb.Profile, sb.Solution, sb.StribeckCurve)
-RESULTS += (sb.Landmark, sb.Case, sb.Sweep, sb.SweepDesign, sb.SweepProgress)
+RESULTS += (
+    sb.Fit,
+    sb.FittedInput,
+    sb.FitSettings,
+    sb.Measurements,
+    sb.Landmark,
+    sb.Case,
+    sb.Sweep,
+    sb.SweepDesign,
+    sb.SweepProgress,
+)
 
 
 @pytest.mark.parametrize("kind", RESULTS, ids=lambda kind: kind.__name__)

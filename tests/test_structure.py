@@ -37,6 +37,8 @@ SURFACES = {
 }
 SWEEP = ("chain", "dataset", "design", "lock", "order", "store", "workers")
 
+FIT = ("identify", "model", "objective", "profile", "quality", "result", "settings", "states")
+
 # Who may import whom; `_types` is open to all, and a module that is not named here is refused.
 #
 # The solver never sees an asymptotic formula: one that fed the solver could no longer judge it. `newton`,
@@ -45,7 +47,8 @@ MAY_IMPORT = {
     "_types": set(),
     "units": set(),
     "parameters": {"units"},
-    "case": {"case_law", "parameters", "units"},
+    "fit_settings": {"parameters", "units"},
+    "case": {"case_law", "fit_settings", "parameters", "units"},
     "case_law": {"asperity_laws", "contact_laws", "persson", "rough_surface", "spectrum", "two_columns", "units", "user_laws"},
     "two_columns": {"units"},
     "asperity_laws": {"units"},
@@ -112,6 +115,20 @@ MAY_IMPORT = {
     "sweep_workers": RESULTS | {"output", "sweep_chain", "sweep_columns", "sweep_store"},
     "sweep": RESULTS | {"output"} | {f"sweep_{part}" for part in SWEEP},
     "report_sweep": RESULTS | {"sweep", "sweep_columns", "sweep_dataset"},
+    "lab_table": {"units"},
+    "measurements": {"fit_settings", "lab_table", "parameters", "units"},
+    "fit_states": RESULTS | {"atlas", "curve", "observables", "sensitivity"},
+    "fit_model": RESULTS | {"fit_settings", "fit_states", "measurements", "regimes"},
+    "fit_objective": RESULTS | {"fit_model", "fit_settings", "fit_states"},
+    "fit_identify": {"fit_model"},
+    "fit_profile": {"fit_objective"},
+    "fit_quality": {"fit_objective"},
+    "fit_result": RESULTS | {"fit_identify", "fit_quality", "fit_settings", "measurements"},
+    "fit": RESULTS | {"case", "measurements"} | {f"fit_{part}" for part in FIT},
+    "fit_posterior": RESULTS | {"atlas", "fit_objective", "fit_result", "output"},
+    "fit_file": RESULTS | {"case", "fit_result", "output"},
+    "report_fit": {"fit_file", "fit_posterior", "fit_result"},
+    "plot_fit": RESULTS | {"fit_file", "fit_result", "output", "plotting"},
     "batch_device": {"output", "units"},
     "batch_equations": EQUATIONS | {"batch_device"},
     "batch_guess": EQUATIONS | ALGORITHMS | {"states"},
@@ -137,6 +154,7 @@ HEAVY = {
     "cyclopts",
     "dask",
     "distributed",
+    "emcee",
     "matplotlib",
     "netCDF4",
     "pandas",

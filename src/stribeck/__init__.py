@@ -5,6 +5,10 @@ from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
 from .batch import BatchSolution, solve_batch
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
+from .fit import fit
+from .fit_result import Fit, FitOutcome, FittedInput
+from .fit_settings import FitSettings
+from .measurements import Measurements, read_measurements
 from .newton import Outcome
 from .parameters import Groups, HertzScales, InputError, LineContact
 from .phase_diagram import phase_diagram
@@ -20,6 +24,10 @@ from .user_laws import FunctionLaw, TableLaw
 __all__ = [
     "BatchSolution",
     "Case",
+    "Fit",
+    "FitOutcome",
+    "FitSettings",
+    "FittedInput",
     "Friction",
     "FunctionLaw",
     "GreenwoodTripp",
@@ -29,6 +37,7 @@ __all__ = [
     "InputError",
     "Landmark",
     "LineContact",
+    "Measurements",
     "Outcome",
     "Profile",
     "Solution",
@@ -41,10 +50,12 @@ __all__ = [
     "TableLaw",
     "asymptotics",
     "atlas",
+    "fit",
     "load_case",
     "load_sweep",
     "open_sweep",
     "phase_diagram",
+    "read_measurements",
     "regime_of",
     "solve",
     "solve_batch",

@@ -30,6 +30,7 @@ __all__ = [
     "fluid_load_share",
     "friction",
     "friction_derivatives",
+    "friction_parts",
     "minimum_gap",
     "offset",
     "viscous_friction",
@@ -141,16 +142,53 @@ def friction_derivatives(groups: Groups, mu0: float = 1.0, beta: float = 1.0, de
     -----
     Exact derivatives of :func:`friction`, shown by ``test_atlas.py``; zero at rest.
     """
-    mu0, beta, row = quantity("friction_coefficient", mu0), quantity("beta", beta), _row(definition)
-    flat, values = _read(groups, (ODDS, row), slopes=True)
+    mu0, beta = quantity("friction_coefficient", mu0), quantity("beta", beta)
+    _, contact_slopes, viscous_slopes = friction_parts(groups, definition)
+    return mu0 * contact_slopes + beta * viscous_slopes
+
+
+def friction_parts(groups: Groups, definition: Definition = "paper") -> tuple[Array, Array, Array]:
+    r"""Return both parts of the friction for mu0 = beta = 1, and the derivatives of each.
+
+    .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction, theory.md, section 6.
+
+    Returns
+    -------
+    ndarray, shape (2, ...)
+        Contact load share, and viscous friction for beta = 1 [-].
+    ndarray, shape (3, ...)
+        Derivatives of the first by ln(speed), ln(load) and ln(roughness), the other two groups held [-].
+    ndarray, shape (3, ...)
+        Those of the second.
+
+    Raises
+    ------
+    InputError
+        If a state is outside :data:`BOX`, or the definition unknown.
+
+    Notes
+    -----
+    One reading of the table gives all, for fits in which mu0 and beta differ from state to state.
+    """
+    flat, values = _read(groups, (ODDS, _row(definition)), slopes=True)
     assert values.slopes is not None
-    contact, viscous = _contact(values.values[0]), _viscous(flat, values.values[1], beta)
-    by_odds = -mu0 * contact * (1 - contact)
+    contact, viscous = _contact(values.values[0]), _viscous(flat, values.values[1], 1.0)
     # By ln(speed), -ln(load), ln(kappa), with kappa = roughness/load.
-    by_speed, by_log_load, by_kappa = by_odds * values.slopes[:, 0] + viscous * values.slopes[:, 1]
-    found = np.stack([by_speed + viscous, 0.5 * viscous - by_log_load - by_kappa, by_kappa])
-    found[:, flat[0] == 0] = 0.0
-    return found.reshape(3, *groups.shape)
+    of_contact = -contact * (1 - contact) * values.slopes[:, 0]
+    of_viscous = viscous * values.slopes[:, 1]
+    slopes = []
+    for (by_speed, by_log_load, by_kappa), part in ((of_contact, 0.0), (of_viscous, viscous)):
+        found = np.stack([by_speed + part, 0.5 * part - by_log_load - by_kappa, by_kappa])
+        found[:, flat[0] == 0] = 0.0
+        slopes.append(found.reshape(3, *groups.shape))
+    return np.stack([contact, viscous]).reshape(2, *groups.shape), slopes[0], slopes[1]
 
 
 def contact_load_share(groups: Groups) -> Value:

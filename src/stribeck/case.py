@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from .case_law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
+from .fit_settings import FitSettings, check_fit_table
 from .parameters import QUANTITIES, InputError, LineContact, check_modulus_choice, quantity
 from .units import DIMENSIONS, show
 
@@ -79,6 +80,8 @@ class Case:
         Headline for outputs; empty where the file has none.
     notes : str
         Free text; empty where the file has none.
+    fit : FitSettings
+        The ``[fit]`` table, for :func:`stribeck.fit`.
     """
 
     path: Path
@@ -89,6 +92,7 @@ class Case:
     definition: Definition = "paper"
     title: str = ""
     notes: str = ""
+    fit: FitSettings = field(default_factory=FitSettings)
 
 
 def load_case(path: str | os.PathLike[str]) -> Case:
@@ -99,7 +103,8 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     path : str or path-like
         A TOML file: a table ``[contact]`` (the arguments of :class:`LineContact`, and ``law`` by its name), a table
         ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and where wanted ``[curve]``
-        (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``), ``title`` and ``notes``.
+        (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md),
+        ``title`` and ``notes``.
 
     Returns
     -------
@@ -118,10 +123,16 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     table = read_toml(path)
     model = _model()
     problems = []
+    fit = FitSettings()
+    if "fit" in table:
+        try:
+            fit = check_fit_table(table.pop("fit"))
+        except InputError as problem:
+            problems = str(problem).split("\n")
     try:
         checked = model(**table).model_dump()
     except pydantic.ValidationError as failure:
-        problems = [error_sentence(model, error) for error in failure.errors(include_url=False)]
+        problems += [error_sentence(model, error) for error in failure.errors(include_url=False)]
     problems += _elasticity_problem(table.get("contact")) + _missing_from_surface(table)
     if not problems:
         law = checked["contact"]["law"]
@@ -139,6 +150,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         curve=CurveSettings(**checked["curve"]),
         title=checked["title"],
         notes=checked["notes"],
+        fit=fit,
         **checked["solver"],
     )
 

@@ -56,6 +56,7 @@ DIMENSIONS = {
     "pressure": Dimension("a pressure", "Pa", "2.1 MPa", _prefixed("Pa", (-3, 0, 3, 6, 9))),
     "viscosity": Dimension("a viscosity", "Pa*s", "10 mPa*s", _prefixed("Pa*s", (-6, -3, 0, 3, 6))),
     "load": Dimension("a load per unit length", "N/m", "50 N/m", _prefixed("N/m", (-6, -3, 0, 3, 6))),
+    "drag": Dimension("a viscosity times a speed", "Pa*m", "2 mPa*m", _prefixed("Pa*m", (-9, -6, -3, 0, 3))),
     "spectral density": Dimension("a spectral density of heights", "m^4", "1e-20 m^4", {0: "m^4"}),
     "per area": Dimension("a number per area", "1/m^2", "1e10 1/m^2", {0: "1/m^2"}),
     "number": Dimension("a bare number", "", "0.5", {0: ""}),

@@ -1,0 +1,513 @@
+"""Fits of measured friction: exact on exact data, honest about what data do not say, and never silent about convergence."""
+
+import importlib
+import json
+import math
+import re
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from command_line import CONTACT, call
+from fit_data import EXAMPLES, TRUE, exact, measured, noisy
+
+import stribeck as sb
+from stribeck.fit_file import write_fitted_case
+from stribeck.fit_model import FrictionModel, free_inputs
+from stribeck.fit_objective import minimise, objective
+from stribeck.fit_posterior import draw_posterior
+from stribeck.fit_settings import FREE, FitSettings, Prior
+from stribeck.fit_states import atlas_parts, solved_parts
+from stribeck.persson import persson_law
+from stribeck.spectrum import SelfAffine
+
+START = TRUE.replace(friction_coefficient=0.3, roughness="2 um", modulus="1.5 MPa")
+NEAR = START.replace(modulus=TRUE.modulus)
+MEASURED, CASE = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    """Return the fit of one noisy curve to friction coefficient, roughness and modulus."""
+    return sb.fit(noisy(7), START, free=["mu0", "h_rms", "E_star"])
+
+
+def with_settings(tmp_path, contact=TRUE, **settings):
+    """Return a case with fit settings, as one read from a file."""
+    return sb.Case(path=tmp_path / "case.toml", contact=contact, fit=FitSettings(**settings))
+
+
+# --- derivatives and exact data ---
+
+
+@pytest.mark.parametrize("abscissa", ["speed", "speed_viscosity", "hersey_number"])
+def test_sensitivities_agree_with_differences(abscissa):
+    values = {"speed": 1.0, "speed_viscosity": TRUE.viscosity, "hersey_number": TRUE.viscosity / TRUE.load}
+    speeds = np.array([1e-3, 3e-2])
+    data = measured(
+        np.tile(speeds * values[abscissa], 2),
+        np.ones(4),
+        abscissa=abscissa,
+        curve=[0, 0, 1, 1],
+        curves=("a", "b"),
+        inputs=({}, {"load": 60.0}),
+    )
+    names = FREE if abscissa == "speed" else ("roughness", "load")
+    free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
+    model, parts = FrictionModel(TRUE, data, free), solved_parts("paper", 1e-7)
+    jacobian = model.predict(np.zeros(len(free)), parts).jacobian
+    step = 3e-3
+    for i in range(len(free)):
+        move = step * np.eye(len(free))[i]
+        slope = (model.predict(move, parts).friction - model.predict(-move, parts).friction) / (2 * step)
+        assert jacobian[:, i] == pytest.approx(slope, abs=2e-5)
+    first = [each.name for each in free].index("roughness")
+    assert np.all(jacobian[2:, first] == 0) and np.all(jacobian[:2, first + 1] == 0)
+
+
+@pytest.mark.parametrize("abscissa", ["speed", "speed_viscosity", "hersey_number"])
+def test_the_prediction_is_the_friction_of_the_contacts(abscissa):
+    values = np.array([1e-3, 1e-1, 1e-2]) * {"speed": 1, "speed_viscosity": 0.05, "hersey_number": 0.05 / 30}[abscissa]
+    data = measured(
+        values,
+        np.ones(3),
+        abscissa=abscissa,
+        curve=[0, 0, 1],
+        curves=("a", "b"),
+        inputs=({}, {"viscosity": 0.01, "load": 20.0}),
+    )
+    names = [name for name in FREE if name != "viscosity" or abscissa == "speed"]
+    free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
+    model, theta = FrictionModel(TRUE, data, free), np.linspace(-0.2, 0.3, len(free))
+    found = model.predict(theta, solved_parts("balanced", 1e-8))
+    for i, value in enumerate(values):
+        contact = model.contact_of(data.curve[i], theta)
+        per_speed = {"speed": 1.0, "speed_viscosity": contact.viscosity, "hersey_number": contact.viscosity / contact.load}
+        contact = contact.replace(speed=value / per_speed[abscissa])
+        assert found.friction[i] == pytest.approx(sb.solve(contact).friction(definition="balanced").total, rel=1e-6)
+    assert {each.name for each in free if each.is_factor} <= {"viscosity", "load"}
+    assert sum(each.name == "roughness" for each in free) == 2
+
+
+def test_atlas_and_solver_give_the_same_prediction():
+    data = noisy(1)
+    model = FrictionModel(TRUE, data, free_inputs(TRUE, data, FREE, FitSettings()))
+    quick, slow = (model.predict(np.zeros(len(FREE)), parts) for parts in (atlas_parts("paper"), solved_parts("paper", 1e-8)))
+    assert quick.friction == pytest.approx(slow.friction, rel=2.4e-5)
+    assert quick.jacobian == pytest.approx(slow.jacobian, abs=1e-4)
+
+
+def test_data_without_noise_give_the_true_inputs_from_far_away():
+    speeds, friction = exact()
+    far = TRUE.replace(friction_coefficient=0.1, roughness="5 um", modulus="0.5 MPa", beta=0.2)
+    found = sb.fit(measured(speeds, friction), far, free=["mu0", "h_rms", "E_star", "beta"], intervals=False)
+    assert found.converged
+    for each in found.inputs:
+        assert each.value == pytest.approx(getattr(TRUE, each.name), rel=1e-4)
+    assert found.friction == pytest.approx(friction, rel=1e-6)
+
+
+def test_the_fitted_friction_is_that_of_the_solver(fitted):
+    rows = [0, 12, 24]
+    solved = [sb.solve(fitted.contact.replace(speed=float(fitted.data.values[i]))).friction().total for i in rows]
+    assert fitted.friction[rows] == pytest.approx(solved, rel=1e-6)
+    assert fitted.model_error < 1e-5
+    assert fitted.solver_shift < 0.01
+
+
+def test_order_of_rows_and_repeated_speeds_do_not_matter(tmp_path):
+    speeds, friction = exact(rows=12)
+    friction *= np.exp(0.03 * np.random.default_rng(3).standard_normal(12))
+    lines = [f"{u},{m}" for u, m in zip(speeds, friction, strict=True)] * 2
+    results = []
+    for order in (range(24), np.random.default_rng(4).permutation(24)):
+        (tmp_path / "lab.csv").write_text("speed [m/s],friction\n" + "\n".join(lines[i] for i in order))
+        results.append(sb.fit(tmp_path / "lab.csv", TRUE, intervals=False))
+    assert [e.value for e in results[0].inputs] == pytest.approx([e.value for e in results[1].inputs], rel=1e-6)
+    once = sb.fit(measured(speeds, friction), TRUE, intervals=False)
+    assert results[0]["roughness"].value == pytest.approx(once["roughness"].value, rel=1e-5)
+    assert results[0]["roughness"].standard_error == pytest.approx(
+        once["roughness"].standard_error * math.sqrt(10 / 22), rel=1e-3
+    )
+
+
+# --- intervals ---
+
+
+def test_covariance_is_that_of_the_linearised_least_squares(fitted):
+    J, r = fitted._minimum.jacobian, fitted._minimum.residuals
+    assert r @ r == pytest.approx(len(r) - 3, rel=1e-9)
+    assert fitted.covariance == pytest.approx(np.linalg.inv(J.T @ J), rel=1e-6)
+    width = [each.standard_error for each in fitted.inputs]
+    assert fitted.correlation == pytest.approx(fitted.covariance / np.outer(width, width))
+
+
+def test_an_end_of_an_interval_is_where_the_best_fit_is_worse_by_the_quantile(fitted):
+    from scipy.stats import t
+
+    goal = replace(fitted._minimum.objective, parts_of=atlas_parts("paper"))
+    at = minimise(goal, fitted._minimum.theta)
+    for i, each in enumerate(fitted.inputs):
+        for level, ends in ((0.682689492137086, each.interval_68), (0.95, each.interval_95)):
+            quantile = t.ppf(0.5 + level / 2, len(at.residuals) - 3)
+            for end in ends:
+                held = minimise(goal, at.theta, {i: math.log(end / each.start)})
+                assert math.sqrt(held.value - at.value) == pytest.approx(quantile, abs=0.02)
+
+
+def test_intervals_of_nearly_linear_inputs_are_those_of_the_covariance(fitted):
+    from scipy.stats import t
+
+    each = fitted["friction_coefficient"]
+    half = t.ppf(0.975, 22) * each.standard_error
+    assert np.log(each.interval_95) == pytest.approx(
+        [math.log(each.value) - half, math.log(each.value) + half], abs=0.02 * half
+    )
+
+
+def test_given_errors_set_the_width_and_are_tested(tmp_path):
+    speeds, friction = exact()
+    sigma = 0.03 * friction
+    noise = np.random.default_rng(5).standard_normal(25)
+    right = sb.fit(measured(speeds, friction + sigma * noise, sigma), TRUE)
+    assert 0.01 < right.quality.chi_squared_probability < 0.99
+    assert right.quality.messages == () and math.isnan(right.noise)
+    small = sb.fit(measured(speeds, friction + sigma * noise, sigma / 3), TRUE)
+    assert small["roughness"].standard_error == pytest.approx(right["roughness"].standard_error / 3, rel=0.05)
+    assert "too small by a factor" in small.quality.messages[0]
+    large = sb.fit(measured(speeds, friction + sigma * noise, sigma * 5), TRUE)
+    assert "too large by a factor" in large.quality.messages[0]
+    relative = sb.fit(measured(speeds, friction + sigma * noise), with_settings(tmp_path, relative_error=0.03))
+    assert relative["roughness"].standard_error == pytest.approx(right["roughness"].standard_error, rel=0.05)
+
+
+def test_a_prior_adds_its_information(tmp_path):
+    data = noisy(8, low=0.02)
+    alone = sb.fit(data, TRUE, free=["mu0", "h_rms"])
+    prior = Prior(0.7, 1.05)
+    held = sb.fit(
+        data, with_settings(tmp_path, free=("friction_coefficient", "roughness"), priors={"friction_coefficient": prior})
+    )
+    assert held.converged
+    assert alone["friction_coefficient"].standard_error > 0.3
+    assert held["friction_coefficient"].standard_error == pytest.approx(math.log(1.05), rel=0.05)
+    assert held["roughness"].standard_error < 0.5 * alone["roughness"].standard_error
+    strong = Prior(1.4, 1.001)
+    moved = sb.fit(
+        data, with_settings(tmp_path, free=("friction_coefficient", "roughness"), priors={"friction_coefficient": strong})
+    )
+    assert moved["friction_coefficient"].value == pytest.approx(1.4, rel=1e-3)
+
+
+def test_an_input_at_its_bound_is_said(tmp_path):
+    case = with_settings(tmp_path, bounds={"roughness": (5e-7, 9e-7)}, contact=TRUE.replace(roughness=8e-7))
+    found = sb.fit(noisy(7), case)
+    each = found["roughness"]
+    assert found.converged and each.at_bound and each.value == pytest.approx(9e-7, rel=1e-3)
+    assert any("ended at its bound" in note for note in found.notes)
+    assert math.isnan(each.standard_error)
+
+
+# --- several curves ---
+
+
+def test_curves_share_inputs_or_have_their_own(tmp_path):
+    rough = TRUE.replace(roughness="2 um")
+    (u, first), (_, second) = exact(), exact(rough)
+    noise = np.exp(0.02 * np.random.default_rng(6).standard_normal(50))
+    data = measured(
+        np.tile(u, 2), np.append(first, second) * noise, curve=[0] * 25 + [1] * 25, curves=("a", "b"), inputs=({}, {})
+    )
+    case = with_settings(tmp_path, free=("friction_coefficient", "roughness"), per_curve=("roughness",))
+    found = sb.fit(data, case)
+    assert [each.label for each in found.inputs] == ["friction_coefficient", "roughness (a)", "roughness (b)"]
+    assert found["roughness (a)"].value == pytest.approx(1e-6, rel=0.05)
+    assert found["roughness (b)"].value == pytest.approx(2e-6, rel=0.05)
+    assert found.contacts[1].roughness == found["roughness (b)"].value
+    assert found.quality.messages == ()
+    shared = sb.fit(data, with_settings(tmp_path))
+    assert any("structure" in message for message in shared.quality.messages)
+
+
+def test_a_shared_input_with_different_values_is_fitted_as_a_factor():
+    thin = TRUE.replace(viscosity=5e-3)
+    (u, first), (_, second) = exact(), exact(thin, high=3.0)
+    speeds = np.append(u, exact(thin, high=3.0)[0])
+    inputs = ({"viscosity": 0.04}, {"viscosity": 0.004})  # 20 % too low, both
+    data = measured(speeds, np.append(first, second), curve=[0] * 25 + [1] * 25, curves=("a", "b"), inputs=inputs)
+    found = sb.fit(data, TRUE, free=["mu0", "viscosity"], intervals=False)
+    assert found.inputs[1].label == "viscosity factor"
+    assert found.inputs[1].value == pytest.approx(1.25, rel=1e-4)
+    assert [contact.viscosity for contact in found.contacts] == pytest.approx([0.05, 0.005], rel=1e-4)
+
+
+# --- what data do not say ---
+
+
+def test_a_curve_without_a_plateau_cannot_give_the_dry_friction():
+    found = sb.fit(noisy(2, low=0.03, high=3.0), TRUE)
+    [weak] = found.undetermined
+    assert weak.names == ("friction_coefficient",)
+    assert "asperities cause at most" in weak.message and "boundary plateau" in weak.message
+    assert math.isinf(found["friction_coefficient"].interval_95[1])
+
+
+def test_a_curve_with_a_plateau_gives_it(fitted):
+    assert fitted.undetermined == ()
+    assert fitted["friction_coefficient"].standard_error < 0.02
+
+
+def test_the_combination_that_the_data_give_is_named():
+    found = sb.fit(noisy(1), START, free=["mu0", "h_rms", "alpha"])
+    [weak] = found.undetermined
+    assert weak.names == ("roughness", "alpha") and weak.exponents == pytest.approx((1, 1))
+    assert "does not change when both are multiplied by one factor" in weak.message
+    assert "the data give only roughness / alpha" in weak.message
+    for name in weak.names:
+        assert found[name].interval_68 == (0.0, math.inf) and math.isinf(found[name].standard_error)
+    # Their product is left where the case had it, and the quotient is found.
+    case, fit = START, found.contact
+    assert fit.roughness * fit.alpha == pytest.approx(case.roughness * case.alpha, rel=1e-6)
+    alone = sb.fit(noisy(1), START, free=["mu0", "h_rms"])
+    assert fit.roughness / fit.alpha == pytest.approx(alone.contact.roughness / alone.contact.alpha, rel=1e-4)
+    assert found["friction_coefficient"].interval_95 == pytest.approx(alone["friction_coefficient"].interval_95, rel=1e-2)
+
+
+def test_inputs_of_a_smooth_contact_that_do_not_matter_stay_where_they_were():
+    smooth = TRUE.replace(roughness=0)
+    found = sb.fit(noisy(4, contact=smooth, low=1e-2, rows=12), smooth, free=["mu0", "modulus", "beta"], intervals=False)
+    assert [weak.names for weak in found.undetermined] in (
+        [("beta",), ("friction_coefficient",)],
+        [("friction_coefficient",), ("beta",)],
+    )
+    assert found["beta"].value == pytest.approx(TRUE.beta, rel=1e-3)
+    assert found["friction_coefficient"].value == pytest.approx(0.7, rel=1e-3)
+
+
+def test_three_tied_inputs_are_told_apart_from_what_is_known():
+    found = sb.fit(noisy(1), TRUE, free=["mu0", "modulus", "viscosity", "load"], intervals=False)
+    tied = next(weak for weak in found.undetermined if len(weak.names) == 3)
+    assert tied.names == ("modulus", "viscosity", "load")
+    assert tied.exponents == pytest.approx((1, 1, 1))
+    assert "modulus / viscosity and modulus / load" in tied.message
+
+
+def test_an_input_that_the_abscissa_holds_is_refused():
+    speeds, friction = exact()
+    data = measured(speeds * 0.05 / 30, friction, abscissa="hersey_number")
+    with pytest.raises(sb.InputError, match="viscosity is free, but friction was measured against Hersey number"):
+        sb.fit(data, TRUE, free=["viscosity"])
+    found = sb.fit(data, START, intervals=False, free=["mu0", "h_rms", "E_star"])
+    assert found["modulus"].value == pytest.approx(TRUE.modulus, rel=1e-4)
+
+
+# --- misfit, outliers, failure ---
+
+
+@pytest.fixture(scope="module")
+def of_asperities():
+    """Return friction with 2 % of noise of a contact with Greenwood and Tripp's law, and the contact."""
+    contact = TRUE.replace(law=sb.GreenwoodTripp())
+    return noisy(1, 0.02, contact, low=1e-5, rows=32), contact
+
+
+def test_data_of_greenwood_and_tripp_do_not_pass_for_persson(of_asperities):
+    data, contact = of_asperities
+    law = persson_law(SelfAffine(h_rms=1e-6, q0=4e4, q1=4e7, hurst=0.8))
+    persson = sb.fit(data, contact.replace(law=law, **law.coefficients), intervals=False)
+    assert persson.law == "persson" and persson.converged and math.isnan(persson.solver_shift)
+    assert persson.quality.structure_probability < 0.001
+    assert "do not follow the model" in persson.quality.messages[0]
+    exponential = sb.fit(data, contact.replace(law=None), free=["mu0", "h_rms", "beta"], intervals=False)
+    assert exponential.quality.structure_probability < 0.01
+
+
+def test_data_of_greenwood_and_tripp_pass_for_their_own(of_asperities):
+    data, contact = of_asperities
+    found = sb.fit(data, contact.replace(roughness=1.5e-6), intervals=False)
+    assert found.law == "greenwood-tripp" and found.quality.messages == ()
+    assert found["roughness"].value == pytest.approx(1e-6, rel=0.02)
+    assert found.contact.law == contact.law
+
+
+@pytest.mark.parametrize("seed", [11, 12, 13])
+def test_a_plateau_that_falls_with_speed_is_noticed(seed):
+    speeds, friction = exact()
+    friction *= (speeds / speeds[0]) ** -0.05 * np.exp(0.03 * np.random.default_rng(seed).standard_normal(25))
+    found = sb.fit(measured(speeds, friction), TRUE, intervals=False)
+    assert found.converged
+    assert found.quality.structure_probability < 0.01
+    assert any("structure along the speed" in message for message in found.quality.messages)
+
+
+def test_outliers_do_not_steer_the_robust_fit():
+    data = noisy(21, outliers=4)
+    plain, clean = sb.fit(data, NEAR, intervals=False), sb.fit(noisy(21), NEAR, intervals=False)
+    robust = sb.fit(data, NEAR, robust=True)
+    assert robust.converged and robust.robust
+    for each in robust.inputs:
+        far = abs(math.log(each.value / clean[each.name].value)) / clean[each.name].standard_error
+        assert far < 1.0
+        assert each.interval_95[0] < getattr(TRUE, each.name) < each.interval_95[1]
+        assert plain[each.name].standard_error > 3 * each.standard_error
+    assert abs(math.log(plain["roughness"].value / 1e-6)) > 4 * clean["roughness"].standard_error
+    assert robust.noise == pytest.approx(clean.noise, rel=0.5)
+    [note] = [note for note in robust.notes if "four standard errors" in note]
+    ratios = data.friction / noisy(21).friction
+    assert re.findall(r"\d+", note) == [str(row) for row in data.rows[ratios > 1.5]]
+
+
+def test_a_fit_that_ran_out_of_steps_says_so(monkeypatch, tmp_path, capsys):
+    for module in ("stribeck.fit", "stribeck.fit_objective"):
+        monkeypatch.setattr(importlib.import_module(module), "minimise", partial(minimise, most=1))
+    found = sb.fit(noisy(1), START, intervals=False)
+    assert not found.converged and "did not converge" in found.outcome.value
+    assert found.to_dict()["converged"] is False
+    with pytest.raises(sb.InputError, match="did not converge"):
+        write_fitted_case(found, sb.load_case(CASE), tmp_path / "fitted.toml")
+    answer = call(capsys, "fit", MEASURED, CASE, "--out", tmp_path / "fitted.toml")
+    assert answer.code == 1 and "did not converge" in answer.err and "did not converge" in answer.out
+    assert not (tmp_path / "fitted.toml").exists()
+
+
+def test_a_fit_stopped_short_of_the_optimum_says_so():
+    data = noisy(1)
+    goal = objective(
+        FrictionModel(TRUE, data, free_inputs(TRUE, data, ("roughness",), FitSettings())),
+        atlas_parts("paper"),
+        FitSettings(),
+        False,
+    )
+    there = minimise(goal, np.zeros(1))
+    short = replace(minimise(goal, there.theta + 0.01, most=1), ended=True)
+    assert there.converged and there.distance < 1e-3
+    assert not short.converged
+    noise = np.sqrt(short.residuals @ short.residuals / (len(data) - 1))
+    assert short.distance == pytest.approx(0.01 * np.linalg.norm(short.jacobian) / noise, rel=0.05)
+
+
+FEW = {
+    "two rows": (2, ["mu0"], "2 rows with speed and friction are too few to fit 1 input"),
+    "as many as inputs": (3, ["mu0", "h_rms", "beta"], "3 rows with speed and friction are too few to fit 3 inputs"),
+}
+
+
+@pytest.mark.parametrize(("rows", "free", "sentence"), FEW.values(), ids=FEW.keys())
+def test_too_few_rows_are_refused(rows, free, sentence):
+    speeds, friction = exact()
+    with pytest.raises(sb.InputError, match=sentence):
+        sb.fit(measured(speeds[:rows], friction[:rows]), TRUE, free=free)
+
+
+def test_bad_arguments_are_one_sentence(tmp_path):
+    data = noisy(1)
+    for case, free, sentence in (
+        (3, None, "case = 3"),
+        (TRUE, [], "free is empty"),
+        (TRUE, ["stiffness"], "'stiffness'"),
+        (TRUE.replace(roughness=0), ["h_rms"], "roughness is 0 in the case"),
+        (with_settings(tmp_path, bounds={"roughness": (2e-6, 3e-6)}), ["h_rms"], "outside its bounds 2 µm to 3 µm"),
+    ):
+        with pytest.raises(sb.InputError) as caught:
+            sb.fit(data, case, free=free)
+        assert sentence in str(caught.value)
+    with pytest.raises(KeyError, match="fitted are"):
+        sb.fit(data, TRUE, intervals=False)["colour"]
+
+
+# --- posterior and outputs ---
+
+
+def test_the_posterior_agrees_with_the_profile(fitted):
+    drawn = draw_posterior(fitted, steps=500)
+    assert drawn.samples.shape == (16 * 400, 3)
+    for i, each in enumerate(fitted.inputs):
+        assert np.log(drawn.interval_68[i]) == pytest.approx(np.log(each.interval_68), abs=0.3 * each.standard_error)
+    short = drawn
+    assert not short.converged and "did not converge: ask for at least" in short.message
+
+
+def test_the_posterior_of_a_robust_fit_is_refused():
+    found = sb.fit(noisy(1), TRUE, robust=True, intervals=False)
+    with pytest.raises(sb.InputError, match="no likelihood"):
+        draw_posterior(found)
+
+
+def test_the_band_is_the_spread_of_the_fitted_curve(fitted):
+    speeds = np.array([1e-3, 1e-2, 1e-1])
+    friction, low, high = fitted.band(0, speeds)
+    theta = np.random.default_rng(9).multivariate_normal(fitted._minimum.theta, fitted.covariance, 400)
+    model = fitted._minimum.objective.model
+    drawn = np.array([model.predict(t, atlas_parts("paper"), (np.zeros(3, dtype=int), speeds)).friction for t in theta])
+    spread = np.log(drawn).std(axis=0)
+    assert np.log(high / friction) == pytest.approx(math.sqrt(fitted._threshold) * spread, rel=0.15)
+    assert low * high == pytest.approx(friction**2)
+
+
+def test_the_command_writes_a_case_that_solves_a_figure_and_json(tmp_path, capsys):
+    out, plot = tmp_path / "fitted.toml", tmp_path / "fit.png"
+    answer = call(capsys, "fit", MEASURED, CASE, "--out", out, "--plot", plot, "--json")
+    assert answer.code == 0 and answer.err == ""
+    found = json.loads(answer.out)
+    assert found["converged"] is True and found["files"] == [str(plot), str(out)]
+    values = {each["name"]: each["value"] for each in found["inputs"]}
+    case = sb.load_case(out)
+    for name, value in values.items():
+        assert getattr(case.contact, name) == pytest.approx(value, rel=1e-8)
+    assert case.fit.free == ("friction_coefficient", "roughness", "modulus")
+    assert sb.solve(case.contact).outcome.ok
+    assert plot.stat().st_size > 20_000
+    assert call(capsys, "fit", MEASURED, CASE, "--out", out).code == 2
+
+
+def test_the_example_holds_its_true_values():
+    found = sb.fit(MEASURED, CASE)
+    for name, value in (("friction_coefficient", 0.62), ("roughness", 1.3e-6), ("modulus", 2.3e6)):
+        low, high = found[name].interval_95
+        assert low < value < high
+
+
+def test_a_youngs_modulus_is_written_back_as_one(tmp_path, capsys):
+    text = CASE.read_text().replace('modulus = "2.7 MPa"', 'youngs_modulus = "2.025 MPa"\npoisson_ratio = 0.5', 1)
+    (tmp_path / "case.toml").write_text(text)
+    out = tmp_path / "fitted.toml"
+    assert call(capsys, "fit", MEASURED, tmp_path / "case.toml", "--out", out).code == 0
+    assert "poisson_ratio = 0.5" in out.read_text()
+    assert sb.load_case(out).contact.modulus == pytest.approx(sb.fit(MEASURED, CASE)["modulus"].value, rel=1e-4)
+
+
+def test_a_case_that_hides_its_values_is_not_written(tmp_path, capsys):
+    inline = "contact = {" + ", ".join(f"{key} = {value}" for key, value in CONTACT.items()) + "}"
+    (tmp_path / "case.toml").write_text(inline)
+    out = tmp_path / "fitted.toml"
+    answer = call(capsys, "fit", MEASURED, tmp_path / "case.toml", "--out", out)
+    assert answer.code == 2 and "on a line of its own in [contact]" in answer.err
+    assert not out.exists()
+
+
+def test_the_table_says_how_the_fit_ended_and_warns(tmp_path, capsys):
+    speeds, friction = exact(low=0.03, high=3.0)
+    lines = "\n".join(f"{u};{m}" for u, m in zip(speeds, friction * np.exp(0.03 * np.sin(7 * np.arange(25.0))), strict=True))
+    (tmp_path / "lab.csv").write_text("speed [m/s];friction\n" + lines)
+    answer = call(capsys, "fit", tmp_path / "lab.csv", EXAMPLES / "pdms_cylinder.toml", "--free", "mu0", "h_rms", "--robust")
+    assert answer.code == 0
+    assert "The fit converged." in answer.out
+    assert re.search("Warning: friction_coefficient .*not determined.*boundary plateau", answer.out)
+
+
+MISUSE = {
+    "nothing": ([], "DATA is missing"),
+    "no case": (["lab.csv"], "CASE is missing"),
+    "unknown input": ([MEASURED, CASE, "--free", "stiffness"], "'stiffness'"),
+    "wrong ending": ([MEASURED, CASE, "--out", "fitted.json"], "must end in .toml"),
+    "case as data": ([CASE, CASE], "pdms_fit.toml"),
+    "posterior": ([MEASURED, CASE, "--posterior", "many"], "not a whole number"),
+}
+
+
+@pytest.mark.parametrize(("tokens", "sentence"), MISUSE.values(), ids=MISUSE.keys())
+def test_misuse_of_the_command_is_one_sentence(capsys, tokens, sentence):
+    answer = call(capsys, "fit", *tokens)
+    assert answer.code == 2 and sentence in answer.err and answer.out == ""
+    assert len(answer.err.splitlines()) == 1

@@ -1,0 +1,245 @@
+"""Measured friction as laboratories write it: read alike whatever its form, or refused with row and column."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import stribeck as sb
+from stribeck.fit_settings import check_fit_table
+
+SPEEDS = (0.001, 0.01, 0.1, 1.0)
+FRICTIONS = (0.5, 0.25, 0.0625, 0.125)
+PLAIN = "speed [m/s];friction\n" + "\n".join(f"{u};{m}" for u, m in zip(SPEEDS, FRICTIONS, strict=True))
+
+
+@pytest.fixture
+def read(tmp_path):
+    """Return a function that reads text as a file, under a ``[fit]`` table."""
+
+    def reader(text, **table):
+        path = tmp_path / "lab.csv"
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return sb.read_measurements(path, check_fit_table(table))
+
+    return reader
+
+
+def refused(read, text, **table):
+    """Return the sentence with which a file is refused."""
+    with pytest.raises(sb.InputError) as caught:
+        read(text, **table)
+    return str(caught.value)
+
+
+SAME = {
+    "commas": PLAIN.replace(";", ","),
+    "tabs": PLAIN.replace(";", "\t"),
+    "spaces": PLAIN.replace(";", "   "),
+    "bars": PLAIN.replace(";", "|"),
+    "decimal commas": PLAIN.replace(".", ","),
+    "decimal commas and tabs": PLAIN.replace(".", ",").replace(";", "\t"),
+    "decimal commas in quotes": 'speed [m/s],friction\n"0,001","0,5"\n"0,01","0,25"\n"0,1","0,0625"\n"1","0,125"',
+    "percent": "speed [m/s];friction [%]\n0.001;50\n0.01;25\n0.1;6.25\n1;12.5",
+    "percent in the cells": "speed [m/s];friction\n0.001;50 %\n0.01;25%\n0.1;0.0625\n1;12.5 %",
+    "another unit": "speed [mm/s];friction\n1;0.5\n10;0.25\n100;0.0625\n1000;0.125",
+    "units in parentheses": "Speed (mm/s);COF (-)\n1;0.5\n10;0.25\n100;0.0625\n1000;0.125",
+    "units after a slash": "speed / mm/s;mu / 1\n1;0.5\n10;0.25\n100;0.0625\n1000;0.125",
+    "mixed units": "speed [m/s];friction\n1 mm/s;0.5\n0.01;0.25\n10 cm/s;0.0625\n1;0.125",
+    "a row of units": "speed;friction\nmm/s;-\n1;0.5\n10;0.25\n100;0.0625\n1000;0.125",
+    "unsorted": "speed [m/s];friction\n1;0.125\n0.001;0.5\n0.1;0.0625\n0.01;0.25",
+    "comments and empty lines": "# run 12\n\nspeed [m/s];friction\n0.001;0.5\n\n# pause\n0.01;0.25\n0.1;0.0625\n1;0.125\n;\n",
+    "missing values": PLAIN + "\n2;\n;0.3\nNaN;0.1\n3;n/a",
+    "other columns": "time;speed [m/s];friction;remark\n" + "9;0.001;0.5;x\n9;0.01;0.25;x\n9;0.1;0.0625;x\n9;1;0.125;x",
+    "trailing separators": PLAIN.replace("\n", ";\n", 2).replace("friction;", "friction"),
+    "a byte-order mark": "\ufeff" + PLAIN,
+    "UTF-16": PLAIN.encode("utf-16"),
+    "a Windows file": "speed [µm/s];friction\r\n1e3;0.5\r\n1e4;0.25\r\n1e5;0.0625\r\n1e6;0.125\r\n".encode("cp1252"),
+}
+
+
+@pytest.mark.parametrize("text", SAME.values(), ids=SAME.keys())
+def test_the_form_of_the_file_does_not_matter(read, text):
+    found = read(text)
+    assert found.abscissa == "speed"
+    assert found.values == pytest.approx(SPEEDS, rel=1e-15)
+    assert found.friction == pytest.approx(FRICTIONS, rel=1e-15)
+    assert found.error is None
+
+
+def test_what_was_left_out_or_assumed_is_said(read):
+    assert read(SAME["missing values"]).notes == ("4 rows without a value left out: 6, 7, 8, 9.",)
+    assert read(SAME["other columns"]).notes == ("Columns not used: time, remark.",)
+    assert read(SAME["decimal commas"]).notes == ("Numbers were read with decimal commas.",)
+
+
+def test_rows_keep_their_number_in_the_file(read):
+    assert read(SAME["unsorted"]).rows.tolist() == [3, 5, 4, 2]
+    assert read(SAME["comments and empty lines"]).rows.tolist() == [4, 7, 8, 9]
+
+
+def test_duplicated_speeds_are_kept(read):
+    found = read(PLAIN + "\n0.1;0.07")
+    assert found.values.tolist() == [0.001, 0.01, 0.1, 0.1, 1.0]
+    assert found.friction.tolist() == [0.5, 0.25, 0.0625, 0.07, 0.125]
+
+
+def test_a_header_in_another_language_is_declared(read):
+    text = "Gleitgeschwindigkeit [mm/s];Reibung;Fehler\n1;50;1\n10;25;1\n100;6,25;1\n1000;12,5;1"
+    sentence = refused(read, text)
+    assert "none of which is known as speed or friction" in sentence
+    assert "as in speed = 'Gleitgeschwindigkeit [mm/s]' and friction = 'Fehler'" in sentence
+    columns = {"speed": "Gleitgeschwindigkeit", "friction": "Reibung", "error": "Fehler"}
+    found = read(text, columns=columns, units={"friction": "%", "error": "%"})
+    assert found.values == pytest.approx(SPEEDS)
+    assert found.friction == pytest.approx(FRICTIONS)
+    assert found.error.tolist() == [0.01] * 4
+
+
+def test_a_header_may_stand_below_other_text(read):
+    text = "Tribometer 7;;\nOperator: N.N.;;\n" + PLAIN
+    assert read(text, header_row=3).values == pytest.approx(SPEEDS)
+    assert "row 2" in refused(read, "a;b\n# c\n" + PLAIN, header_row=2)
+
+
+def test_other_abscissas_are_read_in_si(read):
+    found = read("eta U [mPa*s*m/s];mu\n1;0.5\n2;0.4\n3;0.3")
+    assert (found.abscissa, found.values.tolist()) == ("speed_viscosity", [0.001, 0.002, 0.003])
+    found = read("Hersey number;mu\n1e-5;0.5\n2e-5;0.4\n3e-5;0.3")
+    assert (found.abscissa, found.values.tolist()) == ("hersey_number", [1e-5, 2e-5, 3e-5])
+
+
+def test_curves_are_told_apart_by_name_or_input(read):
+    rows = "\n".join(f"{name};{eta};{u};0.{u}" for name, eta in (("oil", 50), ("water", 1)) for u in (3, 1, 2))
+    found = read("curve;viscosity [mPa*s];speed [m/s];friction\n" + rows)
+    assert found.curves == ("oil", "water")
+    assert found.inputs == ({"viscosity": 0.05}, {"viscosity": 0.001})
+    assert found.curve.tolist() == [0, 0, 0, 1, 1, 1]
+    assert found.values.tolist() == [1, 2, 3, 1, 2, 3]
+    unnamed = "\n".join(row.partition(";")[2] for row in rows.splitlines())
+    found = read("viscosity [mPa*s];speed [m/s];friction\n" + unnamed)
+    assert found.curves == ("viscosity 0.05", "viscosity 0.001")
+
+
+def test_curves_may_stand_side_by_side(read):
+    text = "speed [m/s];mu dry [%];mu wet\n1;50;0.2\n2;40;0.1\n3;;0.3"
+    found = read(text, columns={"friction": ["mu dry", "mu wet"]}, curves={"mu wet": {"roughness": "2 um"}})
+    assert found.curves == ("mu dry", "mu wet")
+    assert found.friction.tolist() == [0.5, 0.4, 0.2, 0.1, 0.3]
+    assert found.inputs == ({}, {"roughness": pytest.approx(2e-6)})
+
+
+def test_signs_of_strokes_are_dropped_on_demand(read):
+    text = "speed [m/s];friction\n-1;-0.5\n1;0.4\n2;0.3"
+    sentence = refused(read, text)
+    assert "row 2, column 'speed [m/s]': '-1' is negative" in sentence and "magnitudes = true" in sentence
+    assert read(text, magnitudes=True).friction.tolist() == [0.5, 0.4, 0.3]
+
+
+REFUSED = {
+    "negative speed": (PLAIN + "\n-2;0.1", "row 6, column 'speed [m/s]'", "negative"),
+    "speed zero": (PLAIN + "\n0;0.1", "row 6, column 'speed [m/s]'", "rest"),
+    "negative friction": (PLAIN + "\n2;-0.1", "row 6, column 'friction'", "positive"),
+    "percent unsaid": (PLAIN + "\n2;35", "row 6, column 'friction'", "percent"),
+    "text": (PLAIN + "\n2;stick", "row 6, column 'friction'", "'stick' is not a number"),
+    "infinite": (PLAIN + "\n2;inf", "row 6, column 'friction'", "'inf' is not a number"),
+    "too many cells": (PLAIN + "\n2;0.1;7", "row 6", "3 cells where the header has 2"),
+    "too few cells": (PLAIN + "\n2", "row 6", "1 cell where the header has 2"),
+    "decimal commas between commas": ("speed [m/s],friction\n0,001,0,5", "row 2", "commas cannot both"),
+    "another separator below": ("speed [m/s],friction\n1;0.5\n2;0.4", "row 2", "semicolon"),
+    "both decimal signs": (PLAIN + "\n2;0,125", "row 6, column 'friction'", "row 2, column 'speed [m/s]'"),
+    "thousands": ("speed [m/s];friction\n1.234,5;0,5", "row 2, column 'speed [m/s]'", "not a number"),
+    "no unit": ("speed;friction\n1;0.5\n2;0.4", "column 'speed'", "no unit"),
+    "a unit of something else": ("speed [mm];friction\n1;0.5\n2;0.4", "column 'speed [mm]'", "a length"),
+    "a cell of something else": (PLAIN + "\n2 s;0.1", "row 6, column 'speed [m/s]'", "a time"),
+    "an unknown unit": ("speed [furl];friction\n1;0.5\n2;0.4", "column 'speed [furl]'", "unknown unit 'furl'"),
+    "friction in newton": ("speed [m/s];friction [N]\n1;0.5\n2;0.4", "column 'friction [N]'", "bare number"),
+    "no header": ("1;0.5\n2;0.4", "row 1", "not names of columns"),
+    "one column": ("speed\n1\n2", "row 1", "one column"),
+    "the same column twice": ("speed [m/s];mu;mu\n1;0.5;0.4", "row 1", "twice"),
+    "two frictions": ("speed [m/s];mu;friction\n1;0.5;0.4", "'mu' and 'friction'", "[fit.columns]"),
+    "no friction": ("speed [m/s];torque\n1;0.5", "'torque'", "none of which is known as friction"),
+    "one speed": ("speed [m/s];friction\n1;0.5\n1;0.4", "rows 2 to 3", "same speed"),
+    "a constant curve": ("speed [m/s];friction\n1;0.5\n2;0.5\n3;0.5", "column 'friction'", "constant"),
+    "only missing values": ("speed [m/s];friction\n1;\n2;", "no row holds both", "friction"),
+    "no rows": ("speed [m/s];friction\n", "row 1", "no rows"),
+    "nothing": ("", "no data", "header"),
+    "a zero error": ("speed [m/s];friction;error\n1;0.5;0", "row 2, column 'error'", "positive"),
+    "a spreadsheet": (b"PK\x03\x04\x00\x00", "not text", "CSV"),
+    "an open quote": ('speed [m/s];friction\n"1;0.5', "row 2", "quotes"),
+    "a curve of two viscosities": (
+        "curve;viscosity [Pa*s];speed [m/s];mu\na;1;1;0.5\na;2;2;0.4",
+        "row 3 has viscosity 2",
+        "row 2 of the same curve",
+    ),
+    "an impossible input": ("roughness [um];speed [m/s];mu\n-1;1;0.5", "row 2, column 'roughness [um]'", "must be"),
+}
+
+
+@pytest.mark.parametrize(("text", "where", "what"), REFUSED.values(), ids=REFUSED.keys())
+def test_what_cannot_be_used_is_refused_with_one_sentence_that_says_where(read, text, where, what):
+    sentence = refused(read, text)
+    assert where in sentence and what in sentence
+    assert sentence.startswith(("/", str(read))) or "lab.csv" in sentence
+    assert "\n" not in sentence
+
+
+def test_a_file_that_is_not_there_is_one_sentence(tmp_path):
+    for path in (tmp_path, tmp_path / "none.csv"):
+        with pytest.raises(sb.InputError, match="cannot be read|directory"):
+            sb.read_measurements(path)
+
+
+@given(st.text(max_size=60))
+def test_any_text_is_read_or_refused_with_a_sentence(tmp_path_factory, text):
+    path = tmp_path_factory.mktemp("any") / "lab.csv"
+    for content in (text, "speed [m/s];friction\n" + text, PLAIN + "\n" + text):
+        path.write_text(content, encoding="utf-8", errors="replace", newline="")
+        try:
+            found = sb.read_measurements(path)
+        except sb.InputError as problem:
+            assert str(problem).endswith(".")
+        else:
+            assert np.isfinite(found.values).all() and (found.friction > 0).all()
+
+
+TABLES = {
+    "unknown key": ({"fre": ["mu0"]}, "fre", "did you mean free?"),
+    "unknown input": ({"free": ["stiffness"]}, "'stiffness'", "known are"),
+    "speed": ({"free": ["speed"]}, "'speed'", "measured"),
+    "twice": ({"free": ["mu0", "friction_coefficient"]}, "friction_coefficient", "twice"),
+    "none": ({"free": []}, "free = []", "list"),
+    "per_curve only": ({"free": ["mu0"], "per_curve": ["beta"]}, "beta", "not in free"),
+    "noise": ({"noise": "white"}, "'white'", "'relative' or 'absolute'"),
+    "error": ({"relative_error": -1}, "-1", "positive"),
+    "robust": ({"robust": "yes"}, "'yes'", "true or false"),
+    "bounds": ({"bounds": {"roughness": ["2 um", "1 um"]}}, "roughness", "the lowest first"),
+    "bound unit": ({"bounds": {"roughness": ["2 MPa", "1 um"]}}, "roughness", "a pressure"),
+    "prior": ({"priors": {"modulus": "2 MPa"}}, "modulus", "factor"),
+    "prior width": ({"priors": {"modulus": {"value": "2 MPa", "factor": 0.5}}}, "0.5", "above 1"),
+    "column": ({"columns": {"torque": "M"}}, "torque", "not a known key"),
+    "column text": ({"columns": {"speed": 3}}, "3", "header"),
+    "curve": ({"curves": {"a": {"colour": 1}}}, "colour", "not a known key"),
+    "header row": ({"header_row": 0}, "header_row = 0", "counted from 1"),
+}
+
+
+@pytest.mark.parametrize(("table", "where", "what"), TABLES.values(), ids=TABLES.keys())
+def test_a_wrong_fit_table_is_refused_by_the_case_file(tmp_path, table, where, what):
+    with pytest.raises(sb.InputError) as caught:
+        check_fit_table(table)
+    assert where in str(caught.value) and what in str(caught.value)
+
+
+def test_all_problems_of_a_fit_table_are_told_at_once(tmp_path):
+    text = '[contact]\nradius = "1 mm"\n[fit]\nnoise = 3\nrobust = 1\n'
+    (tmp_path / "case.toml").write_text(text)
+    with pytest.raises(sb.InputError) as caught:
+        sb.load_case(tmp_path / "case.toml")
+    lines = str(caught.value).splitlines()
+    assert sum("[fit]" in line for line in lines) == 2
+    assert any("[contact]" in line for line in lines)
+
+
+def test_a_curve_that_is_not_there_is_refused(read):
+    assert "no curve is called 'b'" in refused(read, PLAIN, curves={"b": {"roughness": 1e-6}})
