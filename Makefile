@@ -20,11 +20,12 @@ define install
 	@touch $@
 endef
 
-.PHONY: help demo test slow lint format types benchmark validity atlas certificate docs site notebooks clean
+.PHONY: help demo test slow torch lint format types benchmark validity atlas certificate docs site notebooks clean
 
 help:
 	@echo "make demo       the Stribeck curve of a PDMS cylinder: curve.png, curve.nc"
 	@echo "make test       the tests      make slow   those that take minutes"
+	@echo "make torch      those of batches on PyTorch, which it installs"
 	@echo "make lint       style          make format apply it"
 	@echo "make types      static types   make benchmark  the tables of the documentation"
 	@echo "make docs       the site, build/docs/index.html, and the code of its pages      make site  the site alone"
@@ -50,6 +51,10 @@ test: $(READY)
 
 slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n auto -m slow
+
+torch: $(READY)
+	@$(BIN)/python -c 'import array_api_compat, torch' 2>/dev/null || $(BIN)/python -m pip install --quiet --editable '.[gpu]'
+	$(ONE_THREAD) $(BIN)/python -m pytest -m torch
 
 lint: $(TOOLS)
 	$(BIN)/ruff check .
@@ -98,4 +103,4 @@ clean:
 # The newest versions that go together, for requirements.lock; needs uv.
 .PHONY: lock
 lock:
-	uv pip compile --universal --quiet --all-extras --no-header --no-annotate pyproject.toml -o requirements.lock
+	uv pip compile --universal --quiet --extra all --extra dev --extra docs --no-header --no-annotate pyproject.toml -o requirements.lock

@@ -391,3 +391,10 @@ def test_a_curve_with_dataset_and_picture_stays_below_300_megabytes(tmp_path):
     answer = run_python(MEMORY, tmp_path / "curve.png")
     assert answer.code == 0, answer.err
     assert float(answer.out) < 300
+
+
+def test_a_curve_does_not_end_where_the_central_gap_bends_most():
+    # There the panel at zero alone is too wide for the gap in its middle.
+    curve = sb.stribeck_curve(load=0.4, roughness=4e-5, speed=np.logspace(-9, 2, 34), rtol=1e-7)
+    assert curve.outcome.ok and len(curve) == 34
+    assert curve.error_estimate <= 1e-7

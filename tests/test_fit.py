@@ -13,11 +13,13 @@ from command_line import CONTACT, call
 from fit_data import EXAMPLES, TRUE, exact, measured, noisy
 
 import stribeck as sb
+from stribeck.fit_file import write_fitted_case
 from stribeck.fit_model import FrictionModel, free_inputs
 from stribeck.fit_objective import minimise, objective
 from stribeck.fit_posterior import draw_posterior
 from stribeck.fit_settings import FREE, FitSettings, Prior
 from stribeck.fit_states import atlas_parts, solved_parts
+from stribeck.persson import persson_law
 from stribeck.spectrum import SelfAffine
 
 START = TRUE.replace(friction_coefficient=0.3, roughness="2 um", modulus="1.5 MPa")
@@ -312,7 +314,7 @@ def of_asperities():
 
 def test_data_of_greenwood_and_tripp_do_not_pass_for_persson(of_asperities):
     data, contact = of_asperities
-    law = sb.persson_law(SelfAffine(h_rms=1e-6, q0=4e4, q1=4e7, hurst=0.8))
+    law = persson_law(SelfAffine(h_rms=1e-6, q0=4e4, q1=4e7, hurst=0.8))
     persson = sb.fit(data, contact.replace(law=law, **law.coefficients), intervals=False)
     assert persson.law == "persson" and persson.converged and math.isnan(persson.solver_shift)
     assert persson.quality.structure_probability < 0.001
@@ -362,6 +364,8 @@ def test_a_fit_that_ran_out_of_steps_says_so(monkeypatch, tmp_path, capsys):
     found = sb.fit(noisy(1), START, intervals=False)
     assert not found.converged and "did not converge" in found.outcome.value
     assert found.to_dict()["converged"] is False
+    with pytest.raises(sb.InputError, match="did not converge"):
+        write_fitted_case(found, sb.load_case(CASE), tmp_path / "fitted.toml")
     answer = call(capsys, "fit", MEASURED, CASE, "--out", tmp_path / "fitted.toml")
     assert answer.code == 1 and "did not converge" in answer.err and "did not converge" in answer.out
     assert not (tmp_path / "fitted.toml").exists()

@@ -48,7 +48,7 @@ MAY_IMPORT = {
     "units": set(),
     "parameters": {"units"},
     "fit_settings": {"parameters", "units"},
-    "case": {"fit_settings", "case_law", "parameters", "units"},
+    "case": {"case_law", "fit_settings", "parameters", "units"},
     "case_law": {"asperity_laws", "contact_laws", "persson", "rough_surface", "spectrum", "two_columns", "units", "user_laws"},
     "two_columns": {"units"},
     "asperity_laws": {"units"},
@@ -129,6 +129,13 @@ MAY_IMPORT = {
     "fit_file": RESULTS | {"case", "fit_result", "output"},
     "report_fit": {"fit_file", "fit_posterior", "fit_result"},
     "plot_fit": RESULTS | {"fit_file", "fit_result", "output", "plotting"},
+    "batch_device": {"output", "units"},
+    "batch_equations": EQUATIONS | {"batch_device"},
+    "batch_guess": EQUATIONS | ALGORITHMS | {"states"},
+    "batch_path": EQUATIONS
+    | {"batch_device", "batch_equations", "batch_guess", "estimate", "newton", "observables", "refine", "start", "states"},
+    "batch_plan": {"batch_guess", "parameters", "start"},
+    "batch": RESULTS | {"batch_device", "batch_guess", "batch_path", "batch_plan", "observables", "start"},
     "atlas_grid": set(),
     "atlas_table": {"atlas_grid"},
     "atlas": {"atlas_grid", "atlas_table", "hertz", "parameters", "solution", "threads", "units"},
@@ -142,6 +149,8 @@ OPEN = {"__init__", "__main__", "app", "cli"}
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts)
 HEAVY = {
     "SurfaceTopography",
+    "array_api_compat",
+    "cupy",
     "cyclopts",
     "dask",
     "distributed",
@@ -152,6 +161,7 @@ HEAVY = {
     "pint",
     "pydantic",
     "rich",
+    "torch",
     "xarray",
     "zarr",
 }

@@ -171,13 +171,13 @@ def test_errors_of_alpha_and_beta_follow_from_those_of_the_fit():
 
 
 def test_what_is_not_self_affine_is_said_to_be_so():
-    x = np.arange(512)
-    noise = np.random.default_rng(105).standard_normal(512) * 1e-7
-    flat = analyse(Topography(noise, (STEP,)))
-    assert any("flatter than that of self-affine" in note or "rms height of the scan is" in note for note in flat.notes)
-    wave = analyse(Topography(1e-6 * np.sin(x / 5) + 1e-9 * noise, (STEP,)))
-    assert any("not self-affine" in note for note in wave.notes)
-    assert not any("self-affine" in note for note in analyse(synthetic_topography(ROLLED, (128, 128), STEP, 97)).notes)
+    noise = np.random.default_rng(105).standard_normal((64, 64)) * 1e-7
+    with pytest.raises(sb.InputError, match="nothing but white noise"):
+        analyse(Topography(noise, (STEP, STEP)))
+    wave = analyse(Topography(1e-6 * np.sin(np.arange(256) / 5) + 1e-2 * noise.ravel()[:256], (STEP,)))
+    assert any("The spectrum is not self-affine" in note for note in wave.notes)
+    assert any("steeper than that of self-affine" in note for note in wave.notes)
+    assert not any("self-affine" in note for note in analyse(synthetic_topography(ROLLED, (64, 64), STEP, 97)).notes)
 
 
 # --- the body ---

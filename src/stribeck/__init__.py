@@ -2,6 +2,7 @@
 
 from . import asymptotics, atlas, surfaces
 from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
+from .batch import BatchSolution, solve_batch
 from .case import Case, load_case
 from .curve import Landmark, StribeckCurve, stribeck_curve
 from .fit import fit
@@ -21,6 +22,7 @@ from .sweep_store import SweepError
 from .user_laws import FunctionLaw, TableLaw
 
 __all__ = [
+    "BatchSolution",
     "Case",
     "Fit",
     "FitOutcome",
@@ -56,6 +58,7 @@ __all__ = [
     "read_measurements",
     "regime_of",
     "solve",
+    "solve_batch",
     "stribeck_curve",
     "surfaces",
     "sweep",

@@ -125,7 +125,7 @@ def make_app() -> App:
         help_format="plaintext",
         suppress_keyboard_interrupt=False,
     )
-    commands = (
+    for command in (
         solve_command,
         curve_command,
         regimes_command,
@@ -133,8 +133,7 @@ def make_app() -> App:
         sweep_command,
         surface_command,
         fit_command,
-    )
-    for command in commands:
+    ):
         app.command(command, name=command.__name__.removesuffix("_command"))
     app.register_install_completion_command()
     return app
@@ -457,6 +456,84 @@ def sweep_command(
     return 0
 
 
+def fit_command(
+    data: Annotated[Path | None, Parameter(name="DATA", show_default=False)] = None,
+    case: CaseFile = None,
+    /,
+    *,
+    free: Annotated[list[str] | None, Parameter(negative="", consume_multiple=True, show_default=False)] = None,
+    out: File = None,
+    plot: File = None,
+    robust: Flag = False,
+    posterior: Number = None,
+    json: Flag = False,
+    force: Flag = False,
+) -> int:
+    """Fit inputs of a contact to measured friction: values with intervals, and what the data do not say.
+
+    Example: stribeck fit examples/pdms_measured.csv examples/pdms_fit.toml --plot fit.png --out fitted.toml
+
+    Example: stribeck fit measured.csv case.toml --free mu0 h_rms modulus --robust
+
+    Parameters
+    ----------
+    data
+        Measured friction (text in columns): friction and speed, viscosity times speed or Hersey number, units in the header.
+    case
+        Case file (TOML) with the contact where the fit begins, and in its table [fit] what is asked.
+    free
+        Inputs to fit; those of the case, else friction_coefficient and roughness.
+    out
+        Write the case with the fitted values to this file (.toml).
+    plot
+        Draw data, fit and residuals to this file (.png, .svg or .pdf).
+    robust
+        Keep outliers from steering the fit.
+    posterior
+        Draw from the posterior with so many steps of emcee, such as 2000.
+    json
+        Print JSON.
+    force
+        Replace existing files.
+    """
+    if data is None or case is None:
+        missing, example = ("DATA", "measured.csv case.toml") if data is None else ("CASE", f"{data} case.toml")
+        raise InputError(f"{missing} is missing; give measured friction and a case file, as in: stribeck fit {example}.")
+    loaded = load_case(case)
+    pictures = _pictures(plot, force)
+    if out is not None:
+        check_output(out, (".toml",), force=force)
+    steps = None if posterior is None else _whole("posterior", posterior)
+    if steps is not None:
+        _need("a posterior", "fit", "emcee")
+    from .fit import fit
+    from .fit_posterior import draw_posterior
+
+    with _interruptible() as progress:
+        found = fit(data, loaded, free=free, robust=True if robust else None, on_step=lambda what, n: progress(n, n + 1, what))
+        drawn = None if steps is None else draw_posterior(found, steps=steps, on_step=lambda n, m: progress(n, m, "posterior"))
+    written = []
+    for picture in pictures:
+        from .plot_fit import plot_fit
+
+        plot_fit(found, picture, force=force, title=loaded.title)
+        written.append(str(picture))
+    if out is not None and found.converged:
+        from .fit_file import write_fitted_case
+
+        write_fitted_case(found, loaded, out, force=force)
+        written.append(str(out))
+    from . import report, report_fit
+
+    if json:
+        print(report.dump(report_fit.fit_json(found, loaded.title, written, drawn)))
+    else:
+        report_fit.print_fit(_console(), found, loaded.title, written, drawn)
+    if not found.converged:
+        return _complain(found.outcome.value, FAILED)
+    return 0
+
+
 def surface_command(
     file: Annotated[Path | None, Parameter(name="FILE", show_default=False)] = None,
     /,
@@ -539,87 +616,6 @@ def surface_command(
         print(report.dump({**surface.to_dict(), "files": written}))
     else:
         report_surface.print_surface(_console(), surface, written)
-    return 0
-
-
-# --- arguments ---
-
-
-def fit_command(
-    data: Annotated[Path | None, Parameter(name="DATA", show_default=False)] = None,
-    case: CaseFile = None,
-    /,
-    *,
-    free: Annotated[list[str] | None, Parameter(negative="", consume_multiple=True, show_default=False)] = None,
-    out: File = None,
-    plot: File = None,
-    robust: Flag = False,
-    posterior: Number = None,
-    json: Flag = False,
-    force: Flag = False,
-) -> int:
-    """Fit inputs of a contact to measured friction: values with intervals, and what the data do not say.
-
-    Example: stribeck fit examples/pdms_measured.csv examples/pdms_fit.toml --plot fit.png --out fitted.toml
-
-    Example: stribeck fit measured.csv case.toml --free mu0 h_rms modulus --robust
-
-    Parameters
-    ----------
-    data
-        Measured friction (text in columns): friction and speed, viscosity times speed or Hersey number, units in the header.
-    case
-        Case file (TOML) with the contact where the fit begins, and in its table [fit] what is asked.
-    free
-        Inputs to fit; those of the case, else friction_coefficient and roughness.
-    out
-        Write the case with the fitted values to this file (.toml).
-    plot
-        Draw data, fit and residuals to this file (.png, .svg or .pdf).
-    robust
-        Keep outliers from steering the fit.
-    posterior
-        Draw from the posterior with so many steps of emcee, such as 2000.
-    json
-        Print JSON.
-    force
-        Replace existing files.
-    """
-    if data is None or case is None:
-        missing, example = ("DATA", "measured.csv case.toml") if data is None else ("CASE", f"{data} case.toml")
-        raise InputError(f"{missing} is missing; give measured friction and a case file, as in: stribeck fit {example}.")
-    loaded = load_case(case)
-    pictures = _pictures(plot, force)
-    if out is not None:
-        check_output(out, (".toml",), force=force)
-    steps = None if posterior is None else _whole("posterior", posterior)
-    if steps is not None:
-        _need("a posterior", "fit", "emcee")
-    from .fit import fit
-    from .fit_posterior import draw_posterior
-
-    with _interruptible() as progress:
-        found = fit(data, loaded, free=free, robust=True if robust else None, on_step=lambda what, n: progress(n, n + 1, what))
-        drawn = None if steps is None else draw_posterior(found, steps=steps, on_step=lambda n, m: progress(n, m, "posterior"))
-    written = []
-    for picture in pictures:
-        from .plot_fit import plot_fit
-
-        plot_fit(found, picture, force=force, title=loaded.title)
-        written.append(str(picture))
-    if out is not None and found.converged:
-        from .fit_file import write_fitted_case
-
-        write_fitted_case(found, loaded, out, force=force)
-        written.append(str(out))
-    from . import report, report_fit
-
-    if json:
-        print(report.dump(report_fit.fit_json(found, loaded.title, written, drawn)))
-    else:
-        report_fit.print_fit(_console(), found, loaded.title, written, drawn)
-    if not found.converged:
-        return _complain(found.outcome.value, FAILED)
     return 0
 
 

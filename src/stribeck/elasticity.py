@@ -43,11 +43,12 @@ def log_moments(points: Array, order: int) -> Array:
     q = np.empty((order + 1, len(s)))
     q[0] = 0.5 * np.log(np.abs((s + 1) / (s - 1)))
     q[1] = s * q[0] - 1
-    near = np.abs(s) <= np.cosh(np.log(LOST_DIGITS) / (2 * order))
+    nearest = float(np.cosh(np.log(LOST_DIGITS) / (2 * order)))
+    near = np.abs(s) <= nearest
     for n in range(1, order):
         q[n + 1] = ((2 * n + 1) * s * q[n] - n * q[n - 1]) / (n + 1)
     if not near.all():
-        q[:, ~near] = _second_kind_outside(s[~near], order)
+        q[:, ~near] = _second_kind_outside(s[~near], nearest, order)
     moments = np.empty((len(s), order))
     moments[:, 0] = (s + 1) * np.log(np.abs(s + 1)) - (s - 1) * np.log(np.abs(s - 1)) - 2
     degree = np.arange(1, order)
@@ -55,9 +56,8 @@ def log_moments(points: Array, order: int) -> Array:
     return moments
 
 
-def _second_kind_outside(s: Array, order: int) -> Array:
-    """Legendre functions of the second kind up to ``order`` outside the panel, by downward recurrence (Miller)."""
-    nearest = np.abs(s).min()
+def _second_kind_outside(s: Array, nearest: float, order: int) -> Array:
+    """Legendre functions of the second kind up to ``order``, ``nearest`` or farther, by downward recurrence (Miller)."""
     decay = np.log(nearest + np.sqrt(nearest**2 - 1))
     top = order + int(np.ceil(19.0 / decay))
     q = np.empty((order + 1, len(s)))
@@ -77,10 +77,9 @@ def _from_moments(order: int) -> Array:
     return np.asarray((degrees[:, None] + 0.5) * legendre.legvander(rule.nodes, order - 1).T * rule.weights)
 
 
-@lru_cache(maxsize=32)
-def _on_panel(order: int) -> Array:
-    """Log integrals of the nodal basis at the nodes themselves."""
-    return log_moments(reference(order).nodes, order) @ _from_moments(order)
+def _log_integrals(s: Array, order: int) -> Array:
+    """Log integrals of the nodal basis at ``s``; to the bit, each whatever the others are, which BLAS does not promise."""
+    return np.asarray(np.einsum("sn,nj->sj", log_moments(s, order), _from_moments(order)))
 
 
 def near_distance(order: int) -> float:
@@ -148,10 +147,10 @@ def panels_from_infinity(mesh: Mesh) -> list[Pair]:
 def _beside_panel(s: Array, order: int) -> Array:
     """Integrals of ``ln|s - t|`` times the nodal basis of a panel at targets s, exact where these are near."""
     rule = reference(order)
-    distance = np.abs(s[:, None] - rule.nodes)
     far = np.abs(s) >= near_distance(order)
-    found = log_moments(s, order) @ _from_moments(order)
-    found[far] = np.log(distance[far]) * rule.weights
+    found = np.empty((len(s), order))
+    found[far] = np.log(np.abs(s[far, None] - rule.nodes)) * rule.weights
+    found[~far] = _log_integrals(s[~far], order)
     return found
 
 
@@ -164,7 +163,7 @@ def _beside_infinity(x: Array, order: int) -> Array:
     found = np.log1p(-ratio) * rule.weights
     if close.any():
         s = 1 / x[close]
-        found[close] = log_moments(s, order) @ _from_moments(order) - np.log(np.abs(s))[:, None] * rule.weights
+        found[close] = _log_integrals(s, order) - np.log(np.abs(s))[:, None] * rule.weights
     return found
 
 

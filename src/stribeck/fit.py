@@ -186,10 +186,10 @@ def _search(goal: Objective, atlas: PartsOf | None, report: Step) -> Minimum:
             best = found
     assert best is not None
     found = settle(best.objective, best.theta, lambda n: report("fitting", n))
-    for near in (_nearest(found), _nearest_by_data(found)):
-        if not np.allclose(near, found.theta, rtol=0, atol=1e-9):
-            moved = minimise(found.objective, near)
-            found = moved if moved.value < found.value + SAME else found
+    near = _nearest(found)
+    if not np.allclose(near, found.theta, rtol=0, atol=1e-9):
+        moved = minimise(found.objective, near)
+        found = moved if moved.value < found.value + SAME else found
     return found
 
 
@@ -215,8 +215,11 @@ def _places(goal: Objective) -> list[Array]:
     return list(low + (high - low) * unit)
 
 
-def _nearest_by_data(at: Minimum) -> Array:
-    """Return the inputs nearest to the case of those that change no residual to first order, as those of a smooth contact."""
+def _nearest(at: Minimum) -> Array:
+    """Return the inputs nearest to the case of those that change no residual to first order.
+
+    Along what changes nothing the data say nothing, and a value far from the case would be an accident of the iteration.
+    """
     rows, _ = at.objective.priors
     _, S, V = np.linalg.svd(np.concatenate([at.jacobian, rows]), full_matrices=True)
     tied = V[np.append(S, np.zeros(len(V)))[: len(V)] <= FLAT * S[0]]
@@ -251,22 +254,6 @@ def _covariance(at: Minimum) -> tuple[Array, list[float], float]:
     given = at.objective.sigma is not None
     quantiles = [float((norm.ppf(0.5 + level / 2) if given else t.ppf(0.5 + level / 2, freedom)) ** 2) for level in LEVELS]
     return covariance, quantiles, inflation
-
-
-def _nearest(at: Minimum) -> Array:
-    """Return the inputs of the same friction that are nearest to the case, where exponents alone tie some of them.
-
-    Friction depends on the products that the exponents make of the inputs and on nothing else; along what leaves all of these
-    the data say nothing, and a value far from the case would be an accident of the iteration.
-    """
-    model = at.objective.model
-    A = np.concatenate(list(model.exponents), axis=1)  # inputs by groups of all curves
-    rows, _ = at.objective.priors
-    U, S, _ = np.linalg.svd(np.concatenate([A, rows.T], axis=1), full_matrices=True)
-    tied = U[:, np.append(S, np.zeros(len(U)))[: len(U)] < 1e-9]
-    theta = at.theta - tied @ (tied.T @ at.theta)
-    low, high = at.objective.bounds
-    return theta if ((theta > low) & (theta < high)).all() else at.theta
 
 
 def _intervals(

@@ -44,6 +44,9 @@ ANCHORS = 8
 MOST_STEPS = 12
 """Newton and chord steps after which the present mesh is given up."""
 
+FINER_THAN_NEEDED = 0.1
+"""Part of the tolerance below which the errors at the nodes call for a coarser mesh."""
+
 CHECK_EVERY = 25
 """Points between two looks at whether a coarser mesh would do."""
 
@@ -81,6 +84,9 @@ class Follower:
             return self._kept(point)
         if point is None or point.state is None:
             return self._adopt(converge(guess, groups, self.rtol, self.tolerances))
+        assert point.estimate is not None
+        if point.estimate.at_nodes < FINER_THAN_NEEDED * self.rtol:  # the panels of the central and the least gap failed alone
+            self._relax()
         refined = converge(point.state, groups, self.rtol, self.tolerances)
         adopted = self._adopt(refined)
         if adopted.state is not None and adopted.outcome.ok and adopted.state.prediction_error > ROUGH:
@@ -111,14 +117,18 @@ class Follower:
     def _coarsen(self, state: State) -> None:
         """Try wider tolerances from now on, and at once where the mesh they make is clearly smaller than the present one."""
         self.since_check = 0
-        tail, gap_tail = mesh_tolerances_for(self.rtol)
-        self.tolerances = min(tail, RELAX * self.tolerances[0]), min(gap_tail, RELAX * self.tolerances[1])
+        self._relax()
         try:
             mesh = mesh_for(state, state.groups, contact_law(state.groups), order_for(self.rtol), *self.tolerances)
         except MeshTooLargeError:
             return
         if mesh.size < WORTH_COARSENING * state.mesh.size:
             self.operators, self.fine, self.factors = Operators(mesh), FineOperators(mesh), None
+
+    def _relax(self) -> None:
+        """Widen the tolerances, up to those that a first mesh has."""
+        tail, gap_tail = mesh_tolerances_for(self.rtol)
+        self.tolerances = min(tail, RELAX * self.tolerances[0]), min(gap_tail, RELAX * self.tolerances[1])
 
     def _adopt(self, point: Point) -> Point:
         if point.state is not None and point.outcome.ok:

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.polynomial import legendre
 
 from . import reynolds
 from ._types import Array, Numbers
@@ -143,10 +144,11 @@ def _least_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
     """Return position and value of the least gap on a panel, by Newton's iteration from its least node."""
     nodes = slice(panel * mesh.order, (panel + 1) * mesh.order)
     rule, c, d = reference(mesh.order), float(mesh.centres[panel]), float(mesh.half_widths[panel])
-    coefficients = (rule.to_legendre @ np.log(h[nodes] / mesh.far[nodes])).tolist()
-    s = float(rule.nodes[np.argmin(h[nodes])])
+    node = int(np.argmin(h[nodes]))
+    polynomial = (_taylor(mesh.order)[node] @ np.log(h[nodes] / mesh.far[nodes])).tolist()[::-1]
+    start = s = float(rule.nodes[node])
     for _ in range(NEWTON_STEPS):
-        _, slope, curvature = _legendre_jet(coefficients, s)
+        _, slope, curvature = _jet(polynomial, s - start)
         x = c + d * s
         far = mesh.scale**2 + x * x
         slope += 2 * d * x / far
@@ -154,23 +156,29 @@ def _least_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
         step = -slope / max(curvature, abs(slope) / LARGEST_STEP, 1e-300)
         s = min(1.0, max(-1.0, s + step))
     x = c + d * s
-    return x, math.exp(_legendre_jet(coefficients, s)[0]) * (mesh.scale**2 + x * x)
+    return x, math.exp(_jet(polynomial, s - start)[0]) * (mesh.scale**2 + x * x)
 
 
-def _legendre_jet(coefficients: list[float], s: float) -> tuple[float, float, float]:
-    """Return a Legendre series and its first two derivatives at ``s``."""
-    p, before = [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]
-    total = [coefficients[0], 0.0, 0.0]
-    for n, coefficient in enumerate(coefficients[1:]):
-        a, b = (2 * n + 1) / (n + 1), n / (n + 1)
-        ahead = [
-            a * s * p[0] - b * before[0],
-            a * (s * p[1] + p[0]) - b * before[1],
-            a * (s * p[2] + 2 * p[1]) - b * before[2],
-        ]
-        p, before = ahead, p
-        total = [t + coefficient * q for t, q in zip(total, p, strict=True)]
-    return total[0], total[1], total[2]
+@lru_cache(maxsize=32)
+def _taylor(order: int) -> Array:
+    """Matrices, one a node, from nodal values to the Taylor coefficients of their polynomial about that node."""
+    rule = reference(order)
+    coefficients, factor = rule.to_legendre, 1.0
+    found = np.empty((order, order, order))
+    for n in range(order):
+        found[:, n] = legendre.legvander(rule.nodes, order - 1) @ coefficients / factor
+        coefficients, factor = rule.derivative @ coefficients, factor * (n + 1)
+    return found
+
+
+def _jet(polynomial: list[float], t: float) -> tuple[float, float, float]:
+    """Return a polynomial, its highest coefficient first, and its first two derivatives at ``t``."""
+    value = slope = half_curvature = 0.0
+    for coefficient in polynomial:
+        half_curvature = half_curvature * t + slope
+        slope = slope * t + value
+        value = value * t + coefficient
+    return value, slope, 2 * half_curvature
 
 
 def friction_integrals(mesh: Mesh, h: Array, h_star: Numbers, slopes: Array | None = None) -> Array:

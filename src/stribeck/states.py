@@ -29,6 +29,9 @@ CHORD = 0.25
 LARGEST_AMPLIFICATION = 40.0
 """Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
 
+ROUNDING = 1e-9
+"""Relative rounding of what tells where a panel lies."""
+
 LONG_REACH_ORDER = 14
 """Nodes a panel from which the panel through infinity begins twice as far out, to keep up with them: the logarithm in the
 gap limits its order."""
@@ -57,6 +60,21 @@ class Guess(Protocol):
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
+
+
+class RowsGuess(Protocol):
+    """What :func:`mesh_for` asks of guesses of states in rows."""
+
+    @property
+    def flux_gap(self) -> Array:
+        """Guess of the flux gaps, a column."""
+
+    @property
+    def least_position(self) -> Array:
+        """About where the gaps are least, a column."""
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithms of the gaps and, if known, the fluid pressures at ``x``, shape (1 or 2, rows, len(x))."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,7 +259,7 @@ def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
 
 
 def mesh_for(
-    guess: Guess,
+    guess: Guess | RowsGuess,
     groups: Groups,
     law: ContactLaw,
     order: int,
@@ -249,16 +267,16 @@ def mesh_for(
     gap_tolerance: float = 1e-2,
     profile_tolerance: float = np.inf,
 ) -> Mesh:
-    """Return the coarsest mesh that resolves a guess.
+    """Return the coarsest mesh that resolves a guess, or those of many states that are to share it.
 
     Parameters
     ----------
-    guess : Guess
+    guess : Guess or RowsGuess
         The fields to resolve: contact and fluid pressure to ``tolerance``, relative to what a Hertz pressure has at that
         distance from its edge, the square root of the half-width of the panel; the viscous shear 1/h, relative to that at
         zero, to ``tolerance`` too, the logarithm of the gap to ten times that.
     groups : Groups
-        Scalar groups.
+        Scalar groups; columns for states in rows.
     law : ContactLaw
         Contact pressure from the gap.
     order : int
@@ -275,9 +293,9 @@ def mesh_for(
     MeshTooLargeError
         If more panels are needed than :data:`mesh.MAX_PANELS`.
     """
-    central_gap = math.exp(guess.fields(np.zeros(1))[0, 0])
-    width = math.sqrt(1.0 + central_gap)
-    scale = 2.0 ** round(math.log2(width))
+    central_gap = np.exp(guess.fields(np.zeros(1))[0])
+    width = np.sqrt(1.0 + central_gap)
+    scale = 2.0 ** round(float(np.log2(width).mean()))
 
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
@@ -286,18 +304,20 @@ def mesh_for(
         if len(found) == 2:
             fluid = found[1]
         else:
-            slopes = float(groups.speed) * (gap - guess.flux_gap) / gap**3
+            slopes = groups.speed * (gap - guess.flux_gap) / gap**3
             fluid = slopes * np.repeat(half_widths, x.shape[1])
         edge_scale = np.minimum(1.0, half_widths / width) ** 0.5
-        pressures = width / np.repeat(edge_scale, x.shape[1]) * np.stack([law.pressure(gap), fluid])
-        shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(x.shape)
+        pressures = width / np.repeat(edge_scale, x.shape[1], axis=-1) * np.stack([law.pressure(gap), fluid])
+        nodal = (*gap.shape[:-1], *x.shape)
+        shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
-        read_off = (np.abs(centres) <= half_widths) | (np.abs(centres - guess.least_position) <= half_widths)
+        begins_at_zero = np.abs(centres - half_widths) <= ROUNDING * half_widths
+        read_off = begins_at_zero | (np.abs(centres - guess.least_position) <= half_widths)
         read_off &= stretch[:, 0] == 1.0
         weight = max(0.1, tolerance / profile_tolerance)
-        shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[:, None]
-        shear = (np.exp(-found[0]) * central_gap).reshape(x.shape)
-        return np.concatenate([stretch * pressures.reshape(2, *x.shape), shape[None], shear[None]])
+        shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[..., None]
+        shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
+        return np.concatenate([stretch * pressures.reshape(2, *nodal), shape[None], shear[None]])
 
     start = guess.mesh if isinstance(guess, State) else None
     reach = (8 if order < LONG_REACH_ORDER else 16) * scale

@@ -126,13 +126,13 @@ def fit_self_affine(measured: MeasuredSpectrum) -> SelfAffineFit:
     Raises
     ------
     InputError
-        Where no fit converged.
+        Where no fit converged, or there is nothing but white noise.
 
     Notes
     -----
     Standard errors come from the Fisher information of the rings, larger by the root of the deviance where that is above
-    one; 300 synthetic maps and lines each were covered as ``docs/surfaces.md`` shows.  Sharp cut-offs are found to the width
-    of a ring.
+    one; how often they cover is in docs/surfaces.md, from ``benchmarks/surface_errors.py``.  Sharp cut-offs, looked for in
+    maps only, are found to the width of a ring.
     """
     rings = measured.reliable
     data = _Data(measured.density[rings], measured.modes[rings], measured.inner[rings], measured.is_line)
@@ -140,7 +140,13 @@ def fit_self_affine(measured: MeasuredSpectrum) -> SelfAffineFit:
     chosen = min(_candidates(data, q), key=lambda trial: trial.score, default=None)
     if chosen is None:
         raise InputError("no self-affine spectrum fits the measured one; look at it with --plot.")
-    return _result(chosen, data, measured, q)
+    fit = _result(chosen, data, measured, q)
+    if fit.noise > 0 and fit.noise > fit.at(q[:1] * (1 + 1e-9), is_line=data.is_line, noise=False)[0]:
+        raise InputError(
+            f"the scan shows nothing but white noise at wavelengths from {2 * math.pi / q[-1]:.3g} m to "
+            f"{2 * math.pi / q[0]:.3g} m; check that the channel holds heights, or measure a larger area."
+        )
+    return fit
 
 
 # --- the model ---
