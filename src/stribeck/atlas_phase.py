@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 
 from . import atlas
@@ -11,9 +15,134 @@ from .newton import Outcome
 from .parameters import Groups
 from .phase_grid import MARKS, REGIMES, Diagram
 from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
+from .solution import Definition
+from .threads import one_blas_thread
 
 DENSITY = 20
 """Points per decade of speed on which the transitions of a row are seen."""
+
+COARSE = 5
+"""The same where many rows are located at once, each passage then narrowed."""
+
+NARROWINGS = 3
+"""Rounds of that, false position in the logarithm of the speed with both ends kept."""
+
+
+@dataclass(frozen=True, eq=False)
+class TransitionSpeeds:
+    """Speed groups at which the regimes of many contacts pass into each other.
+
+    Attributes
+    ----------
+    boundary : ndarray, shape (n,)
+        Where the fluid begins to carry more than 5 % of the load; zero or infinite where it does or does not at all speeds.
+    hydrodynamic : ndarray, shape (n,)
+        Where asperities cause no more than 10 % of the friction; zero or infinite likewise.
+    minimum : ndarray, shape (n,)
+        Where friction is least, nan where its minimum is not between the speeds asked for.
+    error : ndarray, shape (3, n)
+        Errors of the logarithms of the three, from the stated error of the shares and of the friction's slope [-].
+    """
+
+    boundary: Array
+    hydrodynamic: Array
+    minimum: Array
+    error: Array
+
+
+@one_blas_thread
+def transition_speeds(
+    load: float,
+    roughness: Array,
+    mu0: float = 1.0,
+    beta: float = 1.0,
+    definition: Definition = "paper",
+    speeds: tuple[float, float] = atlas.BOX["speed"],
+) -> TransitionSpeeds:
+    """Return where the regimes of many contacts of one load pass into each other, all located at once on the atlas.
+
+    Parameters
+    ----------
+    load : float
+        Load group [-].
+    roughness : ndarray, shape (n,)
+        Roughness groups [-].
+    mu0, beta : float
+        Friction coefficient of the dry contact and coefficient of the contact law [-].
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    speeds : tuple of float
+        Least and largest speed group between which to look.
+
+    Returns
+    -------
+    TransitionSpeeds
+        The first passage of each on the way up in speed, as on curves.
+
+    Raises
+    ------
+    InputError
+        If a state is outside :data:`stribeck.atlas.BOX`.
+    """
+    roughness = np.asarray(roughness, dtype=float)
+    count = 1 + max(2, math.ceil(COARSE * math.log10(speeds[1] / speeds[0])))
+    grid = np.log(np.geomspace(*speeds, count))
+
+    def fluid(s: Array, h: Array) -> Array:
+        share = np.asarray(atlas.fluid_load_share(Groups(np.exp(s), load, h)))
+        return np.asarray(np.log(np.maximum(share, 1e-300) / BOUNDARY_FLUID_SHARE))
+
+    def contact(s: Array, h: Array) -> Array:
+        groups = Groups(np.exp(s), load, h)
+        solid = mu0 * np.asarray(atlas.contact_load_share(groups))
+        viscous = np.asarray(atlas.viscous_friction(groups, beta, definition))
+        bound = HYDRODYNAMIC_CONTACT_SHARE / (1 - HYDRODYNAMIC_CONTACT_SHARE)
+        return np.asarray(np.log(bound * viscous / np.maximum(solid, 1e-300)))
+
+    def slope(s: Array, h: Array) -> Array:
+        groups = Groups(np.exp(s), load, h)
+        by_speed = atlas.friction_derivatives(groups, mu0, beta, definition)[0]
+        return np.asarray(by_speed / np.asarray(atlas.friction(groups, mu0, beta, definition)))
+
+    # The printed viscous friction lets friction rise before it falls: its minimum is the last passage.
+    wanted = ((fluid, False), (contact, False), (slope, True))
+    found, errors = zip(*(_passages(function, grid, roughness, last) for function, last in wanted), strict=True)
+    least = np.where(np.isfinite(found[2]), found[2], np.nan)
+    with np.errstate(over="ignore"):
+        return TransitionSpeeds(np.exp(found[0]), np.exp(found[1]), np.exp(least), np.array(errors))
+
+
+def _passages(
+    function: Callable[[Array, Array], Array], grid: Array, roughness: Array, last: bool
+) -> tuple[Array, Array]:
+    """Return where each row passes from below to above zero, logarithms, -inf or inf where it never does, and errors."""
+    values = function(*np.broadcast_arrays(grid, roughness[:, None]))
+    rising = (values[:, :-1] < 0) & (values[:, 1:] >= 0)
+    first = rising.shape[1] - 1 - np.argmax(rising[:, ::-1], axis=1) if last else np.argmax(rising, axis=1)
+    found = np.where(values[:, 0] >= 0, -np.inf, np.inf)
+    error = np.zeros(len(roughness))
+    some = rising.any(axis=1) & (last | (values[:, 0] < 0))
+    rows, first = np.nonzero(some)[0], first[some]
+    if not len(rows):
+        return found, error
+    low, high = grid[first], grid[first + 1]
+    below, above, h = values[rows, first], values[rows, first + 1], roughness[rows]
+    for _ in range(NARROWINGS):
+        # Two points around the one by false position, so that both ends close in.
+        middle = low + (high - low) * below / (below - above)
+        width = 0.02 * (high - low)
+        pair = np.clip(np.stack([middle - width, middle + width]), low, high)
+        left, right = function(pair, np.broadcast_to(h, pair.shape))
+        under, over = left < 0, right < 0
+        low, below = np.where(over, pair[1], np.where(under, pair[0], low)), np.where(over, right, np.where(under, left, below))
+        high, above = (
+            np.where(under, np.where(over, high, pair[1]), pair[0]),
+            np.where(under, np.where(over, above, right), left),
+        )
+    steep = (above - below) / np.maximum(high - low, 1e-300)
+    found[rows] = low + (high - low) * below / (below - above)
+    error[rows] = ERROR / np.maximum(steep, 1e-300) + (high - low)
+    return found, error
 
 
 def fill(diagram: Diagram) -> None:
