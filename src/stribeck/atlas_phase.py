@@ -24,8 +24,8 @@ DENSITY = 20
 COARSE = 5
 """The same where many rows are located at once, each passage then narrowed."""
 
-NARROWINGS = 3
-"""Rounds of that, false position in the logarithm of the speed with both ends kept."""
+NARROWINGS = 4
+"""Rounds of that, false position in the logarithm of the speed with both ends kept; each of the first leaves a twentieth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +58,7 @@ def transition_speeds(
     beta: float = 1.0,
     definition: Definition = "paper",
     speeds: tuple[float, float] = atlas.BOX["speed"],
+    narrowings: int = NARROWINGS,
 ) -> TransitionSpeeds:
     """Return where the regimes of many contacts of one load pass into each other, all located at once on the atlas.
 
@@ -73,6 +74,8 @@ def transition_speeds(
         Definition of the viscous friction.
     speeds : tuple of float
         Least and largest speed group between which to look.
+    narrowings : int
+        Rounds in which a passage is narrowed, two evaluations each; with fewer the stated error is larger.
 
     Returns
     -------
@@ -106,14 +109,14 @@ def transition_speeds(
 
     # The printed viscous friction lets friction rise before it falls: its minimum is the last passage.
     wanted = ((fluid, False), (contact, False), (slope, True))
-    found, errors = zip(*(_passages(function, grid, roughness, last) for function, last in wanted), strict=True)
+    found, errors = zip(*(_passages(function, grid, roughness, last, narrowings) for function, last in wanted), strict=True)
     least = np.where(np.isfinite(found[2]), found[2], np.nan)
     with np.errstate(over="ignore"):
         return TransitionSpeeds(np.exp(found[0]), np.exp(found[1]), np.exp(least), np.array(errors))
 
 
 def _passages(
-    function: Callable[[Array, Array], Array], grid: Array, roughness: Array, last: bool
+    function: Callable[[Array, Array], Array], grid: Array, roughness: Array, last: bool, narrowings: int
 ) -> tuple[Array, Array]:
     """Return where each row passes from below to above zero, logarithms, -inf or inf where it never does, and errors."""
     values = function(*np.broadcast_arrays(grid, roughness[:, None]))
@@ -127,7 +130,7 @@ def _passages(
         return found, error
     low, high = grid[first], grid[first + 1]
     below, above, h = values[rows, first], values[rows, first + 1], roughness[rows]
-    for _ in range(NARROWINGS):
+    for _ in range(narrowings):
         # Two points around the one by false position, so that both ends close in.
         middle = low + (high - low) * below / (below - above)
         width = 0.02 * (high - low)

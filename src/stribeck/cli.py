@@ -31,7 +31,7 @@ from .regimes import friction_elasticities
 from .solution import coefficients
 from .solve import SolveError, solve
 from .sweep_store import SweepError
-from .units import InputError, format_si, show
+from .units import InputError, format_si, read_number, show
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -125,7 +125,7 @@ def make_app() -> App:
         help_format="plaintext",
         suppress_keyboard_interrupt=False,
     )
-    for command in (solve_command, curve_command, regimes_command, figures_command, sweep_command):
+    for command in (solve_command, curve_command, regimes_command, figures_command, sweep_command, explore_command):
         app.command(command, name=command.__name__.removesuffix("_command"))
     app.register_install_completion_command()
     return app
@@ -441,6 +441,34 @@ def sweep_command(
     return 0
 
 
+def explore_command(
+    case: CaseFile = None,
+    /,
+    *,
+    port: Number = None,
+    browser: Annotated[bool, Parameter(negative="--no-browser", show_default=False)] = True,
+) -> int:
+    """Open a page on which the contact is changed by hand and curve, profile, regimes and numbers follow.
+
+    Example: stribeck explore examples/pdms_cylinder.toml
+
+    The page is served on this machine only, needs no internet and sends nothing away.  Ctrl-C ends it.
+
+    Parameters
+    ----------
+    case
+        Case file (TOML) to begin with; a soft cylinder if not given.
+    port
+        Port of the page; a free one if not given.
+    browser
+        Open the page in the browser, or only tell its address.
+    """
+    from .app.server import serve
+
+    serve(case, None if port is None else _whole("port", port), browser)
+    return 0
+
+
 # --- arguments ---
 
 
@@ -461,12 +489,7 @@ def _case(path: Path | None, groups: Sequence[str] | None, mu0: str | None, beta
 
 
 def _number(name: str, text: str | None) -> float | None:
-    if text is None:
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        raise InputError(f"{name} = {show(text)} is not a number; write it as 0.001 or 1e-3.") from None
+    return None if text is None else read_number(name, text)
 
 
 def _group(name: str, text: str) -> float:
@@ -726,7 +749,7 @@ def _line(problem: BaseException) -> str:
 
 
 def _command(tokens: Sequence[str]) -> str:
-    known = ("solve", "curve", "regimes", "figures", "sweep")
+    known = ("solve", "curve", "regimes", "figures", "sweep", "explore")
     return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
 
 
