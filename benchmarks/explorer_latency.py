@@ -63,7 +63,7 @@ def measure(page, address: str) -> None:
     print("| slider | median, ms | 90 % within, ms | worst, ms |\n|---|---|---|---|")
     for name in ("speed", "load", "roughness", "friction_coefficient", "load_group"):
         page.evaluate("window.moves = []")
-        page.focus(f"[data-row={name}] .q-slider [tabindex]")
+        page.focus(f"[data-row={name}] input.slider")
         for _ in range(MOVES):
             page.keyboard.press("ArrowRight")
             page.wait_for_timeout(200)

@@ -91,60 +91,60 @@ def transition_speeds(
     count = 1 + max(2, math.ceil(COARSE * math.log10(speeds[1] / speeds[0])))
     grid = np.log(np.geomspace(*speeds, count))
 
-    def fluid(s: Array, h: Array) -> Array:
-        share = np.asarray(atlas.fluid_load_share(Groups(np.exp(s), load, h)))
-        return np.asarray(np.log(np.maximum(share, 1e-300) / BOUNDARY_FLUID_SHARE))
+    bound = HYDRODYNAMIC_CONTACT_SHARE / (1 - HYDRODYNAMIC_CONTACT_SHARE)
 
-    def contact(s: Array, h: Array) -> Array:
-        groups = Groups(np.exp(s), load, h)
-        solid = mu0 * np.asarray(atlas.contact_load_share(groups))
-        viscous = np.asarray(atlas.viscous_friction(groups, beta, definition))
-        bound = HYDRODYNAMIC_CONTACT_SHARE / (1 - HYDRODYNAMIC_CONTACT_SHARE)
-        return np.asarray(np.log(bound * viscous / np.maximum(solid, 1e-300)))
+    def signs(s: Array, h: Array) -> Array:
+        """Return what passes from below to above zero at each of the three, shape (3, ...)."""
+        fluid, contact, viscous, slope = atlas.shares_and_friction(Groups(np.exp(s), load, h), mu0, beta, definition)
+        solid = mu0 * contact
+        return np.stack(
+            [
+                np.log(np.maximum(fluid, 1e-300) / BOUNDARY_FLUID_SHARE),
+                np.log(np.maximum(bound * viscous, 1e-300) / np.maximum(solid, 1e-300)),
+                slope / np.maximum(solid + viscous, 1e-300),
+            ]
+        )
 
-    def slope(s: Array, h: Array) -> Array:
-        groups = Groups(np.exp(s), load, h)
-        by_speed = atlas.friction_derivatives(groups, mu0, beta, definition)[0]
-        return np.asarray(by_speed / np.asarray(atlas.friction(groups, mu0, beta, definition)))
-
-    # The printed viscous friction lets friction rise before it falls: its minimum is the last passage.
-    wanted = ((fluid, False), (contact, False), (slope, True))
-    found, errors = zip(*(_passages(function, grid, roughness, last, narrowings) for function, last in wanted), strict=True)
-    least = np.where(np.isfinite(found[2]), found[2], np.nan)
+    found, error = _passages(signs, grid, roughness, narrowings)
     with np.errstate(over="ignore"):
-        return TransitionSpeeds(np.exp(found[0]), np.exp(found[1]), np.exp(least), np.array(errors))
+        speed = np.exp(found)
+    return TransitionSpeeds(speed[0], speed[1], np.where(np.isfinite(found[2]), speed[2], np.nan), error)
 
 
-def _passages(
-    function: Callable[[Array, Array], Array], grid: Array, roughness: Array, last: bool, narrowings: int
-) -> tuple[Array, Array]:
-    """Return where each row passes from below to above zero, logarithms, -inf or inf where it never does, and errors."""
-    values = function(*np.broadcast_arrays(grid, roughness[:, None]))
-    rising = (values[:, :-1] < 0) & (values[:, 1:] >= 0)
-    first = rising.shape[1] - 1 - np.argmax(rising[:, ::-1], axis=1) if last else np.argmax(rising, axis=1)
-    found = np.where(values[:, 0] >= 0, -np.inf, np.inf)
-    error = np.zeros(len(roughness))
-    some = rising.any(axis=1) & (last | (values[:, 0] < 0))
-    rows, first = np.nonzero(some)[0], first[some]
+def _passages(signs: Callable[[Array, Array], Array], grid: Array, roughness: Array, narrowings: int) -> tuple[Array, Array]:
+    """Return where each function passes from below to above zero in each row, and errors, shape (3, rows).
+
+    Logarithms of the speed; -inf or inf where it is above or below at all speeds.  The printed viscous friction lets friction
+    rise before it falls, so that its minimum is the last passage; the others are the first, from below at the lowest speed.
+    """
+    values = signs(*np.broadcast_arrays(grid, roughness[:, None]))
+    rising = (values[..., :-1] < 0) & (values[..., 1:] >= 0)
+    place = np.argmax(rising, axis=-1)
+    place[2] = rising.shape[-1] - 1 - np.argmax(rising[2, :, ::-1], axis=-1)
+    some = np.asarray(rising.any(axis=-1))
+    some[:2] &= values[:2, :, 0] < 0
+    found = np.where(values[..., 0] >= 0, -np.inf, np.inf)
+    error = np.zeros(found.shape)
+    which, rows = np.nonzero(some)
     if not len(rows):
         return found, error
+    first, one = place[which, rows], np.arange(len(rows))
     low, high = grid[first], grid[first + 1]
-    below, above, h = values[rows, first], values[rows, first + 1], roughness[rows]
+    below, above = values[which, rows, first], values[which, rows, first + 1]
     for _ in range(narrowings):
         # Two points around the one by false position, so that both ends close in.
-        middle = low + (high - low) * below / (below - above)
-        width = 0.02 * (high - low)
+        middle, width = low + (high - low) * below / (below - above), 0.02 * (high - low)
         pair = np.clip(np.stack([middle - width, middle + width]), low, high)
-        left, right = function(pair, np.broadcast_to(h, pair.shape))
+        left, right = signs(pair, np.broadcast_to(roughness[rows], pair.shape))[which, :, one].T
         under, over = left < 0, right < 0
-        low, below = np.where(over, pair[1], np.where(under, pair[0], low)), np.where(over, right, np.where(under, left, below))
-        high, above = (
-            np.where(under, np.where(over, high, pair[1]), pair[0]),
-            np.where(under, np.where(over, above, right), left),
-        )
+        ends = (low, below, high, above)
+        low = np.where(over, pair[1], np.where(under, pair[0], ends[0]))
+        below = np.where(over, right, np.where(under, left, ends[1]))
+        high = np.where(~under, pair[0], np.where(~over, pair[1], ends[2]))
+        above = np.where(~under, left, np.where(~over, right, ends[3]))
     steep = (above - below) / np.maximum(high - low, 1e-300)
-    found[rows] = low + (high - low) * below / (below - above)
-    error[rows] = ERROR / np.maximum(steep, 1e-300) + (high - low)
+    found[which, rows] = low + (high - low) * below / (below - above)
+    error[which, rows] = ERROR / np.maximum(steep, 1e-300) + (high - low)
     return found, error
 
 

@@ -18,7 +18,7 @@ from .measured import Measured
 from .palette import PIN_DASHES, Palette
 from .results import Answer, Curve, round_down, round_up
 
-__all__ = ["CHARTS", "all_charts", "data_only"]
+__all__ = ["CHARTS", "all_charts", "data_only", "difference"]
 
 Options = dict[str, Any]
 
@@ -37,12 +37,11 @@ POWER = """value => {
 PRECISION = "value => typeof value === 'number' ? Number(value.toPrecision(4)).toString() : value"
 
 POLYGON = """(params, api) => {
-  if (params.dataIndexInside > 0) return;
   const points = [];
-  for (let i = 0; i < params.dataInsideLength; i++) points.push(api.coord([api.value(0, i), api.value(1, i)]));
+  for (let i = 0; i < api.value(2); i++) points.push(api.coord([api.value(2 * i + 3), api.value(2 * i + 4)]));
   return {type: 'polygon', shape: {points}, style: {fill: api.visual('color')}, silent: true};
 }"""
-"""One polygon through all points of a series."""
+"""One polygon: a point of it, the number of its points, and all their coordinates in one row."""
 
 
 def all_charts(
@@ -81,6 +80,33 @@ def data_only(options: Any) -> Any:
     if isinstance(options, list):
         return [data_only(value) for value in options]
     return options
+
+
+def difference(old: Options, new: Options) -> tuple[Options, Options] | None:
+    """Return what ECharts must be told to show ``new`` after ``old``: options, and how to merge them.
+
+    Parameters
+    ----------
+    old, new : dict
+        Data of a chart before and after.
+
+    Returns
+    -------
+    tuple of dict, or None
+        Only the series whose data moved, where nothing else changed; None where nothing did.
+    """
+    if old == new:
+        return None
+    before, after = old["series"], new["series"]
+    if [s["id"] for s in before] != [s["id"] for s in after]:
+        return new, {"replaceMerge": ["series"]}
+    changed: Options = {key: value for key, value in new.items() if key != "series" and old.get(key) != value}
+    series = []
+    for one, two in zip(before, after, strict=True):
+        if one != two:
+            same = all(one.get(key) == value for key, value in two.items() if key != "data")
+            series.append({"id": two["id"], "data": two["data"]} if same else two)
+    return changed | ({"series": series} if series else {}), {}
 
 
 def friction_chart(
@@ -208,6 +234,7 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
         b, h = end[known], begin[known]
         for name, one, two in (("boundary", left, b), ("mixed", b, h), ("hydrodynamic", h, right)):
             outline = [*_pairs(one, rows), *_pairs(two[::-1], rows[::-1])]
+            row = [*outline[0], len(outline), *(value for point in outline for value in point)]
             series.append(
                 {
                     "id": f"area-{name}",
@@ -216,7 +243,7 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
                     ":renderItem": POLYGON,
                     "clip": True,
                     "silent": True,
-                    "data": outline,
+                    "data": [row],
                     "color": palette.tints[name],
                     "itemStyle": {"color": palette.tints[name]},
                     "tooltip": {"show": False},
@@ -288,9 +315,7 @@ def _linear_axis(name: str, low: float, high: float, palette: Palette) -> Option
     return _axis(name, low, high, palette) | {"type": "value", "splitNumber": 4}
 
 
-def _line(
-    key: str, name: str, x: Array, y: Array, color: str, width: float, dash: Sequence[float] | None = None
-) -> Options:
+def _line(key: str, name: str, x: Array, y: Array, color: str, width: float, dash: Sequence[float] | None = None) -> Options:
     return {
         "id": key,
         "name": name,
@@ -390,12 +415,13 @@ def _thin_series(answer: Answer, fields: Sequence[str], x_scale: float, scale: f
 
 def _pairs(x: Array, y: Array) -> list[list[float | None]]:
     """Return points, null where there is none, rounded to what a screen can show."""
-    points = np.stack([x, y], axis=1)
-    return [[_plain(a), _plain(b)] for a, b in points.tolist()]
-
-
-def _plain(value: float) -> float | None:
-    return float(f"{value:.6g}") if math.isfinite(value) else None
+    points = np.stack([x, y], axis=1).astype(float)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        unit = 10.0 ** (5 - np.floor(np.log10(np.abs(points))))
+        rounded = np.where((points == 0) | ~np.isfinite(unit), points, np.round(points * unit) / unit)
+    if np.isfinite(rounded).all():
+        return rounded.tolist()  # type: ignore[no-any-return]
+    return [[value if math.isfinite(value) else None for value in point] for point in rounded.tolist()]
 
 
 def _range(values: Array) -> list[float]:
@@ -421,4 +447,3 @@ def _unit(value: float, dimension: str) -> tuple[float, str]:
     name = format_si(value, dimension).rpartition(" ")[2]
     power = next(power for power, known in DIMENSIONS[dimension].steps.items() if known == name)
     return 10.0**power, name
-

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from ..case import Case
-from ..parameters import QUANTITIES, Groups, LineContact, quantity
+from ..parameters import QUANTITIES, LineContact, quantity
 from ..solution import Definition
 from ..units import format_si, read_number, to_si
 
@@ -211,7 +211,9 @@ def _with_group(inputs: Inputs, name: str, value: float) -> Inputs:
     contact = inputs.contact
     groups = replace(contact.groups, **{name.removesuffix("_group"): value})
     kept = ("radius", "modulus", "viscosity", "alpha", "beta", "friction_coefficient")
-    moved = LineContact.from_groups(Groups(*map(float, (groups.speed, groups.load, groups.roughness))), **_inputs(contact, kept))
+    moved = LineContact.from_groups(
+        Groups(*map(float, (groups.speed, groups.load, groups.roughness))), **_inputs(contact, kept)
+    )
     return replace(inputs, contact=moved)
 
 

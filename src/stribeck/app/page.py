@@ -7,14 +7,15 @@ fewer pictures instead of late ones.
 from __future__ import annotations
 
 import asyncio
-import json
 import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from html import escape
 from typing import Any
 
 from nicegui import background_tasks, events, ui
+from nicegui.json import dumps
 
 from ..distances import TransitionDistances, transition_distances
 from ..solve import SolveError
@@ -40,6 +41,7 @@ SLOW = ThreadPoolExecutor(1, "explorer-slow")
 
 MOST_MEASURED = 3
 LARGEST_FILE = 5_000_000
+REJECTED = f"Only .toml, .csv and .txt are read, up to {LARGEST_FILE // 1_000_000} MB."
 
 DEFINITIONS = {"paper": "as printed", "balanced": "balanced"}
 ABSCISSAS = {"speed": "speed", "hersey": "Hersey number"}
@@ -49,10 +51,31 @@ class Superseded(Exception):  # noqa: N818
     """The inputs changed while something slow was computed for them."""
 
 
-class Knob(ui.slider):
-    """A slider that the browser moves by itself, without waiting for the server."""
+class Knob(ui.element, component="knob.js"):
+    """Field, unit and slider of one quantity.
 
-    LOOPBACK = False
+    Parameters
+    ----------
+    name : str
+        Key of :data:`FIELDS` or :data:`GROUP_FIELDS`.
+    start : dict
+        What it shows first, as of :func:`knob_state`.
+    """
+
+    def __init__(self, name: str, start: dict[str, Any]) -> None:
+        super().__init__()
+        shown = GROUP_FIELDS.get(name) or FIELDS[name]
+        self._props |= {"name": name, "label": shown.label, "symbol": shown.symbol, "start": start}
+        self._props |= {"low": math.log10(shown.low), "high": math.log10(shown.high)}
+        self.classes("knob-box")
+
+
+def knob_state(now: Inputs, name: str) -> dict[str, Any]:
+    """Return what the knob of a quantity shows."""
+    unit = now.units.get(name, "")
+    units = list(dict.fromkeys((*FIELDS[name].units, unit))) if name in FIELDS and unit else []
+    place = round(inputs.position(now, name), 4)
+    return {"text": inputs.number_text(now, name), "unit": unit, "units": units, "place": place}
 
 
 class Tab:
@@ -74,28 +97,25 @@ class Tab:
         self.answer: Answer | None = None
         self.asked = False
         self.working = False
-        self.setting = False
+        self.moved: int | None = None
         self.resting: asyncio.Task[Any] | None = None
-        self.rows: dict[str, dict[str, Any]] = {}
+        self.knobs: dict[str, Knob] = {}
         self.charts: dict[str, ui.echart] = {}
+        self.shown: dict[str, Any] = {}
         self.client = ui.context.client
-        self.build(opened)
-        for name, (text, sentence) in opened.problems.items():
-            self.mark(name, text, sentence)
+        self.build()
+        self.problems = opened.problems
 
     # --- the page ---
 
-    def build(self, opened: url.Opened) -> None:
+    def build(self) -> None:
         """Make all elements, with the first answer in them."""
         self.dark = ui.dark_mode(None)
         self.palette = LIGHT
-        self.status_text = ""
         try:
             self.answer = self.model(self.inputs)
-        except (InputError, SolveError) as problem:
-            self.status_text = str(problem)
-            self.inputs = self.start
-            self.answer = self.model(self.inputs)
+        except (InputError, SolveError):
+            self.answer = self.model(self.start)
         with ui.element("main").classes("explorer"):
             self.build_bar()
             with ui.element("section").classes("card controls").props('aria-label="Inputs"'):
@@ -110,7 +130,7 @@ class Tab:
                         self.chart("pressure", "Contact and fluid pressure along the contact")
             with ui.element("div").classes("side"):
                 with ui.element("section").classes("card numbers").props('aria-label="Numbers"'):
-                    self.status = ui.label(self.status_text).classes("status").props('role="status"')
+                    self.status = ui.label().classes("status").props('role="status"')
                     self.numbers = ui.html("", sanitize=False)
                 with ui.element("section").classes("card more").props('aria-label="Distances"'):
                     ui.html("<h2>To the next regimes, by each input</h2>", sanitize=False)
@@ -127,7 +147,10 @@ class Tab:
             self.title = ui.html("", sanitize=True, tag="h1")
             self.upload = (
                 ui.upload(on_upload=self.on_upload, auto_upload=True, multiple=True, max_file_size=LARGEST_FILE)
-                .on("rejected", lambda: self.complain(f"Files are read up to {LARGEST_FILE // 1_000_000} MB."))
+                .on(
+                    "rejected",
+                    lambda: self.complain(REJECTED),
+                )
                 .props('accept=".toml,.csv,.txt" aria-hidden="true"')
                 .classes("hidden-upload")
             )
@@ -138,18 +161,9 @@ class Tab:
                     for label, kind in files.KINDS.items():
                         ui.menu_item(label, lambda kind=kind: background_tasks.create(self.save(kind)))
             button("Pin", "push_pin", "Keep this curve to compare (p)").on("click", self.pin)
-            button("Link", "link", "Copy the address of this state (l)").on("click", js_handler=self.copy_script())
+            button("Link", "link", "Copy the address of this state (l)").on("click", js_handler="() => explorerCopy()")
             button("", "contrast", "Light or dark (t)").on("click", self.toggle_theme).props("aria-label='Light or dark'")
             self.show_title()
-
-    @staticmethod
-    def copy_script() -> str:
-        """Return what copies the address, which the page keeps up to date."""
-        return (
-            "() => { (navigator.clipboard ? navigator.clipboard.writeText(location.href) : Promise.reject())"
-            ".then(() => Quasar.Notify.create({message: 'Address copied', timeout: 1200}),"
-            " () => Quasar.Notify.create({message: 'The address bar holds the link', timeout: 2500})) }"
-        )
 
     def build_controls(self) -> None:
         """Make fields and sliders of the contact and of the groups."""
@@ -160,49 +174,29 @@ class Tab:
         for name in GROUP_FIELDS:
             self.build_row(name)
         ui.html(
-            '<p class="caption">A group moves load, speed and roughness, so that the other two groups stay.</p>', sanitize=False
+            '<p class="caption">A group moves load, speed and roughness; the other two groups stay.</p>',
+            sanitize=False,
         )
 
     def build_row(self, name: str) -> None:
-        """Make the field, the unit and the slider of one quantity."""
-        shown = GROUP_FIELDS.get(name) or FIELDS[name]
-        with ui.element("div").classes("knob").props(f"data-row={name}") as row:
-            ui.html(f"{shown.label}<i>{shown.symbol}</i>", sanitize=False).classes("name")
-            field = ui.input(value=inputs.number_text(self.inputs, name)).props(
-                f'dense outlined inputmode="text" autocomplete="off" spellcheck="false" aria-label="{shown.label}" name={name}'
-            )
-            field.on("keydown.enter", lambda: self.commit(name, field.value))
-            field.on("blur", lambda: self.commit(name, field.value))
-            unit = None
-            if shown.units:
-                unit = ui.select(self.unit_options(name), value=self.inputs.units[name])
-                unit.props(f'dense borderless options-dense aria-label="Unit of {shown.label}"')
-                unit.on_value_change(lambda event: self.choose_unit(name, event.value))
-            else:
-                ui.element("span")
-            low, high = math.log10(shown.low), math.log10(shown.high)
-            slider = Knob(min=low, max=high, step=0.01, value=inputs.position(self.inputs, name))
-            slider.props(f'aria-label="{shown.label}" color=primary thumb-size=16px track-size=3px')
-            slider.on_value_change(lambda event: self.slide(name, event.value))
-            sentence = ui.label("").classes("sentence").props('role="alert"')
-        self.rows[name] = {"row": row, "field": field, "unit": unit, "slider": slider, "sentence": sentence}
-
-    def unit_options(self, name: str) -> dict[str, str]:
-        """Return the units of a field, its own among them, as they are shown."""
-        units = dict.fromkeys((*FIELDS[name].units, self.inputs.units[name]))
-        return {unit: unit.replace("*", "·") for unit in units}
+        """Make the knob of one quantity."""
+        self.knobs[name] = knob = Knob(name, knob_state(self.inputs, name))
+        knob.on("slide", lambda event: self.slide(name, event.args))
+        knob.on("commit", lambda event: self.commit(name, event.args))
+        knob.on("unit", lambda event: self.choose_unit(name, event.args))
 
     def build_friction(self) -> None:
         """Make the chart of friction with its switches and the list of pins."""
+        self.toggles: dict[str, ui.toggle] = {}
         with ui.element("div").classes("head"):
             ui.html("<h2>Stribeck curve</h2>", sanitize=False)
-            self.source = ui.label("").classes("caption")
+            self.source = ui.html("", sanitize=False).classes("caption")
             with ui.element("div").classes("choice"):
                 for options, name in ((DEFINITIONS, "definition"), (ABSCISSAS, "abscissa")):
                     toggle = ui.toggle(options, value=getattr(self.inputs, name))
                     toggle.props(f'no-caps unelevated dense aria-label="{name}"')
                     toggle.on_value_change(lambda event, name=name: self.choose(name, event.value))
-                    self.rows[name] = {"toggle": toggle}
+                    self.toggles[name] = toggle
         self.chips = ui.element("div").classes("chips")
         self.chart("friction", "Friction over speed")
 
@@ -214,78 +208,45 @@ class Tab:
 
     def slide(self, name: str, place: Any) -> None:
         """Take the place of a slider."""
-        if not self.setting and place is not None:
-            self.attempt(name, str(place), lambda: inputs.slid(self.inputs, name, float(place)), kept=self.rows[name]["slider"])
+        self.moved = self.knobs[name].id
+        self.attempt(name, str(place), lambda: inputs.slid(self.inputs, name, float(place)))
 
-    def commit(self, name: str, text: str) -> None:
-        """Take the text of a field, where it was changed."""
-        if text is not None and text.strip() != inputs.number_text(self.inputs, name):
-            self.attempt(name, text, lambda: inputs.typed(self.inputs, name, text))
-        else:
-            self.unmark(name)
+    def commit(self, name: str, text: Any) -> None:
+        """Take the text of a field."""
+        self.attempt(name, str(text), lambda: inputs.typed(self.inputs, name, str(text)))
 
-    def choose_unit(self, name: str, unit: str) -> None:
+    def choose_unit(self, name: str, unit: Any) -> None:
         """Show a field in another unit."""
-        if not self.setting and unit:
-            self.attempt(name, unit, lambda: inputs.in_unit(self.inputs, name, unit))
+        self.attempt(name, str(unit), lambda: inputs.in_unit(self.inputs, name, str(unit)))
 
     def choose(self, name: str, value: str) -> None:
         """Take the definition of friction, or what the curve is drawn over."""
-        if not self.setting:
+        if getattr(self.inputs, name) != value:
             self.change(replace(self.inputs, **{name: value}))  # type: ignore[arg-type]
 
-    def attempt(self, name: str, text: str, action: Callable[[], Inputs], kept: Any = None) -> None:
+    def attempt(self, name: str, text: str, action: Callable[[], Inputs]) -> None:
         """Change the inputs, or mark the field with the reason why not."""
         try:
             changed = action()
         except InputError as problem:
             self.mark(name, text, str(problem))
             return
-        self.unmark(name)
-        self.change(changed, kept)
+        self.shown.pop(name, None)  # so that it is shown anew, without mark
+        self.change(changed)
 
-    def change(self, changed: Inputs, kept: Any = None) -> None:
-        """Take new inputs, show them in all fields but the slider that is being moved, and ask for their answer."""
+    def change(self, changed: Inputs) -> None:
+        """Take new inputs and ask for their answer."""
         self.inputs = changed
-        self.show_inputs(kept)
+        for name, toggle in self.toggles.items():
+            toggle.value = getattr(changed, name)
         self.ask()
 
     def mark(self, name: str, text: str, sentence: str) -> None:
         """Mark a field with a sentence; what has no field goes to the line above the numbers."""
-        row = self.rows.get(name, {})
-        if "field" not in row:
+        if name in self.knobs:
+            self.knobs[name].run_method("complain", text, sentence)
+        else:
             self.status.text = sentence
-            return
-        row["sentence"].text = sentence
-        row["row"].classes("wrong")
-        row["field"].props('aria-invalid="true"')
-        row["field"].value = text
-
-    def unmark(self, name: str) -> None:
-        """Take the mark off a field."""
-        row = self.rows[name]
-        if row["sentence"].text:
-            row["sentence"].text = ""
-            row["row"].classes(remove="wrong")
-            row["field"].props(remove="aria-invalid")
-
-    def show_inputs(self, kept: Any = None) -> None:
-        """Show the inputs in all fields, units and sliders; ``kept`` is in somebody's hand and stays."""
-        self.setting = True
-        for name in (*FIELDS, *GROUP_FIELDS):
-            row = self.rows[name]
-            self.unmark(name)
-            row["field"].value = inputs.number_text(self.inputs, name)
-            if row["unit"] is not None:
-                unit = self.inputs.units[name]
-                if unit not in row["unit"].options:
-                    row["unit"].set_options(self.unit_options(name), value=unit)
-                row["unit"].value = unit
-            if row["slider"] is not kept:
-                row["slider"].value = round(inputs.position(self.inputs, name), 4)
-        for name in ("definition", "abscissa"):
-            self.rows[name]["toggle"].value = getattr(self.inputs, name)
-        self.setting = False
 
     def on_key(self, event: events.KeyEventArguments) -> None:
         """Do what a letter stands for, outside fields."""
@@ -295,7 +256,7 @@ class Tab:
             elif event.key == "t":
                 self.toggle_theme()
             elif event.key == "l":
-                self.client.run_javascript(f"({self.copy_script()})()")
+                self.client.run_javascript("explorerCopy()")
 
     def toggle_theme(self) -> None:
         """Go from light to dark or back."""
@@ -328,7 +289,9 @@ class Tab:
         self.chips.clear()
         with self.chips:
             for i, pin in enumerate(self.pins):
-                chip = ui.chip(pin.name, icon="push_pin", removable=True).style(f"color: {self.palette.pins[i % 6]} !important")
+                chip = ui.chip(pin.name, icon="push_pin", removable=True).style(
+                    f"color: {self.palette.pins[i % 6]} !important"
+                )
                 chip.on("remove", lambda pin=pin: self.unpin(pin))
             for found in self.measured:
                 chip = ui.chip(found.name, icon="scatter_plot", removable=True).style(f"color: {self.palette.mark} !important")
@@ -397,8 +360,8 @@ class Tab:
                     self.answer = await self.run(LIVE, self.model, now)
                 except (InputError, SolveError) as problem:
                     self.status.text = f"{problem} The last picture stays."
-                    continue
-                self.status.text = ""
+                else:
+                    self.status.text = ""
                 await self.draw()
         finally:
             self.working = False
@@ -424,31 +387,49 @@ class Tab:
         return charts.all_charts(self.answer, self.pinned(self.answer), self.measured, self.palette)
 
     def draw_all(self) -> None:
-        """Put whole charts into a page that is being made."""
+        """Put whole charts and all numbers into a page that is being made."""
         for name, options in self.options().items():
             self.charts[name].options.update(options)
-        self.show_numbers()
+            self.shown[f"chart-{name}"] = charts.data_only(options)
+        for element, content in self.words():
+            element.content = content
+        self.shown |= {name: knob_state(self.inputs, name) for name in self.knobs}
 
-    def show_numbers(self) -> None:
-        """Show the numbers and the lines that go with the charts."""
+    def words(self) -> list[tuple[ui.html, str]]:
+        """Return the numbers, and the lines that go with the charts."""
         assert self.answer is not None
         answer = self.answer
-        self.numbers.content = table.numbers_html(answer, table.numbers(answer))
-        source = "" if answer.curve is None else answer.curve.source
-        self.source.text = "curve is solved when the sliders rest" if answer.curve is None or answer.curve.stale else source
+        waits = answer.curve is None or answer.curve.stale
+        source = "solved when the sliders rest" if answer.curve is None or waits else answer.curve.source
         load = f"{float(answer.inputs.contact.groups.load):.3g}"
-        self.diagram_head.content = f"<h2>Regimes <span class='caption'>at this load (group {load})</span></h2>"
+        return [
+            (self.numbers, table.numbers_html(answer, table.numbers(answer))),
+            (self.source, source),
+            (self.diagram_head, f"<h2>Regimes <span class='caption'>at this load (group {load})</span></h2>"),
+        ]
 
     async def draw(self) -> None:
-        """Send the answer, and wait until the browser has drawn it."""
-        self.show_numbers()
-        for name, options in self.options().items():
-            last = self.charts[name].run_chart_method(
-                "setOption", charts.data_only(options), {"replaceMerge": ["series"], "silent": True}, timeout=PATIENCE
-            )
+        """Send what changed, and wait until the browser has drawn it."""
+        frame: dict[str, Any] = {"html": [], "charts": [], "knobs": [], "moved": self.moved}
+        self.moved = None
+        for element, content in self.words():
+            if self.shown.get(element.html_id) != content:
+                self.shown[element.html_id] = content
+                frame["html"].append([element.html_id, content])
+        for name, whole in self.options().items():
+            options = charts.data_only(whole)
+            changed = charts.difference(self.shown[f"chart-{name}"], options)
+            self.shown[f"chart-{name}"] = options
+            if changed is not None:
+                frame["charts"].append([self.charts[name].id, *changed])
+        for name, knob in self.knobs.items():
+            state = knob_state(self.inputs, name)
+            if self.shown.get(name) != state:
+                self.shown[name] = state
+                frame["knobs"].append([knob.id, state])
         try:
-            await last
-        except TimeoutError:  # a tab in the background draws nothing
+            await self.client.run_javascript(f"return explorerFrame({dumps(frame)})", timeout=PATIENCE)
+        except TimeoutError:  # a tab in the background answers when it is looked at
             pass
 
     # --- when the sliders rest ---
@@ -465,7 +446,7 @@ class Tab:
         now = self.inputs
         with self.client:
             address = f"?{url.encode(now, self.pins)}"
-            self.client.run_javascript(f"history.replaceState(null, '', {json.dumps(address)})")
+            self.client.run_javascript(f"history.replaceState(null, '', {dumps(address)})")
             if await self.run(SLOW, self.model.settle, now) and self.inputs is now:
                 self.ask()
                 return
@@ -486,12 +467,14 @@ class Tab:
         except Superseded:
             return None
         except (InputError, SolveError) as problem:
-            return f'<p class="note">{table.escape(str(problem))}</p>'
+            return f'<p class="note">{escape(str(problem))}</p>'
 
     async def open(self) -> None:
         """Do what needs the browser: its theme, and what comes at rest."""
         await self.client.connected(timeout=30)
         with self.client:
+            for name, (text, sentence) in self.problems.items():
+                self.mark(name, text, sentence)
             self.show_chips()
             try:
                 dark = await self.client.run_javascript("matchMedia('(prefers-color-scheme: dark)').matches", timeout=5)
@@ -500,11 +483,11 @@ class Tab:
             if dark:
                 self.set_theme(True)
             else:
-                self.rest()
+                self.ask()
 
     def show_title(self) -> None:
         """Show the headline of the case."""
-        title = table.escape(self.inputs.title)
+        title = escape(self.inputs.title)
         self.title.content = f"<b>stribeck</b> explorer<span>{title}</span>"
 
 
@@ -514,4 +497,3 @@ def button(label: str, icon: str, tooltip: str) -> ui.button:
     with made:
         ui.tooltip(tooltip)
     return made
-

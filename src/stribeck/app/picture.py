@@ -68,7 +68,8 @@ def picture(shown: Shown, kind: str) -> bytes:
     ]
     friction = solution.friction(definition=inputs.definition)
     state = (
-        f"{shown.answer.regime} lubrication, friction {friction.total:.5g} ± {friction.error:.0e} (definition {inputs.definition}), "
+        f"{shown.answer.regime} lubrication, friction {friction.total:.5g} ± {friction.error:.0e} "
+        f"(definition {inputs.definition}), "
         f"Lambda {solution.lambda_ratio:.4g}, fluid carries {100 * solution.fluid_load_share:.4g} % of the load"
     )
     source = "" if shown.answer.curve is None else f"curve {shown.answer.curve.source}; "
@@ -92,19 +93,22 @@ def _draw(axes: Axes, options: dict[str, Any]) -> None:
     axes.tick_params(labelsize=8.5)
     listed = options["legend"]["data"]
     for series in options["series"]:
-        points = np.array([[np.nan if value is None else value for value in point] for point in series["data"]], dtype=float)
+        pairs = [[np.nan if value is None else value for value in point[:2]] for point in series["data"]]
         label = series["name"] if series["name"] in listed else None
-        _draw_series(axes, series, points.reshape(-1, 2), label)
+        _draw_series(axes, series, np.array(pairs, dtype=float).reshape(-1, 2), label)
     if listed:
         axes.legend(fontsize=8, frameon=False, loc="best")
 
 
 def _draw_series(axes: Axes, series: dict[str, Any], points: Any, label: str | None) -> None:
     if series["type"] == "custom":
-        axes.fill(points[:, 0], points[:, 1], color=series["itemStyle"]["color"], lw=0, zorder=0.5)
+        outline = np.array(series["data"][0][3:]).reshape(-1, 2)
+        axes.fill(outline[:, 0], outline[:, 1], color=series["itemStyle"]["color"], lw=0, zorder=0.5)
     elif series["id"].startswith("name-"):
         for place in points:
-            axes.text(*place, series["label"]["formatter"], color=LIGHT.grey, fontsize=9, style="italic", ha="center", va="center")
+            axes.text(
+                *place, series["label"]["formatter"], color=LIGHT.grey, fontsize=9, style="italic", ha="center", va="center"
+            )
     elif series["type"] == "scatter":
         style = series["itemStyle"]
         hollow = style["color"] == "transparent"
@@ -144,5 +148,3 @@ def _grounds(series: dict[str, Any]) -> list[tuple[float, float, str]]:
 
 def _dash(kind: str | Sequence[float]) -> Any:
     return "-" if isinstance(kind, str) else (0, tuple(0.7 * part for part in kind))
-
-

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -25,7 +25,6 @@ from ..parameters import Groups, LineContact
 from ..regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
 from ..solution import DEFINITIONS, Definition, Profile, Solution
 from ..solve import SolveError
-from ..span import automatic_speeds
 from ..units import InputError
 from .inputs import FIELDS, Inputs
 
@@ -76,7 +75,7 @@ class Curve:
     ----------
     speed : ndarray, shape (n,)
         Speeds [m/s].
-    friction : dict of str to ndarray
+    friction : mapping of str to ndarray
         Friction coefficient by definition [-].
     contact : ndarray, shape (n,)
         Part of it from asperities [-].
@@ -89,7 +88,7 @@ class Curve:
     """
 
     speed: Array
-    friction: dict[str, Array]
+    friction: Mapping[Definition, Array]
     contact: Array
     transitions: tuple[Transition, ...]
     source: str
@@ -245,7 +244,7 @@ class Model:
         return True
 
     def curve(self, contact: LineContact, definition: Definition, speeds: tuple[float, float]) -> Curve | None:
-        """Return the curve of a contact between two speeds, outside the atlas the solved one; None where that is not solved."""
+        """Return the curve of a contact between two speeds; outside the atlas the solved one, None until it is solved."""
         if not in_atlas(contact):
             found: Curve | None = self._kept.get(("solved", _key(contact), definition))
             return found
@@ -363,14 +362,17 @@ def _diagram(contact: LineContact, definition: Definition, speeds: tuple[float, 
     load, unit = float(contact.groups.load), _speed_group(contact)
     least, most = atlas.BOX["load"]
     if not least <= load <= most:
-        message = f"No phase diagram: it is read off the atlas, which holds load groups {least:g} to {most:g}; here it is {load:.3g}."
+        message = f"No phase diagram: the atlas, off which it is read, ends at load group {most:g}; here it is {load:.3g}."
         return Diagram(roughness, none, none, none, message)
     h = roughness * float(contact.replace(roughness=1.0).groups.roughness)
-    inside = np.clip(h, *(end * load for end in atlas.BOX["relative_roughness"]))
+    low, high = atlas.BOX["relative_roughness"]
+    inside = np.clip(h, low * load, high * load)
     ends = (max(speeds[0] * unit, atlas.BOX["speed"][0]), min(speeds[1] * unit, atlas.BOX["speed"][1]))
     found = transition_speeds(load, inside, contact.friction_coefficient, contact.beta, definition, ends, narrowings=1)
-    lines = (np.where(inside == h, line / unit, math.nan) for line in (found.boundary, found.hydrodynamic, found.minimum))
-    return Diagram(roughness, *lines)
+    boundary, hydrodynamic, minimum = (
+        np.where(inside == h, line / unit, math.nan) for line in (found.boundary, found.hydrodynamic, found.minimum)
+    )
+    return Diagram(roughness, boundary, hydrodynamic, minimum)
 
 
 def round_up(value: float) -> float:
@@ -427,4 +429,3 @@ def thin_lines(solution: Solution, reach: float) -> list[Thin]:
         if np.isfinite(value).all():
             found.append(Thin(formula.name, formula.worst, formula.predicts, x, value))
     return found
-

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import socket
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 from ..case import load_case
@@ -58,12 +57,13 @@ def serve(case: Path | None = None, port: int | None = None, browser: bool = Tru
     app, ui = nicegui.app, nicegui.ui
     # A page of another name that points here would else be served too.
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
-    style = (Path(__file__).parent / "explorer.css").read_text(encoding="utf-8")
+    style, script = ((Path(__file__).parent / f"explorer.{kind}").read_text(encoding="utf-8") for kind in ("css", "js"))
 
     @ui.page("/", title="stribeck explorer")
     async def index() -> None:
         request = ui.context.client.request
         ui.add_css(style)
+        ui.add_head_html(f"<script>{script}</script>")
         ui.colors(primary="#0072b2")
         tab = Tab(decode(request.query_params.multi_items(), start), start)
         await tab.open()
@@ -130,5 +130,3 @@ def free_port(wanted: int | None) -> int:
             return port
     which = f"port = {wanted} is" if wanted is not None else f"ports {PORTS[0]} to {PORTS[-1]} are"
     raise InputError(f"{which} not free or not allowed; choose another with --port.")
-
-

@@ -9,7 +9,6 @@ from html import escape
 
 from ..distances import TransitionDistances
 from ..parameters import QUANTITIES
-from ..solution import Solution
 from ..units import format_si
 from .results import Answer, Transition
 
@@ -68,10 +67,16 @@ def numbers(answer: Answer) -> list[Row]:
     chosen = solution.friction(definition=answer.inputs.definition)
     if chosen.total > 0:
         part = chosen.contact / chosen.total
-        rows.append(_row("contact_friction_share", "Friction from asperities", part, chosen.error / chosen.total, percent=True))
-    rows.append(_row("fluid_load_share", "Load on the fluid", solution.fluid_load_share, errors["fluid_load_share"], percent=True))
+        rows.append(
+            _row("contact_friction_share", "Friction from asperities", part, chosen.error / chosen.total, percent=True)
+        )
     rows.append(
-        _row("contact_load_share", "Load on asperities", solution.contact_load_share, errors["contact_load_share"], percent=True)
+        _row("fluid_load_share", "Load on the fluid", solution.fluid_load_share, errors["fluid_load_share"], percent=True)
+    )
+    rows.append(
+        _row(
+            "contact_load_share", "Load on asperities", solution.contact_load_share, errors["contact_load_share"], percent=True
+        )
     )
     for key, name, gap in (
         ("central_film_thickness", "Central film h(0)", solution.central_gap),
@@ -117,18 +122,18 @@ def _times(factor: float) -> str:
     return f"× {factor:.3g}" if factor >= 1 else f"÷ {1 / factor:.3g}"
 
 
-def _row(key: str, label: str, value: float, error: float, dimension: str = "number", percent: bool = False) -> Row:
+def _share(key: str, label: str, value: float, error: float) -> Row:
+    text = f"{100 * value:.{_count(value, error)}g} %"
+    return Row(key, label, value, error, text, f"± {_small(100 * error)} %")
+
+
+def _row(key: str, label: str, value: float, error: float, dimension: str = "number") -> Row:
     if math.isinf(value):
         return Row(key, label, value, 0.0, "∞ (smooth)", "")
-    if percent:
-        text, shown = f"{_digits(100 * value, 100 * error)} %", f"± {_small(100 * error)} %"
-    else:
-        digits = _count(value, error)
-        text = format_si(value, dimension, digits).replace("*", "·") if dimension != "number" else f"{value:.{digits}g}"
-        unit = f" {text.partition(' ')[2]}" if " " in text else ""
-        scale = float(text.partition(" ")[0]) / value if unit and value else 1.0
-        shown = f"± {_small(error * abs(scale))}{unit}" if error > 0 else "from the inputs"
-    return Row(key, label, value, error, text, shown)
+    number, _, unit = format_si(value, dimension, _count(value, error)).replace("*", "·").partition(" ")
+    scale = float(number) / value if unit and value else 1.0
+    shown = f"± {_small(error * abs(scale))} {unit}".rstrip() if error > 0 else "from the inputs"
+    return Row(key, label, value, error, f"{number} {unit}".rstrip(), shown)
 
 
 def _count(value: float, error: float) -> int:
@@ -136,10 +141,6 @@ def _count(value: float, error: float) -> int:
     if error <= 0 or value == 0:
         return 5
     return max(1, min(MOST_DIGITS, math.floor(math.log10(abs(value) / error)) + 1))
-
-
-def _digits(value: float, error: float) -> str:
-    return f"{value:.{_count(value, error)}g}"
 
 
 def _small(error: float) -> str:
@@ -177,8 +178,12 @@ def numbers_html(answer: Answer, rows: Sequence[Row]) -> str:
 
 
 def _regime_words(answer: Answer) -> str:
-    shares = {"boundary": "the fluid carries at most 5 % of the load", "hydrodynamic": "asperities cause at most 10 % of the friction"}
-    return shares.get(answer.regime, "fluid and asperities both carry the load")
+    words = {
+        "boundary": "the fluid carries at most 5 % of the load",
+        "mixed": "fluid and asperities both carry the load",
+        "hydrodynamic": "asperities cause at most 10 % of the friction",
+    }
+    return words[answer.regime]
 
 
 def _line(row: Row) -> str:
@@ -219,8 +224,3 @@ def distances_html(distances: TransitionDistances) -> str:
             lines.append(f'<td data-value="{mark.factor!r}">{factor}<small>{escape(value)}</small></td>')
         lines.append("</tr>")
     return "".join([*lines, "</table>", _notes(distances.notes)])
-
-
-def summary(solution: Solution) -> str:
-    """Return one line on how the state was solved."""
-    return f"{solution.nodes} nodes, estimated relative error {solution.error_estimate:.0e}"
