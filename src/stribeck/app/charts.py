@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from .._types import Array
+from ..solution import Definition
 from ..units import DIMENSIONS, format_si
 from .measured import Measured
 from .palette import PIN_DASHES, Palette
@@ -118,7 +119,8 @@ def friction_chart(
     hersey = contact.viscosity / contact.load
     scale = 1.0 if inputs.abscissa == "speed" else hersey
     ends = answer.speeds[0] * scale, answer.speeds[1] * scale
-    chosen, other = inputs.definition, "balanced" if inputs.definition == "paper" else "paper"
+    chosen = inputs.definition
+    other: Definition = "balanced" if chosen == "paper" else "paper"
     names = {"paper": "friction as printed", "balanced": "friction, balanced"}
     series: list[Options] = []
     heights: list[float] = []

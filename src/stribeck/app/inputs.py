@@ -211,14 +211,8 @@ def _with_group(inputs: Inputs, name: str, value: float) -> Inputs:
     contact = inputs.contact
     groups = replace(contact.groups, **{name.removesuffix("_group"): value})
     kept = ("radius", "modulus", "viscosity", "alpha", "beta", "friction_coefficient")
-    moved = LineContact.from_groups(
-        Groups(*map(float, (groups.speed, groups.load, groups.roughness))), **_inputs(contact, kept)
-    )
+    moved = LineContact.from_groups(groups, **{key: getattr(contact, key) for key in kept})
     return replace(inputs, contact=moved)
-
-
-def _inputs(contact: LineContact, names: tuple[str, ...]) -> dict[str, float]:
-    return {name: getattr(contact, name) for name in names}
 
 
 def _bare(text: str) -> float | str:

@@ -289,9 +289,8 @@ class Tab:
         self.chips.clear()
         with self.chips:
             for i, pin in enumerate(self.pins):
-                chip = ui.chip(pin.name, icon="push_pin", removable=True).style(
-                    f"color: {self.palette.pins[i % 6]} !important"
-                )
+                chip = ui.chip(pin.name, icon="push_pin", removable=True)
+                chip.style(f"color: {self.palette.pins[i % 6]} !important")
                 chip.on("remove", lambda pin=pin: self.unpin(pin))
             for found in self.measured:
                 chip = ui.chip(found.name, icon="scatter_plot", removable=True).style(f"color: {self.palette.mark} !important")

@@ -106,9 +106,8 @@ def _draw_series(axes: Axes, series: dict[str, Any], points: Any, label: str | N
         axes.fill(outline[:, 0], outline[:, 1], color=series["itemStyle"]["color"], lw=0, zorder=0.5)
     elif series["id"].startswith("name-"):
         for place in points:
-            axes.text(
-                *place, series["label"]["formatter"], color=LIGHT.grey, fontsize=9, style="italic", ha="center", va="center"
-            )
+            name = series["label"]["formatter"]
+            axes.text(place[0], place[1], name, color=LIGHT.grey, fontsize=9, style="italic", ha="center", va="center")
     elif series["type"] == "scatter":
         style = series["itemStyle"]
         hollow = style["color"] == "transparent"

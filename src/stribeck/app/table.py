@@ -67,17 +67,9 @@ def numbers(answer: Answer) -> list[Row]:
     chosen = solution.friction(definition=answer.inputs.definition)
     if chosen.total > 0:
         part = chosen.contact / chosen.total
-        rows.append(
-            _row("contact_friction_share", "Friction from asperities", part, chosen.error / chosen.total, percent=True)
-        )
-    rows.append(
-        _row("fluid_load_share", "Load on the fluid", solution.fluid_load_share, errors["fluid_load_share"], percent=True)
-    )
-    rows.append(
-        _row(
-            "contact_load_share", "Load on asperities", solution.contact_load_share, errors["contact_load_share"], percent=True
-        )
-    )
+        rows.append(_share("contact_friction_share", "Friction from asperities", part, chosen.error / chosen.total))
+    for key, name in (("fluid_load_share", "Load on the fluid"), ("contact_load_share", "Load on asperities")):
+        rows.append(_share(key, name, getattr(solution, key), errors[key]))
     for key, name, gap in (
         ("central_film_thickness", "Central film h(0)", solution.central_gap),
         ("minimum_film_thickness", "Least film", solution.minimum_gap),
