@@ -359,6 +359,8 @@ class Tab:
                     self.answer = await self.run(LIVE, self.model, now)
                 except (InputError, SolveError) as problem:
                     self.status.text = f"{problem} The last picture stays."
+                except Exception as problem:  # a page that silently no longer follows would be worse
+                    self.status.text = f"Something went wrong that should not ({problem!r}). The last picture stays."
                 else:
                     self.status.text = ""
                 await self.draw()

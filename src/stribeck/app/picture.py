@@ -91,7 +91,7 @@ def _draw(axes: Axes, options: dict[str, Any]) -> None:
     axes.grid(color=LIGHT.grid, lw=0.7)
     axes.set_axisbelow(True)
     axes.tick_params(labelsize=8.5)
-    listed = options["legend"]["data"]
+    listed = [each["name"] for each in options["legend"]["data"]]
     for series in options["series"]:
         pairs = [[np.nan if value is None else value for value in point[:2]] for point in series["data"]]
         label = series["name"] if series["name"] in listed else None
