@@ -55,6 +55,7 @@ MAY_IMPORT = {
     "span": EQUATIONS | ALGORITHMS | {"observables", "start", "states"},
     "fill": EQUATIONS | ALGORITHMS | {"estimate", "observables", "refine", "states"},
     "follow": EQUATIONS | ALGORITHMS | {"estimate", "fill", "refine", "start", "states"},
+    "near": RESULTS | {"follow", "refine"},
     "sensitivity": EQUATIONS | {"observables", "states"},
     "solution": {"mesh", "newton", "observables", "parameters", "units"},
     "solve": {"hertz", "mesh", "newton", "observables", "parameters", "refine", "solution", "start", "threads", "units"},
@@ -90,14 +91,27 @@ MAY_IMPORT = {
     "atlas_table": {"atlas_grid"},
     "atlas": {"atlas_grid", "atlas_table", "hertz", "parameters", "solution", "threads", "units"},
     "atlas_curve": {"atlas", "parameters", "regimes", "solution", "units"},
-    "atlas_phase": {"atlas", "atlas_curve", "newton", "parameters", "phase_grid", "regimes"},
+    "atlas_phase": {"atlas", "atlas_curve", "newton", "parameters", "phase_grid", "regimes", "solution", "threads"},
     "atlas_build": {"atlas_grid", "atlas_table", "curve"},
     "atlas_certificate": {"atlas", "parameters", "solve"},
 }
 OPEN = {"__init__", "__main__", "app", "cli"}
 
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts)
-HEAVY = {"cyclopts", "dask", "distributed", "matplotlib", "netCDF4", "pandas", "pint", "pydantic", "rich", "xarray", "zarr"}
+HEAVY = {
+    "cyclopts",
+    "dask",
+    "distributed",
+    "matplotlib",
+    "netCDF4",
+    "nicegui",
+    "pandas",
+    "pint",
+    "pydantic",
+    "rich",
+    "xarray",
+    "zarr",
+}
 
 
 def top_of(path):
