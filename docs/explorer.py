@@ -18,6 +18,7 @@ PHONE = {"viewport": {"width": 390, "height": 780}, "device_scale_factor": 2, "i
 
 
 def main() -> None:
+    """Start the server, take the pictures, and stop it."""
     chromium = os.environ.get("CHROMIUM") or shutil.which("chromium")
     if chromium is None:
         raise SystemExit("there is no chromium: apt-get install chromium, or say where it is with CHROMIUM=")
@@ -31,7 +32,7 @@ def main() -> None:
             compare(light)
             light.screenshot(path=IMAGES / "explorer.png", full_page=True)
             dark = opened(
-                browser.new_page(color_scheme="dark", **DESK), address + "/?speed=30+um/s&roughness=30+nm&alpha=2&beta=0.1"
+                browser.new_page(color_scheme="dark", **DESK), address + "/?speed=20+µm/s&roughness=2+nm&alpha=2&beta=0.1"
             )
             dark.screenshot(path=IMAGES / "explorer_dark.png", full_page=True)
             phone = opened(browser.new_page(**PHONE), address)

@@ -373,7 +373,7 @@ def _legend(palette: Palette, names: Sequence[str], points: Sequence[str] = ()) 
         "left": 0,
         "right": 0,
         "itemWidth": 22,
-        "itemHeight": 8,
+        "itemHeight": 13,
         "itemGap": 10,
         "textStyle": {"color": palette.ink, "fontSize": 11.5},
         "pageIconSize": 10,

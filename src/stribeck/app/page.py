@@ -266,6 +266,7 @@ class Tab:
         """Take the colours of the theme."""
         self.dark.value = dark
         self.palette = DARK if dark else LIGHT
+        self.show_chips()
         self.ask()
 
     def pin(self) -> None:
@@ -290,10 +291,10 @@ class Tab:
         with self.chips:
             for i, pin in enumerate(self.pins):
                 chip = ui.chip(pin.name, icon="push_pin", removable=True)
-                chip.style(f"color: {self.palette.pins[i % 6]} !important")
+                chip.style(f"--curve: {self.palette.pins[i % 6]}")
                 chip.on("remove", lambda pin=pin: self.unpin(pin))
             for found in self.measured:
-                chip = ui.chip(found.name, icon="scatter_plot", removable=True).style(f"color: {self.palette.mark} !important")
+                chip = ui.chip(found.name, icon="scatter_plot", removable=True).style(f"--curve: {self.palette.mark}")
                 chip.on("remove", lambda found=found: self.forget(found))
 
     def forget(self, found: Measured) -> None:

@@ -326,7 +326,7 @@ def _curve(contact: LineContact, speeds: tuple[float, float], marks: tuple[Trans
     along = Groups(np.clip(speed * unit, *atlas.BOX["speed"]), groups.load, groups.roughness)
     solid = mu0 * np.asarray(atlas.contact_load_share(along))
     friction = {kind: solid + np.asarray(atlas.viscous_friction(along, beta, kind)) for kind in DEFINITIONS}
-    return Curve(speed, friction, solid, marks, f"read off the atlas, within {ERROR:.0e} of the solver")
+    return Curve(speed, friction, solid, marks, f"read off the atlas, within {_power(ERROR)}")
 
 
 def _solved_curve(contact: LineContact, definition: Definition) -> Curve:
@@ -345,8 +345,14 @@ def _solved_curve(contact: LineContact, definition: Definition) -> Curve:
         name = "minimum" if mark is found.minimum else known
         if name and (name != "boundary" or " 5%" in mark.name):
             marks.append(Transition(name, mark.value, math.nan))
-    source = f"solved, as the atlas does not reach here; estimated error {found.error_estimate:.0e}"
+    source = f"solved, beyond the atlas; estimated error {_power(found.error_estimate)}"
     return Curve(found.values, friction, found.friction_contact, tuple(marks), source)
+
+
+def _power(error: float) -> str:
+    """Return an error with one digit."""
+    mantissa, _, exponent = f"{error:.0e}".partition("e")
+    return f"{mantissa}e{int(exponent)}"
 
 
 def _decade_of_roughness(contact: LineContact) -> int:
