@@ -3,6 +3,8 @@
 import csv
 import io
 import math
+import socket
+import sys
 from dataclasses import replace
 from urllib.parse import parse_qsl
 from xml.etree import ElementTree
@@ -15,6 +17,7 @@ from stribeck.app import charts, files, inputs, server, table, url
 from stribeck.app.measured import read_measured
 from stribeck.app.palette import DARK, LIGHT
 from stribeck.app.results import Model, round_down, round_up, thin_lines
+from stribeck.cli import main
 
 START = server.example()
 
@@ -96,6 +99,8 @@ def test_impossible_inputs_are_refused_with_the_sentence_of_the_command_line(nam
 
 def test_an_address_brings_back_the_very_inputs_and_pins():
     moved = inputs.slid(inputs.slid(START, "load_group", -1.37), "speed", -3.41)
+    moved = inputs.slid(moved, "roughness_group", -2.22)
+    assert f"{moved.contact.roughness / 1e-6:.6g}" != repr(moved.contact.roughness / 1e-6)  # no short number
     moved = replace(inputs.in_unit(moved, "radius", "cm"), definition="balanced", abscissa="hersey", title="a & b = ü #1")
     pins = [url.Pin("load 3 N/m ~ twice", START.contact, "paper"), url.Pin("two", moved.contact, "balanced")]
     opened = reopened(url.encode(moved, pins))
@@ -371,8 +376,6 @@ def test_a_measured_curve_that_cannot_be_used_is_refused_in_a_sentence(content, 
 
 
 def test_a_port_in_use_is_refused_and_another_is_found():
-    import socket
-
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -381,3 +384,34 @@ def test_a_port_in_use_is_refused_and_another_is_found():
     assert server.free_port(None) in server.PORTS
     with pytest.raises(sb.InputError, match="port = 70000 must be a whole number from 1 to 65535"):
         server.free_port(70000)
+
+
+# --- the command ---
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["nowhere.toml"], "nowhere.toml"),
+        (["--port", "eighty"], "port = 'eighty' is not a whole number"),
+        (["--port", "0"], "port = 0 must be a whole number from 1 to 65535."),
+    ],
+)
+def test_a_wrong_argument_is_refused_with_exit_code_2(arguments, sentence, capsys):
+    assert main(["explore", "--no-browser", *arguments]) == 2
+    assert sentence in capsys.readouterr().err
+
+
+def test_without_nicegui_it_says_how_to_install_it(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "nicegui", None)
+    assert main(["explore", "--no-browser"]) == 2
+    assert "the explorer needs nicegui; install it with: pip install 'stribeck[app]'." in capsys.readouterr().err
+
+
+def test_ctrl_c_ends_it_with_exit_code_0(monkeypatch, capsys):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("stribeck.app.server.serve", interrupted)
+    assert main(["explore"]) == 0
+    assert capsys.readouterr().err == ""

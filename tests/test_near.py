@@ -1,9 +1,12 @@
 """States that are solved from the last one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck.follow import Follower
 from stribeck.near import NearSolver
 
 
@@ -49,7 +52,16 @@ def test_a_near_state_comes_from_the_last_one(monkeypatch):
     assert near(sb.Groups(1.1e-4, 0.11, 1e-3)).outcome.ok
 
 
-def test_after_a_failure_the_next_state_is_solved_from_cold():
+def test_what_does_not_converge_from_the_last_state_is_solved_from_cold(monkeypatch):
+    near, state = NearSolver(), sb.Groups(1.1e-4, 0.1, 1e-3)
+    near(sb.Groups(1e-4, 0.1, 1e-3))
+    follow = Follower.__call__
+    monkeypatch.setattr(Follower, "__call__", lambda *a: replace(follow(*a), outcome=sb.Outcome.REFINEMENT_LIMIT))
+    assert near(state).outcome.ok
+    assert max(disagreements(near, state)) < 1
+
+
+def test_after_a_failure_the_next_state_is_solved():
     near = NearSolver(rtol=1e-11)
     near(sb.Groups(1.0, 0.1, 1e-2))
     with pytest.raises(sb.SolveError):

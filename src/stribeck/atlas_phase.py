@@ -24,8 +24,8 @@ DENSITY = 20
 COARSE = 5
 """The same where many rows are located at once, each passage then narrowed."""
 
-NARROWINGS = 4
-"""Rounds of that, false position in the logarithm of the speed with both ends kept; each of the first leaves a twentieth."""
+NARROWINGS = 6
+"""Rounds of that, false position and trisection of the logarithm of the speed by turns, with both ends kept."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +101,7 @@ def transition_speeds(
             [
                 np.log(np.maximum(fluid, 1e-300) / BOUNDARY_FLUID_SHARE),
                 np.log(np.maximum(bound * viscous, 1e-300) / np.maximum(solid, 1e-300)),
-                slope / np.maximum(solid + viscous, 1e-300),
+                slope / (np.abs(slope) + np.maximum(solid + viscous, 1e-300)),  # between -1 and 1
             ]
         )
 
@@ -131,9 +131,11 @@ def _passages(signs: Callable[[Array, Array], Array], grid: Array, roughness: Ar
     first, one = place[which, rows], np.arange(len(rows))
     low, high = grid[first], grid[first + 1]
     below, above = values[which, rows, first], values[which, rows, first + 1]
-    for _ in range(narrowings):
+    for number in range(narrowings):
         # Two points around the one by false position, so that both ends close in.
         middle, width = low + (high - low) * below / (below - above), 0.02 * (high - low)
+        if number % 2:  # where false position leaves one end behind
+            middle, width = 0.5 * (low + high), (high - low) / 6
         pair = np.clip(np.stack([middle - width, middle + width]), low, high)
         left, right = signs(pair, np.broadcast_to(roughness[rows], pair.shape))[which, :, one].T
         under, over = left < 0, right < 0

@@ -13,7 +13,7 @@ import sys
 import threading
 import warnings
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
 from types import FrameType
@@ -465,7 +465,9 @@ def explore_command(
     """
     from .app.server import serve
 
-    serve(case, None if port is None else _whole("port", port), browser)
+    number = None if port is None else _whole("port", port)
+    with suppress(KeyboardInterrupt):  # which is how it ends
+        serve(case, number, browser)
     return 0
 
 

@@ -72,7 +72,6 @@ class NearSolver:
             return hertz_solution(groups, contact, self.rtol)
         point = self._from_last(groups)
         if point is None:
-            self._last = None
             point = solved_point(groups, self.rtol)
             self._follower = Follower(lambda _: self._target, self.rtol)
         solution = finish(point, groups, contact, self.rtol)

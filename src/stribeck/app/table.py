@@ -115,6 +115,8 @@ def _times(factor: float) -> str:
 
 
 def _share(key: str, label: str, value: float, error: float) -> Row:
+    if value <= error:
+        return Row(key, label, value, error, f"< {_small(100 * error)} %", "")
     text = f"{100 * value:.{_count(value, error)}g} %"
     return Row(key, label, value, error, text, f"± {_small(100 * error)} %")
 
