@@ -3,6 +3,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
+BROWSER := $(VENV)/.ready-browser
 TOOLS  := $(VENV)/.ready-tools
 
 # One BLAS thread for each test worker: two workers with two threads each slow each other down several times.
@@ -19,12 +20,13 @@ define install
 	@touch $@
 endef
 
-.PHONY: help demo test slow torch lint format types benchmark validity atlas certificate clean
+.PHONY: help demo test slow torch browser screenshots lint format types benchmark validity atlas certificate clean
 
 help:
 	@echo "make demo       the Stribeck curve of a PDMS cylinder: curve.png, curve.nc"
 	@echo "make test       the tests      make slow   those that take minutes"
 	@echo "make torch      those of batches on PyTorch, which it installs"
+	@echo "make browser    the tests of the explorer, in Chromium      make screenshots  docs/images/explorer*.png"
 	@echo "make lint       style          make format apply it"
 	@echo "make types      static types   make benchmark  the tables of the documentation"
 	@echo "make validity   docs/validity.md: the maps of the errors of all formulas"
@@ -33,6 +35,9 @@ help:
 
 $(READY): pyproject.toml requirements.lock
 	$(call install,test)
+
+$(BROWSER): pyproject.toml requirements.lock | $(READY)
+	$(call install,browser)
 
 $(TOOLS): pyproject.toml requirements.lock | $(READY)
 	$(call install,dev)
@@ -49,6 +54,12 @@ slow: $(READY)
 torch: $(READY)
 	@$(BIN)/python -c 'import array_api_compat, torch' 2>/dev/null || $(BIN)/python -m pip install --quiet --editable '.[gpu]'
 	$(ONE_THREAD) $(BIN)/python -m pytest -m torch
+# Debian's chromium, or CHROMIUM=/path/to/it.
+browser: $(BROWSER)
+	$(ONE_THREAD) $(BIN)/python -m pytest -m browser tests/test_browser.py
+
+screenshots: $(BROWSER)
+	$(ONE_THREAD) $(BIN)/python docs/explorer.py
 
 lint: $(TOOLS)
 	$(BIN)/ruff check .

@@ -13,7 +13,7 @@ import sys
 import threading
 import warnings
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
 from types import FrameType
@@ -31,7 +31,7 @@ from .regimes import friction_elasticities
 from .solution import coefficients
 from .solve import SolveError, solve
 from .sweep_store import SweepError
-from .units import InputError, format_si, show
+from .units import InputError, format_si, read_number, show
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -133,6 +133,7 @@ def make_app() -> App:
         sweep_command,
         surface_command,
         fit_command,
+        explore_command,
     ):
         app.command(command, name=command.__name__.removesuffix("_command"))
     app.register_install_completion_command()
@@ -619,6 +620,36 @@ def surface_command(
     return 0
 
 
+def explore_command(
+    case: CaseFile = None,
+    /,
+    *,
+    port: Number = None,
+    browser: Annotated[bool, Parameter(negative="--no-browser", show_default=False)] = True,
+) -> int:
+    """Open a page on which the contact is changed by hand and curve, profile, regimes and numbers follow.
+
+    Example: stribeck explore examples/pdms_cylinder.toml
+
+    The page is served on this machine only, needs no internet and sends nothing away.  Ctrl-C ends it.
+
+    Parameters
+    ----------
+    case
+        Case file (TOML) to begin with; a soft cylinder if not given.
+    port
+        Port of the page; a free one if not given.
+    browser
+        Open the page in the browser, or only tell its address.
+    """
+    from .app.server import serve
+
+    number = None if port is None else _whole("port", port)
+    with suppress(KeyboardInterrupt):  # which is how it ends
+        serve(case, number, browser)
+    return 0
+
+
 # --- arguments ---
 
 
@@ -639,12 +670,7 @@ def _case(path: Path | None, groups: Sequence[str] | None, mu0: str | None, beta
 
 
 def _number(name: str, text: str | None) -> float | None:
-    if text is None:
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        raise InputError(f"{name} = {show(text)} is not a number; write it as 0.001 or 1e-3.") from None
+    return None if text is None else read_number(name, text)
 
 
 def _group(name: str, text: str) -> float:
@@ -904,7 +930,7 @@ def _line(problem: BaseException) -> str:
 
 
 def _command(tokens: Sequence[str]) -> str:
-    known = ("solve", "curve", "regimes", "figures", "sweep", "surface", "fit")
+    known = ("solve", "curve", "regimes", "figures", "sweep", "surface", "fit", "explore")
     return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
 
 
