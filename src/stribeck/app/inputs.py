@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 from ..case import Case
 from ..parameters import QUANTITIES, LineContact, quantity
@@ -209,7 +209,8 @@ QUANTITIES_SI = {"speed": "m/s", "load": "N/m", "viscosity": "Pa*s", "roughness"
 
 def _with_group(inputs: Inputs, name: str, value: float) -> Inputs:
     contact = inputs.contact
-    groups = replace(contact.groups, **{name.removesuffix("_group"): value})
+    change: dict[str, Any] = {name.removesuffix("_group"): value}
+    groups = replace(contact.groups, **change)
     kept = ("radius", "modulus", "viscosity", "alpha", "beta", "friction_coefficient")
     moved = LineContact.from_groups(groups, **{key: getattr(contact, key) for key in kept})
     return replace(inputs, contact=moved)
