@@ -3,6 +3,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
+BROWSER := $(VENV)/.ready-browser
 TOOLS  := $(VENV)/.ready-tools
 DOCS   := $(VENV)/.ready-docs
 
@@ -20,12 +21,14 @@ define install
 	@touch $@
 endef
 
-.PHONY: help demo test slow torch lint format types benchmark validity atlas certificate docs site notebooks clean
+.PHONY: help demo test slow torch browser screenshots lint format types benchmark validity atlas certificate docs site notebooks
+.PHONY: clean
 
 help:
 	@echo "make demo       the Stribeck curve of a PDMS cylinder: curve.png, curve.nc"
 	@echo "make test       the tests      make slow   those that take minutes"
 	@echo "make torch      those of batches on PyTorch, which it installs"
+	@echo "make browser    the tests of the explorer, in Chromium      make screenshots  docs/images/explorer*.png"
 	@echo "make lint       style          make format apply it"
 	@echo "make types      static types   make benchmark  the tables of the documentation"
 	@echo "make docs       the site, build/docs/index.html, and the code of its pages      make site  the site alone"
@@ -36,6 +39,9 @@ help:
 
 $(READY): pyproject.toml requirements.lock
 	$(call install,test)
+
+$(BROWSER): pyproject.toml requirements.lock | $(READY)
+	$(call install,browser)
 
 $(TOOLS): pyproject.toml requirements.lock | $(READY)
 	$(call install,dev)
@@ -55,6 +61,12 @@ slow: $(READY)
 torch: $(READY)
 	@$(BIN)/python -c 'import array_api_compat, torch' 2>/dev/null || $(BIN)/python -m pip install --quiet --editable '.[gpu]'
 	$(ONE_THREAD) $(BIN)/python -m pytest -m torch
+# Debian's chromium, or CHROMIUM=/path/to/it.
+browser: $(BROWSER)
+	$(ONE_THREAD) $(BIN)/python -m pytest -m browser tests/test_browser.py
+
+screenshots: $(BROWSER)
+	$(ONE_THREAD) $(BIN)/python docs/explorer.py
 
 lint: $(TOOLS)
 	$(BIN)/ruff check .

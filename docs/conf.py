@@ -24,7 +24,7 @@ ROOT = HERE.parent
 CONTENTS = {
     "index": ["readers", "guide", "gallery/index", "theory", "numerics", "api", "about"],
     "readers": ["for_engineers", "for_experimentalists", "for_theorists", "for_teachers", "for_developers", "when_not_to_use"],
-    "guide": ["cli", "surfaces", "fitting", "contact_laws", "sweep", "atlas", "batch", "explorer"],
+    "guide": ["cli", "explorer", "surfaces", "fitting", "contact_laws", "sweep", "batch", "atlas"],
     "theory": ["symbols", "validity", "figures", "errata"],
     "numerics": ["convergence"],
     "about": ["citing", "references", "generated/changelog", "generated/contributing"],
@@ -147,14 +147,9 @@ def complete(app, docname, content):
         theory = (HERE / "theory.md").read_text()
         text += theory[theory.index("\n## 4.") : theory.index("\n## 5.")].split("\n", 2)[2].replace("](#", "](theory.md#")
     if docname in CONTENTS:
-        below = "\n".join(page for page in CONTENTS[docname] if page == "gallery/index" or exists(page))
+        below = "\n".join(CONTENTS[docname])
         text += f"\n```{{toctree}}\n:hidden:\n\n{below}\n```\n"
     content[0] = text
-
-
-def exists(page):
-    """Tell whether a page of the table of contents is there."""
-    return any((HERE / f"{page}{suffix}").exists() for suffix in (".md", ".rst", ".py"))
 
 
 def number_of(path):

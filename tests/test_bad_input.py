@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import stribeck as sb
-from stribeck import cli
+from stribeck.cli import solving
 
 
 @pytest.fixture(autouse=True)
@@ -19,8 +19,8 @@ def nothing_is_solved(monkeypatch):
     def solve(*arguments, **options):
         raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "this was not refused")
 
-    monkeypatch.setattr(cli, "solve", solve)
-    monkeypatch.setattr(cli, "friction_elasticities", solve)
+    monkeypatch.setattr(solving, "solve", solve)
+    monkeypatch.setattr(solving, "friction_elasticities", solve)
     checked = sb.stribeck_curve
 
     def curve(*arguments, **options):
@@ -30,7 +30,7 @@ def nothing_is_solved(monkeypatch):
             patch.setattr("stribeck.curve.automatic_speeds", solve)
             return checked(*arguments, **options)
 
-    monkeypatch.setattr(cli, "stribeck_curve", curve)
+    monkeypatch.setattr(solving, "stribeck_curve", curve)
 
 
 @pytest.fixture

@@ -29,7 +29,9 @@ from command_line import (
 )
 
 import stribeck as sb
-from stribeck import cli, report
+from stribeck import report
+from stribeck.cli import arguments, solving
+from stribeck.cli import progress as progress_module
 from stribeck.newton import Outcome
 
 GROUPS = ("--groups", "1e-4", "0.1", "1e-3")
@@ -317,8 +319,8 @@ def failing(outcome):
 
 
 def test_a_solve_that_fails_exits_with_1_and_its_outcome(capsys, tmp_path, monkeypatch):
-    monkeypatch.setattr(cli, "solve", failing(Outcome.STEP_LIMIT))
-    monkeypatch.setattr(cli, "stribeck_curve", failing(Outcome.PATH_LOST))
+    monkeypatch.setattr(solving, "solve", failing(Outcome.STEP_LIMIT))
+    monkeypatch.setattr(solving, "stribeck_curve", failing(Outcome.PATH_LOST))
     answer = call(capsys, "solve", *GROUPS)
     assert answer.code == 1
     assert answer.err == f"stribeck: speed 1, load 1, roughness 1: {Outcome.STEP_LIMIT.value}\n"
@@ -337,7 +339,7 @@ def test_a_curve_whose_path_is_lost_keeps_its_points_and_exits_with_1(capsys, tm
         object.__setattr__(curve, "requested", 9)
         return curve
 
-    monkeypatch.setattr(cli, "stribeck_curve", lost)
+    monkeypatch.setattr(solving, "stribeck_curve", lost)
     answer = call(capsys, "curve", *FAST, "-o", tmp_path / "curve.nc")
     assert answer.code == 1
     assert answer.err == f"stribeck: 3 of 9 points: {Outcome.PATH_LOST.value}\n"
@@ -352,7 +354,7 @@ def test_a_curve_that_rounding_ends_is_refused_and_not_written(capsys, tmp_path,
         object.__setattr__(curve, "outcome", Outcome.ROUNDING)
         return curve
 
-    monkeypatch.setattr(cli, "stribeck_curve", rounded)
+    monkeypatch.setattr(solving, "stribeck_curve", rounded)
     answer = call(capsys, "curve", PDMS, *FEW, "-o", tmp_path / "curve.nc")
     assert answer.code == 2
     assert answer.err == (
@@ -366,7 +368,7 @@ def test_an_unexpected_error_is_one_sentence_unless_debugging(capsys, monkeypatc
     def bug(*arguments, **options):
         raise ZeroDivisionError("division\nby zero")
 
-    monkeypatch.setattr(cli, "solve", bug)
+    monkeypatch.setattr(solving, "solve", bug)
     monkeypatch.delenv("STRIBECK_DEBUG", raising=False)
     answer = call(capsys, "solve", *GROUPS)
     assert answer.code == 1
@@ -380,7 +382,7 @@ def test_too_little_memory_is_one_sentence(capsys, monkeypatch):
     def full(*arguments, **options):
         raise MemoryError
 
-    monkeypatch.setattr(cli, "solve", full)
+    monkeypatch.setattr(solving, "solve", full)
     answer = call(capsys, "solve", *GROUPS)
     assert answer.code == 1
     assert re.fullmatch(r"stribeck: The memory of this machine .*\.\n", answer.err)
@@ -388,8 +390,8 @@ def test_too_little_memory_is_one_sentence(capsys, monkeypatch):
 
 @pytest.mark.parametrize(("library", "option"), [("xarray", "-o"), ("netCDF4", "-o"), ("matplotlib", "--plot")])
 def test_a_missing_extra_is_told_before_anything_is_solved(capsys, tmp_path, monkeypatch, library, option):
-    monkeypatch.setattr(cli.importlib.util, "find_spec", lambda name: None if name == library else True)
-    monkeypatch.setattr(cli, "stribeck_curve", failing(Outcome.STEP_LIMIT))
+    monkeypatch.setattr(arguments.importlib.util, "find_spec", lambda name: None if name == library else True)
+    monkeypatch.setattr(solving, "stribeck_curve", failing(Outcome.STEP_LIMIT))
     path = tmp_path / ("curve.png" if option == "--plot" else "curve.nc")
     answer = call(capsys, "curve", *FAST, option, path)
     assert answer.code == 2
@@ -545,10 +547,10 @@ def test_ctrl_c_before_the_first_point_writes_nothing(tmp_path):
 
 
 def test_ctrl_c_takes_effect_after_the_present_point_and_at_once_the_second_time():
-    progress = cli._Progress()
+    progress = progress_module.Progress()
     with pytest.raises(KeyboardInterrupt):
         progress.interrupt(signal.SIGINT, None)  # nothing to keep yet
-    progress = cli._Progress()
+    progress = progress_module.Progress()
     progress(1, 9)
     progress.interrupt(signal.SIGINT, None)
     with pytest.raises(KeyboardInterrupt):
@@ -558,7 +560,7 @@ def test_ctrl_c_takes_effect_after_the_present_point_and_at_once_the_second_time
 
 
 def test_ctrl_c_after_the_last_point_does_not_stop_the_writing():
-    progress = cli._Progress()
+    progress = progress_module.Progress()
     progress(9, 9)
     try:
         progress.interrupt(signal.SIGINT, None)
@@ -568,7 +570,7 @@ def test_ctrl_c_after_the_last_point_does_not_stop_the_writing():
 
 
 def test_a_failure_caused_by_ctrl_c_counts_as_interruption():
-    with pytest.raises(KeyboardInterrupt), cli._interruptible() as progress:
+    with pytest.raises(KeyboardInterrupt), progress_module.interruptible() as progress:
         progress.wanted = True
         raise sb.SolveError(Outcome.PATH_LOST, None, "lost")
 
@@ -577,7 +579,7 @@ def test_a_failure_caused_by_ctrl_c_counts_as_interruption():
 def test_the_handler_of_ctrl_c_is_put_back_and_a_shell_that_ignores_it_respected(handler):
     before = signal.signal(signal.SIGINT, handler)
     try:
-        with cli._interruptible() as progress:
+        with progress_module.interruptible() as progress:
             during = signal.getsignal(signal.SIGINT)
             assert during == (signal.SIG_IGN if handler is signal.SIG_IGN else progress.interrupt)
         assert signal.getsignal(signal.SIGINT) is handler

@@ -222,7 +222,7 @@ def test_data_from_other_sources_are_solved_again(fakes, tmp_path, monkeypatch):
         ("figures/figure_3.py", True, False),
         ("figures/figure_4.py", False, True),
         ("figures/style.py", False, False),
-        ("cli.py", False, False),
+        ("cli/solving.py", False, False),
     ],
 )
 def test_the_fingerprint_changes_with_every_source_of_the_numbers(tmp_path, monkeypatch, changed, of_3, of_4):

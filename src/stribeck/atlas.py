@@ -33,6 +33,7 @@ __all__ = [
     "friction_parts",
     "minimum_gap",
     "offset",
+    "shares_and_friction",
     "viscous_friction",
 ]
 
@@ -189,6 +190,39 @@ def friction_parts(groups: Groups, definition: Definition = "paper") -> tuple[Ar
         found[:, flat[0] == 0] = 0.0
         slopes.append(found.reshape(3, *groups.shape))
     return np.stack([contact, viscous]).reshape(2, *groups.shape), slopes[0], slopes[1]
+
+
+def shares_and_friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Array:
+    """Return at once what tells the regimes apart, at the cost of one of its parts.
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+    mu0, beta : float
+        Friction coefficient of the dry contact and coefficient of the contact law [-].
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction, theory.md, section 6.
+
+    Returns
+    -------
+    ndarray, shape (4, ...)
+        :func:`fluid_load_share`, :func:`contact_load_share`, :func:`viscous_friction`, and the derivative of :func:`friction`
+        by ln(speed) [-].
+
+    Raises
+    ------
+    InputError
+        If a state is outside :data:`BOX`, or an argument is wrong.
+    """
+    mu0, beta, row = quantity("friction_coefficient", mu0), quantity("beta", beta), _row(definition)
+    flat, values = _read(groups, (ODDS, row), slopes=True)
+    assert values.slopes is not None
+    odds = values.values[0]
+    contact, viscous = _contact(odds), _viscous(flat, values.values[1], beta)
+    by_speed = viscous * (1 + values.slopes[0, 1]) - mu0 * contact * (1 - contact) * values.slopes[0, 0]
+    by_speed[flat[0] == 0] = 0.0
+    return np.stack([_contact(-odds), contact, viscous, by_speed]).reshape(4, *groups.shape)
 
 
 def contact_load_share(groups: Groups) -> Value:

@@ -311,8 +311,8 @@ def mesh_for(
         nodal = (*gap.shape[:-1], *x.shape)
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
-        begins_at_zero = np.abs(centres - half_widths) <= ROUNDING * half_widths
-        read_off = begins_at_zero | (np.abs(centres - guess.least_position) <= half_widths)
+        at_zero = np.abs(centres) <= (1 + ROUNDING) * half_widths
+        read_off = at_zero | (np.abs(centres - guess.least_position) <= half_widths)
         read_off &= stretch[:, 0] == 1.0
         weight = max(0.1, tolerance / profile_tolerance)
         shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[..., None]

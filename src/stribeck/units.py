@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-__all__ = ["DIMENSIONS", "Dimension", "InputError", "format_si", "to_si"]
+__all__ = ["DIMENSIONS", "Dimension", "InputError", "format_si", "read_number", "to_si"]
 
 
 class InputError(ValueError):
@@ -128,6 +128,32 @@ def to_si(value: Any, dimension: str, name: str) -> float:
     if not math.isfinite(result):
         raise InputError(f"{name} = {show(value)} is not a finite number in double precision; {_advice(kind)}.")
     return result
+
+
+def read_number(name: str, text: str) -> float:
+    """Return a bare number that was typed; what it may be is for its user to say.
+
+    Parameters
+    ----------
+    name : str
+        What the number is called, for the error sentence.
+    text : str
+        The number.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    InputError
+        Where the text is no number.
+    """
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"{name} = {show(text)} is not a number; write it as 0.001 or 1e-3.") from None
 
 
 def format_si(value: float, dimension: str, digits: int = 3) -> str:

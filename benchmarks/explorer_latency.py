@@ -1,0 +1,76 @@
+"""The explorer: time from moving a slider to the drawn chart, in headless Chromium through the real server.
+
+Needs the extras ``app`` and ``browser`` and Debian's ``chromium`` (or CHROMIUM=/path/to/it); without them it says so.
+For each slider the arrow key is pressed with rests between; the clock runs in the page, from the event of the key to the first
+frame after the chart of friction has taken its data.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+
+MOVES = 25
+
+CLOCK = """() => {
+  window.moves = [];
+  const chart = getElement(Number(document.querySelector('.chart-diagram').id.slice(1))).chart;
+  addEventListener('keydown', () => { window.pressed = performance.now(); }, true);
+  chart.on('rendered', () => {
+    if (!window.pressed) return;
+    const start = window.pressed;
+    window.pressed = 0;
+    requestAnimationFrame(() => { window.moves.push(performance.now() - start); });
+  });
+}"""
+
+
+def main() -> None:
+    chromium = os.environ.get("CHROMIUM") or shutil.which("chromium")
+    try:
+        from playwright.sync_api import sync_playwright
+    except ImportError:
+        print("not run: pip install 'stribeck[app,browser]'")
+        return
+    if chromium is None:
+        print("not run: there is no chromium; apt-get install chromium, or say where it is with CHROMIUM=")
+        return
+    print(f"{platform.python_version()}, {platform.machine()}, {os.cpu_count()} cores")
+    command = [sys.executable, "-m", "stribeck", "explore", "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+        try:
+            assert server.stdout is not None
+            address = re.search(r"http://\S+", server.stdout.readline())
+            assert address is not None
+            with sync_playwright() as play:
+                browser = play.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+                measure(browser.new_page(viewport={"width": 1440, "height": 900}), address[0])
+                browser.close()
+        finally:
+            server.terminate()
+
+
+def measure(page, address: str) -> None:
+    page.goto(address)
+    page.wait_for_selector(".chart-diagram canvas")
+    page.wait_for_timeout(3000)
+    page.evaluate(CLOCK)
+    print("| slider | median, ms | 90 % within, ms | worst, ms |\n|---|---|---|---|")
+    for name in ("speed", "load", "roughness", "friction_coefficient", "load_group"):
+        page.evaluate("window.moves = []")
+        page.focus(f"[data-row={name}] input.slider")
+        for _ in range(MOVES):
+            page.keyboard.press("ArrowRight")
+            page.wait_for_timeout(200)
+        found = sorted(page.evaluate("window.moves"))
+        assert len(found) >= MOVES - 2, f"{len(found)} of {MOVES} moves were drawn"
+        print(f"| {name} | {statistics.median(found):.0f} | {found[int(0.9 * len(found))]:.0f} | {found[-1]:.0f} |")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,170 @@
+"""Words of a command line, read into numbers, cases and files that can be written."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from ..case import Case, curve_range, load_case
+from ..curve import Over
+from ..output import MissingExtraError, check_output
+from ..units import InputError, read_number, show
+
+AXES: tuple[Over, ...] = ("speed", "load", "roughness")
+
+CaseFile = Annotated[Path | None, Parameter(name="CASE", show_default=False)]
+Word = Annotated[str | None, Parameter(show_default=False)]
+Number = Annotated[str | None, Parameter(allow_leading_hyphen=True, show_default=False)]
+Flag = Annotated[bool, Parameter(negative="", show_default=False)]
+File = Annotated[Path | None, Parameter(show_default=False)]
+Pair = Annotated[tuple[str, str] | None, Parameter(allow_leading_hyphen=True, show_default=False, negative="")]
+Triple = Annotated[tuple[str, str, str] | None, Parameter(allow_leading_hyphen=True, show_default=False, negative="")]
+
+
+def read_case(
+    path: Path | None, groups: Sequence[str] | None, mu0: str | None, beta: str | None, law: str | None
+) -> Case | None:
+    """Return the case, or None where groups are given instead."""
+    if path is not None and groups is not None:
+        if re.fullmatch(r"[-+0-9.eE]+", str(path)):
+            raise InputError(f"--groups has more than {len(groups)} numbers: {' '.join(groups)} {path}; see --help.")
+        raise InputError(f"{path} and --groups are both given; give a case file or groups.")
+    if path is None and groups is None:
+        raise InputError("CASE is missing; give a case file, or groups with --groups.")
+    if path is None:
+        return None
+    for name, key, value in (("--mu0", "friction_coefficient", mu0), ("--beta", "beta", beta), ("--law", "law", law)):
+        if value is not None:
+            raise InputError(f"{name} = {value} goes with --groups only; in {path} it is the key {key}.")
+    return load_case(path)
+
+
+def as_number(name: str, text: str | None) -> float | None:
+    """Return the number that an option holds, or None where it is not given."""
+    return None if text is None else read_number(name, text)
+
+
+def as_group(name: str, text: str) -> float:
+    """Return the number that a group is."""
+    value = as_number(name, text)
+    assert value is not None
+    return value
+
+
+def as_whole(name: str, text: str) -> int:
+    """Return the whole number that an option holds."""
+    if not re.fullmatch(r"[+-]?[0-9]{1,18}", text.strip()):
+        raise InputError(f"{name} = {show(text)} is not a whole number; write it as 101.")
+    return int(text)
+
+
+def as_rtol(text: str | None, case: Case | None) -> float:
+    """Return the relative tolerance: that of the option, else of the case, else the default."""
+    given = as_number("rtol", text)
+    return given if given is not None else case.rtol if case else Case.rtol
+
+
+def curve_arguments(
+    case: Case | None,
+    over: str | None,
+    ends: tuple[str, str] | None,
+    points: str | None,
+    rtol: str | None,
+    groups: tuple[str, str] | None,
+    mu0: str | None,
+    beta: str | None,
+) -> dict[str, Any]:
+    """Return the arguments of :func:`stribeck_curve` that a command line asks for."""
+    from ..case import CurveSettings
+
+    settings = case.curve if case else CurveSettings()
+    varied: Over = settings.over if over is None else _axis(over)
+    found: dict[str, Any] = {
+        "points": settings.points if points is None else as_whole("points", points),
+        "rtol": as_rtol(rtol, case),
+    }
+    if case is not None:
+        found |= {"problem": case.contact, "definition": case.definition}
+        span = settings.range if varied == settings.over else None
+        if ends is not None:
+            span = curve_range([_bare_or_text(end) for end in ends], varied)
+    else:
+        fixed = [name for name in AXES if name != varied]
+        found |= {name: as_group(name, text) for name, text in zip(fixed, groups or (), strict=True)}
+        found |= {"mu0": as_number("mu0", mu0), "beta": as_number("beta", beta)}
+        span = None
+        if ends is not None:
+            low, high = (as_group(varied, text) for text in ends)
+            span = low, high
+    if span is not None:
+        found[varied] = span
+    elif varied != "speed":
+        raise InputError(f"range is missing; a curve over {varied} needs --range with the lowest and highest {varied}.")
+    return found
+
+
+def _axis(text: str) -> Over:
+    for axis in AXES:
+        if text == axis:
+            return axis
+    raise InputError(f"over = {show(text)} must be 'speed', 'load' or 'roughness'.")
+
+
+def _bare_or_text(text: str) -> float | str:
+    """Return a bare number, which is in SI units, as number; what has a unit as it is."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def check_outputs(data: Sequence[Path], plot: Path | None, force: bool) -> tuple[list[Path], list[Path]]:
+    """Return the files to write, after a look at whether that will be possible."""
+    from ..store import DATA, NETCDF
+
+    for path in data:
+        check_output(path, DATA, force=force)
+    if data:
+        need_extra("a data file", "data", "xarray")
+    if any(path.suffix.lower() in NETCDF for path in data):
+        need_extra("a NetCDF file", "data", "netCDF4")
+    pictures = check_pictures(plot, force)
+    targets = [path.resolve() for path in (*data, *pictures)]
+    for path, target in zip((*data, *pictures), targets, strict=True):
+        if targets.count(target) > 1:
+            raise InputError(f"{path} is named twice among the outputs; give each its own name.")
+    return list(data), pictures
+
+
+def check_pictures(plot: Path | None, force: bool) -> list[Path]:
+    """Return the pictures to write, after a look at whether that will be possible."""
+    from ..plotting import PICTURES
+
+    if plot is None:
+        return []
+    check_output(plot, PICTURES, force=force)
+    need_extra("a picture", "plot", "matplotlib")
+    return [plot]
+
+
+def need_extra(purpose: str, extra: str, library: str) -> None:
+    """Refuse what needs a library that is not installed."""
+    if importlib.util.find_spec(library) is None:
+        raise MissingExtraError(purpose, extra, library)
+
+
+@contextmanager
+def speaking_of(key: str, option: str, wanted: bool) -> Iterator[None]:
+    """Let sentences about a key of case files speak of the option that took its place."""
+    try:
+        yield
+    except InputError as problem:
+        if not wanted or type(problem) is not InputError:
+            raise
+        raise InputError(str(problem).replace(key, option)) from None

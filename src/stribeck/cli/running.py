@@ -1,0 +1,133 @@
+"""Running the command: its words, its exit codes, and errors as sentences."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections.abc import Sequence
+from importlib.metadata import version
+
+from cyclopts import App, CycloptsError, MissingArgumentError, UnusedCliTokensError
+
+from ..newton import Outcome
+from ..solve import SolveError
+from ..sweep_store import SweepError
+from ..units import InputError
+from .exits import BAD_INPUT, FAILED, INTERRUPTED, complain
+from .solving import curve_command, figures_command, regimes_command, solve_command
+from .studies import explore_command, fit_command, surface_command, sweep_command
+
+HELP = """Friction and film thickness of lubricated rough line contacts, from a TOML file with units.
+
+Example: stribeck curve examples/pdms_cylinder.toml -o curve.nc --plot curve.png
+
+Exit codes: 0 done, 1 the solve failed, 2 bad input, 130 interrupted."""
+
+
+def main(tokens: Sequence[str] | None = None) -> int:
+    """Run the command and return its exit code; errors become sentences on stderr.
+
+    Parameters
+    ----------
+    tokens : sequence of str, optional
+        Arguments; those of the process by default.
+
+    Returns
+    -------
+    int
+        0 done, 1 the solve failed, 2 bad input, 130 interrupted.
+    """
+    if tokens is None:
+        tokens = sys.argv[1:]
+        _adapt_process()
+    try:
+        result = make_app()(
+            list(tokens),
+            print_error=False,
+            exit_on_error=False,
+            help_on_error=False,
+            result_action="return_value",
+        )
+        sys.stdout.flush()
+        return result if isinstance(result, int) else 0
+    except CycloptsError as problem:
+        return complain(f"{_parsing(problem)} See {_command(tokens)} --help.", BAD_INPUT)
+    except InputError as problem:
+        return complain(str(problem), BAD_INPUT)
+    except SolveError as problem:
+        if problem.outcome is Outcome.ROUNDING and problem.solution is not None:
+            return complain(f"rtol = {problem.solution.rtol:g} cannot be reached at {problem}", BAD_INPUT)
+        return complain(str(problem), FAILED)
+    except SweepError as problem:
+        return complain(str(problem), FAILED)
+    except KeyboardInterrupt:
+        return complain("Interrupted; nothing was written.", INTERRUPTED)
+    except BrokenPipeError:  # the reader, such as head, had enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except MemoryError:
+        return complain("The memory of this machine does not suffice; ask for fewer points or a larger rtol.", FAILED)
+    except Exception as problem:
+        if os.environ.get("STRIBECK_DEBUG"):
+            raise
+        return complain(
+            f"Something went wrong that should not ({type(problem).__name__}: {_line(problem)}) "
+            "Please report it with what STRIBECK_DEBUG=1 in the environment adds.",
+            FAILED,
+        )
+
+
+def make_app() -> App:
+    """Return the command line as cyclopts sees it."""
+    app = App(
+        name="stribeck",
+        help=HELP,
+        version=version("stribeck"),
+        help_format="plaintext",
+        suppress_keyboard_interrupt=False,
+    )
+    for command in (
+        solve_command,
+        curve_command,
+        regimes_command,
+        figures_command,
+        sweep_command,
+        surface_command,
+        fit_command,
+        explore_command,
+    ):
+        app.command(command, name=command.__name__.removesuffix("_command"))
+    app.register_install_completion_command()
+    return app
+
+
+def _parsing(problem: CycloptsError) -> str:
+    """Return the sentence for arguments that do not fit together."""
+    if isinstance(problem, UnusedCliTokensError) and problem.unused_tokens:
+        return f"{problem.unused_tokens[0]!r} is one argument too many."
+    if isinstance(problem, MissingArgumentError) and problem.argument is not None:
+        count = problem.argument.token_count()[0]
+        wanted = f"{count} values" if count > 1 else "a value"
+        name = getattr(problem, "keyword", None) or problem.argument.name
+        return f"{name} needs {wanted}, {len(problem.tokens_so_far)} given."
+    return _line(problem)
+
+
+def _line(problem: BaseException) -> str:
+    text = " ".join(str(problem).split())
+    return text if not text or text.endswith((".", "?", "!")) else f"{text}."
+
+
+def _command(tokens: Sequence[str]) -> str:
+    known = ("solve", "curve", "regimes", "figures", "sweep", "surface", "fit", "explore")
+    return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
+
+
+def _adapt_process() -> None:
+    """Set what belongs to a process of our own: letters that any terminal takes, warnings only on demand."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+    if not sys.warnoptions and not os.environ.get("STRIBECK_DEBUG"):
+        warnings.simplefilter("ignore")

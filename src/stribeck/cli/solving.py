@@ -1,0 +1,318 @@
+"""Commands that solve: one state, a curve, the regimes of a contact, the figures of the article."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from ..case import load_case
+from ..curve import StribeckCurve, stribeck_curve
+from ..distances import transition_distances
+from ..newton import Outcome
+from ..parameters import QUANTITIES, Groups
+from ..regimes import friction_elasticities
+from ..solution import coefficients
+from ..solve import solve
+from ..units import InputError, format_si
+from .arguments import (
+    AXES,
+    CaseFile,
+    File,
+    Flag,
+    Number,
+    Pair,
+    Triple,
+    Word,
+    as_group,
+    as_number,
+    as_rtol,
+    check_outputs,
+    check_pictures,
+    curve_arguments,
+    read_case,
+    speaking_of,
+)
+from .exits import BAD_INPUT, FAILED, INTERRUPTED, complain
+from .progress import interruptible, stdout_console
+
+REGIME_POINTS = 41
+"""Points of the curve on which ``stribeck regimes`` looks for transitions, which are then located exactly."""
+
+
+def solve_command(
+    case: CaseFile = None,
+    /,
+    *,
+    groups: Triple = None,
+    mu0: Number = None,
+    beta: Number = None,
+    law: Word = None,
+    rtol: Number = None,
+    plot: File = None,
+    json: Flag = False,
+    force: Flag = False,
+) -> int:
+    """Solve one state: films, load shares and friction, each with its error.
+
+    Example: stribeck solve examples/pdms_cylinder.toml --plot profile.png
+
+    Example: stribeck solve --groups 1e-5 0.1 1e-4 --json
+
+    Parameters
+    ----------
+    case
+        Case file (TOML).
+    groups
+        Groups instead of a case: SPEED LOAD ROUGHNESS.
+    mu0
+        Dry friction coefficient; only with --groups, 1 if not given.
+    beta
+        Coefficient of the contact law; only with --groups, 1 if not given.
+    law
+        Contact law: exponential, greenwood-williamson or greenwood-tripp; only with --groups, exponential if not given.
+    rtol
+        Largest relative error of the results, 1e-11 to 1e-2; that of the case or 1e-6 if not given.
+    plot
+        Draw gap and pressure to this file (.png, .svg or .pdf).
+    json
+        Print JSON: every observable under its name, friction_paper, friction_balanced; with a case SI values.
+    force
+        Replace an existing file.
+    """
+    loaded = read_case(case, groups, mu0, beta, law)
+    tolerance = as_rtol(rtol, loaded)
+    mu, b = as_number("mu0", mu0), as_number("beta", beta)
+    with speaking_of("friction_coefficient", "mu0", loaded is None):
+        coefficients(loaded.contact if loaded else None, mu, b)
+    pictures = check_pictures(plot, force)
+    problem = loaded.contact if loaded else Groups(*map(as_group, AXES, groups or ()))
+    solution = solve(problem, rtol=tolerance, law=law)
+    title = loaded.title if loaded else ""
+    for picture in pictures:
+        from ..plotting import plot_profile
+
+        plot_profile(solution, picture, force=force, title=title)
+    from .. import report
+
+    if json:
+        print(report.dump(report.solution_json(solution, mu, b)))
+        return 0
+    console = stdout_console()
+    report.print_solution(console, solution, title, mu, b)
+    for picture in pictures:
+        console.print(f"Written: {picture}", markup=False, highlight=False, soft_wrap=True)
+    return 0
+
+
+def curve_command(
+    case: CaseFile = None,
+    /,
+    *,
+    output: Annotated[list[Path] | None, Parameter(name=["--output", "-o"], negative="", show_default=False)] = None,
+    plot: File = None,
+    over: Word = None,
+    range: Pair = None,
+    points: Number = None,
+    rtol: Number = None,
+    groups: Pair = None,
+    mu0: Number = None,
+    beta: Number = None,
+    law: Word = None,
+    json: Flag = False,
+    force: Flag = False,
+) -> int:
+    """Solve a Stribeck curve: friction along speed, load or roughness, its minimum and its regimes.
+
+    Example: stribeck curve examples/pdms_cylinder.toml -o curve.nc -o curve.csv --plot curve.png
+
+    Example: stribeck curve examples/pdms_cylinder.toml --over load --range "5 N/m" "200 N/m" -o load.csv
+
+    Example: stribeck curve --groups 0.1 1e-4 --range 1e-9 10 -o curve.nc
+
+    After Ctrl-C the finished points are written, marked incomplete; the exit code is then 130.
+
+    Parameters
+    ----------
+    case
+        Case file (TOML); options override its tables [curve] and [solver].
+    output
+        Write the data to this file (.nc or .csv); may be given several times.
+    plot
+        Draw the curve to this file (.png, .svg or .pdf).
+    over
+        What varies: speed, load or roughness; that of the case or speed if not given.
+    range
+        Lowest and highest value of what varies, with units for a case; for speed found if not given.
+    points
+        Number of points, 2 to 100000; that of the case or 101 if not given.
+    rtol
+        Largest relative error of the results, 1e-11 to 1e-2; that of the case or 1e-6 if not given.
+    groups
+        Groups instead of a case: the two that stay fixed, in the order speed, load, roughness.
+    mu0
+        Dry friction coefficient; only with --groups, 1 if not given.
+    beta
+        Coefficient of the contact law; only with --groups, 1 if not given.
+    law
+        Contact law: exponential, greenwood-williamson or greenwood-tripp; only with --groups, exponential if not given.
+    json
+        Print the curve as JSON.
+    force
+        Replace existing files.
+    """
+    loaded = read_case(case, groups, mu0, beta, law)
+    outputs, pictures = check_outputs(output or [], plot, force)
+    arguments = curve_arguments(loaded, over, range, points, rtol, groups, mu0, beta)
+    arguments["law"] = law
+    title = loaded.title if loaded else ""
+    with interruptible() as progress, speaking_of("friction_coefficient", "mu0", loaded is None):
+        curve = stribeck_curve(on_point=progress, **arguments)
+        if curve.outcome is Outcome.ROUNDING:
+            raise InputError(_too_small(curve))
+        written, problems = _write(curve, title, outputs, pictures, force)
+    from .. import report
+
+    if json:
+        print(report.dump(report.curve_json(curve, title, written)))
+    else:
+        report.print_curve(stdout_console(), curve, title, written)
+    if problems:
+        return complain("\n".join(problems), BAD_INPUT)
+    if curve.outcome is Outcome.INTERRUPTED:
+        kept = f"{' and '.join(written)} hold the points so far, marked incomplete" if written else "no file was asked for"
+        return complain(f"Interrupted after {len(curve)} of {curve.requested} points; {kept}.", INTERRUPTED)
+    if not curve.outcome.ok:
+        return complain(f"{len(curve)} of {curve.requested} points: {curve.outcome.value}", FAILED)
+    return 0
+
+
+def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
+    """Tell the lubrication regime of a contact, how far the next ones are, and what moves its friction.
+
+    Example: stribeck regimes examples/pdms_cylinder.toml
+
+    Parameters
+    ----------
+    case
+        Case file (TOML).
+    json
+        Print JSON.
+    """
+    if case is None:
+        raise InputError("CASE is missing; give a case file, as in: stribeck regimes case.toml.")
+    loaded = load_case(case)
+    solution, elasticities = friction_elasticities(loaded.contact, rtol=loaded.rtol, definition=loaded.definition)
+    with interruptible() as progress:
+        curve = stribeck_curve(
+            loaded.contact,
+            points=REGIME_POINTS,
+            rtol=loaded.rtol,
+            definition=loaded.definition,
+            on_point=progress,
+        )
+        _ = curve.transitions
+        if curve.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        distances = transition_distances(loaded.contact, rtol=loaded.rtol, definition=loaded.definition, on_point=progress)
+    from .. import report
+
+    if json:
+        print(report.dump(report.regimes_json(solution, elasticities, curve, distances, loaded.title)))
+    else:
+        report.print_regimes(stdout_console(), solution, elasticities, curve, distances, loaded.title)
+    return 0 if curve.outcome.ok else complain(curve.outcome.value, FAILED)
+
+
+def figures_command(
+    names: Annotated[list[str] | None, Parameter(name="FIGURE", negative="", show_default=False)] = None,
+    /,
+    *,
+    out: Annotated[Path, Parameter(name="--out")] = Path("figures"),
+    force: Flag = False,
+) -> int:
+    """Make figures of the paper from our own solves: PNG, SVG and the data as NetCDF for each.
+
+    Example: stribeck figures
+
+    Example: stribeck figures 3 5b S1 --out pictures
+
+    Data in the folder are used again as long as the sources that they come from are the same.
+
+    After Ctrl-C the figures that are finished stay; the exit code is then 130.
+
+    Parameters
+    ----------
+    names
+        Figures: 3 to 11 and S1; all of them if none is given.
+    out
+        Folder to write to; made if the folder above it exists.
+    force
+        Solve again what the folder already holds, and replace files that are not of this command.
+    """
+    from ..figures import make_figures
+
+    with interruptible() as progress:
+        made = make_figures(
+            names or (),
+            out,
+            force=force,
+            on_progress=lambda name, done, steps: progress(done, steps, f"figure {name}"),
+        )
+    console = stdout_console()
+    for each in made:
+        if each.files:
+            kept = ", kept data" if each.outcome == "reused" else ""
+            names_of_files = ", ".join(map(str, each.files))
+            console.print(f"Figure {each.name}{kept}: {names_of_files}", markup=False, highlight=False, soft_wrap=True)
+    for each in made:
+        if each.outcome in ("failed", "unwritten"):
+            complain(each.message, FAILED)
+    outcomes = {each.outcome for each in made}
+    if "interrupted" in outcomes:
+        finished = ", ".join(each.name for each in made if each.files)
+        kept = f"finished and kept in {out}: {finished}" if finished else "none was finished"
+        return complain(f"{made[-1].message.rstrip('.')}; {kept}.", INTERRUPTED)
+    return FAILED if "failed" in outcomes else BAD_INPUT if "unwritten" in outcomes else 0
+
+
+def _write(
+    curve: StribeckCurve, title: str, outputs: Collection[Path], pictures: Collection[Path], force: bool
+) -> tuple[list[str], list[str]]:
+    """Write the files of a curve; return their names, and sentences about those that failed."""
+    written, problems = [], []
+
+    def attempt(path: Path, action: Callable[[], object]) -> None:
+        try:
+            action()
+        except InputError as problem:
+            problems.append(str(problem))
+        else:
+            written.append(str(path))
+
+    if outputs:
+        from ..store import curve_dataset, write_data
+
+        dataset = curve_dataset(curve, title)
+        for path in outputs:
+            attempt(path, lambda path=path: write_data(dataset, path, force=force))  # type: ignore[misc]
+    for path in pictures:
+        from ..plotting import plot_curve
+
+        attempt(path, lambda path=path: plot_curve(curve, path, force=force, title=title))  # type: ignore[misc]
+    return written, problems
+
+
+def _too_small(curve: StribeckCurve) -> str:
+    where = f"the states of which the {curve.over} is below {_si(curve)}" if len(curve) else "these states"
+    return (
+        f"rtol = {curve.rtol:g} cannot be reached: double precision bounds the error of {where} above it; "
+        "ask for a larger rtol."
+    )
+
+
+def _si(curve: StribeckCurve) -> str:
+    value = float(curve.values[0])
+    return f"{value:.3g}" if curve.contact is None else format_si(value, QUANTITIES[curve.over].dimension)

@@ -1,0 +1,294 @@
+"""Commands around the solver: sweeps, measured surfaces, fits of measured friction, the explorer."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from ..case import load_case
+from ..output import check_output
+from ..units import InputError
+from .arguments import CaseFile, File, Flag, Number, Word, as_number, as_whole, check_pictures, need_extra
+from .exits import FAILED, INTERRUPTED, complain
+from .progress import interruptible, stdout_console
+
+if TYPE_CHECKING:
+    from ..sweep import SweepProgress
+
+
+def sweep_command(
+    design: Annotated[Path | None, Parameter(name="SWEEP", show_default=False)] = None,
+    /,
+    *,
+    out: File = None,
+    workers: Number = None,
+    scheduler: Word = None,
+    export: File = None,
+    json: Flag = False,
+    force: Flag = False,
+) -> int:
+    """Solve many states and keep each in a store as it finishes; the same command again goes on where it stopped.
+
+    Example: stribeck sweep examples/sweep.toml --out sweep.zarr --export sweep.nc
+
+    Example: stribeck sweep examples/sweep.toml --out sweep.zarr --workers 2
+
+    With --scheduler, as in --scheduler tcp://node1:8786, the workers of a Dask cluster solve the states.
+
+    After Ctrl-C the finished states are in the store; the exit code is then 130.  It is 1 where states failed; they are in the
+    store too, with their outcome.
+
+    Parameters
+    ----------
+    design
+        Sweep file (TOML): what stays fixed, what varies and how.
+    out
+        Folder of the store; made if there is none.
+    workers
+        Processes of this machine, 1 if not given.
+    scheduler
+        Address of a Dask scheduler, whose workers solve the states instead.
+    export
+        Write all states to this file (.nc) at the end.
+    json
+        Print JSON.
+    force
+        Replace an existing file of --export; a store is never replaced.
+    """
+    from .. import report_sweep
+    from ..store import NETCDF
+    from ..sweep import sweep
+    from ..sweep_design import load_sweep
+
+    if design is None:
+        raise InputError("SWEEP is missing; give a sweep file, as in: stribeck sweep sweep.toml --out sweep.zarr.")
+    if out is None:
+        raise InputError("out is missing; give the folder of the store with --out.")
+    if export is not None:
+        check_output(export, NETCDF, force=force)
+        need_extra("a NetCDF file", "data", "netCDF4")
+    plan = load_sweep(design)
+    processes = 1 if workers is None else as_whole("workers", workers)
+    with interruptible(sigterm=True) as progress:
+        lines = report_sweep.ProgressLines(sys.stderr if progress.bar is None else None)
+
+        def tell(state: SweepProgress) -> None:
+            lines(state)
+            progress(state.done, state.total, report_sweep.progress_text(state))
+
+        found = sweep(plan, out, workers=processes, scheduler=scheduler, on_progress=tell)
+    written = []
+    if export is not None and not found.interrupted:
+        found.to_netcdf(export, force=force)
+        written.append(str(export))
+    if found.note:
+        complain(found.note, 0)
+    if json:
+        from .. import report
+
+        print(report.dump(report_sweep.sweep_json(found, written)))
+    else:
+        report_sweep.print_sweep(stdout_console(), found, written)
+    if found.interrupted:
+        kept = f"{out} holds them, and the same command goes on from there"
+        return complain(f"Interrupted after {found.finished} of {len(found)} states; {kept}.", INTERRUPTED)
+    if found.failed:
+        return complain(f"{found.failed} of {len(found)} states did not converge; each has its outcome in the store.", FAILED)
+    return 0
+
+
+def fit_command(
+    data: Annotated[Path | None, Parameter(name="DATA", show_default=False)] = None,
+    case: CaseFile = None,
+    /,
+    *,
+    free: Annotated[list[str] | None, Parameter(negative="", consume_multiple=True, show_default=False)] = None,
+    out: File = None,
+    plot: File = None,
+    robust: Flag = False,
+    posterior: Number = None,
+    json: Flag = False,
+    force: Flag = False,
+) -> int:
+    """Fit inputs of a contact to measured friction: values with intervals, and what the data do not say.
+
+    Example: stribeck fit examples/pdms_measured.csv examples/pdms_fit.toml --plot fit.png --out fitted.toml
+
+    Example: stribeck fit measured.csv case.toml --free mu0 h_rms modulus --robust
+
+    Parameters
+    ----------
+    data
+        Measured friction (text in columns): friction and speed, viscosity times speed or Hersey number, units in the header.
+    case
+        Case file (TOML) with the contact where the fit begins, and in its table [fit] what is asked.
+    free
+        Inputs to fit; those of the case, else friction_coefficient and roughness.
+    out
+        Write the case with the fitted values to this file (.toml).
+    plot
+        Draw data, fit and residuals to this file (.png, .svg or .pdf).
+    robust
+        Keep outliers from steering the fit.
+    posterior
+        Draw from the posterior with so many steps of emcee, such as 2000.
+    json
+        Print JSON.
+    force
+        Replace existing files.
+    """
+    if data is None or case is None:
+        missing, example = ("DATA", "measured.csv case.toml") if data is None else ("CASE", f"{data} case.toml")
+        raise InputError(f"{missing} is missing; give measured friction and a case file, as in: stribeck fit {example}.")
+    loaded = load_case(case)
+    pictures = check_pictures(plot, force)
+    if out is not None:
+        check_output(out, (".toml",), force=force)
+    steps = None if posterior is None else as_whole("posterior", posterior)
+    if steps is not None:
+        need_extra("a posterior", "fit", "emcee")
+    from ..fit import fit
+    from ..fit_posterior import draw_posterior
+
+    with interruptible() as progress:
+        found = fit(data, loaded, free=free, robust=True if robust else None, on_step=lambda what, n: progress(n, n + 1, what))
+        drawn = None if steps is None else draw_posterior(found, steps=steps, on_step=lambda n, m: progress(n, m, "posterior"))
+    written = []
+    for picture in pictures:
+        from ..plot_fit import plot_fit
+
+        plot_fit(found, picture, force=force, title=loaded.title)
+        written.append(str(picture))
+    if out is not None and found.converged:
+        from ..fit_file import write_fitted_case
+
+        write_fitted_case(found, loaded, out, force=force)
+        written.append(str(out))
+    from .. import report, report_fit
+
+    if json:
+        print(report.dump(report_fit.fit_json(found, loaded.title, written, drawn)))
+    else:
+        report_fit.print_fit(stdout_console(), found, loaded.title, written, drawn)
+    if not found.converged:
+        return complain(found.outcome.value, FAILED)
+    return 0
+
+
+def surface_command(
+    file: Annotated[Path | None, Parameter(name="FILE", show_default=False)] = None,
+    /,
+    *,
+    unit: Word = None,
+    height_unit: Word = None,
+    spacing: Word = None,
+    channel: Word = None,
+    trend: Word = None,
+    window: Word = None,
+    resolution: Word = None,
+    gamma: Number = None,
+    keep_spikes: Flag = False,
+    plot: File = None,
+    out: File = None,
+    json: Flag = False,
+    force: Flag = False,
+) -> int:
+    """Evaluate a measured topography: rms height, spectrum, alpha and beta of the contact law, with errors.
+
+    Example: stribeck surface examples/cylinder_profile.csv --plot surface.png --out surface.toml
+
+    Example: stribeck surface scan.xyz --unit um --height-unit nm --resolution "1 um"
+
+    Text files (.csv, .tsv, .txt, .dat, .xyz) are read directly; .x3p, .sur, .opd, .sdf, .plux and some forty other formats
+    through SurfaceTopography (pip install 'stribeck[surface]').
+
+    Parameters
+    ----------
+    file
+        File of heights: a line or a map.
+    unit
+        Unit of lengths where the file does not declare it, such as um.
+    height_unit
+        Unit of heights, where it is another one.
+    spacing
+        Distance between points, such as '0.5 um', where the file has no positions.
+    channel
+        Name of the channel, where the file has several.
+    trend
+        Shape of the body to take away: none, mean, tilt or curvature; curvature if not given.
+    window
+        Window of the spectrum: hann, or none for periodic heights; hann if not given.
+    resolution
+        Shortest wavelength that the instrument resolves; that of the file or four points if not given.
+    gamma
+        Reduction of the elastic energy in Persson's theory, 0 to 1; 0.45 if not given.
+    keep_spikes
+        Keep points far off all their neighbours; otherwise they count as dead.
+    plot
+        Draw heights, spectrum and contact law to this file (.png, .svg or .pdf).
+    out
+        Write the table [surface] of a case file to this file (.toml).
+    json
+        Print JSON in SI units.
+    force
+        Replace existing files.
+    """
+    from .. import report_surface, surfaces
+
+    if file is None:
+        raise InputError("FILE is missing; give a file of heights, as in: stribeck surface scan.x3p.")
+    pictures = check_pictures(plot, force)
+    if out is not None:
+        check_output(out, (".toml",), force=force)
+    given = {"trend": trend, "window": window, "resolution": resolution, "gamma": as_number("gamma", gamma)}
+    arguments: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    scan = surfaces.read_topography(file, unit=unit, height_unit=height_unit, spacing=spacing, channel=channel)
+    surface = surfaces.analyse(scan, keep_spikes=keep_spikes, **arguments)
+    for picture in pictures:
+        from ..plot_surface import plot_surface
+
+        plot_surface(surface, picture, force=force)
+    if out is not None:
+        surfaces.write_surface_table(surface, out, force=force)
+    written = [str(name) for name in (*pictures, *([out] if out is not None else []))]
+    if json:
+        from .. import report
+
+        print(report.dump({**surface.to_dict(), "files": written}))
+    else:
+        report_surface.print_surface(stdout_console(), surface, written)
+    return 0
+
+
+def explore_command(
+    case: CaseFile = None,
+    /,
+    *,
+    port: Number = None,
+    browser: Annotated[bool, Parameter(negative="--no-browser", show_default=False)] = True,
+) -> int:
+    """Open a page on which the contact is changed by hand and curve, profile, regimes and numbers follow.
+
+    Example: stribeck explore examples/pdms_cylinder.toml
+
+    The page is served on this machine only, needs no internet and sends nothing away.  Ctrl-C ends it.
+
+    Parameters
+    ----------
+    case
+        Case file (TOML) to begin with; a soft cylinder if not given.
+    port
+        Port of the page; a free one if not given.
+    browser
+        Open the page in the browser, or only tell its address.
+    """
+    from ..app.server import serve
+
+    number = None if port is None else as_whole("port", port)
+    with suppress(KeyboardInterrupt):  # which is how it ends
+        serve(case, number, browser)
+    return 0

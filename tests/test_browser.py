@@ -1,0 +1,401 @@
+"""The explorer in a real browser, through the real server: `make browser`.
+
+Needs the extra ``browser`` and Debian's ``chromium``, or CHROMIUM=/path/to/it.
+"""
+
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+from urllib.parse import parse_qsl, urlparse
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.app import inputs, server, url
+
+pytestmark = pytest.mark.browser
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+LONG = 30_000  # ms; a shared machine may be slow
+
+# ECharts leaves holes where series were removed.
+CHART = """name => {
+    const found = getElement(Number(document.querySelector('.chart-' + name).id.slice(1))).chart.getOption();
+    return {...found, series: found.series.filter(s => s)};
+}"""
+NUMBERS = """() => Object.fromEntries([...document.querySelectorAll('.numbers [data-key]')].map(
+    row => [row.dataset.key, [row.dataset.value, Number(row.dataset.error)]]))"""
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory):
+    """Start the server as a user does and return its address; it must have written nothing but that."""
+    environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "NICEGUI"))}
+    path = tmp_path_factory.mktemp("server") / "errors"
+    command = [sys.executable, "-m", "stribeck", "explore", "--no-browser"]
+    with (
+        path.open("w") as log,
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True, env=environment) as process,
+    ):
+        line = process.stdout.readline()
+        yield re.fullmatch(r"stribeck explorer: (http://127\.0\.0\.1:\d+) \(Ctrl-C ends it\)\n", line)[1]
+        assert process.poll() is None, "the server died"
+        process.terminate()
+        process.wait(20)
+    assert path.read_text() == ""
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    from playwright.sync_api import sync_playwright
+
+    path = os.environ.get("CHROMIUM") or shutil.which("chromium")
+    assert path, "there is no chromium: apt-get install chromium, or say where it is with CHROMIUM="
+    with sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_page(chromium, address):
+    """Return what opens a page; at the end no page may have failed, or asked for anything outside this machine."""
+    contexts, faults, asked = [], [], []
+
+    def go(query="", **settings):
+        context = chromium.new_context(**({"viewport": {"width": 1440, "height": 900}} | settings))
+        contexts.append(context)
+        page = context.new_page()
+        page.set_default_timeout(LONG)
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
+        page.on("request", lambda request: asked.append(request.url))
+        page.goto(f"{address}/{query}")
+        page.wait_for_selector(".chart-diagram canvas")
+        page.wait_for_function("location.search.includes('definition=')")  # it rests
+        return page
+
+    yield go
+    for context in contexts:
+        context.close()
+    assert faults == []
+    hosts = {urlparse(each).hostname for each in asked if urlparse(each).scheme in ("http", "https", "ws", "wss")}
+    assert hosts == {"127.0.0.1"}
+
+
+def contact_of(page):
+    """Return the contact that the address of a page holds."""
+    items = parse_qsl(urlparse(page.url).query)
+    opened = url.decode(items, server.example())
+    assert opened.problems == {}
+    return opened.inputs
+
+
+def at_rest(page, action):
+    """Do something, wait until the page has rested with new inputs, and return them."""
+    before = page.evaluate("location.search")
+    action()
+    page.wait_for_function("before => location.search !== before", arg=before)
+    return settled(page)
+
+
+def settled(page):
+    """Wait until the address stays, as on a slow machine a page may rest between two moves, and return its inputs."""
+    last = None
+    while last != (last := page.evaluate("location.search")):
+        page.wait_for_timeout(1200)
+    return contact_of(page)
+
+
+def check_numbers(page, now):
+    """Compare all numbers of a page with a cold solve of its contact."""
+    shown = page.evaluate(NUMBERS)
+    solution = sb.solve(now.contact)
+    friction = {kind: solution.friction(definition=kind) for kind in ("paper", "balanced")}
+    chosen = friction[now.definition]
+    expected = {
+        "friction_paper": friction["paper"].total,
+        "friction_balanced": friction["balanced"].total,
+        "contact_friction_share": chosen.contact / chosen.total,
+        "fluid_load_share": solution.fluid_load_share,
+        "contact_load_share": solution.contact_load_share,
+        "central_film_thickness": solution.central_gap * now.contact.hertz.indentation,
+        "minimum_film_thickness": solution.minimum_gap * now.contact.hertz.indentation,
+        "lambda_ratio": solution.lambda_ratio,
+        "hersey_number": solution.hersey_number,
+    }
+    for key, value in expected.items():
+        assert abs(float(shown[key][0]) - value) <= 2 * shown[key][1] + 1e-15 * abs(value), key
+    assert shown["regime"][0] == sb.regime_of(solution.fluid_load_share, chosen.contact / chosen.total)
+
+
+def point(page):
+    """Return the present point of the chart of friction."""
+    return next(s["data"][0] for s in page.evaluate(CHART, "friction")["series"] if s["id"] == "point")
+
+
+def slider(page, name):
+    return page.locator(f"[data-row={name}] input.slider")
+
+
+def field(page, name):
+    return page.locator(f"[data-row={name}] input.field")
+
+
+@pytest.mark.parametrize("name", [*inputs.FIELDS, *inputs.GROUP_FIELDS])
+def test_moving_a_slider_changes_the_numbers_to_what_solve_gives(open_page, name):
+    page = open_page()
+    before = contact_of(page)
+
+    def move():
+        slider(page, name).focus()
+        for _ in range(5):
+            page.keyboard.press("ArrowLeft")
+
+    now = at_rest(page, move)
+    moved = inputs.value_of(now, name) / inputs.value_of(before, name)
+    assert moved == pytest.approx(10**-0.05, rel=0.02)
+    assert field(page, name).input_value() == inputs.number_text(now, name)
+    check_numbers(page, now)
+    friction = sb.solve(now.contact).friction().total
+    assert point(page) == pytest.approx([now.contact.speed, friction], rel=1e-5)
+
+
+def test_dragging_a_slider_follows_the_hand(open_page):
+    page = open_page()
+    box = slider(page, "speed").bounding_box()
+
+    def drag():
+        page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + box["height"] / 2)
+        page.mouse.down()
+        for part in np.linspace(0.5, 0.75, 20):
+            page.mouse.move(box["x"] + part * box["width"], box["y"] + box["height"] / 2)
+        page.mouse.up()
+
+    now = at_rest(page, drag)
+    place = float(slider(page, "speed").input_value())
+    low, high = np.log10([inputs.FIELDS["speed"].low, inputs.FIELDS["speed"].high])
+    assert place == pytest.approx(low + 0.75 * (high - low), abs=0.15)
+    assert np.log10(now.contact.speed) == pytest.approx(place, abs=0.01)
+    check_numbers(page, now)
+
+
+def test_a_bad_value_is_marked_with_its_sentence_and_the_picture_stays(open_page):
+    page = open_page()
+    before, picture = page.evaluate(NUMBERS), page.evaluate(CHART, "friction")["series"]
+    field(page, "load").fill("-3")
+    field(page, "load").press("Enter")
+    row = page.locator("[data-row=load]")
+    page.wait_for_selector("[data-row=load].wrong")
+    assert row.get_by_role("alert").inner_text() == "load = '-3 N/m' must be positive."
+    assert field(page, "load").get_attribute("aria-invalid") == "true"
+    assert field(page, "load").input_value() == "-3"
+    assert page.evaluate(NUMBERS) == before
+    assert page.evaluate(CHART, "friction")["series"] == picture
+    now = at_rest(page, lambda: (field(page, "load").fill("0.1 kN/m"), field(page, "load").press("Enter")))
+    assert now.contact.load == 100
+    assert page.locator(".wrong").count() == 0
+    assert page.locator("[data-row=load] select").input_value() == "kN/m"
+    check_numbers(page, now)
+
+
+def test_a_unit_is_changed_in_place_and_the_value_stays(open_page):
+    page = open_page()
+    now = at_rest(page, lambda: page.locator("[data-row=viscosity] select").select_option("Pa*s"))
+    assert field(page, "viscosity").input_value() == "0.05"
+    assert now.contact == server.example().contact
+
+
+def test_a_case_is_loaded_and_a_wrong_one_is_refused_in_sentences(open_page, tmp_path):
+    page = open_page()
+    seal = EXAMPLES / "nitrile_seal.toml"
+    now = at_rest(page, lambda: page.set_input_files("input[type=file]", seal))
+    case = sb.load_case(seal)
+    assert now.contact == case.contact and page.locator("h1").inner_text().endswith(case.title)
+    check_numbers(page, now)
+    page.wait_for_function(f"({CHART})('friction').series.some(s => s.id === 'friction')")  # solved, outside the atlas
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text(seal.read_text().replace("viscosity", "viscose"))
+    page.set_input_files("input[type=file]", wrong)
+    page.wait_for_selector(".q-dialog")
+    said = page.locator(".q-dialog").inner_text()
+    assert "wrong.toml: [contact] viscosity is missing" in said and "did you mean viscosity" in said
+    assert contact_of(page) == now
+
+
+def test_a_measured_curve_is_shown_over_the_model(open_page, tmp_path):
+    page = open_page()
+    path = tmp_path / "lab.csv"
+    path.write_text("speed [mm/s],friction\n1,0.6\n10,0.1\n")
+    page.set_input_files("input[type=file]", path)
+    page.wait_for_selector(".chips .q-chip")
+    page.wait_for_function(f"({CHART})('friction').series.some(s => s.name === 'lab.csv')")
+    [series] = [s for s in page.evaluate(CHART, "friction")["series"] if s["name"] == "lab.csv"]
+    assert series["data"] == [[0.001, 0.6], [0.01, 0.1]]
+    page.locator(".chips .q-chip__icon--remove").click()
+    page.wait_for_function(f"!({CHART})('friction').series.some(s => s.name === 'lab.csv')")
+
+
+@pytest.mark.parametrize(
+    ("label", "ending", "begins"),
+    [
+        ("Picture (PNG)", ".png", b"\x89PNG"),
+        ("Picture (SVG)", ".svg", b"<?xml"),
+        ("Curves (CSV)", ".csv", b"# title: PDMS cylinder"),
+        ("Gap and pressure (CSV)", "-profile.csv", b"# title: PDMS cylinder"),
+        ("Case that reproduces it (TOML)", ".toml", b"title = "),
+    ],
+)
+def test_what_is_shown_is_downloaded(open_page, tmp_path, label, ending, begins):
+    page = open_page()
+    now = at_rest(page, lambda: (slider(page, "load_group").focus(), page.keyboard.press("ArrowRight")))
+    page.get_by_role("button", name="Save").click()
+    with page.expect_download() as download:
+        page.get_by_text(label, exact=True).click()
+    assert download.value.suggested_filename == f"pdms-cylinder-in-glycerol-water{ending}"
+    path = tmp_path / "file.toml"
+    download.value.save_as(path)
+    assert path.read_bytes().startswith(begins)
+    if ending == ".toml":
+        assert sb.load_case(path).contact == now.contact
+
+
+def test_a_shared_address_opens_as_it_was_left(open_page):
+    page = open_page()
+    slider(page, "roughness_group").focus()
+    at_rest(page, lambda: page.keyboard.press("ArrowLeft"))
+    page.get_by_role("button", name="balanced").click()
+    at_rest(page, lambda: page.keyboard.press("p"))
+    now = at_rest(page, lambda: (slider(page, "load").focus(), page.keyboard.press("ArrowRight")))
+    assert now.definition == "balanced"
+    other = open_page(urlparse(page.url).path.lstrip("/") + "?" + urlparse(page.url).query)
+    assert other.evaluate(NUMBERS).keys() == page.evaluate(NUMBERS).keys()
+    assert contact_of(other) == now
+    check_numbers(other, now)
+    assert other.locator(".chips .q-chip").inner_text() == page.locator(".chips .q-chip").inner_text()
+    data = [
+        [s["data"] for s in each.evaluate(CHART, "friction")["series"] if s["id"] in ("pin0", "friction")]
+        for each in (page, other)
+    ]
+    assert data[0] == data[1] and len(data[0]) == 2
+
+
+def test_a_wrong_address_is_marked_at_the_field(open_page):
+    page = open_page("?load=-1+N/m&speed=2+mm/s")
+    page.wait_for_selector("[data-row=load].wrong")
+    assert page.locator("[data-row=load]").get_by_role("alert").inner_text() == "load = '-1 N/m' must be positive."
+    check_numbers(page, contact_of(page))
+    assert contact_of(page).contact.speed == 2e-3
+
+
+def test_two_tabs_do_not_disturb_each_other(open_page):
+    one, two = open_page(), open_page()
+    start = two.evaluate(NUMBERS)
+
+    def both():
+        for _ in range(10):
+            slider(one, "speed").press("ArrowRight")
+            slider(two, "radius").press("ArrowLeft")
+
+    before = two.evaluate("location.search")
+    first = at_rest(one, both)
+    two.wait_for_function("before => location.search !== before", arg=before)
+    second = settled(two)
+    assert first.contact == server.example().contact.replace(speed=first.contact.speed)
+    assert second.contact == server.example().contact.replace(radius=second.contact.radius)
+    assert two.evaluate(NUMBERS) != start
+    check_numbers(one, first)
+    check_numbers(two, second)
+
+
+def test_two_hundred_moves_in_twenty_seconds_leave_it_alive_and_right(open_page):
+    page = open_page()
+    random = np.random.default_rng(90210)
+    names = ["speed", "load", "roughness", "viscosity", "load_group"]
+    place = "([name, place]) => { const s = document.querySelector(`[data-row=${name}] input.slider`);" + (
+        " s.value = place; s.dispatchEvent(new Event('input', {bubbles: true})); }"
+    )
+    began = time.monotonic()
+    for i in range(200):
+        name = names[i // 40]
+        at = inputs.position(server.example(), name) + 0.3 * random.uniform(-1, 1)
+        page.evaluate(place, [name, at])
+        page.wait_for_timeout(max(0.0, 100 * (i + 1) - 1000 * (time.monotonic() - began)))
+    assert time.monotonic() - began < 25
+    last = float(slider(page, "load_group").input_value())
+    page.wait_for_timeout(3000)
+    now = contact_of(page)
+    assert np.log10(now.contact.groups.load) == pytest.approx(last, abs=0.008)
+    assert np.log10(now.contact.groups.load) == pytest.approx(at, abs=0.008)
+    check_numbers(page, now)
+    assert point(page)[0] == pytest.approx(now.contact.speed, rel=1e-5)
+    now = at_rest(page, lambda: slider(page, "speed").press("ArrowRight"))
+    check_numbers(page, now)
+
+
+def test_it_works_by_keyboard_alone(open_page):
+    page = open_page()
+    reached = []
+    for _ in range(12):
+        page.keyboard.press("Tab")
+        reached.append(page.evaluate("document.activeElement.name || document.activeElement.getAttribute('aria-label')"))
+    assert {"speed", "Unit of Speed", "Speed", "load"} <= set(reached)
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("t")
+    page.wait_for_selector("body.body--dark")
+    page.keyboard.press("p")
+    page.wait_for_selector(".chips .q-chip")
+    names = page.evaluate("""() => [...document.querySelectorAll('input.slider, input.field, select, button, [role=img]')]
+        .filter(e => !(e.getAttribute('aria-label') || e.innerText || e.labels?.length)).length""")
+    assert names == 0
+
+
+def test_it_fits_a_phone(open_page):
+    page = open_page(viewport={"width": 390, "height": 844}, is_mobile=True, has_touch=True, device_scale_factor=2)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    slider(page, "viscosity").scroll_into_view_if_needed()
+    box = slider(page, "viscosity").bounding_box()
+    chart = page.locator(".chart-friction").bounding_box()
+    assert 0 <= chart["y"] and chart["y"] + chart["height"] < box["y"]  # the curve stays in sight
+    now = at_rest(page, lambda: page.touchscreen.tap(box["x"] + 0.7 * box["width"], box["y"] + box["height"] / 2))
+    check_numbers(page, now)
+    assert now.contact.viscosity > server.example().contact.viscosity
+
+
+def test_it_is_dark_where_the_system_is(open_page):
+    page = open_page(color_scheme="dark")
+    page.wait_for_selector("body.body--dark")
+    page.wait_for_function(f"({CHART})('friction').series.find(s => s.id === 'friction').color !== '#1f2328'")
+
+
+def test_the_distances_are_those_of_the_regimes_command(open_page):
+    page = open_page()
+    page.wait_for_selector(".more tr[data-key=roughness]")
+    from stribeck.distances import transition_distances
+
+    for distance in transition_distances(server.example().contact).distances:
+        cells = page.locator(f".more tr[data-key={distance.name}] td[data-value]")
+        shown = [float(cell.get_attribute("data-value")) for cell in cells.all()]
+        marks = [mark for mark in (distance.less, distance.more) if mark is not None]
+        assert sorted(shown) == pytest.approx(sorted(mark.factor for mark in marks), rel=1e-6)
+
+
+def test_it_is_served_on_this_machine_only(address):
+    port = urlparse(address).port
+    request = urllib.request.Request(address, headers={"Host": "elsewhere.example"})
+    with pytest.raises(urllib.error.HTTPError, match="400"):
+        urllib.request.urlopen(request, timeout=10)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.connect(("192.0.2.1", 9))  # sends nothing; tells our address towards the outside
+        outside = probe.getsockname()[0]
+    assert outside != "127.0.0.1"
+    with pytest.raises(OSError):
+        socket.create_connection((outside, port), timeout=3).close()

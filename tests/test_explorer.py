@@ -1,0 +1,417 @@
+"""The explorer without its browser: linked inputs, addresses, answers, charts, numbers and files."""
+
+import csv
+import io
+import math
+import socket
+import sys
+from dataclasses import replace
+from urllib.parse import parse_qsl
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.app import charts, files, inputs, server, table, url
+from stribeck.app.measured import read_measured
+from stribeck.app.palette import DARK, LIGHT
+from stribeck.app.results import Model, round_down, round_up, thin_lines
+from stribeck.cli import main
+
+START = server.example()
+
+
+@pytest.fixture(scope="module")
+def answer():
+    return Model()(START)
+
+
+def reopened(query, start=START):
+    return url.decode(parse_qsl(query, keep_blank_values=True), start)
+
+
+# --- inputs ---
+
+
+@pytest.mark.parametrize("name", inputs.FIELDS)
+def test_a_slider_moves_its_quantity_to_a_number_that_can_be_read_and_nothing_else(name):
+    moved = inputs.slid(START, name, inputs.position(START, name) + 0.25)
+    value = getattr(moved.contact, name)
+    assert value / getattr(START.contact, name) == pytest.approx(10**0.25, rel=5e-3)
+    assert inputs.typed(START, name, inputs.number_text(moved, name)).contact == moved.contact
+    assert moved.contact.replace(**{name: getattr(START.contact, name)}) == START.contact
+
+
+@pytest.mark.parametrize("name", inputs.GROUP_FIELDS)
+def test_a_group_moves_load_speed_and_roughness_so_that_the_other_groups_stay(name):
+    moved = inputs.slid(START, name, inputs.position(START, name) - 0.5)
+    for other in inputs.GROUP_FIELDS:
+        wanted = inputs.value_of(START, other) * (10**-0.5 if other == name else 1.0)
+        assert inputs.value_of(moved, other) == pytest.approx(wanted, rel=5e-3 if other == name else 1e-12)
+    for kept in ("radius", "modulus", "viscosity", "alpha", "beta", "friction_coefficient"):
+        assert getattr(moved.contact, kept) == getattr(START.contact, kept)
+
+
+def test_a_slider_stops_at_its_ends_and_a_value_beyond_stands_there():
+    assert inputs.slid(START, "speed", 5.0).contact.speed == inputs.FIELDS["speed"].high
+    far = inputs.typed(START, "speed", "100 m/s")
+    assert far.contact.speed == 100
+    assert inputs.position(far, "speed") == math.log10(inputs.FIELDS["speed"].high)
+    assert inputs.position(inputs.typed(START, "speed", "0"), "speed") == math.log10(inputs.FIELDS["speed"].low)
+
+
+def test_a_unit_that_is_typed_becomes_that_of_the_field():
+    typed = inputs.typed(START, "load", "1.5 kN/m")
+    assert typed.contact.load == 1500
+    assert (typed.units["load"], inputs.number_text(typed, "load")) == ("kN/m", "1.5")
+    assert inputs.typed(typed, "load", "2").contact.load == 2000
+
+
+def test_another_unit_keeps_the_value():
+    shown = inputs.in_unit(START, "viscosity", "Pa*s")
+    assert shown.contact == START.contact
+    assert inputs.number_text(shown, "viscosity") == "0.05"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "sentence"),
+    [
+        ("load", "-3", "load = '-3 N/m' must be positive."),
+        ("load", "3 mm", "load = '3 mm' is a length; a load per unit length such as '50 N/m' is wanted."),
+        ("load", "1,5", "load = '1,5' has a comma; write a decimal point"),
+        ("radius", "", "radius = '' does not begin with a number;"),
+        ("beta", "x", "beta = 'x' is text where a number belongs; write a bare number"),
+        ("alpha", "0", "alpha = 0.0 must be positive."),
+        ("speed_group", "-1", "speed = -1.0 must be finite and zero or positive."),
+        ("load_group", "lots", "load = 'lots' is not a number; write it as 0.001 or 1e-3."),
+        ("beta", "1e-300", "leave the range of double precision"),
+    ],
+)
+def test_impossible_inputs_are_refused_with_the_sentence_of_the_command_line(name, text, sentence):
+    with pytest.raises(sb.InputError) as problem:
+        inputs.typed(START, name, text)
+    assert sentence in str(problem.value)
+
+
+# --- addresses ---
+
+
+def test_an_address_brings_back_the_very_inputs_and_pins():
+    moved = inputs.slid(inputs.slid(START, "load_group", -1.37), "speed", -3.41)
+    moved = inputs.slid(moved, "roughness_group", -2.22)
+    assert f"{moved.contact.roughness / 1e-6:.6g}" != repr(moved.contact.roughness / 1e-6)  # no short number
+    moved = replace(inputs.in_unit(moved, "radius", "cm"), definition="balanced", abscissa="hersey", title="a & b = ü #1")
+    pins = [url.Pin("load 3 N/m ~ twice", START.contact, "paper"), url.Pin("two", moved.contact, "balanced")]
+    opened = reopened(url.encode(moved, pins))
+    assert opened.problems == {}
+    assert opened.inputs == moved
+    assert opened.pins == tuple(pins)
+
+
+def test_an_address_says_what_is_wrong_with_it_and_takes_the_rest():
+    opened = reopened("load=-1+N/m&speed=2+mm/s&colour=red&definition=mine&pin=1~2&radius=1")
+    assert opened.inputs.contact == START.contact.replace(speed="2 mm/s", radius="1 mm")
+    assert opened.problems["load"] == ("-1 N/m", "load = '-1 N/m' must be positive.")
+    assert "colour = 'red' is not a known key" in opened.problems["colour"][1]
+    assert "'paper', 'balanced'" in opened.problems["definition"][1]
+    assert "pin = '1~2' must hold 9 numbers" in opened.problems["pin"][1]
+
+
+def test_an_empty_address_is_the_start():
+    assert reopened("") == url.Opened(START, (), {})
+
+
+# --- answers ---
+
+
+@pytest.mark.parametrize("name", ["speed", "load_group", "roughness", "friction_coefficient"])
+def test_the_numbers_are_those_of_solve_within_their_errors(name):
+    model = Model()
+    model(START)
+    moved = inputs.slid(START, name, inputs.position(START, name) + 0.3)
+    rows = {row.key: row for row in table.numbers(model(moved))}
+    solution = sb.solve(moved.contact)
+    expected = {
+        "friction_paper": solution.friction().total,
+        "friction_balanced": solution.friction(definition="balanced").total,
+        "fluid_load_share": solution.fluid_load_share,
+        "contact_load_share": solution.contact_load_share,
+        "central_film_thickness": solution.central_gap * moved.contact.hertz.indentation,
+        "minimum_film_thickness": solution.minimum_gap * moved.contact.hertz.indentation,
+        "lambda_ratio": solution.lambda_ratio,
+        "hersey_number": solution.hersey_number,
+    }
+    for key, value in expected.items():
+        assert abs(rows[key].value - value) <= 2 * rows[key].error, key
+    assert rows["hersey_number"].error == 0
+
+
+def test_the_curve_and_its_transitions_are_those_of_the_solver(answer):
+    curve = sb.stribeck_curve(START.contact, speed=answer.speeds, points=31)
+    for definition in ("paper", "balanced"):
+        found = np.exp(np.interp(np.log(curve.values), np.log(answer.curve.speed), np.log(answer.curve.friction[definition])))
+        solved = [s.friction(definition=definition).total for s in curve.solutions]
+        assert np.allclose(found, solved, rtol=2e-3)
+    marks = {mark.name: mark.value for mark in curve.transitions}
+    for name, words in (
+        ("boundary", "fluid carries 5% of the load"),
+        ("hydrodynamic", "asperities cause 10% of the friction"),
+    ):
+        mark = answer.curve.transition(name)
+        assert abs(math.log(mark.speed / marks[words])) < mark.error
+
+
+def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marked_stale():
+    heavy = inputs.from_case(sb.load_case("examples/wiper_blade.toml"))
+    model = Model()
+    first = model(heavy)
+    assert first.curve is None and "No phase diagram" in first.diagram.message
+    assert model.settle(heavy) and not model.settle(heavy)
+    now = model(heavy)
+    assert not now.curve.stale and "solved" in now.curve.source
+    friction = np.exp(np.interp(np.log(heavy.contact.speed), np.log(now.curve.speed), np.log(now.curve.friction["paper"])))
+    assert friction == pytest.approx(sb.solve(heavy.contact).friction().total, rel=0.02)
+    heavier = model(inputs.slid(heavy, "load", inputs.position(heavy, "load") + 0.1))
+    assert heavier.curve.stale and heavier.curve.transitions == ()
+    assert charts.friction_chart(heavier, [], [], LIGHT)["series"][0]["lineStyle"]["opacity"] < 1
+
+
+@pytest.mark.parametrize("change", [{"speed": 0.0}, {"roughness": 0.0}, {"friction_coefficient": 0.0}])
+def test_rest_smooth_and_frictionless_contacts_are_shown(change):
+    shown = Model()(replace(START, contact=START.contact.replace(**change)))
+    rows = {row.key: row for row in table.numbers(shown)}
+    assert rows["friction_paper"].value == sb.solve(shown.inputs.contact).friction().total
+    for palette in (LIGHT, DARK):
+        assert set(charts.all_charts(shown, [], [], palette)) == set(charts.CHARTS)
+
+
+def test_formulas_are_drawn_where_their_range_holds_the_state_and_nowhere_else():
+    fast_and_smooth = sb.solve(sb.Groups(1e-5, 0.1, 1e-6))
+    names = {line.name for line in thin_lines(fast_and_smooth, 2.0)}
+    assert "film_layers.gap_inlet" in names and "rest.gap" not in names
+    at_rest = sb.solve(sb.Groups(0.0, 0.1, 1e-4))
+    names = {line.name for line in thin_lines(at_rest, 2.0)}
+    assert "edge_layer.contact_pressure" in names and "film_layers.gap_inlet" not in names
+    for line in thin_lines(at_rest, 2.0):
+        solved = getattr(at_rest.profile(line.x), line.predicts)
+        assert np.abs(line.value - solved).max() <= 1.05 * line.worst * np.abs(solved).max()
+    assert thin_lines(sb.solve(START.contact), 2.0) == []
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high"), [(1.0, 1.0, 1.0), (0.0123, 0.01, 0.015), (7.2e-7, 7e-7, 1e-6), (49.9, 30, 50)]
+)
+def test_axes_end_at_round_numbers(value, low, high):
+    assert (round_down(value), round_up(value)) == (pytest.approx(low), pytest.approx(high))
+
+
+# --- charts ---
+
+
+def applied(old, change):
+    """Return a chart after a change, as ECharts merges it."""
+    options, settings = change
+    if settings:
+        return options
+    changed = {series["id"]: series for series in options.get("series", ())}
+    return old | options | {"series": [series | changed.get(series["id"], {}) for series in old["series"]]}
+
+
+def test_a_moved_speed_sends_the_point_alone_where_nothing_else_moves(answer):
+    model = Model()
+    before = charts.data_only(charts.all_charts(model(START), [], [], LIGHT))
+    moved = inputs.slid(START, "speed", inputs.position(START, "speed") + 0.05)
+    after = charts.data_only(charts.all_charts(model(moved), [], [], LIGHT))
+    for name in ("friction", "diagram"):
+        options, settings = charts.difference(before[name], after[name])
+        assert set(options) == {"series"} and settings == {}
+        assert [set(series) for series in options["series"]] == [{"id", "data"}]
+    for name in charts.CHARTS:
+        assert applied(before[name], charts.difference(before[name], after[name])) == after[name]
+        assert charts.difference(after[name], after[name]) is None
+
+
+def test_a_pin_and_a_measured_curve_are_drawn_over_the_chosen_abscissa(answer):
+    contact = START.contact
+    measured = read_measured("m.csv", b"speed [mm/s], friction\n1, 0.5\n10, 0.2\n")
+    pin = ("twice", answer.curve, 2 * contact.viscosity / contact.load)
+    over = replace(answer, inputs=replace(answer.inputs, abscissa="hersey"))
+    series = {s["name"]: s["data"] for s in charts.friction_chart(over, [pin], [measured], LIGHT)["series"]}
+    hersey = contact.viscosity / contact.load
+    assert series["m.csv"] == [
+        [pytest.approx(1e-3 * hersey, rel=1e-5), 0.5],
+        [pytest.approx(1e-2 * hersey, rel=1e-5), 0.2],
+    ]
+    assert series["twice"][0][0] == pytest.approx(2 * hersey * answer.curve.speed[0], rel=1e-5)
+    assert series["present point"][0][0] == pytest.approx(contact.hersey_number, rel=1e-5)
+
+
+def test_light_and_dark_differ_in_colours_only(answer):
+    def bare(options):
+        if isinstance(options, dict):
+            return {k: bare(v) for k, v in options.items() if "olor" not in k}
+        return [bare(v) for v in options] if isinstance(options, list) else options
+
+    light, dark = (charts.all_charts(answer, [], [], palette) for palette in (LIGHT, DARK))
+    assert bare(light) == bare(dark) and light != dark
+
+
+def luminance(colour):
+    channels = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+@pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])
+def test_lines_and_text_stand_out_from_their_ground(palette):
+    for ground in (palette.card, *palette.tints.values()):
+        for colour, least in ((palette.ink, 7.0), (palette.grey, 3.0), (palette.contact, 3.0), (palette.fluid, 3.0)):
+            low, high = sorted((luminance(colour), luminance(ground)))
+            assert (high + 0.05) / (low + 0.05) > least, (colour, ground)
+
+
+# --- files ---
+
+
+def test_the_case_that_is_downloaded_reproduces_what_is_shown(tmp_path, answer):
+    odd = replace(inputs.slid(START, "load_group", -1.37), definition="balanced", title='a "quoted" \\ title')
+    shown = files.Shown(Model()(odd))
+    path = tmp_path / "case.toml"
+    path.write_bytes(files.content("toml", shown))
+    case = sb.load_case(path)
+    assert case.contact == odd.contact
+    assert (case.definition, case.title, case.curve.points) == ("balanced", odd.title, 121)
+    assert case.curve.range == (shown.answer.curve.speed[0], shown.answer.curve.speed[-1])
+    assert files.read_case("case.toml", path.read_bytes()).contact == odd.contact
+
+
+def rows_of(content):
+    lines = [line for line in content.decode().splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(io.StringIO("\n".join(lines))))
+
+
+def test_the_csv_holds_the_curve_the_pins_and_the_measured_points(answer):
+    measured = read_measured("m.csv", b"0.001,0.5\n0.01,0.2\n")
+    shown = files.Shown(answer, [("pinned, once", answer.curve, 2.0)], (measured,))
+    rows = rows_of(files.content("csv", shown))
+    assert len(rows) == 121 + 121 + 2
+    assert float(rows[60]["friction_balanced [1]"]) == answer.curve.friction["balanced"][60]
+    assert rows[130]["curve"] == "pinned, once"
+    assert float(rows[130]["hersey_number [1]"]) == 2.0 * answer.curve.speed[9]
+    assert rows[-1] == {
+        "curve": "measured: m.csv",
+        "speed [m/s]": "0.01",
+        "hersey_number [1]": repr(0.01 * START.contact.viscosity / START.contact.load),
+        "friction_paper [1]": "0.2",
+        "friction_balanced [1]": "",
+        "friction_contact [1]": "",
+    }
+    assert f"# load: {inputs.exact_text(START, 'load')}\n" in files.content("csv", shown).decode()
+
+
+def test_the_profile_is_downloaded_in_si_units(answer):
+    rows = rows_of(files.content("profile.csv", files.Shown(answer)))
+    x = np.array([float(row["position [m]"]) for row in rows])
+    total = np.array([float(row["contact_pressure [Pa]"]) + float(row["fluid_pressure [Pa]"]) for row in rows])
+    solved = sb.solve(START.contact).to_si(x)
+    assert np.allclose(total, solved.pressure, atol=1e-4 * solved.pressure.max())
+    assert np.allclose([float(row["gap [m]"]) for row in rows], solved.gap, rtol=1e-3)
+
+
+def test_pictures_are_whole_and_hold_title_and_inputs(answer):
+    shown = files.Shown(answer, [("pinned", answer.curve, 1.0)], (read_measured("m.csv", b"0.001,0.5\n"),))
+    assert files.content("png", shown).startswith(b"\x89PNG")
+    root = ElementTree.fromstring(files.content("svg", shown))
+    assert root.tag.endswith("svg")
+
+
+def test_a_pin_is_named_after_what_differs_from_the_start():
+    assert files.pin_name(START, START, []) == "start"
+    other = inputs.typed(inputs.typed(START, "load", "50"), "roughness", "2 um")
+    assert files.pin_name(other, START, []) == "load 50 N/m, roughness 2 um"
+    assert files.pin_name(START, START, ["start"]) == "start (2)"
+
+
+def test_a_wrong_case_names_its_file_and_all_that_is_wrong():
+    with pytest.raises(sb.InputError) as problem:
+        files.read_case("my seal.toml", b'[contact]\nradius = "1 s"\n')
+    lines = str(problem.value).splitlines()
+    assert len(lines) > 3 and all(line.startswith("my seal.toml: [contact] ") for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("text", "speed", "friction"),
+    [
+        ("0.1,0.3\n0.01,0.5\n", [0.01, 0.1], [0.5, 0.3]),
+        ("# from the lab\nspeed [mm/s];friction\n\n10;0.5\n", [0.01], [0.5]),
+        ("\ufefffriction\tSpeed (um/s)\n0.5\t1e4\n", [0.01], [0.5]),
+        ("speed,friction_error,friction\n0.01,9,0.5\n", [0.01], [0.5]),
+    ],
+)
+def test_a_measured_curve_is_read(text, speed, friction):
+    found = read_measured("m.csv", text.encode())
+    assert np.allclose(found.speed, speed) and found.friction.tolist() == friction
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (b"", "m.csv is empty; it must hold two columns"),
+        (b"\xff\xfe\x00", "m.csv is not text in UTF-8"),
+        (b"speed,force\n1,2\n", "m.csv has no column 'friction'; its first line names 'speed', 'force'."),
+        (b"1,0.5\n2,-1\n", "m.csv, line 2: '-1' is not a positive number"),
+        (b"1,0.5\n2\n", "m.csv, line 2: '' is not a positive number"),
+        (b"speed [kg],friction\n1,2\n", "speed = '1 kg' is a mass"),
+        (b"speed,friction\n", "m.csv holds 0 points"),
+    ],
+)
+def test_a_measured_curve_that_cannot_be_used_is_refused_in_a_sentence(content, sentence):
+    with pytest.raises(sb.InputError) as problem:
+        read_measured("m.csv", content)
+    assert sentence in str(problem.value)
+
+
+# --- server ---
+
+
+def test_a_port_in_use_is_refused_and_another_is_found():
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        with pytest.raises(sb.InputError, match="is not free or not allowed; choose another with --port"):
+            server.free_port(taken.getsockname()[1])
+    assert server.free_port(None) in server.PORTS
+    with pytest.raises(sb.InputError, match="port = 70000 must be a whole number from 1 to 65535"):
+        server.free_port(70000)
+
+
+# --- the command ---
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["nowhere.toml"], "nowhere.toml"),
+        (["--port", "eighty"], "port = 'eighty' is not a whole number"),
+        (["--port", "0"], "port = 0 must be a whole number from 1 to 65535."),
+    ],
+)
+def test_a_wrong_argument_is_refused_with_exit_code_2(arguments, sentence, capsys):
+    assert main(["explore", "--no-browser", *arguments]) == 2
+    assert sentence in capsys.readouterr().err
+
+
+def test_without_nicegui_it_says_how_to_install_it(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "nicegui", None)
+    assert main(["explore", "--no-browser"]) == 2
+    assert "the explorer needs nicegui; install it with: pip install 'stribeck[app]'." in capsys.readouterr().err
+
+
+def test_ctrl_c_ends_it_with_exit_code_0(monkeypatch, capsys):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("stribeck.app.server.serve", interrupted)
+    assert main(["explore"]) == 0
+    assert capsys.readouterr().err == ""
