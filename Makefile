@@ -115,4 +115,4 @@ clean:
 # The newest versions that go together, for requirements.lock; needs uv.
 .PHONY: lock
 lock:
-	uv pip compile --universal --quiet --extra all --extra dev --extra docs --no-header --no-annotate pyproject.toml -o requirements.lock
+	uv pip compile --universal --quiet --extra all --extra dev --extra browser --extra docs --no-header --no-annotate pyproject.toml -o requirements.lock
