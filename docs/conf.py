@@ -52,7 +52,7 @@ exclude_patterns = ["*.py", "gallery/*.py", "gallery/*.ipynb", "notebooks/*.ipyn
 templates_path = ["_templates"]
 suppress_warnings = ["config.cache"]  # a function in the settings of the gallery cannot be kept between builds
 
-myst_enable_extensions = ["dollarmath", "amsmath"]
+myst_enable_extensions = ["dollarmath", "amsmath", "html_image"]
 myst_heading_anchors = 3
 nb_custom_formats = {".py": ["jupytext.reads", {"fmt": "py:percent"}]}
 nb_execution_mode = "force"
@@ -78,7 +78,7 @@ html_theme_options = {
     "header_links_before_dropdown": 7,
     "navbar_align": "left",
     "navbar_end": ["theme-switcher"],
-    "secondary_sidebar_items": ["page-toc"],
+    "secondary_sidebar_items": {"**": ["page-toc"], "errata": [], "validity": []},  # wide tables
     "show_prev_next": False,
     "footer_start": ["copyright"],
     "footer_end": [],
