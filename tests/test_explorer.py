@@ -234,7 +234,7 @@ def test_a_moved_speed_sends_the_point_alone_where_nothing_else_moves(answer):
 
 def test_a_pin_and_a_measured_curve_are_drawn_over_the_chosen_abscissa(answer):
     contact = START.contact
-    measured = read_measured("m.csv", b"speed [mm/s], friction\n1, 0.5\n10, 0.2\n")
+    [measured] = read_measured("m.csv", b"speed [mm/s], friction\n1, 0.5\n10, 0.2\n", answer.inputs.contact)
     pin = ("twice", answer.curve, 2 * contact.viscosity / contact.load)
     over = replace(answer, inputs=replace(answer.inputs, abscissa="hersey"))
     series = {s["name"]: s["data"] for s in charts.friction_chart(over, [pin], [measured], LIGHT)["series"]}
@@ -292,7 +292,7 @@ def rows_of(content):
 
 
 def test_the_csv_holds_the_curve_the_pins_and_the_measured_points(answer):
-    measured = read_measured("m.csv", b"0.001,0.5\n0.01,0.2\n")
+    [measured] = read_measured("m.csv", b"speed [m/s],friction\n0.001,0.5\n0.01,0.2\n", answer.inputs.contact)
     shown = files.Shown(answer, [("pinned, once", answer.curve, 2.0)], (measured,))
     rows = rows_of(files.content("csv", shown))
     assert len(rows) == 121 + 121 + 2
@@ -320,7 +320,11 @@ def test_the_profile_is_downloaded_in_si_units(answer):
 
 
 def test_pictures_are_whole_and_hold_title_and_inputs(answer):
-    shown = files.Shown(answer, [("pinned", answer.curve, 1.0)], (read_measured("m.csv", b"0.001,0.5\n"),))
+    shown = files.Shown(
+        answer,
+        [("pinned", answer.curve, 1.0)],
+        tuple(read_measured("m.csv", b"speed [m/s],friction\n0.001,0.5\n", answer.inputs.contact)),
+    )
     assert files.content("png", shown).startswith(b"\x89PNG")
     root = ElementTree.fromstring(files.content("svg", shown))
     assert root.tag.endswith("svg")
@@ -340,36 +344,56 @@ def test_a_wrong_case_names_its_file_and_all_that_is_wrong():
     assert len(lines) > 3 and all(line.startswith("my seal.toml: [contact] ") for line in lines)
 
 
+CONTACT = sb.LineContact(
+    radius=0.01,
+    modulus=2e6,
+    load=30.0,
+    viscosity=0.05,
+    speed=1e-3,
+    roughness=1e-6,
+    alpha=2.0,
+    beta=0.06,
+    friction_coefficient=0.7,
+)
+
+
 @pytest.mark.parametrize(
     ("text", "speed", "friction"),
     [
-        ("0.1,0.3\n0.01,0.5\n", [0.01, 0.1], [0.5, 0.3]),
-        ("# from the lab\nspeed [mm/s];friction\n\n10;0.5\n", [0.01], [0.5]),
+        ("speed [m/s],friction\n0.1,0.3\n0.01,0.5\n", [0.01, 0.1], [0.5, 0.3]),
+        ("# from the lab\nspeed [mm/s];friction\n\n10;0,5\n20;0,25\n", [0.01, 0.02], [0.5, 0.25]),
         ("\ufefffriction\tSpeed (um/s)\n0.5\t1e4\n", [0.01], [0.5]),
-        ("speed,friction_error,friction\n0.01,9,0.5\n", [0.01], [0.5]),
+        ("Hersey number,friction [%]\n1e-5,50\n2e-5,40\n", [0.006, 0.012], [0.5, 0.4]),
+        ("Hersey number,friction,viscosity [mPa*s]\n1e-5,0.5,100\n2e-5,0.4,100\n", [0.003, 0.006], [0.5, 0.4]),
+        ("eta U [mPa*m],friction\n1,0.5\n2,0.4\n", [0.02, 0.04], [0.5, 0.4]),
     ],
 )
 def test_a_measured_curve_is_read(text, speed, friction):
-    found = read_measured("m.csv", text.encode())
-    assert np.allclose(found.speed, speed) and found.friction.tolist() == friction
+    [found] = read_measured("m.csv", text.encode(), CONTACT)
+    assert found.name == "m.csv"
+    assert np.allclose(found.speed, speed, rtol=1e-12) and np.allclose(found.friction, friction, rtol=1e-12)
+
+
+def test_each_curve_of_a_file_is_read_for_itself():
+    text = "curve,speed [m/s],friction\na,0.1,0.3\nb,0.1,0.4\na,0.2,0.2\n"
+    first, second = read_measured("m.csv", text.encode(), CONTACT)
+    assert (first.name, second.name) == ("m.csv: a", "m.csv: b")
+    assert first.speed.tolist() == [0.1, 0.2] and second.friction.tolist() == [0.4]
 
 
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        (b"", "m.csv is empty; it must hold two columns"),
-        (b"\xff\xfe\x00", "m.csv is not text in UTF-8"),
-        (b"speed,force\n1,2\n", "m.csv has no column 'friction'; its first line names 'speed', 'force'."),
-        (b"1,0.5\n2,-1\n", "m.csv, line 2: '-1' is not a positive number"),
-        (b"1,0.5\n2\n", "m.csv, line 2: '' is not a positive number"),
-        (b"speed [kg],friction\n1,2\n", "speed = '1 kg' is a mass"),
-        (b"speed,friction\n", "m.csv holds 0 points"),
+        (b"", "m.csv"),
+        (b"speed,force\n1,2\n", "'force'"),
+        (b"speed [m/s],friction\n1,0.5\n2,-1\n", "row 3, column 'friction'"),
+        (b"speed [kg],friction\n1,2\n", "[kg]"),
     ],
 )
 def test_a_measured_curve_that_cannot_be_used_is_refused_in_a_sentence(content, sentence):
     with pytest.raises(sb.InputError) as problem:
-        read_measured("m.csv", content)
-    assert sentence in str(problem.value)
+        read_measured("m.csv", content, CONTACT)
+    assert str(problem.value).startswith("m.csv") and sentence in str(problem.value)
 
 
 # --- server ---

@@ -15,10 +15,10 @@ from pathlib import Path
 from ..case import Case, load_case
 from ..units import InputError
 from .inputs import FIELDS, Inputs, exact_text
-from .measured import Measured, read_measured
+from .measured import Measured
 from .results import Answer, Curve
 
-__all__ = ["KINDS", "Shown", "case_text", "content", "name_of", "pin_name", "read_case", "read_curve"]
+__all__ = ["KINDS", "Shown", "case_text", "content", "name_of", "pin_name", "read_case"]
 
 KINDS = {
     "Picture (PNG)": "png",
@@ -59,11 +59,6 @@ def read_case(name: str, content: bytes) -> Case:
             return load_case(path)
         except InputError as problem:
             raise InputError(str(problem).replace(str(path), name)) from None
-
-
-def read_curve(name: str, content: bytes) -> Measured:
-    """Return a measured curve from the content of its file."""
-    return read_measured(name, content)
 
 
 def name_of(kind: str, title: str) -> str:

@@ -1,20 +1,17 @@
-"""A measured curve from a CSV file: speed and friction, nothing else."""
+"""Measured curves to draw over the model: what fits read from a laboratory's file, as friction over speed."""
 
 from __future__ import annotations
 
-import csv
-import io
-import re
+import tempfile
 from dataclasses import dataclass
-
-import numpy as np
+from pathlib import Path
 
 from .._types import Array
-from ..units import InputError, show, to_si
+from ..measurements import read_measurements
+from ..parameters import LineContact
+from ..units import InputError
 
 __all__ = ["Measured", "read_measured"]
-
-MOST_POINTS = 20_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +21,7 @@ class Measured:
     Attributes
     ----------
     name : str
-        Name of its file.
+        Name of its file, and of the curve where that holds several.
     speed : ndarray, shape (n,)
         Sliding speed, ascending [m/s].
     friction : ndarray, shape (n,)
@@ -36,70 +33,43 @@ class Measured:
     friction: Array
 
 
-def read_measured(name: str, content: bytes) -> Measured:
-    """Return a measured curve from the text of a CSV file.
+def read_measured(name: str, content: bytes, contact: LineContact) -> list[Measured]:
+    r"""Return the measured curves of a file, over the speed.
+
+    .. math:: U = \frac{(\eta U)}{\eta}, \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta}
 
     Parameters
     ----------
     name : str
         Name of the file, for sentences.
     content : bytes
-        Two columns, speed and friction coefficient, with a line of names or without, separated by comma, semicolon or tab; the
-        unit of the speed may stand in brackets after its name, else it is m/s.  Lines that begin with ``#`` are comments.
+        A table as :func:`stribeck.measurements.read_measurements` reads it.
+    contact : LineContact
+        Whose viscosity and load hold where the file has viscosity times speed or the Hersey number, and does not give them.
 
     Returns
     -------
-    Measured
-        The curve.
+    list of Measured
+        The curves.
 
     Raises
     ------
     InputError
-        Where a line cannot be read, or a value is no positive number.
+        Where the file cannot be read; the sentence names row and column.
     """
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(f"{name} is not text in UTF-8; save it as CSV.") from None
-    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip() and not line.lstrip().startswith("#")]
-    if not lines:
-        raise InputError(f"{name} is empty; it must hold two columns, speed and friction.")
-    separator = next((mark for mark in ("\t", ";", ",") if mark in lines[0][1]), ",")
-    rows = [(i, next(csv.reader(io.StringIO(line), delimiter=separator))) for i, line in lines]
-    columns, factor = (0, 1), 1.0
-    if not _is_number(rows[0][1][0]):
-        columns, factor = _columns(name, rows[0][1])
-        rows = rows[1:]
-    if not 1 <= len(rows) <= MOST_POINTS:
-        raise InputError(f"{name} holds {len(rows)} points; it must be 1 to {MOST_POINTS}.")
-    values = np.array([[_value(name, i, row, column) for column in columns] for i, row in rows])
-    order = np.argsort(values[:, 0])
-    return Measured(name, values[order, 0] * factor, values[order, 1])
-
-
-def _columns(name: str, header: list[str]) -> tuple[tuple[int, int], float]:
-    """Return the columns of speed and friction, and the speed of their unit in m/s."""
+    plain = Path(name.replace("\\", "/")).name or "curve"
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / plain
+        path.write_bytes(content)
+        try:
+            data = read_measurements(path)
+        except InputError as problem:
+            raise InputError(str(problem).replace(str(path), name)) from None
     found = []
-    for wanted in ("speed", "friction"):
-        places = [i for i, title in enumerate(header) if re.match(rf"{wanted}\b(?!_)", title.strip(), re.IGNORECASE)]
-        if not places:
-            titles = ", ".join(show(title) for title in header[:6])
-            raise InputError(f"{name} has no column {wanted!r}; its first line names {titles}.")
-        found.append(places[0])
-    unit = re.search(r"[\[(](.+)[\])]", header[found[0]])
-    return (found[0], found[1]), to_si(f"1 {unit[1]}", "speed", "speed") if unit else 1.0
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
-def _value(name: str, line: int, row: list[str], column: int) -> float:
-    text = row[column].strip() if column < len(row) else ""
-    if not _is_number(text) or not 0 < float(text) < float("inf"):
-        raise InputError(f"{name}, line {line}: {show(text)} is not a positive number, as both columns hold.")
-    return float(text)
+    for k, (curve, inputs) in enumerate(zip(data.curves, data.inputs, strict=True)):
+        viscosity, load = inputs.get("viscosity", contact.viscosity), inputs.get("load", contact.load)
+        factor = {"speed": 1.0, "speed_viscosity": 1 / viscosity, "hersey_number": load / viscosity}[data.abscissa]
+        mine = data.curve == k
+        label = name if len(data.curves) == 1 else f"{name}: {curve}"
+        found.append(Measured(label, data.values[mine] * factor, data.friction[mine]))
+    return found

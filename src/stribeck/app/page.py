@@ -22,7 +22,7 @@ from ..solve import SolveError
 from ..units import InputError
 from . import charts, files, inputs, table, url
 from .inputs import FIELDS, GROUP_FIELDS, Inputs
-from .measured import Measured
+from .measured import Measured, read_measured
 from .palette import DARK, LIGHT
 from .results import Answer, Curve, Model
 from .url import Pin
@@ -315,8 +315,8 @@ class Tab:
                 self.change(replace(self.start, abscissa=self.inputs.abscissa))
                 self.show_title()
             else:
-                found = await self.run(LIVE, files.read_curve, name, content)
-                self.measured = [*self.measured, found][-MOST_MEASURED:]
+                found = await self.run(LIVE, read_measured, name, content, self.inputs.contact)
+                self.measured = [*self.measured, *found][-MOST_MEASURED:]
                 self.show_chips()
                 self.ask()
         except InputError as problem:
