@@ -194,9 +194,15 @@ def show_formulas(app, env, docnames):
         setattr(sys.modules[formula.function.__module__], formula.function.__name__, formula.function)
 
 
+def hide_private(app, what, name, object_, options, signature, result):
+    """Leave private fields out of the signature of a class."""
+    return (re.sub(r", _\w+(=[^,)]*)?", "", signature), result) if signature else None
+
+
 def setup(app):
     """Connect the functions above."""
     app.connect("builder-inited", prepare, priority=100)
+    app.connect("autodoc-process-signature", hide_private)
     app.connect("env-before-read-docs", show_formulas)
     app.connect("source-read", complete)
     app.connect("build-finished", finish)
