@@ -18,6 +18,7 @@
 # are synthetic, with 4 % of noise: friction coefficient 0.62, roughness 1.3 µm, modulus 2.3 MPa.
 
 # %%
+# %matplotlib inline
 import matplotlib.pyplot as plt
 
 import stribeck as sb

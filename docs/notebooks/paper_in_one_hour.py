@@ -27,6 +27,7 @@
 # \bar h_\mathrm{rms} = \frac{h_\mathrm{rms}}{4 \alpha \beta^2 R}.$$
 
 # %%
+# %matplotlib inline
 import matplotlib.pyplot as plt
 import numpy as np
 

@@ -18,6 +18,7 @@
 # right answers are known: a cylinder of 8 mm with 0.6 µm of roughness, Hurst exponent 0.8, roll-off at 105 µm.
 
 # %%
+# %matplotlib inline
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -65,8 +66,8 @@ print(f"least friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.valu
 # %% [markdown]
 # ## How sure is that
 #
-# The fit of the spectrum has a covariance. Here its two largest errors, those of the height and of the roll-off, go
-# through the whole chain, one at a time.
+# The fit of the spectrum gives errors. Here its two largest, those of the height and of the roll-off, go through the
+# whole chain one at a time, and are added as if they were independent.
 
 # %%
 from dataclasses import replace
@@ -82,7 +83,7 @@ band = np.array(band)
 spread = np.sqrt(((band[0] - band[1]) ** 2 + (band[2] - band[3]) ** 2) / 4)
 
 figure, axes = plt.subplots()
-axes.fill_between(curve.values, curve.friction - spread, curve.friction + spread, alpha=0.3, label="68 % by the scan")
+axes.fill_between(curve.values, curve.friction - spread, curve.friction + spread, alpha=0.3, label="standard error")
 axes.loglog(curve.values, curve.friction, label="Persson's law")
 axes.set(xlabel="speed [m/s]", ylabel="friction coefficient")
 _ = axes.legend()
