@@ -132,12 +132,12 @@ def fit(
     fine = (
         found
         if quick is solved
-        else settle(replace(found.objective, parts_of=solved), found.theta, lambda n: report("solving", n))
+        else _brought_back(settle(replace(found.objective, parts_of=solved), found.theta, lambda n: report("solving", n)))
     )
     covariance, quantiles, inflation = _covariance(fine)
     ends, found = _intervals(found, covariance, quantiles, inflation, intervals, report)
     if quick is not solved and fine.value > found.value + 0.1:  # a profile led to a better fit
-        fine = settle(replace(found.objective, parts_of=solved), found.theta, lambda n: report("solving", n))
+        fine = _brought_back(settle(replace(found.objective, parts_of=solved), found.theta, lambda n: report("solving", n)))
         covariance, quantiles, inflation = _covariance(fine)
     shift = fine.theta - found.theta
     ends = [[Ends(e.low + d, e.high + d) for e in each] for each, d in zip(ends, shift.tolist(), strict=True)]
@@ -185,12 +185,16 @@ def _search(goal: Objective, atlas: PartsOf | None, report: Step) -> Minimum:
         if best is None or found.value < best.value:
             best = found
     assert best is not None
-    found = settle(best.objective, best.theta, lambda n: report("fitting", n))
+    return _brought_back(settle(best.objective, best.theta, lambda n: report("fitting", n)))
+
+
+def _brought_back(found: Minimum) -> Minimum:
+    """Return the minimum at the inputs nearest to the case of those that the data cannot tell from it."""
     near = _nearest(found)
-    if not np.allclose(near, found.theta, rtol=0, atol=1e-9):
-        moved = minimise(found.objective, near)
-        found = moved if moved.value < found.value + SAME else found
-    return found
+    if np.allclose(near, found.theta, rtol=0, atol=1e-9):
+        return found
+    moved = minimise(found.objective, near)
+    return moved if moved.value < found.value + SAME else found
 
 
 def _best(goal: Objective, places: list[Array]) -> list[Array]:

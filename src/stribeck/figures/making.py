@@ -29,16 +29,17 @@ PICTURES = (".png", ".svg")
 
 SHOWING = (
     "__main__.py",
-    "app.py",
+    "app/",
     "case.py",
-    "cli.py",
-    "plot_phase.py",
+    "cli/",
+    "fit",
+    "plot_",
     "plotting.py",
-    "report.py",
+    "report",
     "figures/making.py",
     "figures/style.py",
 )
-"""Sources that change no number."""
+"""How the names of sources begin that change no number of a figure."""
 
 OnProgress = Callable[[str, int, int], object]
 """``on_progress(name, done, steps)`` is called at the start of each figure and after each step of its work."""
@@ -138,7 +139,7 @@ def fingerprint(figure: PaperFigure) -> str:
     for path in sorted(package.rglob("*.py")):
         name = path.relative_to(package).as_posix()
         of_another = name.startswith("figures/figure_") and path.stem != figure.stem
-        if name not in SHOWING and not of_another:
+        if not name.startswith(SHOWING) and not of_another:
             found.update(name.encode() + b"\0" + path.read_bytes())
     return found.hexdigest()[:16]
 
