@@ -9,6 +9,8 @@ from command_line import CONTACT, call, case_text
 from sweep_files import write
 
 import stribeck as sb
+from stribeck.case_law import LAWS, MAY_HAVE, NEEDED
+from stribeck.contact_laws import NAMED
 
 SURFACE = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"300 um"', "shortest_wavelength": '"0.3 um"'}
 ASPERITIES = {"density": '"1e10 1/m^2"', "radius": '"10 um"', "deviation": '"0.5 um"'}
@@ -69,6 +71,14 @@ def test_asperities_give_the_coefficients_or_the_contact_does(case, law, kind):
     assert found.law == kind()
     bare = sb.load_case(case(law)).contact
     assert (bare.alpha, bare.beta, bare.law) == (2.0, 0.06, kind())
+
+
+def test_every_law_that_case_files_know_can_be_had_and_none_is_the_exponential_one_in_disguise(case):
+    assert set(MAY_HAVE) == set(LAWS)
+    for law in sorted(set(LAWS) - set(NEEDED)):
+        found = sb.load_case(case(law)).contact.law
+        assert found == NAMED[law]
+        assert (found is None) == (law == "exponential")
 
 
 def test_a_table_is_read_beside_its_case_with_or_without_units(case):

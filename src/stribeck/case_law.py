@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 
 from ._types import LawShape
 from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
-from .contact_laws import ExponentialShape
+from .contact_laws import NAMED, ExponentialShape
 from .persson import GAMMA, PerssonLaw, persson_law
 from .rough_surface import RoughSurface
 from .spectrum import Spectrum
@@ -55,8 +55,8 @@ MAY_HAVE: dict[Law, tuple[str, ...]] = {
 }
 
 
-TABLES_OF: dict[Law, str] = {law: names[0] for law, names in MAY_HAVE.items()}
-"""The table that each law may come from."""
+TABLES_OF: dict[Law, str] = {law: names[0] for law, names in MAY_HAVE.items() if names}
+"""The table that each law may come from, where there is one."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
     if law == "table":
         return LawOfFile(_table(given["table"], contact, folder), {})
     if not given:
-        return LawOfFile(_without_table(law), {})
+        return LawOfFile(NAMED[law], {})
     (name,) = given
     doubled = [key for key in FROM_TABLES if contact.get(key) is not None]
     if doubled:
@@ -116,11 +116,6 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
         return _of_asperities(law, given[name]) if name == "asperities" else _of_surface(law, given[name], folder)
     except InputError as problem:
         raise InputError(f"[{name}] {problem}") from None
-
-
-def _without_table(law: Law) -> LawShape | None:
-    shapes: dict[str, LawShape] = {shape.name: shape for shape in (GreenwoodWilliamson(), GreenwoodTripp())}
-    return shapes.get(law)
 
 
 def _of_surface(law: Law, entries: dict[str, Any], folder: Path) -> LawOfFile:

@@ -158,8 +158,9 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
     law = checked["contact" if si else "groups"]["law"]
     try:
         for axis in axes:  # what varies is not also said by a table of the surface
-            if si and axis.name in FROM_TABLES and law != "table" and checked[TABLES_OF[law]] is not None:
-                raise InputError(f"[vary] {axis.name} follows from the table [{TABLES_OF[law]}]; remove one of them.")
+            source = TABLES_OF.get(law)
+            if si and axis.name in FROM_TABLES and source not in (None, "table") and checked[source] is not None:
+                raise InputError(f"[vary] {axis.name} follows from the table [{source}]; remove one of them.")
         fixed = contact_inputs(checked, path.parent) if si else group_inputs(checked, path.parent)
         shape: LawShape | None = fixed.pop("law")
     except InputError as problem:
