@@ -151,6 +151,8 @@ def test_a_case_knows_every_quantity(write):
         ({"contact": {"law": '"greenwood"'}}, "[contact] law = 'greenwood' must be one of 'exponential'"),
         ({"contact": {"spede": "1"}}, "[contact] spede = 1 is not a known key; did you mean speed."),
         ({"contact": {"eta": "1"}}, "[contact] eta = 1 is not a known key; write viscosity."),
+        ({"contact": {"Shore_A": "70"}}, "[contact] Shore_A = 70 is not a known key; for S Shore A Gent's relation gives"),
+        ({"contact": {"Ra": "1e-6"}}, "[contact] Ra = 1e-06 is not a known key; heights are root mean squares"),
         (
             {"contact": {"rtol": "1"}},
             "[contact] rtol = 1 is not a known key; it belongs in the table [solver].",
@@ -230,6 +232,11 @@ def test_all_problems_are_told_at_once(problems):
         (b"\x00\x01\x02", "is not valid TOML"),
         (b"[contact\nradius = 1", "is not valid TOML: Expected"),
         (b"[contact]\nradius = 1\nradius = 2\n", "is not valid TOML: Cannot overwrite a value (at line 3"),
+        (
+            b"[contact]\nradius = 1 mm\n",
+            "is not valid TOML: Expected newline or end of document after a statement (at line 2, column 12); "
+            "a value with a unit stands in quotes",
+        ),
         (b"a = " + b"[" * 50_000, "is not valid TOML"),
         (b"a = " + b"9" * 5_000, "is not valid TOML"),
         (b"#" * 1_000_001, "has more than 1000000 bytes"),

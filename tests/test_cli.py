@@ -245,6 +245,7 @@ def test_where_the_law_is_beyond_its_range_every_output_says_so(capsys, tmp_path
     assert sentence in call(capsys, "solve", WIPER).out
     assert sentence in call(capsys, "solve", WIPER, "--json").out
     assert sentence in call(capsys, "regimes", WIPER).out
+    assert "Persson's law, of a table [surface], goes on from there." in call(capsys, "regimes", WIPER).out
     assert sentence in call(capsys, "curve", WIPER, *range_, *files).out
     assert sentence in call(capsys, "curve", WIPER, *range_, "--json").out
     assert sentence in opened(tmp_path / "curve.nc").attrs["notes"]

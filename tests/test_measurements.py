@@ -89,6 +89,7 @@ def test_a_header_in_another_language_is_declared(read):
     sentence = refused(read, text)
     assert "none of which is known as speed or friction" in sentence
     assert "as in speed = 'Gleitgeschwindigkeit [mm/s]' and friction = 'Fehler'" in sentence
+    assert "as in speed = 'Tempo [mm/s]' and" in refused(read, "Kurve;Tempo [mm/s];Reibung\na;1;0.5")
     columns = {"speed": "Gleitgeschwindigkeit", "friction": "Reibung", "error": "Fehler"}
     found = read(text, columns=columns, units={"friction": "%", "error": "%"})
     assert found.values == pytest.approx(SPEEDS)

@@ -174,6 +174,7 @@ def test_modulus_follows_from_youngs_modulus_and_poisson_ratio():
         ({"poisson_ratio": 0.5}, "give either modulus, or"),
         ({"modulus": None}, "modulus (which is E*) is missing"),
         ({"modulus": None, "youngs_modulus": 1e6}, "poisson_ratio is missing beside youngs_modulus"),
+        ({"modulus": None, "youngs_modulus": 1e6}, "The Poisson ratio of rubber and gels is close to 0.5."),
         ({"modulus": None, "poisson_ratio": 0.5}, "youngs_modulus is missing beside poisson_ratio"),
         (
             {"modulus": None, "youngs_modulus": 1e6, "poisson_ratio": 0.51},

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal
 from .case_law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
 from .fit_settings import FitSettings, check_fit_table
 from .parameters import QUANTITIES, InputError, LineContact, check_modulus_choice, quantity
-from .units import DIMENSIONS, show
+from .units import DIMENSIONS, FROM_HARDNESS, show
 
 __all__ = ["Case", "CurveSettings", "curve_range", "error_sentence", "example_of", "load_case", "read_toml"]
 
@@ -36,6 +36,16 @@ _SYMBOLS = {
     "E_star": "modulus",
     "E": "youngs_modulus",
     "nu": "poisson_ratio",
+}
+
+# What data sheets say, and what to make of it.
+_RMS = "heights are root mean squares, of Gaussian ones about 1.25 Ra: h_rms in [surface], or roughness in [contact]"
+_DATA_SHEET = dict.fromkeys(("shore", "shore_a", "hardness"), FROM_HARDNESS) | dict.fromkeys(("ra", "r_a", "rq", "r_q"), _RMS)
+
+# What Python's parser says of slips that are frequent, and what to do about them.
+_SLIPS = {
+    "Expected newline or end of document after a statement": 'a value with a unit stands in quotes, as in radius = "10 mm"',
+    "Cannot overwrite a value": "a key may stand once in its table",
 }
 
 
@@ -253,7 +263,9 @@ def read_toml(path: Path, kind: str = "case file", needed: str = "[contact]") ->
     except UnicodeDecodeError as problem:
         raise InputError(f"{path} is not text (byte {problem.start} is not UTF-8); a {kind} is a page of TOML.") from None
     except (ValueError, RecursionError) as problem:
-        raise InputError(f"{path} is not valid TOML: {' '.join(str(problem).split())}.") from None
+        said = " ".join(str(problem).split())
+        advice = "".join(f"; {advice}" for slip, advice in _SLIPS.items() if said.startswith(slip))
+        raise InputError(f"{path} is not valid TOML: {said}{advice}.") from None
     if not table:
         raise InputError(f"{path} is empty; a {kind} needs at least the table {needed}.")
     return table
@@ -397,6 +409,8 @@ def example_of(key: str) -> str:
 
 
 def _nearest(file: Any, model: Any, key: str) -> str:
+    if key.lower() in _DATA_SHEET:
+        return _DATA_SHEET[key.lower()]
     known = list(model.model_fields)
     meant = _SYMBOLS.get(key, key)
     if meant in known:

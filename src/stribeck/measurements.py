@@ -281,7 +281,8 @@ def _columns(table: LabTable, settings: FitSettings) -> dict[str, list[str]]:
         missing = ["speed"] * (not any(name in found for name in ABSCISSAS)) + ["friction"] * ("friction" not in found)
         used = {name for names in found.values() for name in names}
         unknown = [name for name in table.header if name not in used] or [""]
-        examples = {"speed": unknown[0], "friction": unknown[-1]}
+        speeds = [name for name in unknown if re.search(r"/\s*(s|min|h)\b", _split(name)[1])]
+        examples = {"speed": (speeds or unknown)[0], "friction": unknown[-1]}
         raise InputError(
             f"{table.path}: {_listed(table)}, none of which is known as {' or '.join(missing)}; say which in [fit.columns] of "
             f"the case, as in {' and '.join(f'{name} = {show(examples[name])}' for name in missing)}."

@@ -505,7 +505,8 @@ def check_modulus_choice(modulus: Any, youngs_modulus: Any, poisson_ratio: Any) 
     if modulus is None and not given:
         raise InputError("modulus (which is E*) is missing; give it, or youngs_modulus and poisson_ratio together.")
     if modulus is None and missing:
-        raise InputError(f"{missing[0]} is missing beside {given[0]}; give both, or modulus (which is E*) alone.")
+        typical = " The Poisson ratio of rubber and gels is close to 0.5." if missing == ["poisson_ratio"] else ""
+        raise InputError(f"{missing[0]} is missing beside {given[0]}; give both, or modulus (which is E*) alone.{typical}")
 
 
 def _group(name: str, value: Any, positive: bool) -> float | Array:

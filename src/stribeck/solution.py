@@ -430,7 +430,8 @@ def law_notes(groups: Groups, contact: LineContact | None, values: Observables) 
     if groups.load >= 1:
         notes.append(
             f"The load group is {float(groups.load):.3g}, not below 1: the exponential contact law is outside its range, "
-            "as asperities cannot carry this load at a positive gap."
+            "as asperities cannot carry this load at a positive gap. "
+            "Persson's law, of a table [surface], goes on from there."
         )
     alpha = 1.0 if contact is None else contact.alpha
     ratio = values.central_gap / float(groups.relative_roughness) / alpha

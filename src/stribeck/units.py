@@ -84,6 +84,12 @@ _NOUNS = {
 
 # Bounded, because the number becomes an exact fraction and 1e999999999 would fill the memory.
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][+-]?[0-9]{1,3})?)\s*(.*?)\s*", re.DOTALL)
+_PERCENT = re.compile(r"\s*([0-9]{1,9}(?:\.[0-9]{0,9})?)\s*%\s*")
+_HARDNESS = re.compile(r"shore|irhd", re.IGNORECASE)
+FROM_HARDNESS = (
+    "for S Shore A Gent's relation gives youngs_modulus = 0.0981 (56 + 7.62 S)/(0.137505 (254 - 2.54 S)) in MPa, "
+    "5.5 MPa for 70, with poisson_ratio = 0.5"
+)
 _EXPONENT = re.compile(r"(?:\^|\*\*)\s*(?:[+-]?[0-9]|\(\s*[+-]?[0-9]\s*\))")
 _UNIT = re.compile(r"(?:1 ?/)?[A-Za-zµμÅ_#()*/ ]*", re.ASCII)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
@@ -204,7 +210,11 @@ def _advice(kind: Dimension) -> str:
 def _from_text(text: str, kind: Dimension, name: str) -> Fraction:
     received = f"{name} = {show(text)}"
     if not kind.unit:
-        raise InputError(f"{received} is text where a number belongs; {_advice(kind)}.")
+        percent = _PERCENT.fullmatch(text)
+        advice = f"write {float(percent[1]) / 100:.6g}" if percent else _advice(kind)
+        raise InputError(f"{received} is text where a number belongs; {advice}.")
+    if kind.unit == "Pa" and _HARDNESS.search(text):
+        raise InputError(f"{received} is a hardness, not a modulus; {FROM_HARDNESS}.")
     if "," in text:
         raise InputError(f"{received} has a comma; write a decimal point and no thousands separator, as in '{kind.example}'.")
     parts = _NUMBER.fullmatch(text.replace("\N{MINUS SIGN}", "-"))
