@@ -532,6 +532,28 @@ def test_thin_films_between_rough_surfaces_are_noted():
     assert "outside its range" in notes["beyond"]
 
 
+@pytest.mark.parametrize(("modulus", "wide"), [(2.7e6, False), (4.5e4, False), (4e4, True), (70.0, True)])
+def test_contacts_too_wide_for_a_half_space_are_noted(modulus, wide):
+    contact = sb.LineContact(
+        radius=0.01,
+        modulus=modulus,
+        load=30.0,
+        viscosity=0.1,
+        speed=1.0,
+        roughness=0.0,
+        alpha=2.0,
+        beta=0.05,
+        friction_coefficient=0.8,
+    )
+    slope = 2 * contact.beta * float(contact.groups.load) ** 0.5
+    assert (slope > 0.3) == wide
+    notes = sb.solve(contact, rtol=1e-4).notes
+    assert (
+        any(note.startswith(f"The contact is wide: the Hertz half-width is {slope:.2g} of the radius.") for note in notes)
+        == wide
+    )
+
+
 def test_the_gap_is_judged_in_roughness_heights_of_the_surface():
     """alpha counts: the law's length is h_rms/alpha."""
     common = {"radius": 0.01, "modulus": 2.7e6, "load": 10.0, "viscosity": 0.1, "speed": 0.0}

@@ -22,6 +22,9 @@ Definition = Literal["paper", "balanced"]
 DEFINITIONS: tuple[Definition, ...] = ("paper", "balanced")
 """Definitions of the viscous friction: Eq. (friction) of [BP], and the force on the substrate (theory.md, section 6)."""
 
+WIDEST_CONTACT = 0.3
+"""Hertz half-width over the radius from which a note says that the model is coarse."""
+
 LAW_LEAST_GAP = 0.4
 """Gap over h_rms down to which the exponential law follows Persson's full relation; facts in theory.md, section 8."""
 
@@ -415,6 +418,19 @@ def check_definition(definition: str) -> Definition:
         if definition == known:
             return known
     raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.")
+
+
+def shape_notes(contact: LineContact | None) -> tuple[str, ...]:
+    """Return the sentence that says where the contact is too wide for a parabola on a half-space."""
+    if contact is None:
+        return ()
+    slope = contact.hertz.half_width / contact.radius
+    if not slope > WIDEST_CONTACT:
+        return ()
+    return (
+        f"The contact is wide: the Hertz half-width is {slope:.2g} of the radius. A parabola on a half-space is right up to "
+        f"about 0.1 and coarse at {WIDEST_CONTACT}; check modulus, load and radius.",
+    )
 
 
 def law_notes(groups: Groups, contact: LineContact | None, values: Observables) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from .newton import Outcome
 from .observables import NAMES, Observables
 from .parameters import Groups, LineContact
 from .refine import Point, converge, order_for, quasistatic_shift, solvable
-from .solution import Solution, law_notes
+from .solution import Solution, law_notes, shape_notes
 from .start import cold_start, start_by_exponential
 from .threads import one_blas_thread
 from .units import InputError, show
@@ -169,7 +169,7 @@ def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solut
     state, values, estimate = point.state, point.values, point.estimate
     if state is None or values is None or estimate is None:
         return None
-    notes = list(law_notes(point.groups, contact, values))
+    notes = [*shape_notes(contact), *law_notes(point.groups, contact, values)]
     if math.isnan(values.flux_gap):
         notes.append("The gap is negative, so that no fluid passes: there is no flux gap.")
     if estimate.floor > 0.1 * rtol:
