@@ -31,9 +31,6 @@ from .states import Rows, State, correction, factors_on
 
 MOST_STEPS = 12
 
-LEFT = 0.1
-"""Size of the last step over that of Newton's: this iteration contracts linearly, and of that step leaves a part."""
-
 SLOWEST = 0.5
 """Part of the step before it that a step must be within for the row to count as contracting."""
 
@@ -122,7 +119,7 @@ def between(
     first, second = ends
     parts = (np.array(coordinates)[:, None] - first.coordinate) / (second.coordinate - first.coordinate)
     gap = _Gap(equations, (first.on(operators), second.on(operators)), parts)
-    guess, tolerance = y, LEFT * newton_tolerance(rtol)
+    guess, tolerance = y, newton_tolerance(rtol)
     y, sizes, rates, steps = _corrected(gap, y, tolerance)
     if not ((sizes <= tolerance) & (rates <= SLOWEST)).all():
         return []
