@@ -116,11 +116,12 @@ def variant(states: list[sb.Groups], one_sided: bool, moving_scale: bool) -> tup
         r[-1] *= y[-1] ** 2 / equations.flux_scale
         return r
 
-    def scaled_jacobian(equations: Equations, y: np.ndarray) -> np.ndarray:
-        matrix = jacobian(equations, y)
+    def scaled_jacobian(equations: Equations, y: np.ndarray, units: np.ndarray | None = None) -> np.ndarray:
+        matrix = jacobian(equations, y, units)
         matrix[-1] *= y[-1] ** 2 / equations.flux_scale
         weights = equations.operators.mesh.weights
-        matrix[-1, -1] += 2 * y[-1] * (weights @ reynolds.gradient(y[:-2], y[-1]))
+        unit = 1.0 if units is None else units[-1]
+        matrix[-1, -1] += 2 * y[-1] * (weights @ reynolds.gradient(y[:-2], y[-1])) * unit
         return matrix
 
     left = {"integral_from_infinity": integral_from_left, "after_integral": after_integral_from_left}
