@@ -32,8 +32,8 @@ from .elasticity import (
     panels_from_infinity,
 )
 from .equations import LOAD, Operators
-from .mesh import Mesh, interpolation_error, reference
-from .observables import NAMES, Observables, friction_integrals, friction_scale, gradients
+from .mesh import Mesh, between_orders, interpolation_error, reference
+from .observables import NAMES, Observables, far_gap, friction_integrals, friction_scale, gradients
 from .states import Rows
 
 EXTRA_NODES = 2
@@ -41,6 +41,9 @@ EXTRA_NODES = 2
 
 SAFETY = 2.0
 """Factor from the estimated to the stated error."""
+
+DEFECT_SAFETY = 3.0
+"""The same of the defect, of which the finer nodes see a part only where the pressures need many more."""
 
 FLAT = 0.2
 """Where the gap differs from the flux gap by less than this part of itself all over a panel, the pressure gradient is smoother
@@ -185,6 +188,9 @@ def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
     coarse, mesh = fine.coarse, fine.mesh
     h, z0, h_star = y[:, :-2], y[:, -2:-1], y[:, -1:]
     gap = np.exp(coarse.to_order(np.log(h / coarse.far), mesh.order)) * mesh.far
+    own, finer = slice(-coarse.order, None), slice(-mesh.order, None)  # through infinity, where the gap holds a logarithm
+    smooth = h[:, own] - far_gap(coarse.nodes[own])
+    gap[:, finer] = smooth @ between_orders(coarse.order, mesh.order) + far_gap(mesh.nodes[finer])
     slopes = reynolds.gradient(gap, h_star)
     flat = (np.abs(h - h_star) < FLAT * h).reshape(len(y), coarse.panels, -1).all(axis=2)
     if flat.any():
@@ -245,5 +251,5 @@ def error_estimates(states: Rows, observed: list[Observables], fine: FineOperato
     if not states.equations.moves:
         scales[:, 2:4] = np.maximum(scales[:, 2:4], GAP_FLOOR * states.equations.law.decay)
     scales[scales == 0] = 1.0
-    parts = (SAFETY * effects[:, :, 0], interpolation, effects[:, :, 1:].max(axis=2), scales)
+    parts = (DEFECT_SAFETY * effects[:, :, 0], interpolation, effects[:, :, 1:].max(axis=2), scales)
     return [ErrorEstimate(*row) for row in zip(*parts, strict=True)]

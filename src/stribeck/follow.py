@@ -41,7 +41,7 @@ FILL_ORDER = 5
 ANCHORS = 8
 """Steps of a path that are kept for it."""
 
-MOST_STEPS = 12
+MOST_STEPS = 16
 """Newton and chord steps after which the present mesh is given up."""
 
 FINER_THAN_NEEDED = 0.1
