@@ -225,6 +225,13 @@ def interpolation_errors(states: Rows, minimum_positions: Array) -> Array:
     return np.asarray(SAFETY * interpolation_error(shape) * gap.min(axis=2))
 
 
+def reads_off(mesh: Mesh, gap: Array, rtol: float) -> bool:
+    """Tell whether the central and the least gap are interpolated to ``rtol``: what a mesh kept along a path loses first."""
+    panels = [int(np.searchsorted(mesh.edges, 0.0)), int(np.argmin(gap)) // mesh.order]
+    shape = np.log((gap / mesh.far).reshape(mesh.panels, -1)[panels])
+    return bool((SAFETY * interpolation_error(shape) <= rtol).all())
+
+
 @lru_cache(maxsize=64)
 def _signs(size: int) -> Array:
     """Two fixed patterns of signs without order, shape (2, size)."""

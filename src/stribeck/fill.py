@@ -22,12 +22,12 @@ from ._types import Array
 from .contact_laws import contact_law
 from .continuation import extrapolation_weights
 from .equations import Equations, Operators
-from .estimate import FineOperators, error_estimates
+from .estimate import FineOperators
 from .newton import Factors, Outcome, Root
-from .observables import observables_of_rows
 from .parameters import Groups
-from .refine import Point, newton_tolerance, reached
+from .refine import Point, newton_tolerance
 from .states import Rows, State, correction, factors_on
+from .together import in_rows, judged
 
 MOST_STEPS = 12
 
@@ -113,9 +113,7 @@ def between(
     y = weights @ known
     y[:, :-2] = np.exp(y[:, :-2])
     y[:, -1] = np.exp(y[:, -1])
-    columns = (np.array([[float(getattr(g, name))] for g in groups]) for name in ("speed", "load", "roughness"))
-    column = Groups(*columns, law=groups[0].law)
-    equations = Equations(operators, column.speed, contact_law(column), y[:, -1:] ** 2)
+    equations, load = in_rows(groups, operators, y[:, -1:] ** 2)
     first, second = ends
     parts = (np.array(coordinates)[:, None] - first.coordinate) / (second.coordinate - first.coordinate)
     gap = _Gap(equations, (first.on(operators), second.on(operators)), parts)
@@ -123,18 +121,14 @@ def between(
     y, sizes, rates, steps = _corrected(gap, y, tolerance)
     if not ((sizes <= tolerance) & (rates <= SLOWEST)).all():
         return []
-    rows = Rows(equations, y, column.load, lambda r: gap.correction(r, equations.units(y)))
-    values = observables_of_rows(equations, y, column.load)
-    estimates = error_estimates(rows, values, fine)
     prediction = np.abs(guess[:, :-2] / y[:, :-2] - 1).max(axis=1)
-    points = []
+    solved = []
     for i in range(len(groups)):
-        scale = float(guess[i, -1]) ** 2
-        own = Equations(operators, float(groups[i].speed), contact_law(groups[i]), scale)
+        own = Equations(operators, float(groups[i].speed), contact_law(groups[i]), float(guess[i, -1]) ** 2)
         root = Root(y[i], Outcome.CONVERGED, steps, 0, float(sizes[i]), float(rates[i]), 0.0, None)
-        state = State(groups[i], own, y[i], root, float(prediction[i]))
-        points.append(Point(groups[i], state, values[i], estimates[i], reached(estimates[i], rtol), fine=fine))
-    return points
+        solved.append(State(groups[i], own, y[i], root, float(prediction[i])))
+    rows = Rows(equations, y, load, lambda r: gap.correction(r, equations.units(y)))
+    return judged(rows, solved, fine, rtol)
 
 
 def _corrected(gap: _Gap, y: Array, tolerance: float) -> tuple[Array, Array, Array, int]:

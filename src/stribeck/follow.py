@@ -12,14 +12,15 @@ from dataclasses import replace
 from .contact_laws import contact_law
 from .continuation import Path, march
 from .equations import Operators
-from .estimate import FineOperators
+from .estimate import FineOperators, reads_off
 from .fill import Anchor, between
 from .mesh import MeshTooLargeError
-from .newton import Factors
+from .newton import Factors, Outcome
 from .parameters import Groups
 from .refine import Point, converge, judge, mesh_tolerances_for, newton_tolerance, order_for, solvable
 from .start import cold_start
 from .states import Guess, State, extrapolate, mesh_for, solve_state
+from .together import judge_together
 
 LONGEST_STEP = math.log(10.0)
 SHORTEST_STEP = 1e-3
@@ -41,6 +42,12 @@ FILL_ORDER = 5
 ANCHORS = 8
 """Steps of a path that are kept for it."""
 
+MOST_WAITING = 8
+"""Points that may wait to be judged together."""
+
+PATIENCE = 0.5
+"""How many wait where the errors at the nodes are as large as the tolerance; the smaller they are, the more."""
+
 MOST_STEPS = 16
 """Newton and chord steps after which the present mesh is given up."""
 
@@ -60,12 +67,16 @@ RELAX = 3.0
 class Follower:
     """Corrector of a path: ``groups_at(s)`` gives the groups at coordinate s.
 
-    It keeps the operators of the present mesh, whose making costs as much as several states.
+    It keeps the operators of the present mesh, whose making costs as much as several states.  With ``postpone`` a state on it
+    that looks resolved is judged later, together with others, by :meth:`judge_waiting`.
     """
 
-    def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
+    def __init__(self, groups_at: Callable[[float], Groups], rtol: float, postpone: bool = False) -> None:
         self.groups_at = groups_at
         self.rtol = rtol
+        self.postpone = postpone
+        self.waiting: list[tuple[Point, Factors]] = []
+        self.patience = 1
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
         self.factors: Factors | None = None
@@ -79,7 +90,7 @@ class Follower:
             path = cold_start(solvable(groups))
             return self._adopt(converge(path.states[-1], groups, self.rtol)) if path.outcome.ok else None
         guess = extrapolate([(c, p.state) for c, p in history if p.state is not None], s)
-        point = self._on_present_mesh(guess, groups)
+        point = self._on_present_mesh(guess, groups, self.postpone and bool(groups.speed > 0))
         if point is not None and point.outcome.ok:
             return self._kept(point)
         if point is None or point.state is None:
@@ -93,14 +104,45 @@ class Follower:
             self._coarsen(adopted.state)
         return adopted
 
-    def _on_present_mesh(self, guess: Guess, groups: Groups) -> Point | None:
+    def judge_waiting(self) -> dict[Point, Point]:
+        """Return the points that waited, each with what it became: judged, and solved anew where its mesh was too coarse."""
+        waiting, self.waiting = self.waiting, []
+        found: dict[Point, Point] = {}
+        for fine in {point.fine: None for point, _ in waiting}:
+            points, factors = zip(*(pair for pair in waiting if pair[0].fine is fine), strict=True)
+            assert fine is not None
+            judged = judge_together([point.state for point in points], factors, fine, self.rtol)
+            found |= zip(points, judged, strict=True)
+        if waiting:
+            self._learn(found[waiting[-1][0]])
+        return {point: judged if judged.outcome.ok else self._again(judged) for point, judged in found.items()}
+
+    def _learn(self, point: Point) -> None:
+        """Set how many points may wait by how well the mesh resolves the last of them."""
+        if point.estimate is not None:
+            error = point.estimate.at_nodes / self.rtol
+            self.patience = max(1, min(MOST_WAITING, int(PATIENCE / math.sqrt(error + 1e-300))))
+
+    def _again(self, point: Point) -> Point:
+        """Return a point whose mesh was too coarse: on the present one where that is another, else on a finer one."""
+        assert point.state is not None
+        if self.operators is not None and self.operators.mesh is not point.state.mesh:
+            again = self._on_present_mesh(point.state, point.groups, postpone=False)
+            if again is not None and again.outcome.ok:
+                return self._kept(again)
+        return self._adopt(converge(point.state, point.groups, self.rtol, self.tolerances))
+
+    def _on_present_mesh(self, guess: Guess, groups: Groups, postpone: bool) -> Point | None:
         if self.operators is None or self.fine is None:
             return None
         base, tolerance = solvable(groups), newton_tolerance(self.rtol)
         state = solve_state(base, self.operators, guess, tolerance, MOST_STEPS, self.factors)
         if not state.outcome.ok:
             return None
-        point = judge(state, groups, self.fine, self.rtol)
+        if postpone and reads_off(state.mesh, state.gap, self.rtol):
+            point = Point(groups, state, None, None, state.outcome, fine=self.fine)
+        else:
+            point = judge(state, groups, self.fine, self.rtol)
         self.since_check += 1
         if self.since_check >= CHECK_EVERY and point.outcome.ok:
             self._coarsen(state)
@@ -111,8 +153,12 @@ class Follower:
         if point.state is None:
             return point
         same_mesh = self.operators is not None and point.state.mesh is self.operators.mesh
-        self.factors = point.state.root.factors if same_mesh else None
-        return replace(point, state=point.state.without_factors())
+        factors = point.state.root.factors
+        self.factors = factors if same_mesh else None
+        kept = replace(point, state=point.state.without_factors())
+        if kept.estimate is None and factors is not None:
+            self.waiting.append((kept, factors))
+        return kept
 
     def _coarsen(self, state: State) -> None:
         """Try wider tolerances from now on, and at once where the mesh they make is clearly smaller than the present one."""
@@ -135,6 +181,7 @@ class Follower:
             self.operators, self.fine = point.state.equations.operators, point.fine
             self.tolerances = point.tolerances or self.tolerances
             self.since_check = 0
+            self._learn(point)
         return self._kept(point)
 
 
@@ -145,18 +192,19 @@ class Filling:
         self, follower: Follower, targets: Sequence[float], on_point: Callable[[float, Point], object] | None
     ) -> None:
         self.follower = follower
-        self.waiting = list(targets)
+        self.targets = list(targets)
         self.on_point = on_point
         self.anchors: list[Anchor] = []
+        self.arrived: list[tuple[float, Point]] = []
         self.done: list[tuple[float, Point]] = []
         self.lost: Path[Point] | None = None
 
     def arrive(self, s: float, point: Point) -> None:
         """Take the next step of the path, and report the points up to it."""
         found = {s: point}
-        skipped = self.waiting[: self.waiting.index(s)] if s in self.waiting else []
-        self.waiting = self.waiting[len(skipped) + (s in self.waiting) :]
-        if self.waiting or skipped:
+        skipped = self.targets[: self.targets.index(s)] if s in self.targets else []
+        self.targets = self.targets[len(skipped) + (s in self.targets) :]
+        if self.targets or skipped:
             left, right = self.anchors[-1:], self._anchor(s, point)
             if skipped:
                 found = self._found(skipped, left[0], right) | found
@@ -165,9 +213,22 @@ class Filling:
         for c in [*skipped, s]:
             if c not in found:
                 break
-            self.done.append((c, found[c]))
-            if self.on_point is not None:
-                self.on_point(c, found[c])
+            self.arrived.append((c, found[c]))
+        if len(self.follower.waiting) >= self.follower.patience:
+            self.release()
+
+    def release(self, report: bool = True) -> None:
+        """Have the points judged that wait for it, and report all that arrived."""
+        judged = self.follower.judge_waiting()
+        self.arrived = [(s, judged.get(point, point)) for s, point in self.arrived]
+        while self.arrived and self.lost is None:
+            s, point = self.arrived.pop(0)
+            if not point.outcome.ok:
+                self.lost = Path((), (), point.outcome, 1, point)
+                break
+            self.done.append((s, point))
+            if report and self.on_point is not None:
+                self.on_point(s, point)
 
     def _anchor(self, s: float, point: Point) -> Anchor:
         """Return the anchor that a solved point is, and keep it as one to interpolate through."""
@@ -225,7 +286,7 @@ def follow(
 ) -> Path[Point]:
     """Return the converged points at ``coordinates``, ascending or descending, and those between that the path needed."""
     targets = [float(s) for s in coordinates]
-    follower = Follower(groups_at, rtol)
+    follower = Follower(groups_at, rtol, postpone=True)
     moving = bool(groups_at(targets[0]).speed > 0)
     filling = Filling(follower, targets, on_point)
     path = march(
@@ -242,6 +303,7 @@ def follow(
         stop_when=lambda _: filling.lost is not None,
         on_point=filling.arrive,
     )
+    filling.release(report=path.outcome is not Outcome.INTERRUPTED)
     end = path if filling.lost is None else filling.lost
     points = filling.done
     return Path(tuple(s for s, _ in points), tuple(point for _, point in points), end.outcome, end.failures, end.failure)

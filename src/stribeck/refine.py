@@ -37,7 +37,7 @@ def order_for(rtol: float) -> int:
 
 def mesh_tolerances_for(rtol: float) -> tuple[float, float]:
     """Return the Legendre tails to start refinement with; most states reach ``rtol`` with them at once."""
-    return min(1e-2, 0.4 * math.sqrt(rtol)), 0.03 * rtol
+    return min(1e-2, 0.2 * math.sqrt(rtol)), 0.03 * rtol
 
 
 def solvable(groups: Groups) -> Groups:

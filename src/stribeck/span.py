@@ -15,8 +15,11 @@ from .mesh import MeshTooLargeError
 from .newton import Outcome
 from .observables import observables
 from .parameters import Groups
-from .start import MESH_TOLERANCE, NEWTON_TOLERANCE, ORDER, RIGID_SPEED, rigid_guess
+from .start import MESH_TOLERANCE, NEWTON_TOLERANCE, ORDER, rigid_guess
 from .states import Guess, State, extrapolate, mesh_for, solve_state
+
+FASTEST = 1e3
+"""Speed group from which the branch is looked for; its film is the rigid one."""
 
 LEAST_SPEED = 1e-12
 """Speed group below which no curve begins by itself."""
@@ -40,7 +43,7 @@ def automatic_speeds(groups: Groups, mu0: float, beta: float, definition: str) -
     kappa = float(groups.relative_roughness)
     if kappa == 0:
         return 1e-9, 10.0
-    top = math.log(max(RIGID_SPEED, (30 * kappa) ** 1.5 * math.sqrt(24)))
+    top = math.log(max(FASTEST, (30 * kappa) ** 1.5 * math.sqrt(24)))
     plateau = False
 
     def correct(s: float, history: Sequence[tuple[float, State]]) -> State | None:

@@ -23,7 +23,7 @@ from .mesh import Mesh, MeshTooLargeError
 from .parameters import Groups
 from .states import Guess, State, extrapolate, mesh_for, solve_state
 
-RIGID_SPEED = 1e3
+RIGID_SPEED = 30.0
 """Speed group above which the rigid film starts Newton's iteration safely."""
 
 RIGID_ROUGHNESS = 30.0
@@ -35,7 +35,7 @@ at low speed would cross the sudden hand-over from asperities to film."""
 
 ORDER = 10
 MESH_TOLERANCE = 1e-3
-NEWTON_TOLERANCE = 1e-8
+NEWTON_TOLERANCE = 1e-5
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def cold_start(groups: Groups) -> Path[State]:
             return None
         return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
 
-    path = march(correct, top, 0.0, first_step=0.3, max_step=2.5, min_step=1e-3, order=3)
+    path = march(correct, top, 0.0, first_step=0.6, max_step=2.5, min_step=1e-3, order=3)
     return path
 
 

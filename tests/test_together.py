@@ -1,0 +1,117 @@
+"""States judged many at once: as each alone, and solved anew where the mesh that they share proves too coarse."""
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck import follow as follow_module
+from stribeck.equations import Operators
+from stribeck.estimate import FineOperators, reads_off
+from stribeck.follow import Follower, follow
+from stribeck.mesh import Mesh, base_edges
+from stribeck.refine import converge, judge
+from stribeck.start import cold_start
+from stribeck.states import solve_state
+from stribeck.together import judge_together
+
+RTOL = 1e-6
+SPEEDS = np.geomspace(1.0, 1e-5, 51)
+
+
+def groups_at(s):
+    return sb.Groups(float(np.exp(s)), 0.1, 1e-4)
+
+
+@pytest.fixture(scope="module")
+def neighbours():
+    """States on one mesh: two that share factors, and one with its own."""
+    first = converge(cold_start(groups_at(-3.0)).states[-1], groups_at(-3.0), RTOL)
+    operators = Operators(first.state.mesh)
+    kept = solve_state(groups_at(-3.1), operators, first.state, 1e-8, factors=first.state.root.factors)
+    own = solve_state(groups_at(-3.4), operators, kept, 1e-8)
+    assert kept.root.factors is first.state.root.factors
+    return [first.state, kept, own], FineOperators(operators.mesh)
+
+
+def test_states_are_judged_together_as_each_is_alone(neighbours):
+    states, fine = neighbours
+    points = judge_together(states, [state.root.factors for state in states], fine, RTOL)
+    for state, point in zip(states, points, strict=True):
+        alone = judge(state, state.groups, fine, RTOL)
+        assert point.outcome is alone.outcome and point.groups == state.groups
+        np.testing.assert_allclose(point.values.array(), alone.values.array(), rtol=1e-11)
+        for part in ("discretisation", "interpolation", "rounding"):
+            np.testing.assert_allclose(getattr(point.estimate, part), getattr(alone.estimate, part), rtol=1e-4, atol=1e-15)
+
+
+def test_a_mesh_reads_off_the_gaps_where_its_estimate_says_so(neighbours):
+    states, fine = neighbours
+    error = judge(states[0], states[0].groups, fine, RTOL).estimate.between_nodes
+    assert reads_off(states[0].mesh, states[0].gap, 2 * error)
+    assert not reads_off(states[0].mesh, states[0].gap, 0.1 * error)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+def test_points_whose_mesh_proves_too_coarse_are_solved_anew(monkeypatch, rtol):
+    whole = sb.stribeck_curve(load=0.1, roughness=1e-4, speed=SPEEDS[::-1], rtol=rtol)
+    again = []
+    solve_again = Follower._again
+    monkeypatch.setattr(Follower, "_again", lambda self, point: again.append(point) or solve_again(self, point))
+    monkeypatch.setattr(follow_module, "PATIENCE", 1e9)  # so that all wait, however large the errors of their mesh
+    patient = sb.stribeck_curve(load=0.1, roughness=1e-4, speed=SPEEDS[::-1], rtol=rtol)
+    assert again
+    assert patient.outcome.ok and len(patient) == len(SPEEDS)
+    assert patient.error_estimate <= rtol
+    np.testing.assert_allclose(patient.friction, whole.friction, rtol=2 * rtol)
+
+
+def test_a_point_that_cannot_be_resolved_ends_the_path_before_it(monkeypatch):
+    monkeypatch.setattr(follow_module, "PATIENCE", 1e9)
+    lost = []
+
+    def fail(self, point):
+        lost.append(point)
+        return point
+
+    monkeypatch.setattr(Follower, "_again", fail)
+    path = follow(groups_at, np.log(SPEEDS).tolist(), RTOL)
+    assert not path.outcome.ok
+    assert path.failure is lost[0]
+    assert len(path.states) >= 3
+    assert all(point.outcome.ok and point.estimate.total <= RTOL for point in path.states)
+    assert min(path.coordinates) > np.log(lost[0].groups.speed)
+
+
+def test_an_interrupted_path_keeps_the_points_that_waited_and_reports_none_twice():
+    reported = []
+
+    def report(s, point):
+        reported.append(s)
+        if len(reported) == 4:
+            raise KeyboardInterrupt
+
+    path = follow(groups_at, np.log(SPEEDS).tolist(), RTOL, report)
+    assert path.outcome is sb.Outcome.INTERRUPTED
+    assert len(reported) == 4
+    assert path.coordinates[:4] == tuple(reported)
+    assert all(point.estimate.total <= RTOL for point in path.states)
+
+
+def test_fine_panels_hold_the_far_gap_without_its_logarithm():
+    # x**2/2 - ln|x|/2 + c is exact there: a change of friction on finer nodes would be an error of the estimate alone.
+    from stribeck.contact_laws import contact_law
+    from stribeck.equations import Equations
+    from stribeck.estimate import changes
+    from stribeck.observables import observables
+    from stribeck.states import Rows
+
+    mesh = Mesh(base_edges(1.0, 8.0), 12, 1.0)
+    x = mesh.nodes
+    gap = 0.5 * (x * x + 1.0) - 0.25 * np.log(x * x + 1.0) + 1.0
+    y = np.append(gap, [1.0, 4 / 3])
+    groups = sb.Groups(1.0, 0.1, 1e-4)
+    equations = Equations(Operators(mesh), 1.0, contact_law(groups))
+    observed = observables(equations, y, 0.1).array()
+    rows = Rows(equations, y[None], 0.1, lambda r: r)
+    found = changes(rows, observed[None], FineOperators(mesh)).friction[:, 0]
+    assert (found <= 1e-9 * observed[-2:]).all()
