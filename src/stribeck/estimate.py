@@ -7,7 +7,7 @@ change of the unknowns that removing the defect would bring, to first order:
 .. math:: \delta y = -J^{-1} R_\mathrm{fine}(y)
 
 Rounding is treated alike: the residual is known to a few units in the last place of its largest term, with signs that
-nobody knows.  Both changes become errors of the observables by their gradients.
+nobody knows, of which a few patterns are tried.  All changes become errors of the observables by their gradients.
 To them comes what the polynomials on the panels miss between the nodes.
 """
 
@@ -51,6 +51,12 @@ than its formula in the gap, which there is the difference of nearly equal numbe
 
 ROUNDING_UNITS = 4.0
 """Units in the last place by which the residual may be wrong; checked against meshes that should agree."""
+
+PATTERNS = 5
+"""Patterns of signs of these: the mean square of what they change is known from so many within a factor of two."""
+
+DEVIATIONS = 3.0
+"""Standard deviations of the change by rounding that are stated as its error."""
 
 OFFSET_FLOOR = 1e-3
 """The error of the offset is relative to it where it exceeds this; it crosses zero."""
@@ -174,7 +180,7 @@ class ErrorEstimate:
 class Changes:
     """What may be wrong with states.
 
-    ``unknowns``, shape (1 + 2, rows, unknowns), are the changes that defect and rounding may cause, the defect first;
+    ``unknowns``, shape (1 + PATTERNS, rows, unknowns), are the changes that defect and rounding may cause, the defect first;
     ``friction``, shape (2, rows), is by how much the two friction integrals change on the finer nodes.
     """
 
@@ -198,7 +204,7 @@ def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
         slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
     pressure = equations.law.pressure(gap) + equations.speed * mesh.integral_from_infinity(slopes)
     deflection = fine.deflection(pressure, op)
-    residual = np.empty((3, *y.shape))
+    residual = np.empty((1 + PATTERNS, *y.shape))
     residual[0, :, :-2] = h - z0 - op.parabola - deflection
     residual[0, :, -2] = pressure @ mesh.weights - LOAD
     residual[0, :, -1] = np.ravel(equations.flux_scale) * (slopes @ mesh.weights)
@@ -234,9 +240,8 @@ def reads_off(mesh: Mesh, gap: Array, rtol: float) -> bool:
 
 @lru_cache(maxsize=64)
 def _signs(size: int) -> Array:
-    """Two fixed patterns of signs without order, shape (2, size)."""
-    k = np.arange(1, size + 1)
-    return np.asarray(np.sign(np.stack([np.sin(2.399963 * k * k), np.cos(1.7 * k * k)])))
+    """Return fixed patterns of signs without order, shape (PATTERNS, size)."""
+    return np.random.default_rng(size).choice(np.array([-1.0, 1.0]), (PATTERNS, size))
 
 
 def error_estimates(states: Rows, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
@@ -258,5 +263,6 @@ def error_estimates(states: Rows, observed: list[Observables], fine: FineOperato
     if not states.equations.moves:
         scales[:, 2:4] = np.maximum(scales[:, 2:4], GAP_FLOOR * states.equations.law.decay)
     scales[scales == 0] = 1.0
-    parts = (DEFECT_SAFETY * effects[:, :, 0], interpolation, effects[:, :, 1:].max(axis=2), scales)
+    rounding = DEVIATIONS * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
+    parts = (DEFECT_SAFETY * effects[:, :, 0], interpolation, rounding, scales)
     return [ErrorEstimate(*row) for row in zip(*parts, strict=True)]

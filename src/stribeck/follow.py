@@ -45,7 +45,7 @@ ANCHORS = 8
 MOST_WAITING = 8
 """Points that may wait to be judged together."""
 
-PATIENCE = 0.5
+PATIENCE = 0.6
 """How many wait where the errors at the nodes are as large as the tolerance; the smaller they are, the more."""
 
 MOST_STEPS = 16
@@ -76,7 +76,7 @@ class Follower:
         self.rtol = rtol
         self.postpone = postpone
         self.waiting: list[tuple[Point, Factors]] = []
-        self.patience = 1
+        self.at_nodes = math.inf  # error there of the last point that was judged, in units of rtol
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
         self.factors: Factors | None = None
@@ -95,8 +95,7 @@ class Follower:
             return self._kept(point)
         if point is None or point.state is None:
             return self._adopt(converge(guess, groups, self.rtol, self.tolerances))
-        assert point.estimate is not None
-        if point.estimate.at_nodes < FINER_THAN_NEEDED * self.rtol:  # the panels of the central and the least gap failed alone
+        if self.at_nodes < FINER_THAN_NEEDED:  # the panels of the central and the least gap failed alone
             self._relax()
         refined = converge(point.state, groups, self.rtol, self.tolerances)
         adopted = self._adopt(refined)
@@ -117,11 +116,16 @@ class Follower:
             self._learn(found[waiting[-1][0]])
         return {point: judged if judged.outcome.ok else self._again(judged) for point, judged in found.items()}
 
-    def _learn(self, point: Point) -> None:
-        """Set how many points may wait by how well the mesh resolves the last of them."""
+    @property
+    def patience(self) -> int:
+        """How many points may wait: the better the mesh resolved the last one, the more."""
+        return max(1, min(MOST_WAITING, int(PATIENCE / math.sqrt(self.at_nodes + 1e-300))))
+
+    def _learn(self, point: Point) -> Point:
+        """Return the point, and keep what it tells of the mesh."""
         if point.estimate is not None:
-            error = point.estimate.at_nodes / self.rtol
-            self.patience = max(1, min(MOST_WAITING, int(PATIENCE / math.sqrt(error + 1e-300))))
+            self.at_nodes = point.estimate.at_nodes / self.rtol
+        return point
 
     def _again(self, point: Point) -> Point:
         """Return a point whose mesh was too coarse: on the present one where that is another, else on a finer one."""
@@ -139,10 +143,12 @@ class Follower:
         state = solve_state(base, self.operators, guess, tolerance, MOST_STEPS, self.factors)
         if not state.outcome.ok:
             return None
-        if postpone and reads_off(state.mesh, state.gap, self.rtol):
-            point = Point(groups, state, None, None, state.outcome, fine=self.fine)
+        if postpone:
+            resolved = reads_off(state.mesh, state.gap, self.rtol)
+            outcome = Outcome.CONVERGED if resolved else Outcome.REFINEMENT_LIMIT
+            point = Point(groups, state, None, None, outcome, fine=self.fine)
         else:
-            point = judge(state, groups, self.fine, self.rtol)
+            point = self._learn(judge(state, groups, self.fine, self.rtol))
         self.since_check += 1
         if self.since_check >= CHECK_EVERY and point.outcome.ok:
             self._coarsen(state)
@@ -156,7 +162,7 @@ class Follower:
         factors = point.state.root.factors
         self.factors = factors if same_mesh else None
         kept = replace(point, state=point.state.without_factors())
-        if kept.estimate is None and factors is not None:
+        if kept.estimate is None and kept.outcome.ok and factors is not None:
             self.waiting.append((kept, factors))
         return kept
 

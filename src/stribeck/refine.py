@@ -128,7 +128,7 @@ def converge(
             best = Point(groups, state, values, estimate, reached(estimate, rtol), (tail, gap_tail), fine)
         if best.outcome.ok:
             return best
-        if estimate.total <= 3 * estimate.floor:
+        if estimate.total <= 1.5 * estimate.floor:
             outcome = Outcome.ROUNDING
             break
         tail *= shrink(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
