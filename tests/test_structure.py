@@ -25,6 +25,7 @@ PACKAGE = Path(stribeck.__file__).parent
 EQUATIONS = {"contact_laws", "elasticity", "equations", "mesh", "parameters", "reynolds"}
 ALGORITHMS = {"arclength", "continuation", "newton"}
 RESULTS = {"newton", "parameters", "solution", "solve", "threads", "units"}
+CURVE = {"curve_coordinate", "curve_result", "landmarks"}
 SURFACES = {
     "detrend",
     "persson",
@@ -89,21 +90,26 @@ MAY_IMPORT = {
     "solution": {"mesh", "newton", "observables", "parameters", "units"},
     "solve": (RESULTS - {"solve"}) | {"contact_laws", "hertz", "mesh", "observables", "refine", "start"},
     "regimes": RESULTS | {"atlas", "refine", "sensitivity", "start"},
-    "curve": RESULTS
-    | {"asymptotics", "atlas_curve", "follow", "plotting", "refine", "regimes", "sensitivity", "span", "store"},
-    "validity": RESULTS | {"asymptotics", "curve", "output"},
+    "curve_coordinate": RESULTS | {"sensitivity"},
+    "landmarks": RESULTS | {"curve_coordinate", "follow", "refine"},
+    "curve_result": RESULTS
+    | {"asymptotics", "curve_coordinate", "landmarks", "plotting", "refine", "regimes", "sensitivity", "store"},
+    "curve": RESULTS | CURVE | {"atlas_curve", "follow", "refine", "regimes", "span"},
+    "validity": RESULTS | {"asymptotics", "curve", "curve_result", "landmarks", "output"},
     "plot_validity": {"asymptotics", "figures", "output", "parameters", "plotting", "units"},
     "output": {"units"},
-    "store": RESULTS | {"curve", "output", "regimes"},
-    "plotting": RESULTS | {"curve", "output", "regimes"},
+    "store": RESULTS | {"curve_result", "output", "regimes"},
+    "plotting": RESULTS | {"curve_result", "output", "regimes"},
     "figures": RESULTS
-    | {"asymptotics", "curve", "hertz", "output", "phase_diagram", "plot_phase", "plotting", "regimes", "store", "validity"},
-    "report": RESULTS | {"case", "curve", "distances", "regimes", "store"},
-    "distances": RESULTS | {"curve", "regimes"},
+    | {"asymptotics", "curve", "curve_result", "hertz", "landmarks", "output", "phase_diagram", "plot_phase", "plotting"}
+    | {"regimes", "store", "validity"},
+    "report": RESULTS | {"case", "curve_result", "distances", "landmarks", "regimes", "store"},
+    "distances": RESULTS | {"curve", "curve_coordinate", "curve_result", "regimes"},
     "merging": RESULTS | {"follow", "refine", "sensitivity", "span"},
     "phase_grid": RESULTS | {"contact_laws", "regimes", "span"},
     "phase_dataset": RESULTS | {"asymptotics", "output", "phase_grid", "regimes", "store"},
-    "phase_diagram": RESULTS | {"atlas_phase", "curve", "merging", "phase_dataset", "phase_grid", "regimes", "span"},
+    "phase_diagram": RESULTS
+    | {"atlas_phase", "curve", "curve_result", "landmarks", "merging", "phase_dataset", "phase_grid", "regimes", "span"},
     "plot_phase": RESULTS | {"output", "plotting"},
     "sweep_points": set(),
     "sweep_order": set(),

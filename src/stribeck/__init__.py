@@ -4,10 +4,12 @@ from . import asymptotics, atlas, surfaces
 from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
 from .batch import BatchSolution, solve_batch
 from .case import Case, load_case
-from .curve import Landmark, StribeckCurve, stribeck_curve
+from .curve import stribeck_curve
+from .curve_result import StribeckCurve
 from .fit import fit
 from .fit_result import Fit, FitOutcome, FittedInput
 from .fit_settings import FitSettings
+from .landmarks import Landmark
 from .measurements import Measurements, read_measurements
 from .newton import Outcome
 from .parameters import Groups, HertzScales, InputError, LineContact

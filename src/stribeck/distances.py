@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from ._types import is_exponential
-from .curve import Over, StribeckCurve, stribeck_curve
+from .curve import stribeck_curve
+from .curve_coordinate import Over
+from .curve_result import StribeckCurve
 from .newton import Outcome
 from .parameters import LineContact
 from .regimes import BOUNDARY_FLUID_SHARE, EXPONENTS, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of

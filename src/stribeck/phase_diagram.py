@@ -16,7 +16,9 @@ import numpy as np
 
 from . import atlas_phase
 from ._types import Array, LawShape
-from .curve import Landmark, StribeckCurve, stribeck_curve
+from .curve import stribeck_curve
+from .curve_result import StribeckCurve
+from .landmarks import Landmark
 from .merging import merging_roughness, weakening
 from .newton import Outcome
 from .parameters import Groups, LineContact

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from .curve import StribeckCurve
+    from .curve_result import StribeckCurve
 
 __all__ = ["PICTURES", "plot_curve", "plot_profile"]
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._types import LawShape
-from .curve import Landmark, StribeckCurve
+from .curve_result import StribeckCurve
 from .distances import Crossing, Distance, TransitionDistances
+from .landmarks import Landmark
 from .parameters import QUANTITIES, Groups, LineContact
 from .regimes import regime_of
 from .solution import DEFINITIONS, Definition, Solution

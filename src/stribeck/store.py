@@ -21,7 +21,7 @@ from .units import DIMENSIONS, InputError
 if TYPE_CHECKING:
     import xarray
 
-    from .curve import StribeckCurve
+    from .curve_result import StribeckCurve
 
 __all__ = ["CSV", "DATA", "NETCDF", "curve_dataset", "si_films", "write_csv", "write_data", "write_netcdf"]
 

@@ -17,7 +17,9 @@ from numpy.typing import ArrayLike
 
 from ._types import Array, Flags
 from .asymptotics.formula import Formula
-from .curve import Landmark, StribeckCurve, stribeck_curve
+from .curve import stribeck_curve
+from .curve_result import StribeckCurve
+from .landmarks import Landmark
 from .output import MissingExtraError
 from .parameters import Groups
 from .solution import DEFINITIONS, Definition, Solution

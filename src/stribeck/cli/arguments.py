@@ -12,7 +12,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from ..case import Case, curve_range, load_case
-from ..curve import Over
+from ..curve_coordinate import Over
 from ..output import MissingExtraError, check_output
 from ..units import InputError, read_number, show
 

@@ -9,7 +9,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from ..case import load_case
-from ..curve import StribeckCurve, stribeck_curve
+from ..curve import stribeck_curve
+from ..curve_result import StribeckCurve
 from ..distances import transition_distances
 from ..newton import Outcome
 from ..parameters import QUANTITIES, Groups
