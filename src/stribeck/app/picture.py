@@ -11,7 +11,7 @@ import numpy as np
 
 from ..output import MissingExtraError
 from ..parameters import QUANTITIES
-from ..plotting import SYMBOLS
+from ..plot_style import SYMBOLS
 from ..units import format_si
 from .charts import all_charts
 from .inputs import FIELDS
