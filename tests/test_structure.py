@@ -24,7 +24,7 @@ PACKAGE = Path(stribeck.__file__).parent
 
 EQUATIONS = {"contact_laws", "elasticity", "equations", "mesh", "parameters", "reynolds"}
 ALGORITHMS = {"arclength", "continuation", "newton"}
-RESULTS = {"newton", "parameters", "solution", "solve", "threads", "units"}
+RESULTS = {"newton", "parameters", "quantities", "solution", "solve", "threads", "units"}
 CURVE = {"curve_coordinate", "curve_result", "landmarks"}
 SURFACES = {
     "detrend",
@@ -47,9 +47,11 @@ FIT = ("identify", "model", "objective", "profile", "quality", "result", "settin
 MAY_IMPORT = {
     "_types": set(),
     "units": set(),
-    "parameters": {"units"},
-    "fit_settings": {"parameters", "units"},
-    "case": {"case_law", "fit_settings", "parameters", "units"},
+    "quantities": {"units"},
+    "groups": {"quantities", "units"},
+    "parameters": {"groups", "quantities", "units"},
+    "fit_settings": {"quantities", "units"},
+    "case": {"case_law", "fit_settings", "parameters", "quantities", "units"},
     "case_law": {"asperity_laws", "contact_laws", "persson", "rough_surface", "spectrum", "two_columns", "units", "user_laws"},
     "two_columns": {"units"},
     "asperity_laws": {"units"},
@@ -87,7 +89,7 @@ MAY_IMPORT = {
     "follow": EQUATIONS | ALGORITHMS | {"estimate", "fill", "refine", "start", "states"},
     "near": RESULTS | {"follow", "refine"},
     "sensitivity": EQUATIONS | {"observables", "states"},
-    "solution": {"mesh", "newton", "observables", "parameters", "units"},
+    "solution": {"mesh", "newton", "observables", "parameters", "quantities", "units"},
     "solve": (RESULTS - {"solve"}) | {"contact_laws", "hertz", "mesh", "observables", "refine", "start"},
     "regimes": RESULTS | {"atlas", "refine", "sensitivity", "start"},
     "curve_coordinate": RESULTS | {"sensitivity"},
@@ -116,7 +118,7 @@ MAY_IMPORT = {
     "sweep_points": set(),
     "sweep_order": set(),
     "sweep_lock": {"units"},
-    "sweep_design": {"case", "case_law", "parameters", "sweep_points", "units"},
+    "sweep_design": {"case", "case_law", "parameters", "quantities", "sweep_points", "units"},
     "sweep_columns": RESULTS | {"observables", "store"},
     "sweep_chain": RESULTS | {"continuation", "follow", "refine", "sweep_columns", "sweep_order"},
     "sweep_store": {"output", "sweep_columns", "sweep_design", "units"},
@@ -125,7 +127,7 @@ MAY_IMPORT = {
     "sweep": RESULTS | {"output"} | {f"sweep_{part}" for part in SWEEP},
     "report_sweep": RESULTS | {"sweep", "sweep_columns", "sweep_dataset"},
     "lab_table": {"units"},
-    "measurements": {"fit_settings", "lab_table", "parameters", "units"},
+    "measurements": {"fit_settings", "lab_table", "quantities", "units"},
     "fit_states": RESULTS | {"atlas", "curve", "observables", "sensitivity"},
     "fit_model": RESULTS | {"fit_settings", "fit_states", "measurements", "regimes"},
     "fit_objective": RESULTS | {"fit_model", "fit_settings", "fit_states"},
@@ -147,7 +149,7 @@ MAY_IMPORT = {
     "batch": RESULTS | {"batch_device", "batch_guess", "batch_path", "batch_plan", "observables", "start"},
     "atlas_grid": set(),
     "atlas_table": {"atlas_grid"},
-    "atlas": {"atlas_grid", "atlas_table", "hertz", "parameters", "solution", "threads", "units"},
+    "atlas": {"atlas_grid", "atlas_table", "hertz", "parameters", "quantities", "solution", "threads", "units"},
     "atlas_curve": {"atlas", "parameters", "regimes", "solution", "units"},
     "atlas_phase": {"atlas", "atlas_curve", "newton", "parameters", "phase_grid", "regimes", "solution", "threads"},
     "atlas_build": {"atlas_grid", "atlas_table", "curve"},

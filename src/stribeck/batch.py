@@ -19,7 +19,8 @@ from .batch_path import Answer, descend, refined
 from .batch_plan import middle, planned
 from .newton import Outcome
 from .observables import NAMES, Observables
-from .parameters import Groups, quantity
+from .parameters import Groups
+from .quantities import quantity
 from .solution import Definition, check_definition
 from .solve import SolveError, check_rtol, least_estimate, solve
 from .start import cold_start

@@ -12,7 +12,8 @@ from typing import Any, Literal
 import numpy as np
 
 from ._types import Array
-from .parameters import QUANTITIES, Groups, LineContact
+from .parameters import Groups, LineContact
+from .quantities import QUANTITIES
 from .sensitivity import GROUPS
 from .solve import as_groups
 from .units import InputError, show, to_si

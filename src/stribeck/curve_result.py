@@ -16,7 +16,8 @@ from .asymptotics import hydrodynamic
 from .curve_coordinate import Coordinate, Over
 from .landmarks import Landmark, locate
 from .newton import Outcome
-from .parameters import QUANTITIES, Groups, LineContact
+from .parameters import Groups, LineContact
+from .quantities import QUANTITIES
 from .refine import Point
 from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
 from .sensitivity import GROUPS, friction_slopes

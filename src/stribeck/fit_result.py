@@ -13,7 +13,8 @@ from .fit_identify import Undetermined
 from .fit_quality import Quality
 from .fit_settings import FREE
 from .measurements import Measurements
-from .parameters import QUANTITIES, LineContact
+from .parameters import LineContact
+from .quantities import QUANTITIES
 from .solution import Definition
 from .units import DIMENSIONS
 

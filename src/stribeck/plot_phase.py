@@ -14,7 +14,6 @@ import numpy as np
 
 from ._types import Array
 from .output import PathLike
-from .parameters import QUANTITIES
 from .plot_style import (
     CONTACT,
     FLUID,
@@ -30,6 +29,7 @@ from .plot_style import (
     footer_lines,
     new_figure,
 )
+from .quantities import QUANTITIES
 from .units import InputError, format_si
 
 if TYPE_CHECKING:

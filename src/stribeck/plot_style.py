@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from ._types import Array
 from .output import MissingExtraError, PathLike, replacing
-from .parameters import QUANTITIES, LineContact
+from .parameters import LineContact
+from .quantities import QUANTITIES
 from .solution import Solution
 from .units import format_si
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from ._types import Array
 from .output import PathLike
-from .parameters import QUANTITIES
 from .plot_profile import plot_profile
 from .plot_style import (
     CONTACT,
@@ -32,6 +31,7 @@ from .plot_style import (
     new_figure,
     si_text,
 )
+from .quantities import QUANTITIES
 from .units import DIMENSIONS
 
 if TYPE_CHECKING:

@@ -13,7 +13,8 @@ from ._types import LawShape
 from .curve_result import StribeckCurve
 from .distances import Crossing, Distance, TransitionDistances
 from .landmarks import Landmark
-from .parameters import QUANTITIES, Groups, LineContact
+from .parameters import Groups, LineContact
+from .quantities import QUANTITIES
 from .regimes import regime_of
 from .solution import DEFINITIONS, Definition, Solution
 from .store import GROUPS, INPUTS, si_films, unit_of

@@ -14,7 +14,8 @@ from ._types import Array, Indices, WithArea, is_exponential
 from .mesh import Mesh
 from .newton import Outcome
 from .observables import NAMES, Observables, gap_at
-from .parameters import Groups, LineContact, quantity
+from .parameters import Groups, LineContact
+from .quantities import quantity
 from .units import InputError, show
 
 Definition = Literal["paper", "balanced"]

@@ -14,7 +14,7 @@ import numpy as np
 
 from ._types import LawShape, WithArea
 from .output import MissingExtraError, PathLike, replacing
-from .parameters import QUANTITIES
+from .quantities import QUANTITIES
 from .solution import DEFINITIONS, Solution
 from .units import DIMENSIONS, InputError
 

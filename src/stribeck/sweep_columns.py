@@ -9,7 +9,8 @@ import numpy as np
 from ._types import Array, LawShape, WithArea
 from .newton import Outcome
 from .observables import NAMES
-from .parameters import QUANTITIES, LineContact
+from .parameters import LineContact
+from .quantities import QUANTITIES
 from .solution import DEFINITIONS, Solution
 from .store import AREA, OBSERVABLES, si_films, unit_of
 

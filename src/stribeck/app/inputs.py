@@ -13,7 +13,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from ..case import Case
-from ..parameters import QUANTITIES, LineContact, quantity
+from ..parameters import LineContact
+from ..quantities import QUANTITIES, quantity
 from ..solution import Definition
 from ..units import format_si, read_number, to_si
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from html import escape
 
 from ..distances import TransitionDistances
-from ..parameters import QUANTITIES
+from ..quantities import QUANTITIES
 from ..units import format_si
 from .results import Answer, Transition
 

@@ -13,7 +13,8 @@ from ..curve import stribeck_curve
 from ..curve_result import StribeckCurve
 from ..distances import transition_distances
 from ..newton import Outcome
-from ..parameters import QUANTITIES, Groups
+from ..parameters import Groups
+from ..quantities import QUANTITIES
 from ..regimes import friction_elasticities
 from ..solution import coefficients
 from ..solve import solve
