@@ -14,6 +14,7 @@ from nicegui import ui
 from nicegui.json import dumps
 
 from . import charts, files, inputs, table
+from .echarts import data_only, difference
 from .files import Shown
 from .inputs import FIELDS, GROUP_FIELDS, Inputs
 from .measured import Measured
@@ -229,7 +230,7 @@ class Page:
         """Put whole charts and all numbers into a page that is being made."""
         for name, options in self.options(seen).items():
             self.charts[name].options.update(options)
-            self.shown[f"chart-{name}"] = charts.data_only(options)
+            self.shown[f"chart-{name}"] = data_only(options)
         for element, content in self.words(seen.answer):
             element.content = content
         self.shown |= {name: knob_state(now, name) for name in self.knobs}
@@ -254,8 +255,8 @@ class Page:
                 self.shown[element.html_id] = content
                 frame["html"].append([element.html_id, content])
         for name, whole in self.options(seen).items():
-            options = charts.data_only(whole)
-            changed = charts.difference(self.shown[f"chart-{name}"], options)
+            options = data_only(whole)
+            changed = difference(self.shown[f"chart-{name}"], options)
             self.shown[f"chart-{name}"] = options
             if changed is not None:
                 frame["charts"].append([self.charts[name].id, *changed])
