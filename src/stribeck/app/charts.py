@@ -10,10 +10,11 @@ import numpy as np
 from .._types import Array
 from ..solution import Definition
 from ..units import DIMENSIONS, format_si
+from .curves import Curve
 from .echarts import Options, chart, legend, line, linear_axis, log_axis, marker, pairs
 from .measured import Measured
 from .palette import PIN_DASHES, Palette
-from .results import Answer, Curve, round_down, round_up
+from .results import Answer, round_down, round_up
 
 __all__ = ["CHARTS", "all_charts"]
 

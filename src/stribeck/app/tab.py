@@ -19,12 +19,13 @@ from ..distances import TransitionDistances, transition_distances
 from ..solve import SolveError
 from ..units import InputError
 from . import files, inputs, table, url
+from .curves import Curve
 from .files import Shown
 from .inputs import Inputs
 from .measured import Measured, read_measured
 from .page import Page
 from .palette import LIGHT
-from .results import Curve, Model
+from .results import Model
 from .url import Pin
 
 __all__ = ["Tab"]

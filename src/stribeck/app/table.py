@@ -10,7 +10,8 @@ from html import escape
 from ..distances import TransitionDistances
 from ..quantities import QUANTITIES
 from ..units import format_si
-from .results import Answer, Transition
+from .curves import Transition
+from .results import Answer
 
 __all__ = ["Row", "distances_html", "numbers", "numbers_html"]
 
