@@ -24,7 +24,7 @@ PACKAGE = Path(stribeck.__file__).parent
 
 EQUATIONS = {"contact_laws", "elasticity", "equations", "mesh", "parameters", "reynolds"}
 ALGORITHMS = {"arclength", "continuation", "newton"}
-RESULTS = {"newton", "parameters", "quantities", "solution", "solve", "threads", "units"}
+RESULTS = {"friction", "newton", "parameters", "quantities", "solution", "solve", "threads", "units"}
 CURVE = {"curve_coordinate", "curve_result", "landmarks"}
 SURFACES = {
     "detrend",
@@ -90,8 +90,10 @@ MAY_IMPORT = {
     "follow": EQUATIONS | ALGORITHMS | {"estimate", "fill", "refine", "start", "states"},
     "near": RESULTS | {"follow", "refine"},
     "sensitivity": EQUATIONS | {"observables", "states"},
-    "solution": {"mesh", "newton", "observables", "parameters", "quantities", "units"},
-    "solve": (RESULTS - {"solve"}) | {"contact_laws", "hertz", "mesh", "observables", "refine", "start"},
+    "friction": {"parameters", "quantities", "units"},
+    "solution": {"friction", "mesh", "newton", "observables", "parameters", "units"},
+    "notes": {"observables", "parameters"},
+    "solve": (RESULTS - {"solve"}) | {"contact_laws", "hertz", "mesh", "notes", "observables", "refine", "start"},
     "regimes": RESULTS | {"atlas", "refine", "sensitivity", "start"},
     "curve_coordinate": RESULTS | {"sensitivity"},
     "landmarks": RESULTS | {"curve_coordinate", "follow", "refine"},
@@ -150,9 +152,9 @@ MAY_IMPORT = {
     "batch": RESULTS | {"batch_device", "batch_guess", "batch_path", "batch_plan", "observables", "start"},
     "atlas_grid": set(),
     "atlas_table": {"atlas_grid"},
-    "atlas": {"atlas_grid", "atlas_table", "hertz", "parameters", "quantities", "solution", "threads", "units"},
-    "atlas_curve": {"atlas", "parameters", "regimes", "solution", "units"},
-    "atlas_phase": {"atlas", "atlas_curve", "newton", "parameters", "phase_grid", "regimes", "solution", "threads"},
+    "atlas": {"atlas_grid", "atlas_table", "friction", "hertz", "parameters", "quantities", "threads", "units"},
+    "atlas_curve": {"atlas", "friction", "parameters", "regimes", "units"},
+    "atlas_phase": {"atlas", "atlas_curve", "friction", "newton", "parameters", "phase_grid", "regimes", "threads"},
     "atlas_build": {"atlas_grid", "atlas_table", "curve"},
     "atlas_certificate": {"atlas", "parameters", "solve"},
 }

@@ -9,13 +9,14 @@ from .curve_result import StribeckCurve
 from .fit import fit
 from .fit_result import Fit, FitOutcome, FittedInput
 from .fit_settings import FitSettings
+from .friction import Friction
 from .landmarks import Landmark
 from .measurements import Measurements, read_measurements
 from .newton import Outcome
 from .parameters import Groups, HertzScales, InputError, LineContact
 from .phase_diagram import phase_diagram
 from .regimes import regime_of
-from .solution import Friction, Profile, Solution
+from .solution import Profile, Solution
 from .solve import SolveError, solve
 from .sweep import SweepProgress, sweep
 from .sweep_dataset import Sweep, open_sweep

@@ -13,12 +13,12 @@ from .atlas_curve import AtlasCurve
 from .curve_coordinate import Coordinate, Over, check_inside, read_problem
 from .curve_result import StribeckCurve
 from .follow import follow
+from .friction import Definition, check_definition, coefficients
 from .landmarks import Landmark
 from .newton import Outcome
 from .parameters import Groups, LineContact
 from .refine import Point
 from .regimes import Method, check_method
-from .solution import Definition, check_definition, coefficients
 from .solve import SolveError, check_rtol, describe, finish, solution_of, with_law
 from .span import automatic_speeds
 from .threads import one_blas_thread

@@ -14,6 +14,7 @@ import numpy as np
 from ._types import Array, LawShape
 from .asymptotics import hydrodynamic
 from .curve_coordinate import Coordinate, Over
+from .friction import Definition
 from .landmarks import Landmark, locate
 from .newton import Outcome
 from .parameters import Groups, LineContact
@@ -21,7 +22,7 @@ from .quantities import QUANTITIES
 from .refine import Point
 from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
 from .sensitivity import GROUPS, friction_slopes
-from .solution import Definition, Solution
+from .solution import Solution
 from .units import format_si
 
 if TYPE_CHECKING:

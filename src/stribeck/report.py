@@ -12,11 +12,12 @@ import numpy as np
 from ._types import LawShape
 from .curve_result import StribeckCurve
 from .distances import Crossing, Distance, TransitionDistances
+from .friction import DEFINITIONS, Definition
 from .landmarks import Landmark
 from .parameters import Groups, LineContact
 from .quantities import QUANTITIES
 from .regimes import regime_of
-from .solution import DEFINITIONS, Definition, Solution
+from .solution import Solution
 from .store import GROUPS, INPUTS, si_films, unit_of
 from .units import format_si
 

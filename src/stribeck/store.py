@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._types import LawShape, WithArea
+from .friction import DEFINITIONS
 from .output import MissingExtraError, PathLike, replacing
 from .quantities import QUANTITIES
-from .solution import DEFINITIONS, Solution
+from .solution import Solution
 from .units import DIMENSIONS, InputError
 
 if TYPE_CHECKING:

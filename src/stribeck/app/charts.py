@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from .._types import Array
-from ..solution import Definition
+from ..friction import Definition
 from ..units import DIMENSIONS, format_si
 from .curves import Curve
 from .echarts import Options, chart, legend, line, linear_axis, log_axis, marker, pairs

@@ -16,9 +16,9 @@ from .._types import Array
 from ..atlas_curve import ERROR
 from ..atlas_phase import transition_speeds
 from ..curve import stribeck_curve
+from ..friction import DEFINITIONS, Definition
 from ..parameters import Groups, LineContact
 from ..regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
-from ..solution import DEFINITIONS, Definition
 from ..solve import SolveError
 
 __all__ = [

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from ..case import Case
+from ..friction import Definition
 from ..parameters import LineContact
 from ..quantities import QUANTITIES, quantity
-from ..solution import Definition
 from ..units import format_si, read_number, to_si
 
 __all__ = [

@@ -16,10 +16,11 @@ import numpy as np
 
 from .._types import Array
 from ..asymptotics import FORMULAS
+from ..friction import Definition
 from ..near import NearSolver
 from ..parameters import LineContact
 from ..regimes import Regime, regime_of
-from ..solution import Definition, Profile, Solution
+from ..solution import Profile, Solution
 from ..solve import SolveError
 from ..units import InputError
 from .curves import (

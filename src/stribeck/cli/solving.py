@@ -12,11 +12,11 @@ from ..case import load_case
 from ..curve import stribeck_curve
 from ..curve_result import StribeckCurve
 from ..distances import transition_distances
+from ..friction import coefficients
 from ..newton import Outcome
 from ..parameters import Groups
 from ..quantities import QUANTITIES
 from ..regimes import friction_elasticities
-from ..solution import coefficients
 from ..solve import solve
 from ..units import InputError, format_si
 from .arguments import (
