@@ -10,6 +10,7 @@ from .fit import fit
 from .fit_result import Fit, FitOutcome, FittedInput
 from .fit_settings import FitSettings
 from .friction import Friction
+from .function_law import FunctionLaw
 from .landmarks import Landmark
 from .measurements import Measurements, read_measurements
 from .newton import Outcome
@@ -22,7 +23,7 @@ from .sweep import SweepProgress, sweep
 from .sweep_dataset import Sweep, open_sweep
 from .sweep_design import SweepDesign, load_sweep
 from .sweep_store import SweepError
-from .user_laws import FunctionLaw, TableLaw
+from .table_law import TableLaw
 
 __all__ = [
     "BatchSolution",
