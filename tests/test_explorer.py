@@ -14,6 +14,7 @@ import pytest
 
 import stribeck as sb
 from stribeck.app import charts, files, inputs, server, table, url
+from stribeck.app.echarts import data_only, difference
 from stribeck.app.measured import read_measured
 from stribeck.app.palette import DARK, LIGHT
 from stribeck.app.results import Model, round_down, round_up, thin_lines
@@ -220,16 +221,16 @@ def applied(old, change):
 
 def test_a_moved_speed_sends_the_point_alone_where_nothing_else_moves(answer):
     model = Model()
-    before = charts.data_only(charts.all_charts(model(START), [], [], LIGHT))
+    before = data_only(charts.all_charts(model(START), [], [], LIGHT))
     moved = inputs.slid(START, "speed", inputs.position(START, "speed") + 0.05)
-    after = charts.data_only(charts.all_charts(model(moved), [], [], LIGHT))
+    after = data_only(charts.all_charts(model(moved), [], [], LIGHT))
     for name in ("friction", "diagram"):
-        options, settings = charts.difference(before[name], after[name])
+        options, settings = difference(before[name], after[name])
         assert set(options) == {"series"} and settings == {}
         assert [set(series) for series in options["series"]] == [{"id", "data"}]
     for name in charts.CHARTS:
-        assert applied(before[name], charts.difference(before[name], after[name])) == after[name]
-        assert charts.difference(after[name], after[name]) is None
+        assert applied(before[name], difference(before[name], after[name])) == after[name]
+        assert difference(after[name], after[name]) is None
 
 
 def test_a_pin_and_a_measured_curve_are_drawn_over_the_chosen_abscissa(answer):

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stribeck.parameters import QUANTITIES, Groups, InputError, LineContact
+from stribeck.parameters import Groups, InputError, LineContact
+from stribeck.quantities import QUANTITIES
 
 INPUTS = {
     "radius": "10 mm",

@@ -20,7 +20,7 @@ from sweep_files import CONTACT, GRID, RANDOM, chunks, done_rows, same_rows, wri
 import stribeck as sb
 from stribeck import sweep_chain
 from stribeck.newton import Outcome
-from stribeck.parameters import INPUTS
+from stribeck.quantities import INPUTS
 from stribeck.sweep_lock import LOCK
 
 LONG = RANDOM.format(kind="sobol", points=1024)

@@ -5,7 +5,7 @@ import pytest
 from sweep_files import CONTACT, GRID, RANDOM, write
 
 import stribeck as sb
-from stribeck.parameters import INPUTS
+from stribeck.quantities import INPUTS
 from stribeck.sweep_order import CHAIN, chains_of, coordinates
 
 VARY = """

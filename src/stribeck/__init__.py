@@ -4,22 +4,26 @@ from . import asymptotics, atlas, surfaces
 from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
 from .batch import BatchSolution, solve_batch
 from .case import Case, load_case
-from .curve import Landmark, StribeckCurve, stribeck_curve
+from .curve import stribeck_curve
+from .curve_result import StribeckCurve
 from .fit import fit
 from .fit_result import Fit, FitOutcome, FittedInput
 from .fit_settings import FitSettings
+from .friction import Friction
+from .function_law import FunctionLaw
+from .landmarks import Landmark
 from .measurements import Measurements, read_measurements
 from .newton import Outcome
 from .parameters import Groups, HertzScales, InputError, LineContact
 from .phase_diagram import phase_diagram
 from .regimes import regime_of
-from .solution import Friction, Profile, Solution
+from .solution import Profile, Solution
 from .solve import SolveError, solve
 from .sweep import SweepProgress, sweep
 from .sweep_dataset import Sweep, open_sweep
 from .sweep_design import SweepDesign, load_sweep
 from .sweep_store import SweepError
-from .user_laws import FunctionLaw, TableLaw
+from .table_law import TableLaw
 
 __all__ = [
     "BatchSolution",

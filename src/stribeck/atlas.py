@@ -16,8 +16,9 @@ from . import hertz
 from ._types import Array, is_exponential
 from .atlas_grid import HEAVY, LEAST_LOAD, LEAST_SPEED, NEARLY_SMOOTH, region_at
 from .atlas_table import TABULATED, Values, load_table, solver_hash
-from .parameters import Groups, InputError, quantity
-from .solution import Definition, check_definition
+from .friction import Definition, check_definition
+from .parameters import Groups, InputError
+from .quantities import quantity
 from .threads import one_blas_thread
 from .units import show
 

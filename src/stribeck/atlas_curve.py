@@ -10,9 +10,9 @@ import numpy as np
 
 from . import atlas
 from ._types import Array
+from .friction import Definition
 from .parameters import Groups, InputError, LineContact
 from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
-from .solution import Definition
 from .units import show
 
 ERROR = 1e-4

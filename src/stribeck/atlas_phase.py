@@ -11,11 +11,11 @@ import numpy as np
 from . import atlas
 from ._types import Array
 from .atlas_curve import ERROR, AtlasCurve
+from .friction import Definition
 from .newton import Outcome
 from .parameters import Groups
 from .phase_grid import MARKS, REGIMES, Diagram
 from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
-from .solution import Definition
 from .threads import one_blas_thread
 
 DENSITY = 20

@@ -17,10 +17,11 @@ from .batch_device import Device, device_for, one_torch_thread
 from .batch_guess import column_groups, spread
 from .batch_path import Answer, descend, refined
 from .batch_plan import middle, planned
+from .friction import Definition, check_definition
 from .newton import Outcome
 from .observables import NAMES, Observables
-from .parameters import Groups, quantity
-from .solution import Definition, check_definition
+from .parameters import Groups
+from .quantities import quantity
 from .solve import SolveError, check_rtol, least_estimate, solve
 from .start import cold_start
 from .threads import one_blas_thread

@@ -1,7 +1,7 @@
 """Case files: a TOML file of quantities with units becomes a checked :class:`Case`.
 
 Everything that is wrong with a file is told in one go, a sentence for each problem, with the path, the table
-and the key. What a quantity may be is not written here but in :mod:`stribeck.parameters`.
+and the key. What a quantity may be is not written here but in :mod:`stribeck.quantities`.
 """
 
 import difflib
@@ -14,7 +14,8 @@ from typing import Annotated, Any, Literal
 
 from .case_law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
 from .fit_settings import FitSettings, check_fit_table
-from .parameters import QUANTITIES, InputError, LineContact, check_modulus_choice, quantity
+from .parameters import InputError, LineContact
+from .quantities import QUANTITIES, check_modulus_choice, quantity
 from .units import DIMENSIONS, FROM_HARDNESS, show
 
 __all__ = ["Case", "CurveSettings", "curve_range", "error_sentence", "example_of", "load_case", "read_toml"]

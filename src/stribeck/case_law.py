@@ -12,9 +12,9 @@ from .contact_laws import NAMED, ExponentialShape
 from .persson import GAMMA, PerssonLaw, persson_law
 from .rough_surface import RoughSurface
 from .spectrum import Spectrum
+from .table_law import TableLaw
 from .two_columns import read_two_columns
 from .units import InputError, show
-from .user_laws import TableLaw
 
 __all__ = ["ASPERITIES", "FROM_TABLES", "LAWS", "SURFACE", "TABLE", "TABLES_OF", "Law", "LawOfFile", "law_of_file"]
 

@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 
 from ._types import is_exponential
-from .curve import Over, StribeckCurve, stribeck_curve
+from .curve import stribeck_curve
+from .curve_coordinate import Over
+from .curve_result import StribeckCurve
+from .friction import Definition, check_definition
 from .newton import Outcome
 from .parameters import LineContact
 from .regimes import BOUNDARY_FLUID_SHARE, EXPONENTS, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
-from .solution import Definition, Solution, check_definition
+from .solution import Solution
 from .solve import SolveError, check_rtol, solve
 from .threads import one_blas_thread
 from .units import InputError, show

@@ -24,9 +24,9 @@ from .fit_quality import judge_residuals
 from .fit_result import Fit, FitOutcome, FittedInput, unit_of
 from .fit_settings import DEFAULT_FREE, FitSettings, free_names
 from .fit_states import PartsOf, atlas_or_solved_parts, atlas_parts, solved_parts
+from .friction import Definition
 from .measurements import Measurements, read_measurements
 from .parameters import LineContact
-from .solution import Definition
 from .threads import one_blas_thread
 from .units import InputError, show
 

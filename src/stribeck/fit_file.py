@@ -10,7 +10,8 @@ from pathlib import Path
 from .case import Case, load_case
 from .fit_result import Fit, FittedInput
 from .output import PathLike, replacing
-from .parameters import QUANTITIES, InputError
+from .parameters import InputError
+from .quantities import QUANTITIES
 from .units import format_si
 
 __all__ = ["format_interval", "format_value", "write_fitted_case"]

@@ -23,7 +23,8 @@ from ._types import Array, Indices
 from .fit_settings import FitSettings
 from .fit_states import Parts, PartsOf
 from .measurements import Measurements
-from .parameters import QUANTITIES, Groups, LineContact
+from .parameters import Groups, LineContact
+from .quantities import QUANTITIES
 from .regimes import EXPONENTS
 from .units import InputError, format_si
 

@@ -12,9 +12,10 @@ from ._types import Array
 from .fit_identify import Undetermined
 from .fit_quality import Quality
 from .fit_settings import FREE
+from .friction import Definition
 from .measurements import Measurements
-from .parameters import QUANTITIES, LineContact
-from .solution import Definition
+from .parameters import LineContact
+from .quantities import QUANTITIES
 from .units import DIMENSIONS
 
 __all__ = ["Fit", "FitOutcome", "FittedInput"]

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from .parameters import QUANTITIES, quantity
+from .quantities import QUANTITIES, quantity
 from .units import InputError, show
 
 __all__ = ["FREE", "FitSettings", "Prior", "check_fit_table", "free_names"]

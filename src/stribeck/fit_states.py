@@ -13,10 +13,10 @@ import numpy as np
 from . import atlas
 from ._types import Array, LawShape
 from .curve import stribeck_curve
+from .friction import Definition
 from .observables import NAMES
 from .parameters import Groups, InputError
 from .sensitivity import log_derivatives
-from .solution import Definition
 from .solve import SolveError
 
 __all__ = ["Parts", "PartsOf", "atlas_parts", "atlas_or_solved_parts", "solved_parts"]

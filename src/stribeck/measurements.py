@@ -17,7 +17,7 @@ import numpy as np
 from ._types import Array, Indices
 from .fit_settings import FitSettings
 from .lab_table import MISSING, LabTable, number_of, read_table
-from .parameters import QUANTITIES, quantity
+from .quantities import QUANTITIES, quantity
 from .units import InputError, show, to_si
 
 __all__ = ["Measurements", "read_measurements"]

@@ -18,11 +18,11 @@ import numpy as np
 
 from ._types import LawShape
 from .follow import Follower
+from .friction import Definition, check_definition, coefficients
 from .newton import Outcome
 from .parameters import Groups
 from .refine import Point
 from .sensitivity import friction_slopes
-from .solution import Definition, check_definition, coefficients
 from .solve import SolveError, as_groups, check_rtol, describe
 from .span import automatic_speeds
 from .threads import one_blas_thread

@@ -16,13 +16,16 @@ import numpy as np
 
 from . import atlas_phase
 from ._types import Array, LawShape
-from .curve import Landmark, StribeckCurve, stribeck_curve
+from .curve import stribeck_curve
+from .curve_result import StribeckCurve
+from .friction import Definition
+from .landmarks import Landmark
 from .merging import merging_roughness, weakening
 from .newton import Outcome
 from .parameters import Groups, LineContact
 from .phase_grid import FIELDS, MARKS, REGIMES, Diagram, empty_diagram
 from .regimes import Method, check_method, regime_of
-from .solution import Definition, Solution
+from .solution import Solution
 from .solve import SolveError, check_rtol, solve
 from .span import automatic_speeds
 from .threads import one_blas_thread

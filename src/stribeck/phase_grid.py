@@ -11,10 +11,11 @@ import numpy as np
 
 from ._types import Array, LawShape
 from .contact_laws import named_law
+from .friction import Definition, check_definition, coefficients
 from .newton import Outcome
-from .parameters import QUANTITIES, Groups, LineContact, check_law
+from .parameters import Groups, LineContact
+from .quantities import QUANTITIES, check_law
 from .regimes import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
-from .solution import Definition, check_definition, coefficients
 from .solve import as_groups, with_law
 from .span import automatic_speeds
 from .units import InputError, show, to_si

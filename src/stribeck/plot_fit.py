@@ -13,7 +13,7 @@ import numpy as np
 from .fit_file import format_interval, format_value
 from .fit_result import Fit
 from .output import PathLike
-from .plotting import CONTACT, FLUID, GREY, INK, MARK, _figure, _finish, _legend, _lines, _logarithmic
+from .plot_style import CONTACT, FLUID, GREY, INK, MARK, add_legend, finish_figure, footer_lines, make_logarithmic, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -60,10 +60,10 @@ def plot_fit(fit: Fit, path: PathLike | None = None, *, force: bool = False, tit
         If matplotlib is not installed.
     """
     data = fit.data
-    figure, (above, below) = _figure((8.5, 6.2), _footer(fit), rows=2, title=title or "Fit to measured friction")
-    _logarithmic(above, "x", data.values)
-    _logarithmic(above, "y", data.friction)
-    _logarithmic(below, "x", data.values)
+    figure, (above, below) = new_figure((8.5, 6.2), _footer(fit), rows=2, title=title or "Fit to measured friction")
+    make_logarithmic(above, "x", data.values)
+    make_logarithmic(above, "y", data.friction)
+    make_logarithmic(below, "x", data.values)
     bars: Any = fit._minimum.objective.sigma
     for k, name in enumerate(data.curves):
         rows = data.curve == k
@@ -88,8 +88,8 @@ def plot_fit(fit: Fit, path: PathLike | None = None, *, force: bool = False, tit
     above.set_ylabel(r"friction coefficient $\mu$")
     below.set_ylabel("residual (standard errors)")
     below.set_xlabel(LABELS[data.abscissa])
-    _legend(figure, (above, below))
-    return _finish(figure, path, force)
+    add_legend(figure, (above, below))
+    return finish_figure(figure, path, force)
 
 
 def _footer(fit: Fit) -> list[tuple[str, str]]:
@@ -97,4 +97,4 @@ def _footer(fit: Fit) -> list[tuple[str, str]]:
     noise = "" if math.isnan(fit.noise) else f" Noise {fit.noise:.2g}{', relative' if fit.logarithmic else ''}."
     ended = f"{fit.outcome.value}{noise} Contact law: {fit.law}; friction: {fit.definition}."
     warnings = [*fit.quality.messages, *(each.message for each in fit.undetermined)]
-    return _lines([[f"Fitted: {parts[0]}", *parts[1:]], [ended]], warnings, 132)
+    return footer_lines([[f"Fitted: {parts[0]}", *parts[1:]], [ended]], warnings, 132)

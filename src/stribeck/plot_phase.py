@@ -14,8 +14,22 @@ import numpy as np
 
 from ._types import Array
 from .output import PathLike
-from .parameters import QUANTITIES
-from .plotting import CONTACT, FLUID, GREY, INK, LEGEND, LINE, MARK, SYMBOLS, TINTS, _figure, _finish, _legend, _lines
+from .plot_style import (
+    CONTACT,
+    FLUID,
+    GREY,
+    INK,
+    LEGEND,
+    LINE,
+    MARK,
+    SYMBOLS,
+    TINTS,
+    add_legend,
+    finish_figure,
+    footer_lines,
+    new_figure,
+)
+from .quantities import QUANTITIES
 from .units import InputError, format_si
 
 if TYPE_CHECKING:
@@ -94,10 +108,10 @@ def plot_phase_diagram(
     plane = _plane(dataset, load)
     # An empty line leaves room for the third row of the legend.
     footer = [("", GREY), *_footer(dataset, [float(plane["load"])])]
-    figure, (axes,) = _figure((9.0, 5.6), footer, title=title or "Phase diagram")
+    figure, (axes,) = new_figure((9.0, 5.6), footer, title=title or "Phase diagram")
     draw_phase_diagram(axes, dataset, load)
-    _legend(figure, [axes], columns=3)
-    return _finish(figure, path, force)
+    add_legend(figure, [axes], columns=3)
+    return finish_figure(figure, path, force)
 
 
 def plot_phase_space(dataset: xarray.Dataset, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
@@ -129,13 +143,13 @@ def plot_phase_space(dataset: xarray.Dataset, path: PathLike | None = None, *, f
     _plane(dataset, None)
     loads = dataset["load"].values
     footer = _footer(dataset, [loads[0], loads[-1]])
-    figure, (flat,) = _figure((9.0, 6.4), footer, title=title or "Phase diagram")
+    figure, (flat,) = new_figure((9.0, 6.4), footer, title=title or "Phase diagram")
     flat.remove()
     bottom = (LINE * len(footer) + 2 * LEGEND) / figure.get_figheight()
     axes = figure.add_axes((0.0, bottom, 0.97, 0.97 - bottom), projection="3d")
     draw_phase_space(axes, dataset)
-    _legend(figure, [axes], columns=3)
-    return _finish(figure, path, force)
+    add_legend(figure, [axes], columns=3)
+    return finish_figure(figure, path, force)
 
 
 def draw_phase_diagram(axes: Axes, dataset: xarray.Dataset, load: float | None = None) -> None:
@@ -348,4 +362,4 @@ def _footer(dataset: xarray.Dataset, loads: list[float]) -> list[tuple[str, str]
         f"stribeck {version('stribeck')}",
     ]
     notes = [] if attributes["complete"] else [attributes["outcome"]]
-    return _lines([first, second], notes, 140)
+    return footer_lines([first, second], notes, 140)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .output import MissingExtraError, PathLike, replacing
-from .plotting import CONTACT, FLUID, GREY, INK, MARK, PICTURES
+from .plot_style import CONTACT, FLUID, GREY, INK, MARK, PICTURES
 from .report_surface import error_text
 from .surfaces import Surface
 from .units import DIMENSIONS, format_si

@@ -14,7 +14,7 @@ from .asymptotics.formula import Formula
 from .figures.style import DASHED, house_style, power, save, sequence
 from .output import MissingExtraError, PathLike, replacing
 from .parameters import Groups
-from .plotting import CONTACT, GREY, INK, PICTURES, TINTS
+from .plot_style import CONTACT, GREY, INK, PICTURES, TINTS
 from .units import InputError
 
 if TYPE_CHECKING:

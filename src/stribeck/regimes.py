@@ -9,9 +9,10 @@ import numpy as np
 
 from . import atlas
 from ._types import Array
+from .friction import Definition, check_definition
 from .parameters import LineContact
 from .sensitivity import friction_slopes
-from .solution import Definition, Solution, check_definition
+from .solution import Solution
 from .solve import check_rtol, finish, solve, solved_point
 from .threads import one_blas_thread
 from .units import InputError, show

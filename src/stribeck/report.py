@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._types import LawShape
-from .curve import Landmark, StribeckCurve
+from .curve_result import StribeckCurve
 from .distances import Crossing, Distance, TransitionDistances
-from .parameters import QUANTITIES, Groups, LineContact
+from .friction import DEFINITIONS, Definition
+from .landmarks import Landmark
+from .parameters import Groups, LineContact
+from .quantities import QUANTITIES
 from .regimes import regime_of
-from .solution import DEFINITIONS, Definition, Solution
+from .solution import Solution
 from .store import GROUPS, INPUTS, si_films, unit_of
 from .units import format_si
 

@@ -14,10 +14,11 @@ from ._types import Array, LawShape, is_exponential
 from .contact_laws import named_law
 from .mesh import Mesh
 from .newton import Outcome
+from .notes import law_notes, shape_notes
 from .observables import NAMES, Observables
 from .parameters import Groups, LineContact
 from .refine import Point, converge, order_for, quasistatic_shift, solvable
-from .solution import Solution, law_notes, shape_notes
+from .solution import Solution
 from .start import cold_start, start_by_exponential
 from .threads import one_blas_thread
 from .units import InputError, show

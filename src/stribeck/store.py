@@ -13,15 +13,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._types import LawShape, WithArea
+from .friction import DEFINITIONS
 from .output import MissingExtraError, PathLike, replacing
-from .parameters import QUANTITIES
-from .solution import DEFINITIONS, Solution
+from .quantities import QUANTITIES
+from .solution import Solution
 from .units import DIMENSIONS, InputError
 
 if TYPE_CHECKING:
     import xarray
 
-    from .curve import StribeckCurve
+    from .curve_result import StribeckCurve
 
 __all__ = ["CSV", "DATA", "NETCDF", "curve_dataset", "si_films", "write_csv", "write_data", "write_netcdf"]
 

@@ -12,7 +12,8 @@ from ._types import Array, LawShape
 from .continuation import march
 from .follow import LONGEST_STEP, PREDICTOR_ORDER, SHORTEST_STEP, Follower
 from .newton import Outcome
-from .parameters import INPUTS, Groups, LineContact
+from .parameters import Groups, LineContact
+from .quantities import INPUTS
 from .refine import Point
 from .solve import describe, hertz_solution, solution_of
 from .sweep_columns import ERROR, failed_row, row_of

@@ -7,10 +7,12 @@ import math
 import numpy as np
 
 from ._types import Array, LawShape, WithArea
+from .friction import DEFINITIONS
 from .newton import Outcome
 from .observables import NAMES
-from .parameters import QUANTITIES, LineContact
-from .solution import DEFINITIONS, Solution
+from .parameters import LineContact
+from .quantities import QUANTITIES
+from .solution import Solution
 from .store import AREA, OBSERVABLES, si_films, unit_of
 
 __all__ = ["OUTCOMES", "columns_of", "failed_row", "input_columns", "row_of"]

@@ -18,7 +18,8 @@ import numpy as np
 from ._types import Array, LawShape
 from .case import Case, contact_inputs, error_sentence, example_of, group_inputs, read_toml, surface_table
 from .case_law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
-from .parameters import INPUTS, QUANTITIES, Groups, LineContact, check_modulus_choice, quantity
+from .parameters import Groups, LineContact
+from .quantities import INPUTS, QUANTITIES, check_modulus_choice, quantity
 from .sweep_points import KINDS, RANDOM, Axis, Kind, points_of
 from .units import InputError, show
 

@@ -17,10 +17,13 @@ from numpy.typing import ArrayLike
 
 from ._types import Array, Flags
 from .asymptotics.formula import Formula
-from .curve import Landmark, StribeckCurve, stribeck_curve
+from .curve import stribeck_curve
+from .curve_result import StribeckCurve
+from .friction import DEFINITIONS, Definition
+from .landmarks import Landmark
 from .output import MissingExtraError
 from .parameters import Groups
-from .solution import DEFINITIONS, Definition, Solution
+from .solution import Solution
 from .solve import SolveError, solve
 from .units import InputError, show
 

@@ -1,41 +1,24 @@
-"""The four charts of the page as options of ECharts: friction, gap, pressure, phase diagram.
-
-Each function returns the whole chart as plain data; keys that begin with a colon hold JavaScript and are sent once, when the
-chart is made. Every series has a name for itself, ``id``, by which later data find it.
-"""
+"""The four charts of the page: friction, gap, pressure, phase diagram, each as plain data by its own function."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from .._types import Array
-from ..solution import Definition
+from ..friction import Definition
 from ..units import DIMENSIONS, format_si
+from .curves import Curve
+from .echarts import Options, chart, legend, line, linear_axis, log_axis, marker, pairs
 from .measured import Measured
 from .palette import PIN_DASHES, Palette
-from .results import Answer, Curve, round_down, round_up
+from .results import Answer, round_down, round_up
 
-__all__ = ["CHARTS", "all_charts", "data_only", "difference"]
-
-Options = dict[str, Any]
+__all__ = ["CHARTS", "all_charts"]
 
 CHARTS = ("friction", "gap", "pressure", "diagram")
-
-FONT = "Roboto, system-ui, sans-serif"
-
-POWER = """value => {
-  const e = Math.round(Math.log10(value));
-  if (Math.abs(value / Math.pow(10, e) - 1) > 1e-6) return Number(value.toPrecision(2)).toString();
-  if (e >= -2 && e <= 3) return String(Number(Math.pow(10, e).toPrecision(1)));
-  return '10' + String(e).replace(/./g, c => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]);
-}"""
-"""Labels of logarithmic axes: 0.01 to 1000 as such, powers of ten beyond."""
-
-PRECISION = "value => typeof value === 'number' ? Number(value.toPrecision(4)).toString() : value"
 
 POLYGON = """(params, api) => {
   const points = [];
@@ -74,42 +57,6 @@ def all_charts(
     }
 
 
-def data_only(options: Any) -> Any:
-    """Return options without the keys that hold JavaScript."""
-    if isinstance(options, dict):
-        return {key: data_only(value) for key, value in options.items() if not key.startswith(":")}
-    if isinstance(options, list):
-        return [data_only(value) for value in options]
-    return options
-
-
-def difference(old: Options, new: Options) -> tuple[Options, Options] | None:
-    """Return what ECharts must be told to show ``new`` after ``old``: options, and how to merge them.
-
-    Parameters
-    ----------
-    old, new : dict
-        Data of a chart before and after.
-
-    Returns
-    -------
-    tuple of dict, or None
-        Only the series whose data moved, where nothing else changed; None where nothing did.
-    """
-    if old == new:
-        return None
-    before, after = old["series"], new["series"]
-    if [s["id"] for s in before] != [s["id"] for s in after]:
-        return new, {"replaceMerge": ["series"]}
-    changed: Options = {key: value for key, value in new.items() if key != "series" and old.get(key) != value}
-    series = []
-    for one, two in zip(before, after, strict=True):
-        if one != two:
-            same = all(one.get(key) == value for key, value in two.items() if key != "data")
-            series.append({"id": two["id"], "data": two["data"]} if same else two)
-    return changed | ({"series": series} if series else {}), {}
-
-
 def friction_chart(
     answer: Answer, pins: Sequence[tuple[str, Curve, float]], measured: Sequence[Measured], palette: Palette
 ) -> Options:
@@ -129,10 +76,10 @@ def friction_chart(
         solid, viscous = curve.contact, curve.friction[chosen] - curve.contact
         heights += [*_range(curve.friction[chosen]), *_range(curve.friction[other])]
         series += [
-            _line("other", names[other], x, curve.friction[other], palette.ink, 1.0, [3, 3]),
-            _line("contact", "from asperities", x, solid, palette.contact, 1.4, [7, 3]),
-            _line("viscous", "from the fluid", x, viscous, palette.fluid, 1.4, [9, 3, 2, 3]),
-            _line("friction", names[chosen], x, curve.friction[chosen], palette.ink, 2.4),
+            line("other", names[other], x, curve.friction[other], palette.ink, 1.0, [3, 3]),
+            line("contact", "from asperities", x, solid, palette.contact, 1.4, [7, 3]),
+            line("viscous", "from the fluid", x, viscous, palette.fluid, 1.4, [9, 3, 2, 3]),
+            line("friction", names[chosen], x, curve.friction[chosen], palette.ink, 2.4),
         ]
         if curve.stale:
             for old in series:
@@ -142,10 +89,10 @@ def friction_chart(
         factor = 1.0 if inputs.abscissa == "speed" else their_hersey
         values = pinned.friction[chosen]
         heights += _range(values)
-        series.append(_line(f"pin{i}", name, pinned.speed * factor, values, palette.pins[i % 6], 1.8, PIN_DASHES[i % 6]))
+        series.append(line(f"pin{i}", name, pinned.speed * factor, values, palette.pins[i % 6], 1.8, PIN_DASHES[i % 6]))
     for i, found in enumerate(measured):
         heights += _range(found.friction)
-        points = _pairs(found.speed * scale, found.friction)
+        points = pairs(found.speed * scale, found.friction)
         look = {"color": "transparent", "borderColor": palette.mark, "borderWidth": 1.6}
         series.append(
             {
@@ -165,14 +112,14 @@ def friction_chart(
     minimum = None if curve is None else curve.transition("minimum")
     if minimum is not None:
         x = np.full(2, minimum.speed * scale)
-        series.append(_line("minimum", "least friction", x, np.array([low, high]), palette.mark, 1.4, [2, 3]))
+        series.append(line("minimum", "least friction", x, np.array([low, high]), palette.mark, 1.4, [2, 3]))
     point = [contact.speed * scale if contact.speed > 0 else ends[0], friction]
-    series.append(_point("point", point, palette))
+    series.append(marker("point", point, palette))
     unit = "sliding speed U (m/s)" if inputs.abscissa == "speed" else "Hersey number ηU/F (–)"
-    options = _chart(palette, _log_axis(unit, *ends, palette), _log_axis("friction coefficient µ", low, high, palette), series)
+    options = chart(palette, log_axis(unit, *ends, palette), log_axis("friction coefficient µ", low, high, palette), series)
     listed = [names[chosen], names[other], "from asperities", "from the fluid"] if curve is not None else []
     listed += [s["name"] for s in series if s["id"].startswith(("pin", "measured", "minimum"))]
-    return options | {"legend": _legend(palette, listed, [found.name for found in measured])}
+    return options | {"legend": legend(palette, listed, [found.name for found in measured])}
 
 
 def gap_chart(answer: Answer, palette: Palette) -> Options:
@@ -186,15 +133,15 @@ def gap_chart(answer: Answer, palette: Palette) -> Options:
     positive = values[values > 0]
     least = float(positive.min()) if len(positive) else 1e-6
     shown = [least, float(values.max())]
-    series = [_line("gap", "gap", profile.x * x_scale, np.where(values > 0, values, np.nan) * scale, palette.ink, 2.2)]
+    series = [line("gap", "gap", profile.x * x_scale, np.where(values > 0, values, np.nan) * scale, palette.ink, 2.2)]
     if rms > 0.03 * least:
         shown.append(rms)
-        series.append(_line("rms", "roughness", np.array([-x_end, x_end]), np.full(2, rms * scale), palette.grey, 1.2, [6, 4]))
+        series.append(line("rms", "roughness", np.array([-x_end, x_end]), np.full(2, rms * scale), palette.grey, 1.2, [6, 4]))
     series += _thin_series(answer, ("gap",), x_scale, scale, palette)
     low, high = round_down(min(shown) * scale), round_up(max(shown) * scale)
-    y = _log_axis(f"gap ({u_unit})", low, high, palette)
-    options = _chart(palette, _linear_axis(f"position x ({x_unit})", -x_end, x_end, palette), y, series)
-    return options | {"legend": _legend(palette, [s["name"] for s in series])}
+    y = log_axis(f"gap ({u_unit})", low, high, palette)
+    options = chart(palette, linear_axis(f"position x ({x_unit})", -x_end, x_end, palette), y, series)
+    return options | {"legend": legend(palette, [s["name"] for s in series])}
 
 
 def pressure_chart(answer: Answer, palette: Palette) -> Options:
@@ -206,19 +153,19 @@ def pressure_chart(answer: Answer, palette: Palette) -> Options:
     x = profile.x * x_scale
     hertz_x = np.linspace(-1, 1, 101)
     series = [
-        _line("total", "total", x, profile.pressure * scale, palette.ink, 2.2),
-        _line("contact", "asperities", x, profile.contact_pressure * scale, palette.contact, 1.8, [7, 3]),
-        _line("fluid", "fluid", x, profile.fluid_pressure * scale, palette.fluid, 1.8, [9, 3, 2, 3]),
-        _line("hertz", "Hertz", hertz_x * x_scale, np.sqrt(1 - hertz_x**2) * scale, palette.grey, 1.2, [2, 3]),
+        line("total", "total", x, profile.pressure * scale, palette.ink, 2.2),
+        line("contact", "asperities", x, profile.contact_pressure * scale, palette.contact, 1.8, [7, 3]),
+        line("fluid", "fluid", x, profile.fluid_pressure * scale, palette.fluid, 1.8, [9, 3, 2, 3]),
+        line("hertz", "Hertz", hertz_x * x_scale, np.sqrt(1 - hertz_x**2) * scale, palette.grey, 1.2, [2, 3]),
     ]
     series += _thin_series(answer, ("pressure", "contact_pressure", "fluid_pressure"), x_scale, scale, palette)
     most = max(1.0, float(profile.pressure.max()), float(profile.fluid_pressure.max())) * scale
     least = min(0.0, float(profile.fluid_pressure.min()), float(profile.pressure.min())) * scale
     high = round_up(1.02 * most)
     low = 0.0 if least > -0.01 * high else -round_up(-1.02 * least)
-    y = _linear_axis(f"pressure ({name})", low, high, palette)
-    options = _chart(palette, _linear_axis(f"position x ({x_unit}); fluid enters left", -x_end, x_end, palette), y, series)
-    return options | {"legend": _legend(palette, [s["name"] for s in series])}
+    y = linear_axis(f"pressure ({name})", low, high, palette)
+    options = chart(palette, linear_axis(f"position x ({x_unit}); fluid enters left", -x_end, x_end, palette), y, series)
+    return options | {"legend": legend(palette, [s["name"] for s in series])}
 
 
 def diagram_chart(answer: Answer, palette: Palette) -> Options:
@@ -235,7 +182,7 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
         left, right = np.full(len(rows), low), np.full(len(rows), high)
         b, h = end[known], begin[known]
         for name, one, two in (("boundary", left, b), ("mixed", b, h), ("hydrodynamic", h, right)):
-            outline = [*_pairs(one, rows), *_pairs(two[::-1], rows[::-1])]
+            outline = [*pairs(one, rows), *pairs(two[::-1], rows[::-1])]
             row = [*outline[0], len(outline), *(value for point in outline for value in point)]
             series.append(
                 {
@@ -254,94 +201,20 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
             )
             series.append(_region_name(name, one, two, rows, palette))
         inside = (b > low) & (b < high)
-        series.append(_line("end", "boundary ends", np.where(inside, b, np.nan), rows, palette.contact, 1.8, [7, 3]))
+        series.append(line("end", "boundary ends", np.where(inside, b, np.nan), rows, palette.contact, 1.8, [7, 3]))
         inside = (h > low) & (h < high)
-        series.append(_line("begin", "hydrodynamic begins", np.where(inside, h, np.nan), rows, palette.fluid, 1.8))
+        series.append(line("begin", "hydrodynamic begins", np.where(inside, h, np.nan), rows, palette.fluid, 1.8))
         least = diagram.minimum[known]
         least = np.where((least > low) & (least < high), least, np.nan)
-        series.append(_line("minimum", "least friction", least, rows, palette.mark, 1.6, [2, 3]))
+        series.append(line("minimum", "least friction", least, rows, palette.mark, 1.6, [2, 3]))
     height = min(max(contact.roughness, float(roughness[0])), float(roughness[-1]))
-    series.append(_line("path", "path of the speed", np.array([low, high]), np.full(2, height), palette.grey, 1.0, [4, 4]))
-    series.append(_point("point", [min(max(contact.speed, low), high), height], palette))
-    x = _log_axis("sliding speed U (m/s)", low, high, palette)
-    y = _log_axis("roughness (m)", float(roughness[0]), float(roughness[-1]), palette)
-    options = _chart(palette, x, y, series)
+    series.append(line("path", "path of the speed", np.array([low, high]), np.full(2, height), palette.grey, 1.0, [4, 4]))
+    series.append(marker("point", [min(max(contact.speed, low), high), height], palette))
+    x = log_axis("sliding speed U (m/s)", low, high, palette)
+    y = log_axis("roughness (m)", float(roughness[0]), float(roughness[-1]), palette)
+    options = chart(palette, x, y, series)
     listed = ["boundary ends", "hydrodynamic begins", "least friction"]
-    return options | {"legend": _legend(palette, [name for name in listed if any(s["name"] == name for s in series)])}
-
-
-# --- parts ---
-
-
-def _chart(palette: Palette, x: Options, y: Options, series: list[Options]) -> Options:
-    return {
-        "animation": False,
-        "textStyle": {"fontFamily": FONT, "color": palette.ink},
-        "grid": {"left": 62, "right": 16, "top": 40, "bottom": 46},
-        "xAxis": x,
-        "yAxis": y,
-        "tooltip": {
-            "trigger": "axis",
-            "axisPointer": {"type": "line", "lineStyle": {"color": palette.grey, "type": "dotted"}},
-            "backgroundColor": palette.card,
-            "borderColor": palette.grid,
-            "textStyle": {"color": palette.ink, "fontSize": 12},
-            ":valueFormatter": PRECISION,
-            "confine": True,
-        },
-        "series": series,
-    }
-
-
-def _axis(name: str, low: float, high: float, palette: Palette) -> Options:
-    return {
-        "name": name,
-        "nameLocation": "middle",
-        "nameTextStyle": {"color": palette.grey, "fontSize": 12},
-        "min": low,
-        "max": high,
-        "axisLine": {"show": True, "onZero": False, "lineStyle": {"color": palette.grey}},
-        "axisLabel": {"color": palette.grey, "fontSize": 11, "hideOverlap": True},
-        "splitLine": {"show": True, "lineStyle": {"color": palette.grid}},
-        "nameGap": 28,
-    }
-
-
-def _log_axis(name: str, low: float, high: float, palette: Palette) -> Options:
-    axis = _axis(name, low, high, palette) | {"type": "log", "minorTick": {"show": True, "splitNumber": 9}}
-    axis["axisLabel"] = axis["axisLabel"] | {":formatter": POWER}
-    return axis
-
-
-def _linear_axis(name: str, low: float, high: float, palette: Palette) -> Options:
-    return _axis(name, low, high, palette) | {"type": "value", "splitNumber": 4}
-
-
-def _line(key: str, name: str, x: Array, y: Array, color: str, width: float, dash: Sequence[float] | None = None) -> Options:
-    return {
-        "id": key,
-        "name": name,
-        "type": "line",
-        "data": _pairs(x, y),
-        "showSymbol": False,
-        "symbol": "none",
-        "color": color,
-        "lineStyle": {"color": color, "width": width, "type": list(dash) if dash else "solid"},
-        "emphasis": {"disabled": True},
-        "z": 3,
-    }
-
-
-def _point(key: str, place: Sequence[float], palette: Palette) -> Options:
-    return {
-        "id": key,
-        "name": "present point",
-        "type": "scatter",
-        "data": [list(place)],
-        "symbolSize": 13,
-        "itemStyle": {"color": palette.mark, "borderColor": palette.card, "borderWidth": 2},
-        "z": 6,
-    }
+    return options | {"legend": legend(palette, [name for name in listed if any(s["name"] == name for s in series)])}
 
 
 def _region_name(name: str, one: Array, two: Array, rows: Array, palette: Palette) -> Options:
@@ -363,27 +236,6 @@ def _region_name(name: str, one: Array, two: Array, rows: Array, palette: Palett
     }
 
 
-def _legend(palette: Palette, names: Sequence[str], points: Sequence[str] = ()) -> Options:
-    """Return a legend of lines, and of points for the names of those."""
-    look: Options = {"itemStyle": {"opacity": 0}}
-    return {
-        "data": [{"name": name} | ({} if name in points else look) for name in names],
-        "type": "scroll",
-        "top": 4,
-        "left": 0,
-        "right": 0,
-        "itemWidth": 22,
-        "itemHeight": 13,
-        "itemGap": 10,
-        "textStyle": {"color": palette.ink, "fontSize": 11.5},
-        "pageIconSize": 10,
-        "pageTextStyle": {"color": palette.grey},
-        "pageIconColor": palette.grey,
-        "pageIconInactiveColor": palette.grid,
-        "inactiveColor": palette.grid,
-    }
-
-
 def _regime_areas(curve: Curve, ends: tuple[float, float], scale: float, palette: Palette) -> Options:
     """Return the grounds of the regimes behind a curve."""
     low, high = (end * scale for end in ends)
@@ -402,7 +254,7 @@ def _regime_areas(curve: Curve, ends: tuple[float, float], scale: float, palette
 
 def _thin_series(answer: Answer, fields: Sequence[str], x_scale: float, scale: float, palette: Palette) -> list[Options]:
     return [
-        _line(
+        line(
             f"thin-{found.name}",
             f"{found.name.rpartition('.')[2].replace('_', ' ')} (±{100 * found.worst:.2g} %)",
             found.x * x_scale,
@@ -413,17 +265,6 @@ def _thin_series(answer: Answer, fields: Sequence[str], x_scale: float, scale: f
         for found in answer.thin
         if found.predicts in fields
     ]
-
-
-def _pairs(x: Array, y: Array) -> list[list[float | None]]:
-    """Return points, null where there is none, rounded to what a screen can show."""
-    points = np.stack([x, y], axis=1).astype(float)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        unit = 10.0 ** (5 - np.floor(np.log10(np.abs(points))))
-        rounded = np.where((points == 0) | ~np.isfinite(unit), points, np.round(points * unit) / unit)
-    if np.isfinite(rounded).all():
-        return rounded.tolist()  # type: ignore[no-any-return]
-    return [[value if math.isfinite(value) else None for value in point] for point in rounded.tolist()]
 
 
 def _range(values: Array) -> list[float]:

@@ -14,9 +14,10 @@ from pathlib import Path
 
 from ..case import Case, load_case
 from ..units import InputError
+from .curves import Curve
 from .inputs import FIELDS, Inputs, exact_text
 from .measured import Measured
-from .results import Answer, Curve
+from .results import Answer
 
 __all__ = ["KINDS", "Shown", "case_text", "content", "name_of", "pin_name", "read_case"]
 

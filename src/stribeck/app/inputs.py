@@ -13,8 +13,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from ..case import Case
-from ..parameters import QUANTITIES, LineContact, quantity
-from ..solution import Definition
+from ..friction import Definition
+from ..parameters import LineContact
+from ..quantities import QUANTITIES, quantity
 from ..units import format_si, read_number, to_si
 
 __all__ = [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..plotting import CONTACT, FLUID, GREY, INK, MARK, TINTS
+from ..plot_style import CONTACT, FLUID, GREY, INK, MARK, TINTS
 
 __all__ = ["DARK", "LIGHT", "PIN_DASHES", "Palette"]
 

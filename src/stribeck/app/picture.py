@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..output import MissingExtraError
-from ..parameters import QUANTITIES
-from ..plotting import SYMBOLS
+from ..plot_style import SYMBOLS
+from ..quantities import QUANTITIES
 from ..units import format_si
 from .charts import all_charts
 from .inputs import FIELDS

@@ -49,7 +49,7 @@ def serve(case: Path | None = None, port: int | None = None, browser: bool = Tru
     from starlette.middleware.trustedhost import TrustedHostMiddleware
     from threadpoolctl import threadpool_limits
 
-    from .page import Tab
+    from .tab import Tab
     from .url import decode
 
     threadpool_limits(1, user_api="blas")

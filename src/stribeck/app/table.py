@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from html import escape
 
 from ..distances import TransitionDistances
-from ..parameters import QUANTITIES
+from ..quantities import QUANTITIES
 from ..units import format_si
-from .results import Answer, Transition
+from .curves import Transition
+from .results import Answer
 
 __all__ = ["Row", "distances_html", "numbers", "numbers_html"]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any, get_args
 from urllib.parse import urlencode
 
+from ..friction import Definition, check_definition
 from ..parameters import LineContact
-from ..solution import Definition, check_definition
 from ..units import InputError, show
 from .inputs import FIELDS, Abscissa, Inputs, exact_text, typed
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from ..case import Case, curve_range, load_case
-from ..curve import Over
+from ..curve_coordinate import Over
 from ..output import MissingExtraError, check_output
 from ..units import InputError, read_number, show
 
@@ -144,7 +144,7 @@ def check_outputs(data: Sequence[Path], plot: Path | None, force: bool) -> tuple
 
 def check_pictures(plot: Path | None, force: bool) -> list[Path]:
     """Return the pictures to write, after a look at whether that will be possible."""
-    from ..plotting import PICTURES
+    from ..plot_style import PICTURES
 
     if plot is None:
         return []

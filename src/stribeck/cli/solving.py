@@ -9,12 +9,14 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from ..case import load_case
-from ..curve import StribeckCurve, stribeck_curve
+from ..curve import stribeck_curve
+from ..curve_result import StribeckCurve
 from ..distances import transition_distances
+from ..friction import coefficients
 from ..newton import Outcome
-from ..parameters import QUANTITIES, Groups
+from ..parameters import Groups
+from ..quantities import QUANTITIES
 from ..regimes import friction_elasticities
-from ..solution import coefficients
 from ..solve import solve
 from ..units import InputError, format_si
 from .arguments import (

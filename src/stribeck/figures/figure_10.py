@@ -9,7 +9,7 @@ import numpy as np
 
 from .._types import Array
 from ..asymptotics import boundary, perturbation
-from ..curve import StribeckCurve
+from ..curve_result import StribeckCurve
 from . import style
 from .paper_figure import PaperFigure, Report
 from .states import Work, column, dataset

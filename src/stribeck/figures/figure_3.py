@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..curve import StribeckCurve
+from ..curve_result import StribeckCurve
 from ..parameters import Groups
 from . import style
 from .paper_figure import PaperFigure, Report

@@ -9,7 +9,7 @@ import numpy as np
 from .._types import Array, Flags
 from ..asymptotics import mixed, transitions
 from ..asymptotics.constants import FILM_CONSTANT
-from ..curve import Landmark
+from ..landmarks import Landmark
 from ..newton import Outcome
 from ..parameters import Groups
 from ..solve import SolveError

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..curve import StribeckCurve, stribeck_curve
+from ..curve import stribeck_curve
+from ..curve_result import StribeckCurve
 from ..newton import Outcome
 from ..output import MissingExtraError
 from ..parameters import Groups

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._types import Array
-from ..curve import StribeckCurve
+from ..curve_result import StribeckCurve
 from . import style
 from .states import Column, Work, column
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..output import MissingExtraError
-from ..plotting import CONTACT, FLUID, GREY, INK, MARK, TINTS
+from ..plot_style import CONTACT, FLUID, GREY, INK, MARK, TINTS
 
 if TYPE_CHECKING:
     import xarray
