@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.follow import Follower
+from stribeck.follower import Follower
 from stribeck.near import NearSolver
 
 

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck import follow as follow_module
+from stribeck import follower as follower_module
 from stribeck.equations import Operators
 from stribeck.estimate import FineOperators, reads_off
-from stribeck.follow import Follower, follow
+from stribeck.follow import follow
+from stribeck.follower import Follower
 from stribeck.mesh import Mesh, base_edges
 from stribeck.refine import converge, judge
 from stribeck.start import cold_start
@@ -57,7 +58,7 @@ def test_points_whose_mesh_proves_too_coarse_are_solved_anew(monkeypatch, rtol):
     again = []
     solve_again = Follower._again
     monkeypatch.setattr(Follower, "_again", lambda self, point: again.append(point) or solve_again(self, point))
-    monkeypatch.setattr(follow_module, "PATIENCE", 1e9)  # so that all wait, however large the errors of their mesh
+    monkeypatch.setattr(follower_module, "PATIENCE", 1e9)  # so that all wait, however large the errors of their mesh
     patient = sb.stribeck_curve(load=0.1, roughness=1e-4, speed=SPEEDS[::-1], rtol=rtol)
     assert again
     assert patient.outcome.ok and len(patient) == len(SPEEDS)
@@ -66,7 +67,7 @@ def test_points_whose_mesh_proves_too_coarse_are_solved_anew(monkeypatch, rtol):
 
 
 def test_a_point_that_cannot_be_resolved_ends_the_path_before_it(monkeypatch):
-    monkeypatch.setattr(follow_module, "PATIENCE", 1e9)
+    monkeypatch.setattr(follower_module, "PATIENCE", 1e9)
     lost = []
 
     def fail(self, point):

@@ -47,7 +47,9 @@ SOLVER = (
     "elasticity",
     "equations",
     "estimate",
+    "fill",
     "follow",
+    "follower",
     "mesh",
     "newton",
     "observables",
@@ -55,6 +57,7 @@ SOLVER = (
     "reynolds",
     "start",
     "states",
+    "together",
 )
 """The modules whose hash says which solver made a table."""
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ._types import Array
 from .curve_coordinate import Coordinate
-from .follow import Follower
+from .follower import Follower
 from .newton import Outcome
 from .refine import Point
 from .solution import Solution

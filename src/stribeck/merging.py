@@ -17,7 +17,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from ._types import LawShape
-from .follow import Follower
+from .follower import Follower
 from .friction import Definition, check_definition, coefficients
 from .newton import Outcome
 from .parameters import Groups

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from .follow import Follower
+from .follower import Follower
 from .newton import Outcome
 from .parameters import Groups, LineContact
 from .refine import Point

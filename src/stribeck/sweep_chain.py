@@ -10,7 +10,8 @@ import numpy as np
 
 from ._types import Array, LawShape
 from .continuation import march
-from .follow import LONGEST_STEP, PREDICTOR_ORDER, SHORTEST_STEP, Follower
+from .follow import LONGEST_STEP, PREDICTOR_ORDER, SHORTEST_STEP
+from .follower import Follower
 from .newton import Outcome
 from .parameters import Groups, LineContact
 from .quantities import INPUTS
