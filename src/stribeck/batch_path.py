@@ -140,7 +140,7 @@ def judged(batch: Batch, rtol: float, device: Device) -> list[Answer]:
 def ended(estimate: ErrorEstimate, rtol: float) -> Outcome:
     """Return whether an estimate holds the tolerance, and where not, whether rounding or the mesh is in the way."""
     outcome = reached(estimate, rtol)
-    return outcome if outcome.ok or estimate.total > 1.5 * estimate.floor else Outcome.ROUNDING
+    return outcome if outcome.ok or estimate.total > 3 * estimate.floor else Outcome.ROUNDING
 
 
 def refined(guess: Batch, rtol: float, device: Device) -> dict[int, Answer]:

@@ -62,7 +62,7 @@ class Filling:
         if len(self.follower.waiting) >= self.follower.patience:
             self.release()
 
-    def release(self, report: bool = True) -> None:
+    def release(self) -> None:
         """Have the points judged that wait for it, and report all that arrived."""
         judged = self.follower.judge_waiting()
         self.arrived = [(s, judged.get(point, point)) for s, point in self.arrived]
@@ -72,7 +72,7 @@ class Filling:
                 self.lost = Path((), (), point.outcome, 1, point)
                 break
             self.done.append((s, point))
-            if report and self.on_point is not None:
+            if self.on_point is not None:
                 self.on_point(s, point)
 
     def _anchor(self, s: float, point: Point) -> Anchor:
@@ -148,7 +148,8 @@ def follow(
         stop_when=lambda _: filling.lost is not None,
         on_point=filling.arrive,
     )
-    filling.release(report=path.outcome is not Outcome.INTERRUPTED)
+    if path.outcome is not Outcome.INTERRUPTED:  # then what was reported is kept
+        filling.release()
     end = path if filling.lost is None else filling.lost
     points = filling.done
     return Path(tuple(s for s, _ in points), tuple(point for _, point in points), end.outcome, end.failures, end.failure)

@@ -37,7 +37,7 @@ def order_for(rtol: float) -> int:
 
 def mesh_tolerances_for(rtol: float) -> tuple[float, float]:
     """Return the Legendre tails to start refinement with; most states reach ``rtol`` with them at once."""
-    return min(1e-2, 0.2 * math.sqrt(rtol)), 0.03 * rtol
+    return min(1e-2, 0.2 * math.sqrt(rtol)), 0.3 * rtol
 
 
 def solvable(groups: Groups) -> Groups:
@@ -128,7 +128,7 @@ def converge(
             best = Point(groups, state, values, estimate, reached(estimate, rtol), (tail, gap_tail), fine)
         if best.outcome.ok:
             return best
-        if estimate.total <= 1.5 * estimate.floor:
+        if estimate.total <= 3 * estimate.floor:
             outcome = Outcome.ROUNDING
             break
         tail *= shrink(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
