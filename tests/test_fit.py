@@ -496,6 +496,24 @@ def test_the_table_says_how_the_fit_ended_and_warns(tmp_path, capsys):
     assert re.search("Warning: friction_coefficient .*not determined.*boundary plateau", answer.out)
 
 
+@pytest.mark.parametrize("case", [CASE, EXAMPLES / "pdms_cylinder.toml"], ids=["with [fit]", "without"])
+def test_what_counts_as_known_exactly_is_said(capsys, case):
+    fitted = {"friction_coefficient", "roughness"} | ({"modulus"} if case == CASE else set())
+    held = ["beta 0.06", "alpha 2", "modulus 2.7 MPa", "viscosity of each curve", "load 30 N/m", "radius 10 mm"]
+    shown = ", ".join(each for each in held if each.split()[0] not in fitted)
+    assert f"Counted as known exactly: {shown}. No error above holds theirs" in call(capsys, "fit", MEASURED, case).out
+    found = json.loads(call(capsys, "fit", MEASURED, case, "--json").out)
+    known = {each["name"]: (each["values"], each["unit"]) for each in found["held"]}
+    assert set(known) == set(FREE) - fitted
+    assert known["viscosity"] == ([0.05, 0.005], "Pa*s")
+
+
+def test_what_the_data_hold_does_not_count_as_known():
+    speeds, friction = exact()
+    data = measured(TRUE.viscosity * speeds, friction, abscissa="speed_viscosity")
+    assert sb.fit(data, TRUE, intervals=False).held == ("beta", "alpha", "modulus", "load", "radius")
+
+
 MISUSE = {
     "nothing": ([], "DATA is missing"),
     "no case": (["lab.csv"], "CASE is missing"),

@@ -128,7 +128,7 @@ MAY_IMPORT = {
     "fit": RESULTS | {"case", "measurements"} | {f"fit_{part}" for part in FIT},
     "fit_posterior": RESULTS | {"atlas", "fit_objective", "fit_result", "output"},
     "fit_file": RESULTS | {"case", "fit_result", "output"},
-    "report_fit": {"fit_file", "fit_posterior", "fit_result"},
+    "report_fit": {"fit_file", "fit_posterior", "fit_result", "parameters", "units"},
     "plot_fit": RESULTS | {"fit_file", "fit_result", "output", "plotting"},
     "batch_device": {"output", "units"},
     "batch_equations": EQUATIONS | {"batch_device"},
