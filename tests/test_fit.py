@@ -253,6 +253,15 @@ def test_a_curve_without_a_plateau_cannot_give_the_dry_friction():
     assert math.isinf(found["friction_coefficient"].interval_95[1])
 
 
+def test_a_share_below_the_error_of_friction_is_said_to_be_that_at_most():
+    speeds, friction = exact(low=5.0, high=50.0, rows=8)
+    found = sb.fit(measured(speeds, friction), TRUE, free=["mu0"], intervals=False)
+    assert found["friction_coefficient"].interval_95 == (0.0, math.inf)
+    [weak] = found.undetermined
+    share = float(re.search(r"asperities cause at most (\S+) % of the friction", weak.message)[1])
+    assert 1e-7 < share < 1e-3
+
+
 def test_a_curve_with_a_plateau_gives_it(fitted):
     assert fitted.undetermined == ()
     assert fitted["friction_coefficient"].standard_error < 0.02

@@ -53,6 +53,9 @@ FLAT = 1e-5
 SAME = 1e-3
 """Rise of q up to which two fits are the same."""
 
+WIDEST = 600.0
+"""Half-width of an interval of a logarithm from which it is open."""
+
 TIED = 0.95
 """Correlation from which a pair of inputs is named."""
 
@@ -288,8 +291,8 @@ def _intervals(
 
 
 def _normal(theta: float, squared: float) -> Ends:
-    """Return the interval of half-width sqrt(squared), open where that is no number."""
-    half = math.sqrt(squared) if math.isfinite(squared) else math.inf
+    """Return the interval of half-width sqrt(squared), open where that is no number or no factor in double precision."""
+    half = math.sqrt(squared) if squared < WIDEST**2 else math.inf
     return Ends(theta - half, theta + half)
 
 
