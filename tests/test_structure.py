@@ -87,7 +87,8 @@ MAY_IMPORT = {
     "near": RESULTS | {"follow", "refine"},
     "sensitivity": EQUATIONS | {"observables", "states"},
     "solution": {"mesh", "newton", "observables", "parameters", "units"},
-    "solve": (RESULTS - {"solve"}) | {"contact_laws", "hertz", "mesh", "observables", "refine", "start"},
+    "cavitation": {"parameters"},
+    "solve": (RESULTS - {"solve"}) | {"cavitation", "contact_laws", "hertz", "mesh", "observables", "refine", "start"},
     "regimes": RESULTS | {"atlas", "refine", "sensitivity", "start"},
     "curve": RESULTS
     | {"asymptotics", "atlas_curve", "follow", "plotting", "refine", "regimes", "sensitivity", "span", "store"},
