@@ -505,6 +505,14 @@ def test_the_table_says_how_the_fit_ended_and_warns(tmp_path, capsys):
     assert re.search("Warning: friction_coefficient .*not determined.*boundary plateau", answer.out)
 
 
+def test_files_in_each_others_place_are_told_with_the_right_order(tmp_path):
+    with pytest.raises(sb.InputError) as swapped:
+        sb.fit(CASE, MEASURED)
+    assert str(swapped.value).endswith(f"Measured friction comes first, then the case: {MEASURED} {CASE}.")
+    with pytest.raises(sb.InputError, match="missing.toml cannot be read"):
+        sb.fit(CASE, tmp_path / "missing.toml")
+
+
 @pytest.mark.parametrize("case", [CASE, EXAMPLES / "pdms_cylinder.toml"], ids=["with [fit]", "without"])
 def test_what_counts_as_known_exactly_is_said(capsys, case):
     fitted = {"friction_coefficient", "roughness"} | ({"modulus"} if case == CASE else set())
@@ -529,6 +537,8 @@ MISUSE = {
     "unknown input": ([MEASURED, CASE, "--free", "stiffness"], "'stiffness'"),
     "wrong ending": ([MEASURED, CASE, "--out", "fitted.json"], "must end in .toml"),
     "case as data": ([CASE, CASE], "pdms_fit.toml"),
+    "swapped": ([CASE, MEASURED], f"look swapped: {CASE} is a case file and {MEASURED} is not"),
+    "data twice": ([MEASURED, MEASURED], "is not valid TOML"),
     "posterior": ([MEASURED, CASE, "--posterior", "many"], "not a whole number"),
 }
 

@@ -126,7 +126,7 @@ MAY_IMPORT = {
     "fit_profile": {"fit_objective"},
     "fit_quality": {"fit_objective"},
     "fit_result": RESULTS | {"fit_identify", "fit_quality", "fit_settings", "measurements"},
-    "fit": RESULTS | {"case", "measurements"} | {f"fit_{part}" for part in FIT},
+    "fit": RESULTS | {"case", "fit_file", "measurements"} | {f"fit_{part}" for part in FIT},
     "fit_posterior": RESULTS | {"atlas", "fit_objective", "fit_result", "output"},
     "fit_file": RESULTS | {"case", "fit_result", "output"},
     "report_fit": {"fit_file", "fit_posterior", "fit_result", "parameters", "units"},

@@ -15,7 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ._types import Array, is_exponential
-from .case import Case, load_case
+from .case import Case
+from .fit_file import load_fit_case
 from .fit_identify import Undetermined, undetermined
 from .fit_model import FreeInput, FrictionModel, free_inputs
 from .fit_objective import Minimum, Objective, effective_parameters, minimise, objective, settle
@@ -112,7 +113,7 @@ def fit(
     The fitted friction is solved, each row to the tolerance of the case. In 200 synthetic experiments the intervals held the
     truth as often as they should (``test_fit_coverage.py``).
     """
-    problem = _problem(case)
+    problem = _problem(data, case)
     contact, settings, definition = problem.contact, problem.settings, problem.definition
     if not isinstance(data, Measurements):
         data = read_measurements(data, settings)
@@ -157,13 +158,13 @@ class _Problem:
     rtol: float
 
 
-def _problem(case: str | os.PathLike[str] | Case | LineContact) -> _Problem:
+def _problem(data: object, case: str | os.PathLike[str] | Case | LineContact) -> _Problem:
     if isinstance(case, LineContact):
         return _Problem(case, FitSettings(), "paper", Case.rtol)
     if not isinstance(case, Case):
         if not isinstance(case, str | os.PathLike):
             raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case or a LineContact.")
-        case = load_case(case)
+        case = load_fit_case(data, case)
     return _Problem(case.contact, case.fit, case.definition, case.rtol)
 
 
