@@ -63,7 +63,7 @@ torch: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -m torch
 # Debian's chromium, or CHROMIUM=/path/to/it.
 browser: $(BROWSER)
-	$(ONE_THREAD) $(BIN)/python -m pytest -m browser tests/test_browser.py
+	$(ONE_THREAD) $(BIN)/python -m pytest -m browser tests/test_browser.py tests/test_benchmarks.py
 
 screenshots: $(BROWSER)
 	$(ONE_THREAD) $(BIN)/python docs/explorer.py

@@ -5,6 +5,7 @@ The table that docs/atlas.md shows.
 
 from __future__ import annotations
 
+import argparse
 import platform
 import time
 from collections.abc import Callable
@@ -38,14 +39,17 @@ def best(function: Callable[[sb.Groups], object], groups: sb.Groups) -> float:
 @one_blas_thread
 def main() -> None:
     """Print the table."""
+    arguments = argparse.ArgumentParser(description="States per second of the atlas.")
+    arguments.add_argument("--number", type=int, default=STATES, help=f"states (default {STATES})")
+    number = arguments.parse_args().number
     print(f"Python {platform.python_version()}, NumPy {np.__version__}, {platform.machine()}\n")
-    groups = states(STATES)
+    groups = states(number)
     sb.atlas.friction(sb.Groups(1e-3, 0.1, 1e-4))
     print("| function | states per second | us per state |")
     print("|---|---|---|")
     for function in (sb.atlas.friction, sb.atlas.friction_derivatives, sb.atlas.minimum_gap):
         seconds = best(function, groups)
-        print(f"| `{function.__name__}` | {STATES / seconds:.3g} | {seconds / STATES * 1e6:.2f} |")
+        print(f"| `{function.__name__}` | {number / seconds:.3g} | {seconds / number * 1e6:.2f} |")
 
 
 if __name__ == "__main__":

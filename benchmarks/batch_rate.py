@@ -31,7 +31,7 @@ def sets(number: int) -> dict[str, sb.Groups]:
     rng = np.random.default_rng(60_013)
     contact = np.array([1e-5, 0.1, 1e-4]) * np.exp(0.1 * rng.normal(size=(number, 3)))
     study = 10 ** rng.uniform((-6, -2, -4), (0, np.log10(0.5), -2), size=(number, 3))
-    box = 10 ** rng.uniform((-12, -6, -6), (6, 0, 2), size=(number // 4, 3))
+    box = 10 ** rng.uniform((-12, -6, -6), (6, 0, 2), size=(max(1, number // 4), 3))
     box[:, 2] *= box[:, 1]
     return {name: sb.Groups(*states.T) for name, states in (("one contact", contact), ("study", study), ("box", box))}
 
@@ -65,7 +65,7 @@ def main() -> None:
     print("| states | how | in a batch | not converged | ms a state | states per second | over single solves |")
     print("|---|---|---|---|---|---|---|")
     for name, groups in sets(number).items():
-        rows = range(0, groups.shape[0], groups.shape[0] // SINGLE)
+        rows = range(0, groups.shape[0], max(1, groups.shape[0] // SINGLE))
         states = [sb.Groups(*(float(getattr(groups, part)[i]) for part in ("speed", "load", "roughness"))) for i in rows]
         single, _ = timed(lambda states=states: [sb.solve(state) for state in states])
         single /= len(states)

@@ -7,6 +7,7 @@ frame after the chart of friction has taken its data.
 
 from __future__ import annotations
 
+import argparse
 import os
 import platform
 import re
@@ -31,6 +32,9 @@ CLOCK = """() => {
 
 
 def main() -> None:
+    arguments = argparse.ArgumentParser(description="Time from moving a slider to the drawn chart.")
+    arguments.add_argument("--number", type=int, default=MOVES, help=f"moves of each slider (default {MOVES})")
+    number = arguments.parse_args().number
     chromium = os.environ.get("CHROMIUM") or shutil.which("chromium")
     try:
         from playwright.sync_api import sync_playwright
@@ -49,13 +53,13 @@ def main() -> None:
             assert address is not None
             with sync_playwright() as play:
                 browser = play.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-                measure(browser.new_page(viewport={"width": 1440, "height": 900}), address[0])
+                measure(browser.new_page(viewport={"width": 1440, "height": 900}), address[0], number)
                 browser.close()
         finally:
             server.terminate()
 
 
-def measure(page, address: str) -> None:
+def measure(page, address: str, number: int) -> None:
     page.goto(address)
     page.wait_for_selector(".chart-diagram canvas")
     page.wait_for_timeout(3000)
@@ -64,11 +68,11 @@ def measure(page, address: str) -> None:
     for name in ("speed", "load", "roughness", "friction_coefficient", "load_group"):
         page.evaluate("window.moves = []")
         page.focus(f"[data-row={name}] input.slider")
-        for _ in range(MOVES):
+        for _ in range(number):
             page.keyboard.press("ArrowRight")
             page.wait_for_timeout(200)
         found = sorted(page.evaluate("window.moves"))
-        assert len(found) >= MOVES - 2, f"{len(found)} of {MOVES} moves were drawn"
+        assert len(found) >= max(1, number - 2), f"{len(found)} of {number} moves were drawn"
         print(f"| {name} | {statistics.median(found):.0f} | {found[int(0.9 * len(found))]:.0f} | {found[-1]:.0f} |")
 
 

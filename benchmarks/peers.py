@@ -3,7 +3,7 @@
 Usage::
 
     pip install tamaas ContactMechanics     # optional: without them their rows say so
-    python benchmarks/peers.py [--out benchmarks/peers.md]
+    python benchmarks/peers.py [--out benchmarks/peers.md] [--quick]
 
 Prints the page that ``benchmarks/peers.md`` holds.  Errors of lubricated states are differences from our solver at
 ``rtol=1e-9``, errors of the dry contact those from Hertz.  A time is that of the processor for one thread, the best of several
@@ -35,13 +35,31 @@ from stribeck.asymptotics.constants import FILM_CONSTANT
 SPEEDS = (1e-2, 1e-4, 1e-6)
 MIXED = sb.Groups(speed=1e-4, load=0.1, roughness=1e-4)
 AT_REST = sb.Groups(speed=0.0, load=0.01, roughness=1e-8)
-CURVE = np.geomspace(1e-2, 1e-5, 101)
+CURVE = (1e-2, 1e-5)
 RUNS = 5
-NODES = 401
 PERIODIC = ((16.0, 1024), (64.0, 4096), (256.0, 16384))
 """Periods [a] and nodes of the packages for dry contact."""
 
 OURS = "stribeck, `rtol=1e-6`"
+
+
+@dataclass(frozen=True)
+class Amount:
+    """How much is computed: runs of which the best counts, nodes of the home-made grids, points of the curve."""
+
+    runs: int = RUNS
+    nodes: int = 401
+    finer: tuple[int, ...] = (201, 401, 801)
+    points: int = 101
+
+    @property
+    def speeds(self) -> np.ndarray:
+        """Return the speeds of the curve."""
+        return np.geomspace(*CURVE, self.points)
+
+
+QUICK = Amount(runs=1, nodes=201, finer=(201,), points=11)
+"""Enough to see that all tables come out, and not for their numbers."""
 
 GRIDS: dict[str, Callable[[int, float], dict[str, Any]]] = {
     "uniform grid": lambda nodes, speed: {"x": textbook.grid(nodes)},
@@ -99,8 +117,8 @@ def best(function: Callable[[], Any], runs: int = RUNS) -> tuple[float, Any]:
 # --- lubricated states ---
 
 
-def our_film(speed: float, rtol: float) -> Smooth:
-    seconds, state = best(lambda: sb.solve(sb.Groups(speed, 0.1, 0.0), rtol=rtol))
+def our_film(speed: float, rtol: float, runs: int) -> Smooth:
+    seconds, state = best(lambda: sb.solve(sb.Groups(speed, 0.1, 0.0), rtol=rtol), runs)
     return Smooth(state.central_gap / speed**0.6, seconds, speed, state.errors["central_gap"])
 
 
@@ -111,8 +129,8 @@ def textbook_film(name: str, nodes: int, speed: float, runs: int = RUNS) -> Smoo
     return Smooth(film, seconds, reached)
 
 
-def our_mixed(rtol: float) -> Mixed:
-    seconds, state = best(lambda: sb.solve(MIXED, rtol=rtol))
+def our_mixed(rtol: float, runs: int) -> Mixed:
+    seconds, state = best(lambda: sb.solve(MIXED, rtol=rtol), runs)
     return Mixed(state.contact_load_share, state.friction().viscous, seconds, state.error_estimate)
 
 
@@ -133,31 +151,29 @@ def contact_share(x: np.ndarray, h: np.ndarray) -> float:
     return float(trapezoid(np.exp(-h / kappa), x)) * 2 / (math.pi * math.sqrt(load))
 
 
-def our_curve(rtol: float) -> tuple[float, np.ndarray]:
+def our_curve(rtol: float, amount: Amount) -> tuple[float, np.ndarray]:
     """Return the time of a curve and its contact shares."""
-    ends = (float(CURVE[-1]), float(CURVE[0]))
-    seconds, curve = best(
-        lambda: sb.stribeck_curve(load=MIXED.load, roughness=MIXED.roughness, speed=ends, points=CURVE.size, rtol=rtol)
-    )
+    wanted = {"load": MIXED.load, "roughness": MIXED.roughness, "speed": CURVE[::-1], "points": amount.points}
+    seconds, curve = best(lambda: sb.stribeck_curve(**wanted, rtol=rtol), amount.runs)
     assert curve.outcome.ok
     return seconds, np.array([state.contact_load_share for state in curve.solutions[::-1]])
 
 
-def textbook_curve(name: str) -> tuple[float, np.ndarray]:
+def textbook_curve(name: str, amount: Amount) -> tuple[float, np.ndarray]:
     """Return the same of the home-made solver, each state started from the last, on one grid."""
     rest = {"load": float(MIXED.load), "kappa": float(MIXED.relative_roughness)}
-    x = GRIDS[name](NODES, float(CURVE[-1]))["x"]
+    x = GRIDS[name](amount.nodes, CURVE[-1])["x"]
 
     def march() -> list[float]:
         B, shares = textbook.gap_matrix(x), []
-        _, y, reached = textbook.solve(x, float(CURVE[0]), **rest)
+        _, y, reached = textbook.solve(x, CURVE[0], **rest)
         assert reached == CURVE[0]
-        for speed in CURVE:
+        for speed in amount.speeds:
             y = textbook.newton(x, B, y, speed, upstream=0.5, tol=1e-6, **rest)
             shares.append(contact_share(x, x**2 / 2 + B @ y))
         return shares
 
-    seconds, shares = best(march, 3)
+    seconds, shares = best(march, min(3, amount.runs))
     return seconds, np.array(shares)
 
 
@@ -169,17 +185,17 @@ def dry(method: str, seconds: float, x: np.ndarray, load: np.ndarray, pressure: 
     return Dry(method, pressure, 2 * math.sqrt(float(load @ x**2) / float(load.sum())), seconds)
 
 
-def our_dry() -> Iterator[Dry]:
-    seconds, state = best(lambda: sb.solve(AT_REST))
+def our_dry(runs: int = RUNS) -> Iterator[Dry]:
+    seconds, state = best(lambda: sb.solve(AT_REST), runs)
     mesh, middle = state.mesh, state.profile([0.0]).pressure[0]
     yield dry(
         "stribeck, at rest, relative roughness 1e-6", seconds, mesh.nodes, mesh.weights * state.nodal_pressures()[0], middle
     )
-    seconds, _ = best(lambda: sb.solve(sb.Groups(0.0, 0.01, 0.0)))
+    seconds, _ = best(lambda: sb.solve(sb.Groups(0.0, 0.01, 0.0)), runs)
     yield Dry("stribeck, smooth: the closed form", 1.0, 1.0, seconds)
 
 
-def tamaas_dry() -> Iterator[Dry]:
+def tamaas_dry(runs: int) -> Iterator[Dry]:
     import tamaas  # noqa: PLC0415
 
     tamaas.set_log_level(tamaas.LogLevel.warning)
@@ -190,10 +206,10 @@ def tamaas_dry() -> Iterator[Dry]:
         tamaas.PolonskyKeerRey(model, -(x**2) / 2, 1e-12).solve(math.pi / 2 / period)
         return np.array(model.traction).ravel()
 
-    yield from periodic("tamaas", solve)
+    yield from periodic("tamaas", solve, runs)
 
 
-def contact_mechanics_dry() -> Iterator[Dry]:
+def contact_mechanics_dry(runs: int) -> Iterator[Dry]:
     from ContactMechanics import PeriodicFFTElasticHalfSpace, make_system  # noqa: PLC0415
     from SurfaceTopography import UniformLineScan  # noqa: PLC0415
 
@@ -203,14 +219,14 @@ def contact_mechanics_dry() -> Iterator[Dry]:
         assert system.minimize_proxy(external_force=math.pi / 2, pentol=1e-9, maxiter=10_000).success
         return -np.asarray(system.force).ravel() * nodes / period
 
-    yield from periodic("ContactMechanics", solve)
+    yield from periodic("ContactMechanics", solve, runs)
 
 
-def periodic(name: str, solve: Callable[[float, int, np.ndarray], np.ndarray]) -> Iterator[Dry]:
+def periodic(name: str, solve: Callable[[float, int, np.ndarray], np.ndarray], runs: int) -> Iterator[Dry]:
     """Yield the states of a package that solves periodic contacts only."""
     for period, nodes in PERIODIC:
         x = (np.arange(nodes) - nodes // 2) * period / nodes
-        seconds, pressure = best(lambda period=period, nodes=nodes, x=x: solve(period, nodes, x))
+        seconds, pressure = best(lambda period=period, nodes=nodes, x=x: solve(period, nodes, x), runs)
         pressure = pressure * np.sign(pressure.sum())
         yield dry(f"{name}, period {period:g} a, {nodes} nodes", seconds, x, pressure, float(pressure[nodes // 2]))
 
@@ -218,10 +234,10 @@ def periodic(name: str, solve: Callable[[float, int, np.ndarray], np.ndarray]) -
 PEERS = {"tamaas": tamaas_dry, "ContactMechanics": contact_mechanics_dry}
 
 
-def peer_states(name: str) -> list[Dry] | str:
+def peer_states(name: str, runs: int = RUNS) -> list[Dry] | str:
     """Return the states of a peer, or the sentence that says how to install it."""
     try:
-        return list(PEERS[name]())
+        return list(PEERS[name](runs))
     except ImportError:
         return f"{name} is not installed: `pip install {name}`"
 
@@ -319,22 +335,22 @@ def mixed_table(ours: dict, theirs: dict) -> Iterator[str]:
         yield f"| {name} | {' | '.join(cells)} | {timing(state, our)} |"
 
 
-def curve_table(ours: dict) -> Iterator[str]:
+def curve_table(ours: dict, points: int) -> Iterator[str]:
     yield "| | largest absolute error of the contact share | ms a state | over ours |"
     yield "|---|---:|---:|---:|"
     truth, our = ours["true curve"][1], ours["curves"][OURS][0]
     for name, (seconds, shares) in ours["curves"].items():
-        cells = [short(float(np.abs(shares - truth).max())), f"{1e3 * seconds / CURVE.size:.1f}", f"{seconds / our:.1f}"]
+        cells = [short(float(np.abs(shares - truth).max())), f"{1e3 * seconds / points:.1f}", f"{seconds / our:.1f}"]
         yield f"| {name} | {' | '.join(cells)} |"
 
 
-def nodes_table(ours: dict) -> Iterator[str]:
+def nodes_table(ours: dict, sizes: tuple[int, ...]) -> Iterator[str]:
     columns = [f"film, {short(speed)}" for speed in SPEEDS] + ["mixed: share", "mixed: viscous", "mixed: ms"]
     yield "| grid | N | " + " | ".join(columns) + " |"
     yield "|---|---:|" + "---:|" * len(columns)
     true_mixed = ours["true mixed"]
     for name in GRIDS:
-        for nodes in (201, 401, 801):
+        for nodes in sizes:
             cells = []
             for speed, true in zip(SPEEDS, ours["reference"], strict=True):
                 state = textbook_film(name, nodes, speed, runs=1)
@@ -354,29 +370,38 @@ def dry_table(dry_states: dict) -> Iterator[str]:
             yield f"| {s.method} | {' | '.join(errors)} | {1e3 * s.seconds:.1f} | {s.seconds / rest.seconds:.2f} |"
 
 
-def document() -> Iterator[str]:
+def document(amount: Amount) -> Iterator[str]:
     """Yield the lines of the page."""
+    runs, nodes = amount.runs, amount.nodes
     ours = {
-        "reference": [our_film(speed, 1e-9) for speed in SPEEDS],
-        "films": [our_film(speed, 1e-6) for speed in SPEEDS],
-        "true mixed": our_mixed(1e-9),
-        "mixed": our_mixed(1e-6),
-        "true curve": our_curve(1e-9),
-        "curves": {OURS: our_curve(1e-6)}
-        | {f"home-made, {name}": textbook_curve(name) for name in ("uniform grid", "graded grid")},
+        "reference": [our_film(speed, 1e-9, runs) for speed in SPEEDS],
+        "films": [our_film(speed, 1e-6, runs) for speed in SPEEDS],
+        "true mixed": our_mixed(1e-9, runs),
+        "mixed": our_mixed(1e-6, runs),
+        "true curve": our_curve(1e-9, amount),
+        "curves": {OURS: our_curve(1e-6, amount)}
+        | {f"home-made, {name}": textbook_curve(name, amount) for name in ("uniform grid", "graded grid")},
     }
-    theirs = {name: ([textbook_film(name, NODES, s) for s in SPEEDS], textbook_mixed(name, NODES)) for name in GRIDS}
-    dry_states = {"stribeck": list(our_dry())} | {name: peer_states(name) for name in PEERS}
+    theirs = {
+        name: ([textbook_film(name, nodes, s, runs) for s in SPEEDS], textbook_mixed(name, nodes, runs)) for name in GRIDS
+    }
+    dry_states = {"stribeck": list(our_dry(runs))} | {name: peer_states(name, runs) for name in PEERS}
     values = {"head": head(), "constant": f"{FILM_CONSTANT:.8f}", "next": f"{FILM_CONSTANT * (1 + 0.245 * 1e-6**0.4):.5f}"}
     values["lines"] = str(len(Path(textbook.__file__).read_text().splitlines()))
-    values |= {"runs": RUNS, "points": CURVE.size, "nodes": NODES, "step": f"{6 / (NODES - 1):g}", "width": f"{1e-6**0.4:.3f}"}
+    values |= {
+        "runs": runs,
+        "points": amount.points,
+        "nodes": nodes,
+        "step": f"{6 / (nodes - 1):g}",
+        "width": f"{1e-6**0.4:.3f}",
+    }
     values["missing"] = "".join(f"\n{states}.\n" for states in dry_states.values() if isinstance(states, str))
     tables = {
         "summary": summary(ours, theirs, dry_states),
         "films": film_table(ours, theirs),
         "mixed": mixed_table(ours, theirs),
-        "curve": curve_table(ours),
-        "sizes": nodes_table(ours),
+        "curve": curve_table(ours, amount.points),
+        "sizes": nodes_table(ours, amount.finer),
         "dry": dry_table(dry_states),
     }
     yield PAGE.format(**values, **{name: "\n".join(lines) for name, lines in tables.items()})
@@ -456,9 +481,11 @@ def main() -> None:
     """Print the page, and write it if asked to."""
     parser = argparse.ArgumentParser(description="Error and time of our solver, a home-made one and packages for dry contact.")
     parser.add_argument("--out", type=Path, help="Markdown file to write")
-    out = parser.parse_args().out
+    parser.add_argument("--quick", action="store_true", help="a tenth of the work, to see that the tables come out")
+    given = parser.parse_args()
+    out = given.out
     with threadpool_limits(1):
-        text = "\n".join(document())
+        text = "\n".join(document(QUICK if given.quick else Amount()))
     print(text, end="")
     if out is not None:
         out.write_text(text)

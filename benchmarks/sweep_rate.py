@@ -50,6 +50,8 @@ def measure(file: Path, store: Path, workers: int) -> tuple[float, float, float,
     end = time.perf_counter()
     first = next(mark for mark in marks if mark[1] > 0)
     last = marks[-1]
+    if first == last:
+        raise SystemExit(f"all states came at once: {len(found)} are too few for {workers} processes; give a larger --number")
     return (
         (last[1] - first[1]) / (last[0] - first[0]),
         len(found) / (end - begin),

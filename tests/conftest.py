@@ -1,8 +1,11 @@
 """What several test modules share: solved states, and what a finer and wider mesh makes of them."""
 
 import dataclasses
+import importlib.util
 import math
+import sys
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +17,8 @@ from stribeck.equations import Equations, Operators
 from stribeck.mesh import Mesh
 from stribeck.newton import root_find
 from stribeck.observables import NAMES, observables
+
+BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 
 LIFT = 5.0
 """Separations by which states at rest are lifted under laws that go on below zero."""
@@ -97,3 +102,18 @@ def _true_errors(solution):
 def true_errors():
     """Return the function that measures the errors of a solution on a finer and wider mesh."""
     return _true_errors
+
+
+@pytest.fixture
+def load_benchmark(monkeypatch):
+    """Return a function that imports a script of the benchmarks."""
+    monkeypatch.syspath_prepend(BENCHMARKS)
+
+    def module(name):
+        spec = importlib.util.spec_from_file_location(name, BENCHMARKS / f"{name}.py")
+        module = importlib.util.module_from_spec(spec)
+        monkeypatch.setitem(sys.modules, name, module)
+        spec.loader.exec_module(module)
+        return module
+
+    return module

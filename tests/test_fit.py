@@ -253,6 +253,15 @@ def test_a_curve_without_a_plateau_cannot_give_the_dry_friction():
     assert math.isinf(found["friction_coefficient"].interval_95[1])
 
 
+def test_a_share_below_the_error_of_friction_is_said_to_be_that_at_most():
+    speeds, friction = exact(low=5.0, high=50.0, rows=8)
+    found = sb.fit(measured(speeds, friction), TRUE, free=["mu0"], intervals=False)
+    assert found["friction_coefficient"].interval_95 == (0.0, math.inf)
+    [weak] = found.undetermined
+    share = float(re.search(r"asperities cause at most (\S+) % of the friction", weak.message)[1])
+    assert 1e-7 < share < 1e-3
+
+
 def test_a_curve_with_a_plateau_gives_it(fitted):
     assert fitted.undetermined == ()
     assert fitted["friction_coefficient"].standard_error < 0.02
@@ -496,12 +505,40 @@ def test_the_table_says_how_the_fit_ended_and_warns(tmp_path, capsys):
     assert re.search("Warning: friction_coefficient .*not determined.*boundary plateau", answer.out)
 
 
+def test_files_in_each_others_place_are_told_with_the_right_order(tmp_path):
+    with pytest.raises(sb.InputError) as swapped:
+        sb.fit(CASE, MEASURED)
+    assert str(swapped.value).endswith(f"Measured friction comes first, then the case: {MEASURED} {CASE}.")
+    with pytest.raises(sb.InputError, match="missing.toml cannot be read"):
+        sb.fit(CASE, tmp_path / "missing.toml")
+
+
+@pytest.mark.parametrize("case", [CASE, EXAMPLES / "pdms_cylinder.toml"], ids=["with [fit]", "without"])
+def test_what_counts_as_known_exactly_is_said(capsys, case):
+    fitted = {"friction_coefficient", "roughness"} | ({"modulus"} if case == CASE else set())
+    held = ["beta 0.06", "alpha 2", "modulus 2.7 MPa", "viscosity of each curve", "load 30 N/m", "radius 10 mm"]
+    shown = ", ".join(each for each in held if each.split()[0] not in fitted)
+    assert f"Counted as known exactly: {shown}. No error above holds theirs" in call(capsys, "fit", MEASURED, case).out
+    found = json.loads(call(capsys, "fit", MEASURED, case, "--json").out)
+    known = {each["name"]: (each["values"], each["unit"]) for each in found["held"]}
+    assert set(known) == set(FREE) - fitted
+    assert known["viscosity"] == ([0.05, 0.005], "Pa*s")
+
+
+def test_what_the_data_hold_does_not_count_as_known():
+    speeds, friction = exact()
+    data = measured(TRUE.viscosity * speeds, friction, abscissa="speed_viscosity")
+    assert sb.fit(data, TRUE, intervals=False).held == ("beta", "alpha", "modulus", "load", "radius")
+
+
 MISUSE = {
     "nothing": ([], "DATA is missing"),
     "no case": (["lab.csv"], "CASE is missing"),
     "unknown input": ([MEASURED, CASE, "--free", "stiffness"], "'stiffness'"),
     "wrong ending": ([MEASURED, CASE, "--out", "fitted.json"], "must end in .toml"),
     "case as data": ([CASE, CASE], "pdms_fit.toml"),
+    "swapped": ([CASE, MEASURED], f"look swapped: {CASE} is a case file and {MEASURED} is not"),
+    "data twice": ([MEASURED, MEASURED], "is not valid TOML"),
     "posterior": ([MEASURED, CASE, "--posterior", "many"], "not a whole number"),
 }
 

@@ -1,6 +1,5 @@
 """The comparison with peers: the home-made solver, which shares no code with ours, and the tables that are shown."""
 
-import importlib.util
 import re
 import sys
 from pathlib import Path
@@ -15,24 +14,9 @@ BENCHMARKS = ROOT / "benchmarks"
 
 
 @pytest.fixture
-def load(monkeypatch):
-    """Return a function that imports a script of the benchmarks."""
-    monkeypatch.syspath_prepend(BENCHMARKS)
-
-    def module(name):
-        spec = importlib.util.spec_from_file_location(name, BENCHMARKS / f"{name}.py")
-        module = importlib.util.module_from_spec(spec)
-        monkeypatch.setitem(sys.modules, name, module)
-        spec.loader.exec_module(module)
-        return module
-
-    return module
-
-
-@pytest.fixture
-def textbook(load):
+def textbook(load_benchmark):
     """Return the home-made solver."""
-    return load("textbook")
+    return load_benchmark("textbook")
 
 
 def central_gap(textbook, x, speed):
@@ -54,8 +38,8 @@ def test_it_tends_to_our_film_at_second_order(textbook, solved):
     assert errors[1] < 1e-2
 
 
-def test_it_finds_our_mixed_state(textbook, load, solved):
-    found = load("peers").textbook_mixed("graded grid", 201, runs=1)
+def test_it_finds_our_mixed_state(textbook, load_benchmark, solved):
+    found = load_benchmark("peers").textbook_mixed("graded grid", 201, runs=1)
     truth = solved(1e-4, 0.1, 1e-4)
     assert abs(found.contact_share / truth.contact_load_share - 1) < 2e-3
     assert abs(found.viscous / truth.friction().viscous - 1) < 5e-3
@@ -70,14 +54,14 @@ def test_it_fits_on_a_page():
 
 
 @pytest.mark.parametrize(("name", "module"), [("tamaas", "tamaas"), ("ContactMechanics", "ContactMechanics")])
-def test_a_peer_that_is_missing_is_named_with_the_way_to_install_it(load, monkeypatch, name, module):
-    peers = load("peers")
+def test_a_peer_that_is_missing_is_named_with_the_way_to_install_it(load_benchmark, monkeypatch, name, module):
+    peers = load_benchmark("peers")
     monkeypatch.setitem(sys.modules, module, None)
     assert f"pip install {name}" in peers.peer_states(name)
 
 
-def test_our_dry_contact_is_that_of_hertz_but_for_its_roughness(load):
-    rough, smooth = load("peers").our_dry()
+def test_our_dry_contact_is_that_of_hertz_but_for_its_roughness(load_benchmark):
+    rough, smooth = load_benchmark("peers").our_dry()
     kappa = sb.Groups(0.0, 0.01, 1e-8).relative_roughness
     assert rough.pressure - 1 == pytest.approx(-kappa, rel=1e-2)
     assert rough.half_width - 1 == pytest.approx(2 * kappa, rel=1e-2)

@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import stribeck as sb
+from stribeck.persson import persson_law
 from stribeck.rough_surface import RoughSurface
 from stribeck.spectrum import SelfAffine, Spectrum
 
@@ -66,6 +67,23 @@ def test_scaling_keeps_the_shape():
     assert scaled.spectrum.rms_height == pytest.approx(5e-6, rel=1e-13, abs=0)
     ratio = scaled.spectrum.density / SHAPES[1].spectrum.density
     assert ratio == pytest.approx((5e-6 / 3e-7) ** 2, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize("kind", ["self-affine", "spectrum", "law"])
+@pytest.mark.parametrize(("factor", "shown"), [(0.5, "500 mm"), (2, "2 m")])
+def test_a_factor_in_place_of_a_height_is_refused(kind, factor, shown):
+    """A surface of 1 µm with waves of up to 628 µm cannot have a roughness of half a metre."""
+    rough = SHAPES[0]
+    found = {"self-affine": rough, "spectrum": rough.spectrum, "law": persson_law(rough)}[kind]
+    with pytest.raises(sb.InputError) as refused:
+        found.scaled(factor)
+    assert str(refused.value) == (
+        f"rms_height = {factor} would be {shown}, more than the longest wavelength of the roughness, 628 µm; "
+        "give the new rms height in m, such as 1e-6, not a factor."
+    )
+    assert found.scaled(6.2e-4) is not None
+    with pytest.raises(sb.InputError, match="longest wavelength of the roughness, 628 µm"):
+        found.scaled(1e-7).scaled(6.3e-4)
 
 
 @pytest.mark.parametrize(

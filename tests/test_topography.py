@@ -54,11 +54,44 @@ def test_what_a_file_declares_cannot_be_overruled(tmp_path, heights):
 
 @pytest.mark.parametrize("name", ["a.x3p", "a.sur"])
 def test_a_damaged_file_is_refused_in_one_sentence(tmp_path, name):
-    (tmp_path / name).write_bytes(b"PK\x03\x04 not heights")
+    (tmp_path / name).write_bytes(b"\x00\xff\x03\x04 not heights")
     with pytest.raises(sb.InputError, match="no format that SurfaceTopography knows, or damaged"):
         read_topography(tmp_path / name)
     with pytest.raises(sb.InputError, match="no file"):
         read_topography(tmp_path / "b.x3p")
+
+
+def test_a_file_that_was_cut_off_is_not_said_to_lack_its_unit(tmp_path, heights):
+    write_x3p(tmp_path / "a.x3p", heights, 1e-6, 1e-6)
+    whole = (tmp_path / "a.x3p").read_bytes()
+    for kept in (0, 4, 100, 2000, len(whole) // 2, len(whole) - 60, len(whole) - 1):
+        (tmp_path / "b.x3p").write_bytes(whole[:kept])
+        said = "is empty" if kept == 0 else "is cut off or damaged: it begins as a zip archive"
+        with pytest.raises(sb.InputError, match=f"b.x3p {said}.*copy it from the instrument again"):
+            read_topography(tmp_path / "b.x3p")
+
+
+def test_a_spoilt_part_of_an_archive_is_named(tmp_path, heights):
+    write_x3p(tmp_path / "a.x3p", heights, 1e-6, 1e-6)
+    spoilt = bytearray((tmp_path / "a.x3p").read_bytes())
+    spoilt[len(spoilt) // 2] ^= 0xFF
+    (tmp_path / "a.x3p").write_bytes(spoilt)
+    with pytest.raises(sb.InputError, match="a.x3p is damaged: bindata/data.bin in it is not what was written"):
+        read_topography(tmp_path / "a.x3p")
+
+
+@pytest.mark.parametrize("name", ["a.x3p", "a.sdf", "a.OPD"])
+@pytest.mark.parametrize("content", [b"1 2 3\n4 5 6\n", b"hello world\n1 2 3\n", bytes(5000)])
+def test_what_is_not_of_the_format_of_its_ending_is_told(tmp_path, name, content):
+    (tmp_path / name).write_bytes(content)
+    for given in ({}, {"unit": "um", "spacing": "1 um"}):
+        with pytest.raises(sb.InputError, match=f"does not begin as {name[1:].lower()} files do"):
+            read_topography(tmp_path / name, **given)
+
+
+def test_heights_under_an_ending_of_no_format_are_read(tmp_path, heights):
+    np.savetxt(tmp_path / "a.heights", heights)
+    assert read_topography(tmp_path / "a.heights", unit="m", spacing="1 um").heights.shape == heights.T.shape
 
 
 # --- plain text ---

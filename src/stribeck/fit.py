@@ -15,7 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ._types import Array, is_exponential
-from .case import Case, load_case
+from .case import Case
+from .fit_file import load_fit_case
 from .fit_identify import Undetermined, undetermined
 from .fit_model import FreeInput, FrictionModel, free_inputs
 from .fit_objective import Minimum, Objective, effective_parameters, minimise, objective, settle
@@ -52,6 +53,9 @@ FLAT = 1e-5
 
 SAME = 1e-3
 """Rise of q up to which two fits are the same."""
+
+WIDEST = 600.0
+"""Half-width of an interval of a logarithm from which it is open."""
 
 TIED = 0.95
 """Correlation from which a pair of inputs is named."""
@@ -109,7 +113,7 @@ def fit(
     The fitted friction is solved, each row to the tolerance of the case. In 200 synthetic experiments the intervals held the
     truth as often as they should (``test_fit_coverage.py``).
     """
-    problem = _problem(case)
+    problem = _problem(data, case)
     contact, settings, definition = problem.contact, problem.settings, problem.definition
     if not isinstance(data, Measurements):
         data = read_measurements(data, settings)
@@ -154,13 +158,13 @@ class _Problem:
     rtol: float
 
 
-def _problem(case: str | os.PathLike[str] | Case | LineContact) -> _Problem:
+def _problem(data: object, case: str | os.PathLike[str] | Case | LineContact) -> _Problem:
     if isinstance(case, LineContact):
         return _Problem(case, FitSettings(), "paper", Case.rtol)
     if not isinstance(case, Case):
         if not isinstance(case, str | os.PathLike):
             raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case or a LineContact.")
-        case = load_case(case)
+        case = load_fit_case(data, case)
     return _Problem(case.contact, case.fit, case.definition, case.rtol)
 
 
@@ -288,8 +292,8 @@ def _intervals(
 
 
 def _normal(theta: float, squared: float) -> Ends:
-    """Return the interval of half-width sqrt(squared), open where that is no number."""
-    half = math.sqrt(squared) if math.isfinite(squared) else math.inf
+    """Return the interval of half-width sqrt(squared), open where that is no number or no factor in double precision."""
+    half = math.sqrt(squared) if squared < WIDEST**2 else math.inf
     return Ends(theta - half, theta + half)
 
 

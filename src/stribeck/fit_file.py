@@ -1,20 +1,22 @@
-"""The fitted case as a TOML file: the case as it was written, with the fitted values in it and where they come from."""
+"""The case file of a fit: read before it, and written after it with the fitted values and where they come from."""
 
 from __future__ import annotations
 
 import math
+import os
 import re
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
-from .case import Case, load_case
+from .case import Case, load_case, read_toml
 from .fit_result import Fit, FittedInput
 from .output import PathLike, replacing
 from .parameters import InputError
 from .quantities import QUANTITIES
 from .units import format_si
 
-__all__ = ["format_interval", "format_value", "write_fitted_case"]
+__all__ = ["format_interval", "format_value", "load_fit_case", "write_fitted_case"]
 
 DIGITS = 10
 """Digits of the values in the file, enough to solve the same state again."""
@@ -23,6 +25,42 @@ AGREEMENT = 1e-8
 """Relative difference that rounding to these digits may leave."""
 
 _TABLE = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]+\s*(?:#.*)?")
+
+
+def load_fit_case(data: object, path: PathLike) -> Case:
+    """Read the case file of a fit, and tell where it and the data were given in each other's place.
+
+    Parameters
+    ----------
+    data : object
+        What was given as data: the path of a file, or measurements.
+    path : str or path-like
+        The case file.
+
+    Returns
+    -------
+    Case
+        The checked case.
+
+    Raises
+    ------
+    InputError
+        As :func:`stribeck.load_case`; or if the data are a case file and the case file is none.
+    """
+    if isinstance(data, str | os.PathLike) and "contact" in _tables(data) and not _tables(path) and Path(path).is_file():
+        raise InputError(
+            f"{data} and {path} look swapped: {data} is a case file and {path} is not. "
+            f"Measured friction comes first, then the case: {path} {data}."
+        )
+    return load_case(path)
+
+
+def _tables(path: PathLike) -> dict[str, Any]:
+    """Return what a TOML file says, nothing where it is none."""
+    try:
+        return read_toml(Path(path))
+    except InputError:
+        return {}
 
 
 def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = False) -> None:

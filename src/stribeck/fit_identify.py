@@ -165,7 +165,9 @@ def _listed(words: Sequence[str]) -> str:
 
 def _reason(free: FreeInput, prediction: Prediction) -> str:
     """Return why the data say nothing of an input, in terms of the fitted curve."""
-    asperities, fluid = float(prediction.contact_share.max()), float(prediction.fluid_share.max())
+    error = float((prediction.error / prediction.friction).max())
+    # A share below its error is said to be that at most.
+    asperities, fluid = (max(float(part.max()), error) for part in (prediction.contact_share, prediction.fluid_share))
     if free.name == "friction_coefficient":
         return (
             f"asperities cause at most {_percent(asperities)} of the friction in any row, and a curve without a boundary "

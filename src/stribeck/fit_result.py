@@ -156,6 +156,13 @@ class Fit:
         """Whether the values are those of the optimum."""
         return self.outcome.ok
 
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Names of the inputs that were not fitted: they count as known exactly, and no interval holds their uncertainty."""
+        fitted = {each.name for each in self.inputs}
+        measured = () if self.data.abscissa == "speed" else ("viscosity",)
+        return tuple(name for name in FREE if name not in fitted and name not in measured)
+
     def __getitem__(self, name: str) -> FittedInput:
         """Return a fitted input by its name, or by name and curve as in its label.
 
@@ -230,6 +237,10 @@ class Fit:
             "outcome": self.outcome.name,
             "message": self.outcome.value,
             "inputs": inputs,
+            "held": [
+                {"name": name, "unit": unit_of(name, False), "values": [getattr(each, name) for each in self.contacts]}
+                for name in self.held
+            ],
             "covariance": self.covariance.tolist(),
             "correlation": self.correlation.tolist(),
             "noise": self.noise,

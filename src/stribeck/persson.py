@@ -17,7 +17,7 @@ from scipy import special
 
 from ._types import Array, Indices
 from .persson_integral import Integral, tabulate
-from .spectrum import SelfAffine, Spectrum, positive
+from .spectrum import SelfAffine, Spectrum, height_of_roughness
 from .units import InputError, show
 
 __all__ = ["GAMMA", "PerssonLaw", "exponential_limit", "persson_law"]
@@ -48,6 +48,8 @@ class PerssonLaw:
         Root mean square of the roughness [m].
     rms_slope : float
         Root mean square of its gradient [1].
+    longest_wavelength : float
+        Wavelength of the longest roughness, 2 pi/q0 [m].
     gamma : float
         Reduction of the elastic energy [-].
     error : float
@@ -66,6 +68,7 @@ class PerssonLaw:
     beta: float
     rms_height: float
     rms_slope: float
+    longest_wavelength: float
     gamma: float
     error: float
     _knots: Array = field(repr=False)
@@ -210,9 +213,9 @@ class PerssonLaw:
         Raises
         ------
         InputError
-            Where ``rms_height`` is not a positive number.
+            Where ``rms_height`` is not a positive number, or more than the longest wavelength, as a factor would be.
         """
-        factor = positive("rms_height", rms_height) / self.rms_height
+        factor = height_of_roughness(rms_height, self.longest_wavelength) / self.rms_height
         return replace(
             self,
             beta=self.beta * factor,
@@ -265,6 +268,7 @@ def persson_law(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> Persso
         beta=integral.beta * table.lowest * table.rms_height,
         rms_height=table.rms_height,
         rms_slope=table.rms_slope,
+        longest_wavelength=2 * math.pi / table.lowest,
         gamma=float(gamma),
         error=error,
         _knots=knots,

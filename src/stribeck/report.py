@@ -12,14 +12,14 @@ import numpy as np
 from ._types import LawShape
 from .curve_result import StribeckCurve
 from .distances import Crossing, Distance, TransitionDistances
-from .friction import DEFINITIONS, Definition
+from .friction import DEFINITIONS, Definition, Friction
 from .landmarks import Landmark
 from .parameters import Groups, LineContact
 from .quantities import QUANTITIES
 from .regimes import regime_of
 from .solution import Solution
 from .store import GROUPS, INPUTS, si_films, unit_of
-from .units import format_si
+from .units import format_bound, format_share, format_si
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -195,7 +195,9 @@ def regimes_json(
         "speed": speed,
         "unit": unit_of("speed"),
         "fluid_load_share": solution.fluid_load_share,
-        "contact_friction_share": friction.contact / friction.total if friction.total > 0 else 0.0,
+        "fluid_load_share_error": solution.errors["fluid_load_share"],
+        "contact_friction_share": _contact_part(friction),
+        "contact_friction_share_error": _part_error(friction),
         "friction": friction.total,
         "friction_error": friction.error,
         "definition": curve.definition,
@@ -265,13 +267,13 @@ def _solution_rows(solution: Solution, mu0: float | None, beta: float | None) ->
         f = solution.friction(mu0, beta, definition)
         relative = f.error / f.total if f.total > 0 else 0.0
         yield f"friction coefficient ({definition})", _digits(f.total, relative), "", _error(relative)
-        yield "  from asperities", _digits(f.contact, relative), "", ""
-        yield "  from the fluid", _digits(f.viscous, relative), "", ""
+        yield "  from asperities", _part(f.contact, f.error), "", ""
+        yield "  from the fluid", _part(f.viscous, f.error), "", ""
     for name, label in (
         ("contact_load_share", "load on asperities"),
         ("fluid_load_share", "load on the fluid"),
     ):
-        yield label, _digits(getattr(solution, name), errors[name]), "", _error(errors[name])
+        yield label, _part(getattr(solution, name), errors[name]), "", _error(errors[name])
     scales = None if solution.contact is None else solution.contact.hertz
     for name, label in (
         ("central_gap", "central film"),
@@ -287,8 +289,8 @@ def _solution_rows(solution: Solution, mu0: float | None, beta: float | None) ->
     yield "place of the least film", f"{solution.minimum_position:.4g} a", si, ""
     yield "Lambda (film over h_rms/alpha)", _digits(solution.lambda_ratio, 1e-4), "", ""
     if not math.isnan(solution.central_area_fraction):
-        relative = solution.central_area_fraction_error / solution.central_area_fraction
-        yield "real contact area at x = 0", _digits(solution.central_area_fraction, relative), "", _error(relative)
+        area, error = solution.central_area_fraction, solution.central_area_fraction_error
+        yield "real contact area at x = 0", _part(area, error), "", _error(error / area) if area > 0 else ""
     regime = regime_of(solution.fluid_load_share, _contact_part(solution.friction(mu0, beta)))
     yield "Hersey number", f"{_hersey(solution, beta):.4g}", "", ""
     yield "regime", regime, "", ""
@@ -366,8 +368,8 @@ def print_regimes(
     _say(
         console,
         f"At {speed} lubrication is {_regime(solution, curve.definition)}: the fluid carries "
-        f"{_percent(solution.fluid_load_share)} of the load, asperities cause "
-        f"{_percent(_contact_part(friction))} of the friction coefficient {friction.total:.4g}.",
+        f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load, asperities cause "
+        f"{format_share(_contact_part(friction), _part_error(friction))} of the friction coefficient {friction.total:.4g}.",
     )
     for line in _ways(distances):
         _say(console, line)
@@ -391,7 +393,7 @@ def print_regimes(
     if strongest is not None:
         slope = elasticities[strongest]
         factor = 0.9 if slope > 0 else 1.1
-        way, gain = "less" if slope > 0 else "more", _percent(-_change(factor, slope))
+        way, gain = "less" if slope > 0 else "more", f"{-100 * _change(factor, slope):.3g} %"
         name = LABELS.get(strongest, strongest)
         _say(
             console,
@@ -530,12 +532,19 @@ def _error(relative: float) -> str:
     return f"{relative:.0e}" if math.isfinite(relative) else ""
 
 
-def _percent(part: float) -> str:
-    return f"{100 * part:.3g} %"
+def _part(value: float, error: float) -> str:
+    """Return a part of a sum with the digits that its absolute error allows, or that error as a bound."""
+    if 0 < value <= error:
+        return format_bound(error)
+    return _digits(value, error / value if value > 0 else error)
 
 
-def _contact_part(friction: Any) -> float:
+def _contact_part(friction: Friction) -> float:
     return friction.contact / friction.total if friction.total > 0 else 0.0
+
+
+def _part_error(friction: Friction) -> float:
+    return friction.error / friction.total if friction.total > 0 else 0.0
 
 
 def _regime(solution: Solution, definition: Definition) -> str:

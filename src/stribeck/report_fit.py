@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 from .fit_file import format_interval, format_value
 from .fit_posterior import Posterior
 from .fit_result import Fit, FittedInput
+from .quantities import QUANTITIES
+from .units import format_si
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -60,6 +62,8 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
         table.add_row(*row)
     # Wider than a narrow terminal rather than cut: an end of an interval without its digits is none.
     Console(file=console.file, width=max(TABLE, console.width)).print(table)
+    if fit.held:
+        say(_held(fit))
     say(_noise(fit))
     shift = (
         ""
@@ -114,6 +118,18 @@ def _error(each: FittedInput) -> str:
     if math.isnan(each.standard_error):
         return "at its bound"
     return f"{100 * each.standard_error:.2g} %" if each.standard_error < 1 else "unknown"
+
+
+def _held(fit: Fit) -> str:
+    shown = []
+    for name in fit.held:
+        values = {getattr(contact, name) for contact in fit.contacts}
+        known = format_si(values.pop(), QUANTITIES[name].dimension, 4) if len(values) == 1 else "of each curve"
+        shown.append(f"{name} {known}")
+    return (
+        f"Counted as known exactly: {', '.join(shown)}. "
+        "No error above holds theirs; in the table [fit] of the case, free and priors bring them in."
+    )
 
 
 def _noise(fit: Fit) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import hertz
 from ._types import Array, LawShape, is_exponential
+from .cavitation import cavitation_notes
 from .contact_laws import named_law
 from .mesh import Mesh
 from .newton import Outcome
@@ -171,6 +172,8 @@ def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solut
     if state is None or values is None or estimate is None:
         return None
     notes = [*shape_notes(contact), *law_notes(point.groups, contact, values)]
+    if contact is not None and point.groups.speed > 0:
+        notes += cavitation_notes(contact, state.equations.pressures(state.y)[1])
     if math.isnan(values.flux_gap):
         notes.append("The gap is negative, so that no fluid passes: there is no flux gap.")
     if estimate.floor > 0.1 * rtol:

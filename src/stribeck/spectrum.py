@@ -21,9 +21,9 @@ from functools import cached_property
 import numpy as np
 
 from ._types import Array
-from .units import InputError, show
+from .units import InputError, format_si, show
 
-__all__ = ["SelfAffine", "Spectrum", "positive"]
+__all__ = ["SelfAffine", "Spectrum", "height_of_roughness", "positive"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,10 +174,12 @@ class Spectrum:
         Raises
         ------
         InputError
-            Where ``rms_height`` is not a positive number.
+            Where ``rms_height`` is not a positive number, or more than the longest wavelength, as a factor would be.
         """
-        wanted = positive("rms_height", rms_height)
-        return Spectrum(self.wavenumber, self.density * (wanted / self.rms_height) ** 2)
+        return self._with_height(height_of_roughness(rms_height, 2 * math.pi / self.lowest))
+
+    def _with_height(self, rms_height: float) -> Spectrum:
+        return Spectrum(self.wavenumber, self.density * (rms_height / self.rms_height) ** 2)
 
     def between(self, lowest: float, highest: float) -> Spectrum:
         """Return the part of the spectrum between two wave numbers.
@@ -276,7 +278,7 @@ class SelfAffine:
             table = Spectrum(np.array([self.q0, roll_off, self.q1]), np.array([1.0, 1.0, falling]))
         else:
             table = Spectrum(np.array([self.q0, self.q1]), np.array([1.0, falling]))
-        return table.scaled(self.h_rms)
+        return table._with_height(self.h_rms)
 
     def scaled(self, rms_height: float) -> SelfAffine:
         """Return the surface of the same shape of the spectrum with another rms height.
@@ -294,9 +296,9 @@ class SelfAffine:
         Raises
         ------
         InputError
-            Where ``rms_height`` is not a positive number.
+            Where ``rms_height`` is not a positive number, or more than the longest wavelength, as a factor would be.
         """
-        return replace(self, h_rms=positive("rms_height", rms_height))
+        return replace(self, h_rms=height_of_roughness(rms_height, 2 * math.pi / self.q0))
 
 
 def _growth(power: Array, width: Array) -> Array:
@@ -315,6 +317,17 @@ def positive(name: str, value: object) -> float:
     if isinstance(value, bool | str) or not (math.isfinite(number) and number > 0):
         raise InputError(f"{name} = {show(value)} is not a positive number; give one above zero, in SI units.")
     return number
+
+
+def height_of_roughness(value: object, longest_wavelength: float) -> float:
+    """Return an rms height, or raise the sentence that says that it is one, where it cannot be that of a roughness."""
+    height = positive("rms_height", value)
+    if height > longest_wavelength:
+        raise InputError(
+            f"rms_height = {show(value)} would be {format_si(height, 'length')}, more than the longest wavelength of the "
+            f"roughness, {format_si(longest_wavelength, 'length')}; give the new rms height in m, such as 1e-6, not a factor."
+        )
+    return height
 
 
 def _column(name: str, values: object) -> Array:

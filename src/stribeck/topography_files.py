@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import warnings
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,9 @@ from .topography_text import TEXT, read_text
 from .units import InputError, show, to_si
 
 __all__ = ["read_topography"]
+
+UNSIGNED = {"asc", "hgt", "xyz"}
+"""Formats of SurfaceTopography that begin with no mark of their own, so that it takes much for them that is something else."""
 
 
 def read_topography(
@@ -73,10 +77,12 @@ def read_topography(
     except ImportError:
         raise MissingExtraError(f"reading {path.name}", "surface", "SurfaceTopography") from None
     try:
+        _check_whole(path)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # its readers warn of metadata that we do not use
             # A stream of our own, as some readers leave theirs open.
             with path.open("rb") as stream, SurfaceTopography.open_topography(stream) as reader:
+                _check_format(path, reader)
                 return _from_channel(path, reader, _channel(path, reader, channel), unit, height_unit, spacing)
     except InputError:
         raise
@@ -90,6 +96,46 @@ def read_topography(
             f"{path} could not be read by SurfaceTopography ({type(problem).__name__}: {_first(problem)}); "
             "export it as X3P or as text with units."
         ) from None
+
+
+def _check_whole(path: Path) -> None:
+    """Refuse a file that is empty, and a zip archive, as .x3p and .plux are, that is cut off or spoilt."""
+    if path.stat().st_size == 0:
+        raise InputError(f"{path} is empty; copy it from the instrument again.")
+    with path.open("rb") as stream:
+        if stream.read(4) != b"PK\x03\x04":
+            return
+    try:
+        with zipfile.ZipFile(path) as archive:
+            spoilt = archive.testzip()
+    except (zipfile.BadZipFile, OSError, ValueError):
+        raise InputError(
+            f"{path} is cut off or damaged: it begins as a zip archive and has no list of its parts at the end; "
+            "copy it from the instrument again."
+        ) from None
+    except (RuntimeError, NotImplementedError) as problem:
+        raise InputError(f"{path} is a zip archive that cannot be opened ({_first(problem)}); export it again.") from None
+    if spoilt is not None:
+        raise InputError(f"{path} is damaged: {spoilt} in it is not what was written; copy it from the instrument again.")
+
+
+def _check_format(path: Path, reader: Any) -> None:
+    """Refuse what was taken for text or bare numbers, although its ending is that of a format with a mark of its own."""
+    from SurfaceTopography.IO import readers
+
+    ending = path.suffix.lower().lstrip(".")
+    if reader.format() in UNSIGNED and any(ending in _endings(known) and known.format() not in UNSIGNED for known in readers):
+        raise InputError(
+            f"{path} does not begin as .{ending} files do: it is damaged, or something else under that name; "
+            "copy it from the instrument again, or name it .txt if it is text."
+        )
+
+
+def _endings(reader: Any) -> list[str]:
+    try:
+        return list(reader.file_extensions())
+    except RuntimeError:  # it has none
+        return []
 
 
 def _channel(path: Path, reader: Any, name: str | None) -> Any:

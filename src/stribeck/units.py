@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-__all__ = ["DIMENSIONS", "Dimension", "InputError", "format_si", "read_number", "to_si"]
+__all__ = ["DIMENSIONS", "Dimension", "InputError", "format_bound", "format_share", "format_si", "read_number", "to_si"]
 
 
 class InputError(ValueError):
@@ -193,6 +193,56 @@ def format_si(value: float, dimension: str, digits: int = 3) -> str:
         power = max((step for step in steps if step <= exponent), default=min(steps))
     number = f"{value / 10.0**power:.{digits}g}"
     return f"{number} {steps[power]}".rstrip()
+
+
+def format_bound(error: float) -> str:
+    """Return a bound by a positive error with one digit, rounded up.
+
+    Parameters
+    ----------
+    error : float
+        The error.
+
+    Returns
+    -------
+    str
+        The text.
+
+    Examples
+    --------
+    >>> format_bound(3.2e-8)
+    '< 4e-08'
+    """
+    digits = f"{error:.0e}"
+    if float(digits) < error * (1 - 1e-9):  # rounding of the error itself is no reason
+        step = 10.0 ** int(digits.partition("e")[2])
+        digits = f"{float(digits) + step:.0e}"
+    return f"< {digits}"
+
+
+def format_share(part: float, error: float) -> str:
+    """Return a share in per cent, or the bound that its error is where it lies below that.
+
+    Parameters
+    ----------
+    part : float
+        The share, 0 to 1; exactly zero is none at all.
+    error : float
+        Its absolute error.
+
+    Returns
+    -------
+    str
+        The text.
+
+    Examples
+    --------
+    >>> format_share(0.2034, 1e-7), format_share(9.75e-155, 1e-7)
+    ('20.3 %', '< 1e-05 %')
+    """
+    if 0 < part <= error:
+        return f"{format_bound(100 * error)} %"
+    return f"{100 * part:.3g} %"
 
 
 def show(value: Any) -> str:

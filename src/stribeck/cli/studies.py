@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from ..case import load_case
 from ..output import check_output
 from ..units import InputError
 from .arguments import CaseFile, File, Flag, Number, Word, as_number, as_whole, check_pictures, need_extra
@@ -144,7 +143,9 @@ def fit_command(
     if data is None or case is None:
         missing, example = ("DATA", "measured.csv case.toml") if data is None else ("CASE", f"{data} case.toml")
         raise InputError(f"{missing} is missing; give measured friction and a case file, as in: stribeck fit {example}.")
-    loaded = load_case(case)
+    from ..fit_file import load_fit_case
+
+    loaded = load_fit_case(data, case)
     pictures = check_pictures(plot, force)
     if out is not None:
         check_output(out, (".toml",), force=force)

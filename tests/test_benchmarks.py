@@ -1,0 +1,133 @@
+"""Every script of benchmarks/ on a load so small that its numbers mean nothing: its tables come out, filled and finite."""
+
+import os
+import re
+import subprocess
+import sys
+import types
+from pathlib import Path
+
+import pytest
+
+ARGUMENTS = {
+    "atlas_rate": ["--number", "100"],
+    "batch_rate": ["--number", "4"],
+    "cold_starts": ["--number", "2"],
+    "convergence": ["--number", "1"],
+    "cost": ["--runs", "1"],
+    "curve_speed": [],
+    "peers": ["--quick"],
+    "surface_errors": ["--number", "1"],
+    "sweep_rate": ["--number", "4", "--workers", "1"],
+}
+"""Scripts, and what makes them small; explorer_latency needs a browser, instructions valgrind: they are tested apart."""
+
+APART = {"explorer_latency", "instructions"}
+NO_SCRIPTS = {"textbook"}
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
+
+
+@pytest.fixture
+def run(load_benchmark, monkeypatch, capsys):
+    """Return a function that runs a script with arguments and returns what it prints."""
+
+    def run(script, *arguments):
+        module = load_benchmark(script) if isinstance(script, str) else script
+        monkeypatch.setattr(sys, "argv", [f"{module.__name__}.py", *arguments])
+        module.main()
+        return capsys.readouterr().out
+
+    return run
+
+
+def tables(text):
+    """Return the tables of a text in Markdown, each as its rows of cells, the head first."""
+    found = re.findall(r"(?:^\|.*\|\n)+", text, re.M)
+    return [[[cell.strip() for cell in line.strip("|").split("|")] for line in each.splitlines()] for each in found]
+
+
+def check(text):
+    """Check that each table of a text has rows, cells under all heads, and finite numbers in each row."""
+    found = tables(text)
+    assert found
+    for head, rule, *rows in found:
+        assert all(re.fullmatch("-+:?", cell) for cell in rule), rule
+        assert rows, head
+        for row in rows:
+            assert len(row) == len(head), row
+            cells = row[1:]
+            assert not re.search(r"\b(nan|inf)\b", " ".join(cells), re.I), row
+            assert any(NUMBER.search(cell) for cell in cells) or "not installed" in cells, row
+    return found
+
+
+def test_no_script_is_forgotten():
+    folder = Path(__file__).parents[1] / "benchmarks"
+    assert {path.stem for path in folder.glob("*.py")} == set(ARGUMENTS) | APART | NO_SCRIPTS
+
+
+@pytest.mark.parametrize("name", ARGUMENTS)
+def test_its_tables_come_out(load_benchmark, run, monkeypatch, name):
+    script = load_benchmark(name)
+    if name == "curve_speed":
+        monkeypatch.setattr(script, "RUNS", 1)
+    if name == "peers":
+        for peer in script.PEERS:
+            monkeypatch.setitem(sys.modules, peer, None)
+    text = run(script, *ARGUMENTS[name])
+    check(text)
+    if name == "peers":
+        assert all(f"pip install {peer}" in text for peer in script.PEERS)
+
+
+def test_a_sweep_too_small_to_be_timed_says_so(load_benchmark, monkeypatch, tmp_path):
+    script = load_benchmark("sweep_rate")
+
+    def sweep(file, store, workers, on_progress):
+        on_progress(types.SimpleNamespace(done=2))
+        return [1, 2]
+
+    monkeypatch.setattr(script.sb, "sweep", sweep)
+    with pytest.raises(SystemExit, match="2 are too few for 8 processes; give a larger --number"):
+        script.measure(tmp_path / "sweep.toml", tmp_path / "store", 8)
+
+
+def test_instructions_are_counted_for_all_cases(load_benchmark, run, monkeypatch):
+    """Valgrind is played by Python itself, which runs each case and says that a run costs three million."""
+    script = load_benchmark("instructions")
+
+    def valgrind(command, **settings):
+        assert command[:2] == ["valgrind", "--tool=cachegrind"]
+        exec(command[-1], {})
+        runs = int(re.search(r"range\((\d)\)", command[-1])[1])
+        said = f"==7== I   refs:      {1_234_000_000 + 3_000_000 * runs:,}\n"
+        return subprocess.CompletedProcess(command, 0, "", said)
+
+    monkeypatch.setattr(script.shutil, "which", lambda name: f"/usr/bin/{name}")
+    monkeypatch.setattr(script.subprocess, "run", valgrind)
+    [[_, _, *rows]] = check(run(script, "--points", "4"))
+    assert rows == [[name, "3"] for name in script.cases(4)] and len(rows) == 4
+
+
+def test_without_valgrind_it_says_how_to_get_it(load_benchmark, run, monkeypatch):
+    script = load_benchmark("instructions")
+    monkeypatch.setattr(script.shutil, "which", lambda name: None)
+    assert run(script) == "not run: there is no valgrind; apt-get install valgrind\n"
+
+
+def test_without_a_browser_the_explorer_is_not_timed(load_benchmark, run, monkeypatch):
+    script = load_benchmark("explorer_latency")
+    monkeypatch.delenv("CHROMIUM", raising=False)
+    monkeypatch.setattr(script.shutil, "which", lambda name: None)
+    monkeypatch.setitem(sys.modules, "playwright.sync_api", types.SimpleNamespace(sync_playwright=None))
+    assert run(script) == "not run: there is no chromium; apt-get install chromium, or say where it is with CHROMIUM=\n"
+    monkeypatch.setitem(sys.modules, "playwright.sync_api", None)
+    assert run(script) == "not run: pip install 'stribeck[app,browser]'\n"
+
+
+@pytest.mark.browser
+def test_the_explorer_is_timed(run, monkeypatch):
+    for name in [name for name in os.environ if name.startswith(("PYTEST", "NICEGUI"))]:
+        monkeypatch.delenv(name)  # the server would take itself for a part of the tests
+    [[_, _, *rows]] = check(run("explorer_latency", "--number", "3"))
+    assert len(rows) == 5

@@ -1,0 +1,59 @@
+"""What reports print: digits that the errors allow, and no share that is smaller than its error."""
+
+import json
+import re
+
+import pytest
+from command_line import call, case_text
+
+import stribeck as sb
+from stribeck.units import format_bound, format_share
+
+LAW = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"150 um"', "shortest_wavelength": '"1.5 um"'}
+OF_SURFACE = {"roughness": None, "alpha": None, "beta": None, "law": '"persson"'}
+
+
+def test_a_share_below_its_error_is_printed_as_that(capsys, tmp_path):
+    case = tmp_path / "fast.toml"
+    case.write_text(case_text({"speed": '"10 m/s"'}))
+    found = json.loads(call(capsys, "regimes", case, "--json").out)
+    assert 0 < found["contact_friction_share"] < found["contact_friction_share_error"] < 1e-6
+    assert found["fluid_load_share"] == pytest.approx(1, abs=found["fluid_load_share_error"])
+    share = f"{format_bound(100 * found['contact_friction_share_error'])} %"
+    said = f"the fluid carries 100 % of the load, asperities cause {share} of the friction coefficient"
+    assert said in call(capsys, "regimes", case).out
+    rows = call(capsys, "solve", case).out
+    assert len(re.findall(r"from asperities +< \de-0[78] *\n", rows)) == 2
+    assert re.search(r"load on asperities +< \de-08 ", rows)
+
+
+def test_a_part_is_printed_with_the_digits_that_its_error_leaves(capsys, tmp_path):
+    case = tmp_path / "quick.toml"
+    case.write_text(case_text({"speed": '"40 mm/s"'}))
+    solution = sb.solve(sb.load_case(case).contact)
+    error = solution.errors["contact_load_share"]
+    [shown] = re.findall(r"load on asperities +([\d.e-]+)", call(capsys, "solve", case).out)
+    digits = len(shown.replace("0.", "").lstrip("0"))
+    assert 0.1 * error / solution.contact_load_share < 10.0**-digits <= error / solution.contact_load_share
+
+
+def test_a_contact_area_that_vanishes_is_zero(capsys, tmp_path):
+    case = tmp_path / "faster.toml"
+    case.write_text(case_text(OF_SURFACE | {"speed": '"1 km/s"'}, surface=LAW))
+    answer = call(capsys, "solve", case)
+    assert (answer.code, answer.err) == (0, "")
+    assert re.search(r"real contact area at x = 0 +0 *\n", answer.out)
+
+
+@pytest.mark.parametrize(
+    ("part", "error", "text"),
+    [
+        (0.2034, 1e-7, "20.3 %"),
+        (0.0, 1e-7, "0 %"),
+        (9.75e-155, 1e-9, "< 1e-07 %"),
+        (3e-8, 3.14e-8, "< 4e-06 %"),
+        (1.0, 0.0, "100 %"),
+    ],
+)
+def test_shares_are_bounded_by_their_errors(part, error, text):
+    assert format_share(part, error) == text
