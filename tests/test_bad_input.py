@@ -247,10 +247,10 @@ def test_the_installed_command_refuses_in_the_same_way(folder, tokens, sentence)
 
 def test_a_tolerance_that_rounding_forbids_is_refused_with_that_sentence(folder):
     # Known only after the solve, so that this one is not stopped before it.
-    tokens = ["solve", "--groups", "1e-12", "1", "1e-6", "--rtol", "1e-11", "--plot", "new.png"]
+    tokens = ["solve", "--groups", "1e-12", "1", "0", "--rtol", "1e-9", "--plot", "new.png"]
     answer = call_outside(*tokens, cwd=folder)
     assert answer.code == 2
-    assert re.search(r"rtol = 1e-11 cannot be reached at .*Double precision bounds the error", answer.err)
+    assert re.search(r"rtol = 1e-09 cannot be reached at .*Double precision bounds the error", answer.err)
     assert not (folder / "new.png").exists()
 
 
