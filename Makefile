@@ -34,7 +34,7 @@ help:
 	@echo "make docs       the site, build/docs/index.html, and the code of its pages      make site  the site alone"
 	@echo "make notebooks  the notebooks with results, build/notebooks"
 	@echo "make validity   docs/validity.md: the maps of the errors of all formulas"
-	@echo "make atlas      the table of solved states, 20 minutes on two cores      make certificate  its errors"
+	@echo "make atlas      the table of solved states, 6 minutes on two cores      make certificate  its errors"
 	@echo "make clean      remove what make made"
 
 $(READY): pyproject.toml requirements.lock
