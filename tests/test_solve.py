@@ -684,3 +684,10 @@ def test_the_mesh_of_a_solution_is_open_to_the_user(solved):
     mesh = solved(*TYPICAL["mixed"]).mesh
     assert isinstance(mesh, Mesh)
     assert solved(*TYPICAL["mixed"]).nodes == mesh.size
+
+
+def test_what_uneven_nodal_gaps_keep_from_a_tolerance_is_told_as_rounding():
+    # The floor of the films is 1e-10 here; what remains at 1e-9 is rounding of the nodal gaps, magnified between them.
+    state = sb.solve(sb.Groups(7.0335645907234305e-09, 0.5082702500882404, 0.0), rtol=1e-9, on_failure="return")
+    assert state.outcome is sb.Outcome.ROUNDING
+    assert 1e-9 < state.error_estimate < 1e-8

@@ -29,6 +29,9 @@ ROUGH = 1e-2
 MOST_WAITING = 8
 """Points that may wait to be judged together."""
 
+WAITING_NODES = 4000
+"""Nodes that they may have in all: each may keep the factors of a matrix as large as its own."""
+
 PATIENCE = 0.6
 """How many wait where the errors at the nodes are as large as the tolerance; the smaller they are, the more."""
 
@@ -100,7 +103,8 @@ class Follower:
     @property
     def patience(self) -> int:
         """How many points may wait: the better the mesh resolved the last one, the more."""
-        return max(1, min(MOST_WAITING, int(PATIENCE / math.sqrt(self.at_nodes + 1e-300))))
+        size = 1 if self.operators is None else self.operators.mesh.size
+        return max(1, min(MOST_WAITING, WAITING_NODES // size, int(PATIENCE / math.sqrt(self.at_nodes + 1e-300))))
 
     def _learn(self, point: Point) -> Point:
         """Return the point, and keep what it tells of the mesh."""

@@ -23,6 +23,9 @@ QUASISTATIC_LOAD = 0.01
 
 MAX_REFINEMENTS = 12
 
+NODAL_ROUNDING = 16 * 2.0**-52
+"""Rounding of a nodal gap, the difference of terms of order one, as the polynomials between the nodes magnify it."""
+
 LEAST_GAP_TAIL = 0.02
 """Part of the tolerance below which resolving the gap where it is read off alone does not help."""
 
@@ -138,9 +141,14 @@ def converge(
         else:
             tail *= between
         guess = state
-    if best.estimate is not None and best.estimate.floor > 0.3 * rtol:
+    if best.estimate is not None and max(best.estimate.floor, _noise(best)) > 0.3 * rtol:
         outcome = Outcome.ROUNDING
     return replace(best, outcome=outcome)
+
+
+def _noise(point: Point) -> float:
+    """Return about the relative error of the read-off gaps that uneven nodal gaps may cause on small panels."""
+    return 0.0 if point.state is None else NODAL_ROUNDING / float(point.state.gap.min())
 
 
 def shrink(excess: float) -> float:
