@@ -29,10 +29,10 @@ from command_line import (
 )
 
 import stribeck as sb
-from stribeck import report
 from stribeck.cli import arguments, solving
 from stribeck.cli import progress as progress_module
 from stribeck.newton import Outcome
+from stribeck.report_words import digits
 
 GROUPS = ("--groups", "1e-4", "0.1", "1e-3")
 FAST = ("--groups", "0.1", "1e-3", "--range", "0.1", "1", "--points", "3")
@@ -129,10 +129,10 @@ def test_solve_prints_values_with_units_errors_outcome_and_notes(capsys):
 
 
 def test_digits_beyond_the_error_are_not_printed():
-    assert report._digits(0.123456789, 1e-4) == "0.1235"
-    assert report._digits(0.123456789, 2e-7) == "0.1234568"
-    assert report._digits(float("nan"), 1e-4) == "none"
-    assert report._digits(float("inf"), 1e-4) == "infinite"
+    assert digits(0.123456789, 1e-4) == "0.1235"
+    assert digits(0.123456789, 2e-7) == "0.1234568"
+    assert digits(float("nan"), 1e-4) == "none"
+    assert digits(float("inf"), 1e-4) == "infinite"
 
 
 def test_the_tolerance_of_the_case_holds_and_the_option_overrides_it(capsys, tmp_path):

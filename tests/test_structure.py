@@ -115,7 +115,10 @@ MAY_IMPORT = {
     "figures": RESULTS
     | {"asymptotics", "curve", "curve_result", "hertz", "landmarks", "output", "phase_diagram", "plot_phase", "plot_style"}
     | {"regimes", "store", "validity"},
-    "report": RESULTS | {"case", "curve_result", "distances", "landmarks", "regimes", "store"},
+    "report_words": RESULTS | {"curve_result", "regimes", "store"},
+    "report_json": RESULTS | {"curve_result", "distances", "landmarks", "report_words", "store"},
+    "report_regimes": RESULTS | {"curve_result", "distances", "landmarks", "report_words"},
+    "report": RESULTS | {"curve_result", "regimes", "report_words"},
     "distances": RESULTS | {"curve", "curve_coordinate", "curve_result", "regimes"},
     "merging": RESULTS | {"follower", "refine", "sensitivity", "span"},
     "phase_grid": RESULTS | {"contact_laws", "regimes", "span"},

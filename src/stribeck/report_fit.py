@@ -101,7 +101,7 @@ def fit_json(fit: Fit, title: str, files: Sequence[str] = (), posterior: Posteri
     Returns
     -------
     dict
-        Ready for :func:`stribeck.report.dump`.
+        Ready for :func:`stribeck.report_json.dump`.
     """
     found: dict[str, Any] = {"title": title} | fit.to_dict() | {"files": list(files)}
     if posterior is not None:

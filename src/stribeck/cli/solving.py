@@ -97,10 +97,10 @@ def solve_command(
         from ..plotting import plot_profile
 
         plot_profile(solution, picture, force=force, title=title)
-    from .. import report
+    from .. import report, report_json
 
     if json:
-        print(report.dump(report.solution_json(solution, mu, b)))
+        print(report_json.dump(report_json.solution_json(solution, mu, b)))
         return 0
     console = stdout_console()
     report.print_solution(console, solution, title, mu, b)
@@ -175,10 +175,10 @@ def curve_command(
         if curve.outcome is Outcome.ROUNDING:
             raise InputError(_too_small(curve))
         written, problems = _write(curve, title, outputs, pictures, force)
-    from .. import report
+    from .. import report, report_json
 
     if json:
-        print(report.dump(report.curve_json(curve, title, written)))
+        print(report_json.dump(report_json.curve_json(curve, title, written)))
     else:
         report.print_curve(stdout_console(), curve, title, written)
     if problems:
@@ -219,12 +219,12 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
         if curve.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         distances = transition_distances(loaded.contact, rtol=loaded.rtol, definition=loaded.definition, on_point=progress)
-    from .. import report
+    from .. import report_json, report_regimes
 
     if json:
-        print(report.dump(report.regimes_json(solution, elasticities, curve, distances, loaded.title)))
+        print(report_json.dump(report_json.regimes_json(solution, elasticities, curve, distances, loaded.title)))
     else:
-        report.print_regimes(stdout_console(), solution, elasticities, curve, distances, loaded.title)
+        report_regimes.print_regimes(stdout_console(), solution, elasticities, curve, distances, loaded.title)
     return 0 if curve.outcome.ok else complain(curve.outcome.value, FAILED)
 
 

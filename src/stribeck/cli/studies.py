@@ -87,9 +87,9 @@ def sweep_command(
     if found.note:
         complain(found.note, 0)
     if json:
-        from .. import report
+        from .. import report_json
 
-        print(report.dump(report_sweep.sweep_json(found, written)))
+        print(report_json.dump(report_sweep.sweep_json(found, written)))
     else:
         report_sweep.print_sweep(stdout_console(), found, written)
     if found.interrupted:
@@ -169,10 +169,10 @@ def fit_command(
 
         write_fitted_case(found, loaded, out, force=force)
         written.append(str(out))
-    from .. import report, report_fit
+    from .. import report_fit, report_json
 
     if json:
-        print(report.dump(report_fit.fit_json(found, loaded.title, written, drawn)))
+        print(report_json.dump(report_fit.fit_json(found, loaded.title, written, drawn)))
     else:
         report_fit.print_fit(stdout_console(), found, loaded.title, written, drawn)
     if not found.converged:
@@ -257,9 +257,9 @@ def surface_command(
         surfaces.write_surface_table(surface, out, force=force)
     written = [str(name) for name in (*pictures, *([out] if out is not None else []))]
     if json:
-        from .. import report
+        from .. import report_json
 
-        print(report.dump({**surface.to_dict(), "files": written}))
+        print(report_json.dump({**surface.to_dict(), "files": written}))
     else:
         report_surface.print_surface(stdout_console(), surface, written)
     return 0
