@@ -163,7 +163,7 @@ MAY_IMPORT = {
     "atlas": {"atlas_grid", "atlas_table", "friction", "hertz", "parameters", "quantities", "threads", "units"},
     "atlas_curve": {"atlas", "friction", "parameters", "regimes", "units"},
     "atlas_phase": {"atlas", "atlas_curve", "friction", "newton", "parameters", "phase_grid", "regimes", "threads"},
-    "atlas_build": {"atlas_grid", "atlas_table", "curve", "parameters", "solve"},
+    "atlas_build": {"atlas_grid", "atlas_table", "curve"},
     "atlas_certificate": {"atlas", "parameters", "solve"},
 }
 OPEN = {"__init__", "__main__", "app", "cli"}

@@ -52,6 +52,20 @@ def test_a_mesh_reads_off_the_gaps_where_its_estimate_says_so(neighbours):
     assert not reads_off(states[0].mesh, states[0].gap, 0.1 * error)
 
 
+def test_fewer_points_wait_where_a_mesh_resolves_them_worse_or_is_large(neighbours):
+    follower = Follower(groups_at, RTOL, postpone=True)
+    assert follower.patience == 1  # nothing is known yet
+    follower.at_nodes = 1e-6
+    assert follower.patience == follower_module.MOST_WAITING
+    follower.at_nodes = 0.02
+    assert 1 < follower.patience < follower_module.MOST_WAITING
+    follower.at_nodes = 0.9
+    assert follower.patience == 1
+    follower.at_nodes = 1e-6
+    follower.operators = Operators(neighbours[1].coarse.refined(120))
+    assert follower.patience * follower.operators.mesh.size <= follower_module.WAITING_NODES
+
+
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9])
 def test_points_whose_mesh_proves_too_coarse_are_solved_anew(monkeypatch, rtol):
     whole = sb.stribeck_curve(load=0.1, roughness=1e-4, speed=SPEEDS[::-1], rtol=rtol)
@@ -93,6 +107,7 @@ def test_an_interrupted_path_keeps_the_points_that_were_reported():
 
     path = follow(groups_at, np.log(SPEEDS).tolist(), RTOL, report)
     assert path.outcome is sb.Outcome.INTERRUPTED
+    assert len(reported) == 4
     assert path.coordinates == tuple(reported)
     assert all(point.estimate.total <= RTOL for point in path.states)
 

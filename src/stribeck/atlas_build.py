@@ -36,8 +36,6 @@ from .atlas_grid import (
 )
 from .atlas_table import FILE, FILM_RANGE, STEP, TABULATED, pack, solver_hash
 from .curve import stribeck_curve
-from .parameters import Groups
-from .solve import solve
 
 RTOL = 1e-6
 """Tolerance of the states of the table."""
@@ -60,10 +58,9 @@ def solved(log_speeds: Array, log_load: float, kappa: float, rtol: float) -> Arr
     """Return the observables along ascending speeds, shape (speeds, observables)."""
     load = math.exp(-log_load)
     curve = stribeck_curve(load=load, roughness=kappa * load, speed=np.exp(log_speeds), rtol=rtol)
-    # The slowest, where rounding may end a curve; it bounds the films of 1e-12 to 1.4e-7.
-    missing = np.exp(log_speeds[: len(log_speeds) - len(curve)])
-    slowest = [solve(Groups(float(speed), load, kappa * load), rtol=max(rtol, 2e-7)) for speed in missing]
-    return np.array([s.observables.array() for s in (*slowest, *curve.solutions)])
+    if len(curve) != len(log_speeds):
+        raise RuntimeError(f"load {load:.6g}, relative roughness {kappa:.6g}: {curve.outcome.value}")
+    return np.array([s.observables.array() for s in curve.solutions])
 
 
 def tabulated(observed: Array, log_speeds: Array, log_load: float) -> Array:

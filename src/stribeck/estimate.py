@@ -21,7 +21,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from . import reynolds
-from ._types import Array
+from ._types import Array, Indices
 from .elasticity import (
     Blocks,
     log_moments,
@@ -231,15 +231,18 @@ def interpolation_errors(states: Rows, minimum_positions: Array) -> Array:
     least = np.clip(np.searchsorted(mesh.edges, minimum_positions) - 1, 0, mesh.panels - 1)
     panels = np.stack([np.full_like(least, central), least])
     gap = states.y[:, :-2].reshape(len(least), mesh.panels, -1)[np.arange(len(least)), panels]
-    shape = np.log(gap / mesh.far.reshape(mesh.panels, -1)[panels])
-    return np.asarray(SAFETY * interpolation_error(shape) * gap.min(axis=2))
+    return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
 
 
 def reads_off(mesh: Mesh, gap: Array, rtol: float) -> bool:
     """Tell whether the central and the least gap are interpolated to ``rtol``: what a mesh kept along a path loses first."""
     panels = [int(np.searchsorted(mesh.edges, 0.0)), int(np.argmin(gap)) // mesh.order]
-    shape = np.log((gap / mesh.far).reshape(mesh.panels, -1)[panels])
-    return bool((SAFETY * interpolation_error(shape) <= rtol).all())
+    return bool((_between_nodes(mesh, gap.reshape(mesh.panels, -1)[panels], panels) <= rtol).all())
+
+
+def _between_nodes(mesh: Mesh, gap: Array, panels: Indices | list[int]) -> Array:
+    """Return the relative errors of gaps, shape (..., order), interpolated between the nodes of their ``panels``."""
+    return np.asarray(SAFETY * interpolation_error(np.log(gap / mesh.far.reshape(mesh.panels, -1)[panels])))
 
 
 @lru_cache(maxsize=64)

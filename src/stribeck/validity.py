@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache, partial
 from importlib.metadata import version
@@ -365,9 +364,6 @@ def _row(base: Groups, speeds: Array) -> list[tuple[int, Solution]]:
             return found
         places = dict(zip(speeds.tolist(), range(len(speeds)), strict=True))
         found += [(places[value], state) for value, state in zip(curve.values.tolist(), curve.solutions, strict=True)]
-        for k in sorted(set(moving) - {k for k, _ in found}):  # where rounding ends a row a mesh made from cold may still do
-            with suppress(SolveError):
-                found.append((k, _state(replace(base, speed=float(speeds[k])))))
     return found
 
 
