@@ -102,10 +102,10 @@ validity: $(READY)
 
 # The lines that are finished are kept in build/atlas, so that an interrupted build goes on.
 atlas: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m stribeck.atlas_build
+	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_build
 
 certificate: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m stribeck.atlas_certificate
+	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_certificate
 
 clean:
 	rm -rf $(VENV) build dist curve.nc curve.png curve.csv .pytest_cache .mypy_cache .ruff_cache .hypothesis

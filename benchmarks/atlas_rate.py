@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 import stribeck as sb
-from stribeck.threads import one_blas_thread
+from stribeck.numerics.threads import one_blas_thread
 
 STATES = 1_000_000
 RUNS = 5

@@ -22,13 +22,13 @@ from unittest.mock import patch
 import numpy as np
 
 import stribeck as sb
-from stribeck import reynolds
-from stribeck.contact_laws import contact_law
-from stribeck.equations import Equations, Operators
-from stribeck.mesh import Mesh
-from stribeck.newton import root_find
-from stribeck.observables import NAMES, observables
-from stribeck.start import cold_start
+from stribeck.contact_laws.scaled import contact_law
+from stribeck.equations.line import Equations, Operators
+from stribeck.equations.observables import NAMES, observables
+from stribeck.fluids import newtonian as reynolds
+from stribeck.numerics.newton import root_find
+from stribeck.numerics.panels import Mesh
+from stribeck.solver.cold_start import cold_start
 
 SIDES = {"both infinities": False, "the left infinity": True}
 SCALES = {"constant": False, "`h*`**2 of the iterate": True}

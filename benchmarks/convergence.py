@@ -22,13 +22,13 @@ import numpy as np
 import scipy
 
 import stribeck as sb
-from stribeck.equations import Operators
-from stribeck.estimate import FineOperators
-from stribeck.mesh import Mesh, MeshTooLargeError
-from stribeck.observables import NAMES
-from stribeck.refine import judge
-from stribeck.start import cold_start
-from stribeck.states import State, mesh_for, solve_state
+from stribeck.equations.error_estimate import FineOperators
+from stribeck.equations.line import Operators
+from stribeck.equations.observables import NAMES
+from stribeck.equations.state import State, mesh_for, solve_state
+from stribeck.numerics.panels import Mesh, MeshTooLargeError
+from stribeck.solver.cold_start import cold_start
+from stribeck.solver.refinement import judge
 
 STATES = {
     "mixed": (1e-5, 0.1, 1e-4),

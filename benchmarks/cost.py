@@ -18,12 +18,12 @@ from curve_speed import factorisation
 from scipy.linalg import lapack
 
 import stribeck as sb
-from stribeck.equations import Operators
-from stribeck.estimate import FineOperators
-from stribeck.refine import judge, mesh_tolerances_for, order_for, values_of
-from stribeck.start import cold_start
-from stribeck.states import mesh_for, solve_state
-from stribeck.threads import one_blas_thread
+from stribeck.equations.error_estimate import FineOperators
+from stribeck.equations.line import Operators
+from stribeck.equations.state import mesh_for, solve_state
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.solver.cold_start import cold_start
+from stribeck.solver.refinement import judge, mesh_tolerances_for, order_for, values_of
 
 RUNS = 5
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)

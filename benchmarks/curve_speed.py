@@ -15,7 +15,7 @@ import scipy
 from scipy.linalg import lapack
 
 import stribeck as sb
-from stribeck.threads import one_blas_thread
+from stribeck.numerics.threads import one_blas_thread
 
 RUNS = 5
 

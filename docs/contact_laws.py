@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 import stribeck as sb
-from stribeck.threads import one_blas_thread
+from stribeck.numerics.threads import one_blas_thread
 
 FOLDER = Path(__file__).parent
 PAGE = FOLDER / "contact_laws.md"

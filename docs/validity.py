@@ -20,10 +20,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import stribeck as sb
-from stribeck.asymptotics import FORMULAS, Formula, load_sharing, transitions, uniform
-from stribeck.plot_validity import plot_error_maps
-from stribeck.threads import one_blas_thread
-from stribeck.validity import error_map, error_maps, kind_of
+from stribeck.asymptotics import FORMULAS, Formula
+from stribeck.asymptotics.rough import load_sharing, transitions, uniform
+from stribeck.evidence.formulas import error_map, error_maps, kind_of
+from stribeck.evidence.plot import plot_error_maps
+from stribeck.numerics.threads import one_blas_thread
 
 if TYPE_CHECKING:
     import xarray

@@ -6,7 +6,7 @@ can judge them all.  Runs in a second.
 """
 
 import stribeck as sb
-from stribeck.asymptotics import uniform
+from stribeck.asymptotics.rough import uniform
 
 LOAD, ROUGHNESSES = 0.1, (1e-5, 1e-4, 1e-3)
 

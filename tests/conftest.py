@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck import reynolds
-from stribeck.contact_laws import ShiftedShape, contact_law
-from stribeck.equations import Equations, Operators
-from stribeck.mesh import Mesh
-from stribeck.newton import root_find
-from stribeck.observables import NAMES, observables
+from stribeck.contact_laws.scaled import ShiftedShape, contact_law
+from stribeck.equations.line import Equations, Operators
+from stribeck.equations.observables import NAMES, observables
+from stribeck.fluids import newtonian as reynolds
+from stribeck.numerics.newton import root_find
+from stribeck.numerics.panels import Mesh
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 

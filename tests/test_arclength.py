@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from stribeck.arclength import trace
-from stribeck.newton import Outcome
+from stribeck.numerics.arclength import trace
+from stribeck.numerics.newton import Outcome
 
 # Bratu: u'' + p e^u = 0 has u(1/2) = 2 ln cosh(a) with p = 8 (a / cosh a)^2, largest where a tanh a = 1.
 FOLD_A = brentq(lambda a: a * math.tanh(a) - 1.0, 1.0, 2.0, xtol=1e-15)

@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.special import gamma, pbdv
 
 import stribeck as sb
-from stribeck.asperity_laws import log_moment, log_moment_slope
+from stribeck.contact_laws.greenwood import log_moment, log_moment_slope
 
 ORDERS = (1.5, 2.5)
 

@@ -8,9 +8,11 @@ import pytest
 from numpy.polynomial import chebyshev as reference
 
 import stribeck as sb
-from stribeck import atlas_build, atlas_grid, atlas_table
-from stribeck.atlas_certificate import FRICTIONS, QUANTITIES, certify, compare, solved
-from stribeck.regimes import friction_elasticities
+from stribeck.atlas import grid as atlas_grid
+from stribeck.atlas import table as atlas_table
+from stribeck.curves.elasticities import friction_elasticities
+from stribeck.evidence import atlas_build
+from stribeck.evidence.atlas_certificate import FRICTIONS, QUANTITIES, certify, compare, solved
 
 DEFINITIONS = ("paper", "balanced")
 FUNCTIONS = (
@@ -207,7 +209,7 @@ def test_something_else_than_groups_is_refused():
 
 
 def test_the_table_is_small_and_says_where_it_comes_from():
-    path = atlas_table.files("stribeck").joinpath("data", atlas_table.FILE)
+    path = atlas_table.files("stribeck.atlas").joinpath(atlas_table.FILE)
     assert path.stat().st_size < 5e6
     about = sb.atlas.about()
     assert about["states"] > 50_000

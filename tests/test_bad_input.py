@@ -26,8 +26,8 @@ def nothing_is_solved(monkeypatch):
     def curve(*arguments, **options):
         # Its own checks stay; the first point would be solved after them.
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("stribeck.curve.follow", solve)
-            patch.setattr("stribeck.curve.automatic_speeds", solve)
+            patch.setattr("stribeck.curves.stribeck_curve.follow", solve)
+            patch.setattr("stribeck.curves.stribeck_curve.automatic_speeds", solve)
             return checked(*arguments, **options)
 
     monkeypatch.setattr(solving, "stribeck_curve", curve)

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.batch_device import Device
-from stribeck.batch_equations import DeviceEquations, DeviceOperators, newton
-from stribeck.batch_guess import Batch, Combined, column_groups, rigid_rows, spread
-from stribeck.batch_path import ended, judged, refined
-from stribeck.batch_plan import planned
-from stribeck.contact_laws import contact_law
-from stribeck.equations import Equations
-from stribeck.estimate import ErrorEstimate, FineOperators, error_estimates
-from stribeck.newton import Outcome
-from stribeck.observables import NAMES, observables
-from stribeck.start import cold_start, rigid_guess
-from stribeck.states import Extrapolation, Rows, mesh_for
+from stribeck.batches.device import Device
+from stribeck.batches.equations import DeviceEquations, DeviceOperators, newton
+from stribeck.batches.guess import Batch, Combined, column_groups, rigid_rows, spread
+from stribeck.batches.path import ended, judged, refined
+from stribeck.batches.plan import planned
+from stribeck.contact_laws.scaled import contact_law
+from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimates
+from stribeck.equations.line import Equations
+from stribeck.equations.observables import NAMES, observables
+from stribeck.equations.state import Extrapolation, Rows, mesh_for
+from stribeck.numerics.newton import Outcome
+from stribeck.solver.cold_start import cold_start, rigid_guess
 
 SHARES = ("contact_load_share", "fluid_load_share")
 
@@ -209,7 +209,9 @@ def test_what_does_not_fit_a_batch_is_solved_alone_and_in_its_place():
 
 
 def test_what_a_batch_misses_is_solved_alone(by_numpy, monkeypatch):
-    monkeypatch.setattr("stribeck.batch.refined", lambda *given: {k: v for k, v in refined(*given).items() if k != 3})
+    monkeypatch.setattr(
+        "stribeck.batches.solve_batch.refined", lambda *given: {k: v for k, v in refined(*given).items() if k != 3}
+    )
     found = sb.solve_batch(crowd())
     assert np.flatnonzero(~found.batched).tolist() == [3]
     assert found.ok.all()
@@ -289,7 +291,7 @@ def test_a_row_that_does_not_converge_is_not_called_so_and_spoils_no_other(discr
         _, done, factorisations = newton(equations, y, 1e-10)
         assert done.tolist() == [True, False, True]
         assert factorisations < 25
-        monkeypatch.setattr("stribeck.batch_equations.MOST_STEPS", 2)
+        monkeypatch.setattr("stribeck.batches.equations.MOST_STEPS", 2)
         _, done, fewer = newton(equations, y, 1e-10)
     assert not done.any()
     assert fewer < factorisations

@@ -10,10 +10,11 @@ from numpydoc.docscrape import get_doc_object
 from scipy.integrate import quad
 
 import stribeck as sb
-from stribeck.asymptotics import boundary, hertz, perturbation, rest, slow_contact
+from stribeck.asymptotics.dry import hertz, rest
 from stribeck.asymptotics.formula import Formula, OutOfRangeWarning
-from stribeck.units import InputError
-from stribeck.validity import relative_error
+from stribeck.asymptotics.rough import boundary, perturbation, slow_contact
+from stribeck.evidence.formulas import relative_error
+from stribeck.quantities.units import InputError
 
 MODULES = (hertz, rest, perturbation, boundary)
 FORMULAS = [

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.app import inputs, server, url
+from stribeck.explorer import inputs, server, url
 
 pytestmark = pytest.mark.browser
 
@@ -379,7 +379,7 @@ def test_it_is_dark_where_the_system_is(open_page):
 def test_the_distances_are_those_of_the_regimes_command(open_page):
     page = open_page()
     page.wait_for_selector(".more tr[data-key=roughness]")
-    from stribeck.distances import transition_distances
+    from stribeck.regimes.distances import transition_distances
 
     for distance in transition_distances(server.example().contact).distances:
         cells = page.locator(f".more tr[data-key={distance.name}] td[data-value]")

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stribeck._types import is_exponential
-from stribeck.case import Case, CurveSettings, load_case
-from stribeck.parameters import InputError, LineContact
-from stribeck.quantities import QUANTITIES
+from stribeck.cases.case import Case, CurveSettings, load_case
+from stribeck.contacts.line import InputError, LineContact
+from stribeck.quantities.inputs import QUANTITIES
 
 EXAMPLES = sorted(
     path for path in (Path(__file__).parents[1] / "examples").glob("*.toml") if "\n[vary]\n" not in path.read_text()

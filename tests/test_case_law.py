@@ -9,8 +9,8 @@ from command_line import CONTACT, call, case_text
 from sweep_files import write
 
 import stribeck as sb
-from stribeck.case_law import LAWS, MAY_HAVE, NEEDED
-from stribeck.contact_laws import NAMED
+from stribeck.cases.law import LAWS, MAY_HAVE, NEEDED
+from stribeck.contact_laws.scaled import NAMED
 
 SURFACE = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"300 um"', "shortest_wavelength": '"0.3 um"'}
 ASPERITIES = {"density": '"1e10 1/m^2"', "radius": '"10 um"', "deviation": '"0.5 um"'}

@@ -5,8 +5,8 @@ import pytest
 from command_line import EXAMPLES, PDMS, call
 
 import stribeck as sb
-from stribeck.cavitation import ATMOSPHERE
-from stribeck.near import NearSolver
+from stribeck.solver.nearby import NearSolver
+from stribeck.solver.notes import ATMOSPHERE
 
 SEAL = EXAMPLES / "rod_seal.toml"
 

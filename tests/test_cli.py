@@ -31,8 +31,8 @@ from command_line import (
 import stribeck as sb
 from stribeck.cli import arguments, solving
 from stribeck.cli import progress as progress_module
-from stribeck.newton import Outcome
-from stribeck.report_words import digits
+from stribeck.cli.reports.words import digits
+from stribeck.numerics.newton import Outcome
 
 GROUPS = ("--groups", "1e-4", "0.1", "1e-3")
 FAST = ("--groups", "0.1", "1e-3", "--range", "0.1", "1", "--points", "3")
@@ -257,7 +257,7 @@ def test_a_failure_to_write_one_file_does_not_lose_the_other(capsys, tmp_path, m
     def fail(*arguments, **options):
         raise sb.InputError("curve.nc could not be written (No space left on device); it is as it was before.")
 
-    monkeypatch.setattr("stribeck.store.write_netcdf", fail)
+    monkeypatch.setattr("stribeck.files.datasets.write_netcdf", fail)
     answer = call(capsys, "curve", *FAST, "-o", tmp_path / "curve.nc", "-o", tmp_path / "curve.csv")
     assert answer.code == 2
     assert answer.err == "stribeck: curve.nc could not be written (No space left on device); it is as it was before.\n"
@@ -528,7 +528,7 @@ def test_ctrl_c_keeps_the_finished_points_marked_incomplete(tmp_path):
 
 AT_ONCE = """
 import os, signal, sys
-import stribeck.curve, stribeck.cli
+import stribeck.curves.stribeck_curve, stribeck.cli
 signal.signal(signal.SIGINT, signal.default_int_handler)
 whole = stribeck.curve.automatic_speeds
 def interrupted(*arguments):

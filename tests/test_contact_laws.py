@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from stribeck.contact_laws import ExponentialLaw, NoContact, contact_law
-from stribeck.parameters import Groups
+from stribeck.contact_laws.scaled import ExponentialLaw, NoContact, contact_law
+from stribeck.contacts.line import Groups
 
 SEED = 52_901
 LOADS = [1e-8, 0.1, 7.0]

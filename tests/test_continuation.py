@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.special import lambertw
 
-from stribeck.continuation import extrapolation_weights, march, natural
-from stribeck.newton import Outcome
+from stribeck.numerics.continuation import extrapolation_weights, march, natural
+from stribeck.numerics.newton import Outcome
 
 # Semenov's thermal explosion: heat made, p c exp(x), equals heat lost, x. The cold branch x = -W(-p c) ends
 # at p c = 1/e, here for three vessels side by side.

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq, minimize_scalar
 
 import stribeck as sb
-from stribeck import curve as curve_module
-from stribeck import span
+from stribeck.curves import speed_range as span
+from stribeck.curves import stribeck_curve as curve_module
 
 CONTACT = sb.LineContact(
     radius="10 mm",

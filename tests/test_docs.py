@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import stribeck as sb
-from stribeck.sweep_store import create_or_open
+from stribeck.sweeps.store import create_or_open
 
 ROOT = Path(__file__).parents[1]
 PAGES = [

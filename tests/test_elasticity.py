@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from stribeck import hertz
-from stribeck.elasticity import deflection_operator, log_moments
-from stribeck.mesh import Mesh, base_edges
+from stribeck.numerics.panels import Mesh, base_edges
+from stribeck.solids import hertz
+from stribeck.solids.half_plane import deflection_operator, log_moments
 
 SEED = 31_337
 

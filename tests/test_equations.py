@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from stribeck.contact_laws import contact_law
-from stribeck.equations import Equations, Operators
-from stribeck.mesh import Mesh
-from stribeck.parameters import Groups
+from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.line import Groups
+from stribeck.equations.line import Equations, Operators
+from stribeck.numerics.panels import Mesh
 
 SEED = 64_217
 

@@ -13,10 +13,12 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 import stribeck as sb
-from stribeck.asymptotics import boundary, edge_layer, hydrodynamic, load_sharing, mixed, perturbation, rest, transitions
 from stribeck.asymptotics.constants import FILM_CONSTANT
-from stribeck.merging import weakening
-from stribeck.observables import friction_integrands
+from stribeck.asymptotics.dry import rest
+from stribeck.asymptotics.rough import boundary, load_sharing, mixed, perturbation, transitions
+from stribeck.asymptotics.smooth import edge_layer, hydrodynamic
+from stribeck.equations.observables import friction_integrands
+from stribeck.regimes.weakening import weakening
 
 pytestmark = pytest.mark.filterwarnings("ignore::stribeck.asymptotics.OutOfRangeWarning")
 

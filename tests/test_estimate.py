@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.equations import Operators
-from stribeck.estimate import FineOperators
-from stribeck.mesh import Mesh
-from stribeck.observables import NAMES
-from stribeck.refine import judge
-from stribeck.start import cold_start
-from stribeck.states import mesh_for, solve_state
+from stribeck.equations.error_estimate import FineOperators
+from stribeck.equations.line import Operators
+from stribeck.equations.observables import NAMES
+from stribeck.equations.state import mesh_for, solve_state
+from stribeck.numerics.panels import Mesh
+from stribeck.solver.cold_start import cold_start
+from stribeck.solver.refinement import judge
 
 SEED = 17_903
 

@@ -13,12 +13,14 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.app import charts, files, inputs, server, table, url
-from stribeck.app.echarts import data_only, difference
-from stribeck.app.measured import read_measured
-from stribeck.app.palette import DARK, LIGHT
-from stribeck.app.results import Model, round_down, round_up, thin_lines
 from stribeck.cli import main
+from stribeck.explorer import downloads as files
+from stribeck.explorer import inputs, server, table, url
+from stribeck.explorer.answer import Model, round_down, round_up, thin_lines
+from stribeck.explorer.charts import charts
+from stribeck.explorer.charts.echarts import data_only, difference
+from stribeck.explorer.charts.palette import DARK, LIGHT
+from stribeck.explorer.measured import read_measured
 
 START = server.example()
 
@@ -437,6 +439,6 @@ def test_ctrl_c_ends_it_with_exit_code_0(monkeypatch, capsys):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("stribeck.app.server.serve", interrupted)
+    monkeypatch.setattr("stribeck.explorer.server.serve", interrupted)
     assert main(["explore"]) == 0
     assert capsys.readouterr().err == ""

@@ -92,7 +92,7 @@ def test_the_data_of_each_figure_are_described_and_converged(name):
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_each_figure_comes_back_from_its_file_as_it_was(name, tmp_path):
-    from stribeck.store import write_netcdf
+    from stribeck.files.datasets import write_netcdf
 
     write_netcdf(data_of(name), tmp_path / "data.nc")
     found = opened(tmp_path / "data.nc")
@@ -120,7 +120,7 @@ def test_nothing_of_a_figure_is_cut_off_by_its_edge(name):
 
 
 def test_the_same_numbers_give_the_same_bytes_also_from_the_file(tmp_path):
-    from stribeck.store import write_netcdf
+    from stribeck.files.datasets import write_netcdf
 
     data = data_of("5")
     write_netcdf(data, tmp_path / "data.nc")

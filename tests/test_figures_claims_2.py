@@ -7,7 +7,7 @@ import pytest
 from figure_data import data_of, picture_of
 
 import stribeck as sb
-from stribeck.asymptotics.perturbation import phi
+from stribeck.asymptotics.rough.perturbation import phi
 from stribeck.figures import load_figure
 
 
@@ -213,7 +213,7 @@ def test_least_friction_goes_with_roughness_to_two_thirds_and_logarithms(mixed):
 def test_a_minimum_that_is_not_found_ends_the_figure_with_a_sentence(monkeypatch):
     for module in ("figure_9", "stribeck_cases"):
         monkeypatch.setattr(f"stribeck.figures.{module}.CASES", ((0.1, 1e-3),))
-    monkeypatch.setattr("stribeck.figures.figure_9.WINDOW", (2.0, 4.0))
+    monkeypatch.setattr("stribeck.figures.article.figure_9.WINDOW", (2.0, 4.0))
     with pytest.raises(sb.SolveError, match="No minimum of friction was found at load 0.1, relative roughness 1e-05"):
         load_figure("9").data()
 
@@ -314,7 +314,7 @@ def test_a_phase_diagram_with_gaps_ends_the_figure_with_its_reasons(monkeypatch)
         found.message.values[:] = "Speed 1: too far."
         return found.assign_attrs(complete=0)
 
-    monkeypatch.setattr("stribeck.figures.figure_11.phase_diagram", incomplete)
+    monkeypatch.setattr("stribeck.figures.article.figure_11.phase_diagram", incomplete)
     with pytest.raises(sb.SolveError, match="Speed 1: too far"):
         load_figure("11").data()
 

@@ -4,12 +4,19 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck import follow as follow_module
-from stribeck.contact_laws import contact_law
-from stribeck.elasticity import Blocks, _beside_panel, deflection_operator, near_panels, nodal_deflection, nodes_on_panel
-from stribeck.equations import Equations, Operators
-from stribeck.mesh import Mesh, base_edges
-from stribeck.observables import NAMES, gradients, observables, observables_of_rows
+from stribeck.contact_laws.scaled import contact_law
+from stribeck.equations.line import Equations, Operators
+from stribeck.equations.observables import NAMES, gradients, observables, observables_of_rows
+from stribeck.numerics.panels import Mesh, base_edges
+from stribeck.solids.half_plane import (
+    Blocks,
+    _beside_panel,
+    deflection_operator,
+    near_panels,
+    nodal_deflection,
+    nodes_on_panel,
+)
+from stribeck.solver import path as follow_module
 
 SEED = 61_441
 RTOL = 1e-6

@@ -13,14 +13,14 @@ from command_line import CONTACT, call
 from fit_data import EXAMPLES, TRUE, exact, measured, noisy
 
 import stribeck as sb
-from stribeck.fit_file import write_fitted_case
-from stribeck.fit_model import FrictionModel, free_inputs
-from stribeck.fit_objective import minimise, objective
-from stribeck.fit_posterior import draw_posterior
-from stribeck.fit_settings import FREE, FitSettings, Prior
-from stribeck.fit_states import atlas_parts, solved_parts
-from stribeck.persson import persson_law
-from stribeck.spectrum import SelfAffine
+from stribeck.cases.fit_settings import FREE, FitSettings, Prior
+from stribeck.contact_laws.persson import persson_law
+from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.fits.case_file import write_fitted_case
+from stribeck.fits.friction_parts import atlas_parts, solved_parts
+from stribeck.fits.model import FrictionModel, free_inputs
+from stribeck.fits.objective import minimise, objective
+from stribeck.fits.posterior import draw_posterior
 
 START = TRUE.replace(friction_coefficient=0.3, roughness="2 um", modulus="1.5 MPa")
 NEAR = START.replace(modulus=TRUE.modulus)
@@ -368,7 +368,7 @@ def test_outliers_do_not_steer_the_robust_fit():
 
 
 def test_a_fit_that_ran_out_of_steps_says_so(monkeypatch, tmp_path, capsys):
-    for module in ("stribeck.fit", "stribeck.fit_objective"):
+    for module in ("stribeck.fits.fit", "stribeck.fits.objective"):
         monkeypatch.setattr(importlib.import_module(module), "minimise", partial(minimise, most=1))
     found = sb.fit(noisy(1), START, intervals=False)
     assert not found.converged and "did not converge" in found.outcome.value

@@ -16,7 +16,7 @@ import stribeck as sb
 from stribeck import asymptotics
 from stribeck.asymptotics import FORMULAS, Formula, OutOfRangeWarning
 from stribeck.asymptotics.formula import PARAMETERS
-from stribeck.validity import FIELDS, MEASURED, relative_error
+from stribeck.evidence.formulas import FIELDS, MEASURED, relative_error
 
 SEED = 60913
 STATES = 6

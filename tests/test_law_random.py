@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.newton import Outcome
-from stribeck.persson import persson_law
-from stribeck.spectrum import SelfAffine
+from stribeck.contact_laws.persson import persson_law
+from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.numerics.newton import Outcome
 
 SEED = 15_485_863
 

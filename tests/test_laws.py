@@ -11,15 +11,16 @@ import pytest
 from scipy.integrate import quad
 
 import stribeck as sb
-from stribeck import fill, follow
-from stribeck.contact_laws import BlendedShape, ExponentialShape, ScaledLaw, ShiftedShape, contact_law, lifted
-from stribeck.distances import transition_distances
-from stribeck.equations import Equations, Operators
-from stribeck.merging import merging_roughness, weakening
-from stribeck.mesh import Mesh
-from stribeck.refine import converge
-from stribeck.regimes import friction_elasticities
-from stribeck.start import start_by_exponential
+from stribeck.contact_laws.scaled import BlendedShape, ExponentialShape, ScaledLaw, ShiftedShape, contact_law, lifted
+from stribeck.curves.elasticities import friction_elasticities
+from stribeck.equations.line import Equations, Operators
+from stribeck.numerics.panels import Mesh
+from stribeck.regimes.distances import transition_distances
+from stribeck.regimes.weakening import merging_roughness, weakening
+from stribeck.solver import infill as fill
+from stribeck.solver import path as follow
+from stribeck.solver.cold_start import start_by_exponential
+from stribeck.solver.refinement import converge
 
 EXPONENTIAL = sb.FunctionLaw(lambda s: -s, lambda s: -np.ones_like(s), lowest=-math.inf)
 """The exponential law by the way of any other."""

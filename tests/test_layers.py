@@ -8,10 +8,11 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 import stribeck as sb
-from stribeck.asymptotics import constants, edge_layer, film_layers
+from stribeck.asymptotics import constants
 from stribeck.asymptotics.formula import OutOfRangeWarning
-from stribeck.newton import root_find
-from stribeck.validity import relative_error
+from stribeck.asymptotics.smooth import edge_layer, film_layers
+from stribeck.evidence.formulas import relative_error
+from stribeck.numerics.newton import root_find
 
 LAYERS = {"edge": edge_layer.layer, "inlet": film_layers.inlet, "outlet": film_layers.outlet}
 EVERY_LAYER = pytest.mark.parametrize("name", LAYERS)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stribeck as sb
-from stribeck.fit_settings import check_fit_table
+from stribeck.cases.fit_settings import check_fit_table
 
 SPEEDS = (0.001, 0.01, 0.1, 1.0)
 FRICTIONS = (0.5, 0.25, 0.0625, 0.125)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 
-from stribeck.mesh import MAX_PANELS, Mesh, MeshTooLargeError, adapt, base_edges, legendre_tail, reference
+from stribeck.numerics.panels import MAX_PANELS, Mesh, MeshTooLargeError, adapt, base_edges, legendre_tail, reference
 
 SEED = 70_419
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.follower import Follower
-from stribeck.near import NearSolver
+from stribeck.solver.corrector import Follower
+from stribeck.solver.nearby import NearSolver
 
 
 def disagreements(near, state):
@@ -47,7 +47,7 @@ def test_rest_smooth_and_dry_contacts_are_ordinary_states_between_others():
 def test_a_near_state_comes_from_the_last_one(monkeypatch):
     near = NearSolver()
     near(sb.Groups(1e-4, 0.1, 1e-3))
-    monkeypatch.setattr("stribeck.near.solved_point", lambda *_: pytest.fail("solved from cold"))
+    monkeypatch.setattr("stribeck.solver.nearby.solved_point", lambda *_: pytest.fail("solved from cold"))
     assert near(sb.Groups(1.1e-4, 0.1, 1e-3)).outcome.ok
     assert near(sb.Groups(1.1e-4, 0.11, 1e-3)).outcome.ok
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import lu_solve
 
-from stribeck.newton import Outcome, relative_size, root_find
+from stribeck.numerics.newton import Outcome, relative_size, root_find
 
 
 class Problem:

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from stribeck.contact_laws import contact_law
-from stribeck.equations import Equations, Operators
-from stribeck.mesh import Mesh, base_edges
-from stribeck.observables import (
+from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.line import Groups
+from stribeck.equations.line import Equations, Operators
+from stribeck.equations.observables import (
     NAMES,
     friction_integrals,
     friction_integrands,
@@ -19,7 +19,7 @@ from stribeck.observables import (
     least_gap,
     observables,
 )
-from stribeck.parameters import Groups
+from stribeck.numerics.panels import Mesh, base_edges
 
 SEED = 45_389
 STATES = {

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stribeck.parameters import Groups, InputError, LineContact
-from stribeck.quantities import QUANTITIES
+from stribeck.contacts.line import Groups, InputError, LineContact
+from stribeck.quantities.inputs import QUANTITIES
 
 INPUTS = {
     "radius": "10 mm",

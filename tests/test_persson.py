@@ -10,8 +10,8 @@ from scipy.integrate import quad
 from scipy.special import erf, exp1
 
 import stribeck as sb
-from stribeck.persson import PerssonLaw, persson_law
-from stribeck.spectrum import SelfAffine, Spectrum
+from stribeck.contact_laws.persson import PerssonLaw, persson_law
+from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 
 ROLLED = SelfAffine(h_rms=1.0, q0=1.0, q1=1e3, hurst=0.8, roll_off=5.0)
 EVERYWHERE = np.concatenate((np.geomspace(1e-300, 1e-3, 500), np.geomspace(1.1e-3, 60, 1500)))
@@ -110,7 +110,7 @@ def test_the_slope_has_no_kinks_at_the_points_of_the_table(law):
 
 
 def test_the_stated_error_is_kept_between_the_points(law):
-    from stribeck.persson_integral import Integral
+    from stribeck.contact_laws.persson_integral import Integral
 
     unit = Spectrum(ROLLED.spectrum.wavenumber, ROLLED.spectrum.density)
     y = np.random.default_rng(71).uniform(-36, math.log(26 * law.rms_slope / math.sqrt(2) / law.beta), 1000)

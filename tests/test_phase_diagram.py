@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck import store
-from stribeck.asymptotics import load_sharing, transitions
-from stribeck.merging import merging_roughness, weakening
-from stribeck.newton import Outcome
+from stribeck.asymptotics.rough import load_sharing, transitions
+from stribeck.files import datasets as store
+from stribeck.numerics.newton import Outcome
+from stribeck.regimes.weakening import merging_roughness, weakening
 
 pytest.importorskip("xarray")
 
-diagrams = importlib.import_module("stribeck.phase_diagram")
-grid = importlib.import_module("stribeck.phase_grid")
+diagrams = importlib.import_module("stribeck.regimes.phase_diagram")
+grid = importlib.import_module("stribeck.regimes.phase_grid")
 
 LOADS, ROUGHNESSES, SPEEDS = (0.02, 0.2), (3e-5, 3e-3), (1e-8, 10.0)
 POINTS = {"load": 2, "roughness": 3, "speed": 15}
@@ -231,7 +231,7 @@ def test_without_dry_friction_no_roughness_makes_a_minimum():
 
 
 def test_a_merging_beyond_the_range_is_no_number(monkeypatch):
-    monkeypatch.setattr("stribeck.merging.KAPPA_RANGE", (0.25, 0.5))
+    monkeypatch.setattr("stribeck.regimes.weakening.KAPPA_RANGE", (0.25, 0.5))
     assert math.isnan(merging_roughness(0.1))
 
 
@@ -353,7 +353,7 @@ def test_bad_input_is_refused_with_a_sentence(changes, words):
 @pytest.fixture
 def plot():
     pytest.importorskip("matplotlib")
-    return importlib.import_module("stribeck.plot_phase")
+    return importlib.import_module("stribeck.regimes.plot")
 
 
 def texts(figure):

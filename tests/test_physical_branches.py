@@ -9,12 +9,12 @@ import math
 import numpy as np
 import pytest
 
-from stribeck.arclength import trace
-from stribeck.contact_laws import contact_law
-from stribeck.continuation import natural
-from stribeck.equations import Equations
-from stribeck.parameters import Groups
-from stribeck.start import cold_start
+from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.line import Groups
+from stribeck.equations.line import Equations
+from stribeck.numerics.arclength import trace
+from stribeck.numerics.continuation import natural
+from stribeck.solver.cold_start import cold_start
 
 GROUPS = {"speed": 1e-5, "load": 0.1, "roughness": 1e-4}
 SPAN = 1.5 * math.log(10.0)

@@ -11,7 +11,7 @@ import pytest
 from command_line import PDMS, WIPER, run_python
 
 import stribeck as sb
-from stribeck.plotting import plot_curve, plot_profile
+from stribeck.curves.plot import plot_curve, plot_profile
 
 SIGNATURES = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 

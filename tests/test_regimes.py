@@ -9,8 +9,8 @@ import pytest
 
 import stribeck as sb
 from stribeck import cli
-from stribeck.distances import BOX, transition_distances
-from stribeck.regimes import EXPONENTS, friction_elasticities
+from stribeck.curves.elasticities import EXPONENTS, friction_elasticities
+from stribeck.regimes.distances import BOX, transition_distances
 
 CONTACT = sb.LineContact(
     radius="10 mm",
@@ -240,7 +240,7 @@ def test_a_path_that_the_solver_loses_ends_the_search(monkeypatch):
             raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "lost")
         return right(contact, **settings)
 
-    monkeypatch.setattr("stribeck.distances.stribeck_curve", fails_far_out)
+    monkeypatch.setattr("stribeck.regimes.distances.stribeck_curve", fails_far_out)
     roughness = transition_distances(CONTACT).distances[2]
     assert roughness.more is None
     assert roughness.searched[1] == CONTACT.roughness

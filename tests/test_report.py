@@ -7,7 +7,7 @@ import pytest
 from command_line import call, case_text
 
 import stribeck as sb
-from stribeck.units import format_bound, format_share
+from stribeck.quantities.units import format_bound, format_share
 
 LAW = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"150 um"', "shortest_wavelength": '"1.5 um"'}
 OF_SURFACE = {"roughness": None, "alpha": None, "beta": None, "law": '"persson"'}

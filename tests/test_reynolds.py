@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stribeck import reynolds
-from stribeck.mesh import Mesh, base_edges
+from stribeck.fluids import newtonian as reynolds
+from stribeck.numerics.panels import Mesh, base_edges
 
 SEED = 80_021
 

@@ -9,11 +9,13 @@ import pytest
 from numpy.polynomial import legendre
 
 import stribeck as sb
-from stribeck import hertz, refine, reynolds
-from stribeck.elasticity import deflection_operator
-from stribeck.mesh import Mesh, reference
-from stribeck.newton import Outcome
-from stribeck.observables import NAMES
+from stribeck.equations.observables import NAMES
+from stribeck.fluids import newtonian as reynolds
+from stribeck.numerics.newton import Outcome
+from stribeck.numerics.panels import Mesh, reference
+from stribeck.solids import hertz
+from stribeck.solids.half_plane import deflection_operator
+from stribeck.solver import refinement as refine
 
 SEED = 91_577
 REFERENCE = json.loads((Path(__file__).parent / "data" / "reference_states.json").read_text())["states"]
@@ -663,7 +665,7 @@ def test_where_refinement_ends_early_the_solve_says_so_and_keeps_what_it_has(mon
 
 @pytest.mark.parametrize("on_failure", ["raise", "return"])
 def test_where_no_state_is_reached_the_solve_raises_in_any_case(monkeypatch, on_failure):
-    monkeypatch.setattr("stribeck.mesh.MAX_PANELS", 2)
+    monkeypatch.setattr("stribeck.numerics.panels.MAX_PANELS", 2)
     with pytest.raises(sb.SolveError) as caught:
         sb.solve(GROUPS, on_failure=on_failure)
     assert caught.value.solution is None

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.newton import Outcome
-from stribeck.observables import NAMES
+from stribeck.equations.observables import NAMES
+from stribeck.numerics.newton import Outcome
 
 SEED = 27_644_437
 

@@ -17,8 +17,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stribeck as sb
-from stribeck.output import MissingExtraError, check_output, replacing
-from stribeck.store import curve_dataset, write_csv, write_data, write_netcdf
+from stribeck.files.datasets import curve_dataset, write_csv, write_data, write_netcdf
+from stribeck.files.writing import MissingExtraError, check_output, replacing
 
 CONTACT = sb.LineContact(
     radius="10 mm",
@@ -332,7 +332,7 @@ FULL = """
 import resource, sys
 import numpy as np, xarray as xr
 import stribeck as sb
-from stribeck.store import write_data
+from stribeck.files.datasets import write_data
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))
 x = np.linspace(0, 1, 50_000)
 dataset = xr.Dataset({"y": ("x", np.sin(x), {"units": "1"})}, coords={"x": ("x", x, {"units": "1"})})
@@ -390,7 +390,7 @@ def test_a_missing_extra_is_one_sentence_with_the_remedy(curve, tmp_path, monkey
 def test_importing_the_module_does_not_import_xarray():
     code = textwrap.dedent("""
         import sys
-        import stribeck.store, stribeck.plotting
+        import stribeck.files.datasets, stribeck.curves.plot
         assert not {"xarray", "netCDF4", "matplotlib", "pandas"} & set(sys.modules)
     """)
     assert run_python(code).code == 0

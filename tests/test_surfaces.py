@@ -10,9 +10,7 @@ from command_line import call
 from scipy.integrate import quad
 
 import stribeck as sb
-from stribeck.plot_surface import plot_surface
-from stribeck.surface_spectrum import line_density
-from stribeck.surfaces import (
+from stribeck.surfaces.analysis import (
     RoughSurface,
     SelfAffine,
     Topography,
@@ -24,6 +22,8 @@ from stribeck.surfaces import (
     synthetic_topography,
     write_surface_table,
 )
+from stribeck.surfaces.measured_spectrum import line_density
+from stribeck.surfaces.plot import plot_surface
 
 STEP = 1e-6
 FUNDAMENTAL = 2 * math.pi / 128e-6

@@ -18,10 +18,10 @@ from command_line import SCRIPT, SWEEP, call, environment
 from sweep_files import CONTACT, GRID, RANDOM, chunks, done_rows, same_rows, write
 
 import stribeck as sb
-from stribeck import sweep_chain
-from stribeck.newton import Outcome
-from stribeck.quantities import INPUTS
-from stribeck.sweep_lock import LOCK
+from stribeck.numerics.newton import Outcome
+from stribeck.quantities.inputs import INPUTS
+from stribeck.sweeps import chain as sweep_chain
+from stribeck.sweeps.lock import LOCK
 
 LONG = RANDOM.format(kind="sobol", points=1024)
 """Enough states to be stopped in the middle of."""
@@ -224,7 +224,7 @@ def test_progress_tells_rate_and_time_left(tmp_path):
 
 
 def test_a_batch_job_gets_lines_of_progress(tmp_path, capsys, monkeypatch):
-    from stribeck import report_sweep
+    from stribeck.cli.reports import sweep as report_sweep
 
     monkeypatch.setattr(report_sweep, "EVERY", 0.0)
     answer = call(capsys, "sweep", write(tmp_path, GRID), "--out", tmp_path / "store")

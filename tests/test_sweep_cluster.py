@@ -15,7 +15,7 @@ from sweep_files import RANDOM, chunks, done_rows, write
 from test_sweep import right, start, until
 
 import stribeck as sb
-from stribeck.sweep_lock import LOCK
+from stribeck.sweeps.lock import LOCK
 
 DASK = str(Path(sys.executable).with_name("dask"))
 
@@ -143,7 +143,7 @@ def test_killing_the_run_keeps_the_states_and_another_goes_on_without_the_cluste
 
 
 def test_where_no_scheduler_answers_is_a_sentence(capsys, tmp_path, monkeypatch):
-    monkeypatch.setattr("stribeck.sweep_workers.CONNECTION_TIME", 0.5)
+    monkeypatch.setattr("stribeck.sweeps.workers.CONNECTION_TIME", 0.5)
     file = write(tmp_path, RANDOM.format(kind="sobol", points=4))
     began = time.monotonic()
     answer = call(capsys, "sweep", file, "--out", tmp_path / "store", "--scheduler", "tcp://127.0.0.1:9")

@@ -15,10 +15,11 @@ import zarr
 from sweep_files import GRID, chunks, done_rows, write
 
 import stribeck as sb
-from stribeck import sweep_lock, sweep_store
-from stribeck.output import MissingExtraError
-from stribeck.sweep_columns import OUTCOMES, columns_of
-from stribeck.sweep_lock import LOCK
+from stribeck.files.writing import MissingExtraError
+from stribeck.sweeps import lock as sweep_lock
+from stribeck.sweeps import store as sweep_store
+from stribeck.sweeps.columns import OUTCOMES, columns_of
+from stribeck.sweeps.lock import LOCK
 
 SMALL = GRID.replace("17", "3")
 

@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck import follower as follower_module
-from stribeck.equations import Operators
-from stribeck.estimate import FineOperators, reads_off
-from stribeck.follow import follow
-from stribeck.follower import Follower
-from stribeck.mesh import Mesh, base_edges
-from stribeck.refine import converge, judge
-from stribeck.start import cold_start
-from stribeck.states import solve_state
-from stribeck.together import judge_together
+from stribeck.equations.error_estimate import FineOperators, reads_off
+from stribeck.equations.line import Operators
+from stribeck.equations.state import solve_state
+from stribeck.numerics.panels import Mesh, base_edges
+from stribeck.solver import corrector as follower_module
+from stribeck.solver.cold_start import cold_start
+from stribeck.solver.corrector import Follower
+from stribeck.solver.judgement import judge_together
+from stribeck.solver.path import follow
+from stribeck.solver.refinement import converge, judge
 
 RTOL = 1e-6
 SPEEDS = np.geomspace(1.0, 1e-5, 51)
@@ -114,11 +114,11 @@ def test_an_interrupted_path_keeps_the_points_that_were_reported():
 
 def test_fine_panels_hold_the_far_gap_without_its_logarithm():
     # x**2/2 - ln|x|/2 + c is exact there: a change of friction on finer nodes would be an error of the estimate alone.
-    from stribeck.contact_laws import contact_law
-    from stribeck.equations import Equations
-    from stribeck.estimate import changes
-    from stribeck.observables import observables
-    from stribeck.states import Rows
+    from stribeck.contact_laws.scaled import contact_law
+    from stribeck.equations.error_estimate import changes
+    from stribeck.equations.line import Equations
+    from stribeck.equations.observables import observables
+    from stribeck.equations.state import Rows
 
     mesh = Mesh(base_edges(1.0, 8.0), 12, 1.0)
     x = mesh.nodes

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.asymptotics import OutOfRangeWarning, mixed, transitions
+from stribeck.asymptotics import OutOfRangeWarning
 from stribeck.asymptotics.constants import FILM_CONSTANT, PRINTED_FILM_CONSTANT
-from stribeck.asymptotics.perturbation import phi
-from stribeck.merging import merging_roughness
+from stribeck.asymptotics.rough import mixed, transitions
+from stribeck.asymptotics.rough.perturbation import phi
+from stribeck.regimes.weakening import merging_roughness
 
 C = FILM_CONSTANT
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.asymptotics import hydrodynamic, load_sharing, perturbation, uniform, wedge
 from stribeck.asymptotics.formula import OutOfRangeWarning
+from stribeck.asymptotics.rough import load_sharing, perturbation, uniform
+from stribeck.asymptotics.smooth import hydrodynamic, wedge
 
 STATES = 120
 SPEEDS = np.geomspace(1e-9, 1e2, 12)

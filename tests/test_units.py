@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stribeck.units import DIMENSIONS, InputError, format_si, to_si
+from stribeck.quantities.units import DIMENSIONS, InputError, format_si, to_si
 
 ACCEPTED = [
     ("0.1 m/s", "speed", 0.1),

@@ -1,29 +1,31 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
-from . import asymptotics, atlas, surfaces
-from .asperity_laws import GreenwoodTripp, GreenwoodWilliamson
-from .batch import BatchSolution, solve_batch
-from .case import Case, load_case
-from .curve import stribeck_curve
-from .curve_result import StribeckCurve
-from .fit import fit
-from .fit_result import Fit, FitOutcome, FittedInput
-from .fit_settings import FitSettings
-from .friction import Friction
-from .function_law import FunctionLaw
-from .landmarks import Landmark
-from .measurements import Measurements, read_measurements
-from .newton import Outcome
-from .parameters import Groups, HertzScales, InputError, LineContact
-from .phase_diagram import phase_diagram
-from .regimes import regime_of
-from .solution import Profile, Solution
-from .solve import SolveError, solve
-from .sweep import SweepProgress, sweep
-from .sweep_dataset import Sweep, open_sweep
-from .sweep_design import SweepDesign, load_sweep
-from .sweep_store import SweepError
-from .table_law import TableLaw
+from stribeck import asymptotics
+from stribeck.atlas import reading as atlas
+from stribeck.batches.solve_batch import BatchSolution, solve_batch
+from stribeck.cases.case import Case, load_case
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.contact_laws.function import FunctionLaw
+from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
+from stribeck.contact_laws.table import TableLaw
+from stribeck.contacts.friction import Friction
+from stribeck.contacts.line import Groups, HertzScales, InputError, LineContact
+from stribeck.curves.elasticities import regime_of
+from stribeck.curves.landmarks import Landmark
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.fits.fit import fit
+from stribeck.fits.measurements import Measurements, read_measurements
+from stribeck.fits.result import Fit, FitOutcome, FittedInput
+from stribeck.numerics.newton import Outcome
+from stribeck.regimes.phase_diagram import phase_diagram
+from stribeck.solver.solution import Profile, Solution
+from stribeck.solver.solve import SolveError, solve
+from stribeck.surfaces import analysis as surfaces
+from stribeck.sweeps.dataset import Sweep, open_sweep
+from stribeck.sweeps.design import SweepDesign, load_sweep
+from stribeck.sweeps.store import SweepError
+from stribeck.sweeps.sweep import SweepProgress, sweep
 
 __all__ = [
     "BatchSolution",

@@ -5,23 +5,10 @@
 
 from typing import Any
 
-from . import (
-    boundary,
-    edge_layer,
-    film_layers,
-    hertz,
-    hydrodynamic,
-    large_deformation,
-    load_sharing,
-    mixed,
-    perturbation,
-    rest,
-    small_deformation,
-    transitions,
-    uniform,
-    wedge,
-)
-from .formula import Formula, Limit, OutOfRangeWarning
+from stribeck.asymptotics.dry import hertz, rest
+from stribeck.asymptotics.formula import Formula, Limit, OutOfRangeWarning
+from stribeck.asymptotics.rough import boundary, load_sharing, mixed, perturbation, transitions, uniform
+from stribeck.asymptotics.smooth import edge_layer, film_layers, hydrodynamic, large_deformation, small_deformation, wedge
 
 __all__ = [
     "FORMULAS",

@@ -1,7 +1,7 @@
 """Universal constants of the limits, each computed by this package; ``tests/test_layers.py`` computes them again.
 
-All digits that stand here are right.  Source: the similarity problems of :mod:`stribeck.asymptotics.film_layers` and
-:mod:`stribeck.asymptotics.edge_layer`.
+All digits that stand here are right.  Source: the similarity problems of :mod:`stribeck.asymptotics.smooth.film_layers` and
+:mod:`stribeck.asymptotics.smooth.edge_layer`.
 """
 
 FILM_CONSTANT = 0.445830450

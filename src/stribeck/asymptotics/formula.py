@@ -15,9 +15,9 @@ from typing import Concatenate, Generic, Literal, ParamSpec
 
 import numpy as np
 
-from .._types import Array, Flags, is_exponential
-from ..parameters import Groups, InputError
-from .constants import FILM_CONSTANT
+from stribeck._types import Array, Flags, is_exponential
+from stribeck.asymptotics.constants import FILM_CONSTANT
+from stribeck.contacts.line import Groups, InputError
 
 Value = float | Array
 Arguments = ParamSpec("Arguments")
@@ -99,7 +99,7 @@ class Formula(Generic[Arguments]):
     function : callable
         The formula without any check of its range.
     predicts : str
-        What the solver is asked for to judge it: a key of :data:`stribeck.validity.MEASURED`.
+        What the solver is asked for to judge it: a key of :data:`stribeck.evidence.formulas.MEASURED`.
     plane : {"smooth", "rest", "mixed"}
         Whether it is about the smooth contact (roughness 0, whatever the groups say), the contact at rest (speed 0), or both.
     limits : tuple of Limit

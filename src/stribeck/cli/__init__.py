@@ -1,5 +1,5 @@
 """The command ``stribeck``: arguments in, files and tables out; no physics here."""
 
-from .running import main
+from stribeck.cli.running import main
 
 __all__ = ["main"]

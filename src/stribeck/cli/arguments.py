@@ -11,10 +11,10 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from ..case import Case, curve_range, load_case
-from ..curve_coordinate import Over
-from ..output import MissingExtraError, check_output
-from ..units import InputError, read_number, show
+from stribeck.cases.case import Case, curve_range, load_case
+from stribeck.curves.coordinate import Over
+from stribeck.files.writing import MissingExtraError, check_output
+from stribeck.quantities.units import InputError, read_number, show
 
 AXES: tuple[Over, ...] = ("speed", "load", "roughness")
 
@@ -81,7 +81,7 @@ def curve_arguments(
     beta: str | None,
 ) -> dict[str, Any]:
     """Return the arguments of :func:`stribeck_curve` that a command line asks for."""
-    from ..case import CurveSettings
+    from stribeck.cases.case import CurveSettings
 
     settings = case.curve if case else CurveSettings()
     varied: Over = settings.over if over is None else _axis(over)
@@ -126,7 +126,7 @@ def _bare_or_text(text: str) -> float | str:
 
 def check_outputs(data: Sequence[Path], plot: Path | None, force: bool) -> tuple[list[Path], list[Path]]:
     """Return the files to write, after a look at whether that will be possible."""
-    from ..store import DATA, NETCDF
+    from stribeck.files.datasets import DATA, NETCDF
 
     for path in data:
         check_output(path, DATA, force=force)
@@ -144,7 +144,7 @@ def check_outputs(data: Sequence[Path], plot: Path | None, force: bool) -> tuple
 
 def check_pictures(plot: Path | None, force: bool) -> list[Path]:
     """Return the pictures to write, after a look at whether that will be possible."""
-    from ..plot_style import PICTURES
+    from stribeck.files.pictures import PICTURES
 
     if plot is None:
         return []

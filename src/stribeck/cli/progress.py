@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from ..solve import SolveError
+from stribeck.solver.solve import SolveError
 
 if TYPE_CHECKING:
     from rich.console import Console

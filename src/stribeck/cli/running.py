@@ -10,13 +10,13 @@ from importlib.metadata import version
 
 from cyclopts import App, CycloptsError, MissingArgumentError, UnusedCliTokensError
 
-from ..newton import Outcome
-from ..solve import SolveError
-from ..sweep_store import SweepError
-from ..units import InputError
-from .exits import BAD_INPUT, FAILED, INTERRUPTED, complain
-from .solving import curve_command, figures_command, regimes_command, solve_command
-from .studies import explore_command, fit_command, surface_command, sweep_command
+from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain
+from stribeck.cli.solving import curve_command, figures_command, regimes_command, solve_command
+from stribeck.cli.studies import explore_command, fit_command, surface_command, sweep_command
+from stribeck.numerics.newton import Outcome
+from stribeck.quantities.units import InputError
+from stribeck.solver.solve import SolveError
+from stribeck.sweeps.store import SweepError
 
 HELP = """Friction and film thickness of lubricated rough line contacts, from a TOML file with units.
 

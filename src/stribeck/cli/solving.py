@@ -8,18 +8,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from ..case import load_case
-from ..curve import stribeck_curve
-from ..curve_result import StribeckCurve
-from ..distances import transition_distances
-from ..friction import coefficients
-from ..newton import Outcome
-from ..parameters import Groups
-from ..quantities import QUANTITIES
-from ..regimes import friction_elasticities
-from ..solve import solve
-from ..units import InputError, format_si
-from .arguments import (
+from stribeck.cases.case import load_case
+from stribeck.cli.arguments import (
     AXES,
     CaseFile,
     File,
@@ -37,8 +27,18 @@ from .arguments import (
     read_case,
     speaking_of,
 )
-from .exits import BAD_INPUT, FAILED, INTERRUPTED, complain
-from .progress import interruptible, stdout_console
+from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain
+from stribeck.cli.progress import interruptible, stdout_console
+from stribeck.contacts.friction import coefficients
+from stribeck.contacts.line import Groups
+from stribeck.curves.elasticities import friction_elasticities
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.numerics.newton import Outcome
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import InputError, format_si
+from stribeck.regimes.distances import transition_distances
+from stribeck.solver.solve import solve
 
 REGIME_POINTS = 41
 """Points of the curve on which ``stribeck regimes`` looks for transitions, which are then located exactly."""
@@ -94,10 +94,11 @@ def solve_command(
     solution = solve(problem, rtol=tolerance, law=law)
     title = loaded.title if loaded else ""
     for picture in pictures:
-        from ..plotting import plot_profile
+        from stribeck.curves.plot import plot_profile
 
         plot_profile(solution, picture, force=force, title=title)
-    from .. import report, report_json
+    from stribeck.cli.reports import json as report_json
+    from stribeck.cli.reports import state_and_curve as report
 
     if json:
         print(report_json.dump(report_json.solution_json(solution, mu, b)))
@@ -175,7 +176,8 @@ def curve_command(
         if curve.outcome is Outcome.ROUNDING:
             raise InputError(_too_small(curve))
         written, problems = _write(curve, title, outputs, pictures, force)
-    from .. import report, report_json
+    from stribeck.cli.reports import json as report_json
+    from stribeck.cli.reports import state_and_curve as report
 
     if json:
         print(report_json.dump(report_json.curve_json(curve, title, written)))
@@ -219,7 +221,8 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
         if curve.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         distances = transition_distances(loaded.contact, rtol=loaded.rtol, definition=loaded.definition, on_point=progress)
-    from .. import report_json, report_regimes
+    from stribeck.cli.reports import json as report_json
+    from stribeck.cli.reports import regimes as report_regimes
 
     if json:
         print(report_json.dump(report_json.regimes_json(solution, elasticities, curve, distances, loaded.title)))
@@ -254,7 +257,7 @@ def figures_command(
     force
         Solve again what the folder already holds, and replace files that are not of this command.
     """
-    from ..figures import make_figures
+    from stribeck.figures import make_figures
 
     with interruptible() as progress:
         made = make_figures(
@@ -295,13 +298,13 @@ def _write(
             written.append(str(path))
 
     if outputs:
-        from ..store import curve_dataset, write_data
+        from stribeck.files.datasets import curve_dataset, write_data
 
         dataset = curve_dataset(curve, title)
         for path in outputs:
             attempt(path, lambda path=path: write_data(dataset, path, force=force))  # type: ignore[misc]
     for path in pictures:
-        from ..plotting import plot_curve
+        from stribeck.curves.plot import plot_curve
 
         attempt(path, lambda path=path: plot_curve(curve, path, force=force, title=title))  # type: ignore[misc]
     return written, problems

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from ..output import check_output
-from ..units import InputError
-from .arguments import CaseFile, File, Flag, Number, Word, as_number, as_whole, check_pictures, need_extra
-from .exits import FAILED, INTERRUPTED, complain
-from .progress import interruptible, stdout_console
+from stribeck.cli.arguments import CaseFile, File, Flag, Number, Word, as_number, as_whole, check_pictures, need_extra
+from stribeck.cli.exits import FAILED, INTERRUPTED, complain
+from stribeck.cli.progress import interruptible, stdout_console
+from stribeck.files.writing import check_output
+from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
-    from ..sweep import SweepProgress
+    from stribeck.sweeps.sweep import SweepProgress
 
 
 def sweep_command(
@@ -58,10 +58,10 @@ def sweep_command(
     force
         Replace an existing file of --export; a store is never replaced.
     """
-    from .. import report_sweep
-    from ..store import NETCDF
-    from ..sweep import sweep
-    from ..sweep_design import load_sweep
+    from stribeck.cli.reports import sweep as report_sweep
+    from stribeck.files.datasets import NETCDF
+    from stribeck.sweeps.design import load_sweep
+    from stribeck.sweeps.sweep import sweep
 
     if design is None:
         raise InputError("SWEEP is missing; give a sweep file, as in: stribeck sweep sweep.toml --out sweep.zarr.")
@@ -87,7 +87,7 @@ def sweep_command(
     if found.note:
         complain(found.note, 0)
     if json:
-        from .. import report_json
+        from stribeck.cli.reports import json as report_json
 
         print(report_json.dump(report_sweep.sweep_json(found, written)))
     else:
@@ -143,7 +143,7 @@ def fit_command(
     if data is None or case is None:
         missing, example = ("DATA", "measured.csv case.toml") if data is None else ("CASE", f"{data} case.toml")
         raise InputError(f"{missing} is missing; give measured friction and a case file, as in: stribeck fit {example}.")
-    from ..fit_file import load_fit_case
+    from stribeck.fits.case_file import load_fit_case
 
     loaded = load_fit_case(data, case)
     pictures = check_pictures(plot, force)
@@ -152,24 +152,25 @@ def fit_command(
     steps = None if posterior is None else as_whole("posterior", posterior)
     if steps is not None:
         need_extra("a posterior", "fit", "emcee")
-    from ..fit import fit
-    from ..fit_posterior import draw_posterior
+    from stribeck.fits.fit import fit
+    from stribeck.fits.posterior import draw_posterior
 
     with interruptible() as progress:
         found = fit(data, loaded, free=free, robust=True if robust else None, on_step=lambda what, n: progress(n, n + 1, what))
         drawn = None if steps is None else draw_posterior(found, steps=steps, on_step=lambda n, m: progress(n, m, "posterior"))
     written = []
     for picture in pictures:
-        from ..plot_fit import plot_fit
+        from stribeck.fits.plot import plot_fit
 
         plot_fit(found, picture, force=force, title=loaded.title)
         written.append(str(picture))
     if out is not None and found.converged:
-        from ..fit_file import write_fitted_case
+        from stribeck.fits.case_file import write_fitted_case
 
         write_fitted_case(found, loaded, out, force=force)
         written.append(str(out))
-    from .. import report_fit, report_json
+    from stribeck.cli.reports import fit as report_fit
+    from stribeck.cli.reports import json as report_json
 
     if json:
         print(report_json.dump(report_fit.fit_json(found, loaded.title, written, drawn)))
@@ -238,7 +239,8 @@ def surface_command(
     force
         Replace existing files.
     """
-    from .. import report_surface, surfaces
+    from stribeck.cli.reports import surface as report_surface
+    from stribeck.surfaces import analysis as surfaces
 
     if file is None:
         raise InputError("FILE is missing; give a file of heights, as in: stribeck surface scan.x3p.")
@@ -250,14 +252,14 @@ def surface_command(
     scan = surfaces.read_topography(file, unit=unit, height_unit=height_unit, spacing=spacing, channel=channel)
     surface = surfaces.analyse(scan, keep_spikes=keep_spikes, **arguments)
     for picture in pictures:
-        from ..plot_surface import plot_surface
+        from stribeck.surfaces.plot import plot_surface
 
         plot_surface(surface, picture, force=force)
     if out is not None:
         surfaces.write_surface_table(surface, out, force=force)
     written = [str(name) for name in (*pictures, *([out] if out is not None else []))]
     if json:
-        from .. import report_json
+        from stribeck.cli.reports import json as report_json
 
         print(report_json.dump({**surface.to_dict(), "files": written}))
     else:
@@ -287,7 +289,7 @@ def explore_command(
     browser
         Open the page in the browser, or only tell its address.
     """
-    from ..app.server import serve
+    from stribeck.explorer.server import serve
 
     number = None if port is None else as_whole("port", port)
     with suppress(KeyboardInterrupt):  # which is how it ends

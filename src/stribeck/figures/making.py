@@ -14,12 +14,12 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from ..output import MissingExtraError, PathLike, check_output, replacing
-from ..solve import SolveError
-from ..store import NETCDF, write_netcdf
-from ..units import InputError
-from . import style
-from .paper_figure import PaperFigure, figure_names, load_figure
+from stribeck.figures import style
+from stribeck.figures.paper_figure import PaperFigure, figure_names, load_figure
+from stribeck.files.datasets import NETCDF, write_netcdf
+from stribeck.files.writing import MissingExtraError, PathLike, check_output, replacing
+from stribeck.quantities.units import InputError
+from stribeck.solver.solve import SolveError
 
 if TYPE_CHECKING:
     import xarray

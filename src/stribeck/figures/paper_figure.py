@@ -12,7 +12,7 @@ from importlib import import_module
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
-from ..units import InputError, show
+from stribeck.quantities.units import InputError, show
 
 if TYPE_CHECKING:
     import xarray

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..curve import stribeck_curve
-from ..curve_result import StribeckCurve
-from ..newton import Outcome
-from ..output import MissingExtraError
-from ..parameters import Groups
-from ..solution import Solution
-from ..solve import SolveError, solve
-from .paper_figure import Report
+from stribeck.contacts.line import Groups
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.figures.paper_figure import Report
+from stribeck.files.writing import MissingExtraError
+from stribeck.numerics.newton import Outcome
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import SolveError, solve
 
 if TYPE_CHECKING:
     import xarray

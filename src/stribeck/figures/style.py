@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..output import MissingExtraError
-from ..plot_style import CONTACT, FLUID, GREY, INK, MARK, TINTS
+from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, TINTS
+from stribeck.files.writing import MissingExtraError
 
 if TYPE_CHECKING:
     import xarray

@@ -1,0 +1,1 @@
+"""Contacts without a fluid: Hertz, and rough contacts at rest."""

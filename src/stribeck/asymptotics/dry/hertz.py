@@ -1,0 +1,130 @@
+"""The dry contact of a smooth cylinder as the limit of all others: small speed and small relative roughness.
+
+Source: [BP] Eqs. (Hertz), (vertical_position_Hz).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.contacts.line import Groups
+from stribeck.solids import hertz
+
+
+def _rest(relative_roughness: float) -> Groups:
+    return Groups(0.0, 0.1, 0.1 * relative_roughness)
+
+
+def _contact_and_around(groups: Groups) -> tuple[float, float]:
+    return -2.0, 2.0
+
+
+@formula(
+    predicts="pressure",
+    plane="mixed",
+    limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-4)),
+    worst=0.05,
+    small="relative_roughness",
+    error_order=1 / 3,
+    approach=_rest,
+    steps=(1e-3, 1e-4, 1e-5),
+    interval=_contact_and_around,
+    source="[BP] Eq. (Hertz)",
+)
+def pressure(groups: Groups, x: Value) -> Value:
+    r"""Return the Hertz pressure, contact and fluid together.
+
+    .. math:: p = (1 - x^2)^{1/2}
+
+    Parameters
+    ----------
+    groups : Groups
+        Any; the answer takes their shape, broadcast with ``x``.
+    x : float or array_like
+        Positions [a].
+
+    Returns
+    -------
+    float or ndarray
+        Pressure [p_Hz]; zero outside the contact.
+
+    Notes
+    -----
+    The error is that at the edge, where the true pressure goes as kappa**(1/3) or lambda**(1/5); at fixed distance from the
+    edge it falls as kappa.
+
+    Source: [BP] Eq. (Hertz).
+    """
+    return hertz.pressure(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
+
+
+@formula(
+    predicts="gap",
+    plane="mixed",
+    limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-4)),
+    worst=1e-3,
+    small="relative_roughness",
+    error_order=1,
+    approach=_rest,
+    steps=(1e-3, 1e-4, 1e-5),
+    interval=_contact_and_around,
+    source="[BP] Eq. (Hertz)",
+)
+def gap(groups: Groups, x: Value) -> Value:
+    r"""Return the gap around the dry contact.
+
+    .. math:: h = \tfrac12 \left[|x| \sqrt{x^2 - 1} - \ln\left(|x| + \sqrt{x^2 - 1}\right)\right] \text{ beyond } |x| = 1
+
+    Parameters
+    ----------
+    groups : Groups
+        Any; the answer takes their shape, broadcast with ``x``.
+    x : float or array_like
+        Positions [a].
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz]; zero in the contact.
+
+    Notes
+    -----
+    Judged against the largest gap within two half-widths; the error is of order kappa, with logarithms, or lambda**(3/5).
+
+    Source: [BP] Eq. (Hertz).
+    """
+    return hertz.gap(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
+
+
+@formula(
+    predicts="offset",
+    plane="mixed",
+    limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-4)),
+    worst=1e-3,
+    small="relative_roughness",
+    error_order=1,
+    approach=_rest,
+    steps=(1e-3, 1e-4, 1e-5),
+    source="[BP] Eq. (vertical_position_Hz)",
+)
+def offset(groups: Groups) -> Value:
+    r"""Return the offset of the dry contact.
+
+    .. math:: z_0 = -\frac{1 + \ln 4}{4}
+
+    Parameters
+    ----------
+    groups : Groups
+        Any; the answer takes their shape.
+
+    Returns
+    -------
+    float or ndarray
+        Offset [u_Hz], in the gauge ln(abs(x-y)/a).
+
+    Notes
+    -----
+    Source: [BP] Eq. (vertical_position_Hz).
+    """
+    return np.full(groups.shape, hertz.OFFSET)

@@ -1,0 +1,357 @@
+r"""The rough contact at rest, of large and of small indentation.
+
+With the load fixed, all but a shift of the gap depends on kappa alone.
+
+Source: [BP] Section "Quasistatic limit"; the second terms are ours.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.contacts.line import Groups
+from stribeck.quantities.units import InputError, show
+from stribeck.solids import hertz
+
+LARGE_INDENTATION = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-2))
+SMALL_INDENTATION = (Limit("load", 1e-8, 0.5), Limit("1/relative_roughness", 0, 0.1))
+
+
+def _smoother(relative_roughness: float) -> Groups:
+    return Groups(0.0, 0.1, 0.1 * relative_roughness)
+
+
+def _rougher(inverse: float) -> Groups:
+    # At a fixed load per roughness the logarithm in the gap stays what it is.
+    return Groups(0.0, 1e-6 / inverse, 1e-6 / inverse**2)
+
+
+def _contact(groups: Groups) -> tuple[float, float]:
+    return -0.9, 0.9
+
+
+def _gaussian(groups: Groups) -> tuple[float, float]:
+    width = 3 * math.sqrt(float(groups.relative_roughness))
+    return -width, width
+
+
+@formula(
+    predicts="gap",
+    plane="rest",
+    limits=LARGE_INDENTATION,
+    worst=0.03,
+    small="relative_roughness",
+    error_order=1,
+    approach=_smoother,
+    steps=(1e-3, 1e-4, 1e-5),
+    interval=_contact,
+    source="[BP] Eq. (central_region_contact)",
+)
+def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
+    r"""Return the gap in a rough contact at rest.
+
+    .. math:: h = -\frac\kappa2 \ln\left[\bar F_N (1 - x^2)\right] \; \left(+ \frac{\kappa^2}{1 - x^2}\right)
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast with ``x``.
+    x : float or array_like
+        Positions [a].
+    terms : int
+        1, or 2 for the term in brackets too.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz]; nan from the edge of the contact outwards, where this has no value.
+
+    Raises
+    ------
+    InputError
+        If ``terms`` is neither 1 nor 2.
+
+    Notes
+    -----
+    Judged up to 0.9 of the half-width; the edge has a layer of width kappa**(2/3).
+
+    Source: [BP] Eq. (central_region_contact).  The second term is ours: the pressure :math:`-\kappa (1 - x^2)^{-1/2}` of next
+    order, whose elastic gap is the first term.
+    """
+    kappa, below = groups.relative_roughness, _below(x)
+    leading: Array = -0.5 * kappa * np.log(groups.load * below)
+    return leading + _second(terms) * np.square(kappa) / below
+
+
+@formula(
+    predicts="central_gap",
+    plane="rest",
+    limits=LARGE_INDENTATION,
+    worst=0.03,
+    small="relative_roughness",
+    error_order=1,
+    approach=_smoother,
+    steps=(1e-2, 1e-3, 1e-4),
+    source="[BP] Eq. (central_region_contact)",
+)
+def central_gap(groups: Groups, terms: int = 1) -> Value:
+    r"""Return the gap at the centre of a rough contact at rest.
+
+    .. math:: h(0) = -\frac\kappa2 \ln \bar F_N \; (+ \kappa^2)
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
+    terms : int
+        1, or 2 for the term in brackets too.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Raises
+    ------
+    InputError
+        If ``terms`` is neither 1 nor 2.
+
+    Notes
+    -----
+    With both terms the error is -2.67 kappa**4, as measured.
+
+    Source: [BP] Eq. (central_region_contact); the second term is ours.
+    """
+    return gap.function(groups, 0.0, terms)
+
+
+@formula(
+    predicts="offset",
+    plane="rest",
+    limits=LARGE_INDENTATION,
+    worst=1e-4,
+    small="relative_roughness",
+    error_order=2,
+    approach=_smoother,
+    steps=(1e-2, 1e-3, 1e-4),
+    source="theory.md, section 7",
+)
+def offset(groups: Groups, terms: int = 1) -> Value:
+    r"""Return the offset of a rough contact at rest.
+
+    .. math:: z_0 = -\frac{1 + \ln 4}{4} + \kappa \left(\ln 2 - \tfrac12 \ln \bar F_N\right) \; (+ \tfrac13 \kappa^2)
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
+    terms : int
+        1, or 2 for the term in brackets too.
+
+    Returns
+    -------
+    float or ndarray
+        Offset [u_Hz], in the gauge ln(abs(x-y)/a).
+
+    Raises
+    ------
+    InputError
+        If ``terms`` is neither 1 nor 2.
+
+    Notes
+    -----
+    The energy of the contact per kappa**2 holds :math:`\tfrac\pi6 \ln(\kappa u_\mathrm{Hz})`, the logarithm of the pressure at
+    the edge times the load there; its derivative with respect to the load is the second term.  With both terms the error is
+    -0.178 kappa**4, as measured.
+
+    Source: theory.md, section 7.
+    """
+    kappa = groups.relative_roughness
+    leading: Array = hertz.OFFSET + kappa * (math.log(2) - 0.5 * np.log(groups.load))
+    return leading + _second(terms) * np.square(kappa) / 3
+
+
+@formula(
+    predicts="gap",
+    plane="rest",
+    limits=SMALL_INDENTATION,
+    worst=0.011,
+    small="1/relative_roughness",
+    error_order=1,
+    approach=_rougher,
+    steps=(1e-1, 1e-2, 1e-3),
+    interval=_gaussian,
+    source="[BP] Section 'Small indentation limit'",
+)
+def gap_small_indentation(groups: Groups, x: Value, terms: int = 1) -> Value:
+    r"""Return the gap at rest of a very rough contact, which is hardly deflected.
+
+    .. math:: h = -\frac\kappa2 \ln \frac{\pi \bar F_N}{8 \kappa} \; \left(+ \tfrac14 \ln 2\right) + \frac{x^2}{2}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast with ``x``.
+    x : float or array_like
+        Positions [a].
+    terms : int
+        1, or 2 for the term in brackets too.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Raises
+    ------
+    InputError
+        If ``terms`` is neither 1 nor 2.
+
+    Notes
+    -----
+    Judged up to three standard deviations of the pressure, :math:`3 \kappa^{1/2}`.  The second term is right at x = 0.
+
+    Source: [BP] Eq. (separation_small_indentation); the second term is ours.
+    """
+    x = np.asarray(x, dtype=float)
+    return central_gap_small_indentation.function(groups, terms) + np.square(x) / 2
+
+
+@formula(
+    predicts="central_gap",
+    plane="rest",
+    limits=SMALL_INDENTATION,
+    worst=0.009,
+    small="1/relative_roughness",
+    error_order=1,
+    approach=_rougher,
+    steps=(1e-1, 1e-2, 1e-3),
+    source="[BP] Eq. (separation_small_indentation)",
+)
+def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
+    r"""Return the gap at the centre of a very rough contact at rest.
+
+    .. math:: h(0) = -\frac\kappa2 \ln \frac{\pi \bar F_N}{8 \kappa} \; \left(+ \tfrac14 \ln 2\right)
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
+    terms : int
+        1, or 2 for the term in brackets too.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Raises
+    ------
+    InputError
+        If ``terms`` is neither 1 nor 2.
+
+    Notes
+    -----
+    The second term is the mean, over the Gaussian pressure, of its own deflection against that at the centre.
+
+    Source: [BP] Eq. (separation_small_indentation); the second term is ours.
+    """
+    kappa = np.asarray(groups.relative_roughness)
+    leading: Array = -0.5 * kappa * np.log(math.pi * groups.load / (8 * kappa))
+    return leading + _second(terms) * math.log(2) / 4
+
+
+@formula(
+    predicts="offset",
+    plane="rest",
+    limits=SMALL_INDENTATION,
+    worst=3e-4,
+    small="1/relative_roughness",
+    error_order=2,
+    approach=_rougher,
+    steps=(1e-1, 1e-2, 1e-3),
+    source="stribeck.asymptotics.rough.boundary",
+)
+def offset_small_indentation(groups: Groups) -> Value:
+    r"""Return the offset of a very rough contact at rest.
+
+    .. math:: z_0 = -\frac\kappa2 \ln \frac{\pi \bar F_N}{8 \kappa} + \tfrac14 \ln \kappa - \tfrac14 \gamma_E
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
+
+    Returns
+    -------
+    float or ndarray
+        Offset [u_Hz], in the gauge ln(abs(x-y)/a).
+
+    Notes
+    -----
+    The central gap with both terms, less the deflection :math:`-\tfrac12 \langle \ln |y| \rangle` under a Gaussian of
+    variance kappa.
+
+    Source: ours, from [BP] Section "Small indentation limit".
+    """
+    kappa = np.asarray(groups.relative_roughness)
+    deflection = -0.25 * (np.log(kappa / 2) - np.euler_gamma)
+    return central_gap_small_indentation.function(groups, terms=2) - deflection
+
+
+@formula(
+    predicts="contact_pressure",
+    plane="rest",
+    limits=SMALL_INDENTATION,
+    worst=0.018,
+    small="1/relative_roughness",
+    error_order=1,
+    approach=_rougher,
+    steps=(1e-1, 1e-2, 1e-3),
+    interval=_gaussian,
+    source="[BP] Section 'Small indentation limit'",
+)
+def contact_pressure_small_indentation(groups: Groups, x: Value, printed: bool = False) -> Value:
+    r"""Return the contact pressure at rest of a very rough contact.
+
+    .. math:: p_c = \left(\frac{\pi}{8 \kappa}\right)^{1/2} e^{-x^2/(2 \kappa)}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``relative_roughness`` [-]; arrays broadcast with ``x``.
+    x : float or array_like
+        Positions [a].
+    printed : bool
+        With the minus sign that is printed.
+
+    Returns
+    -------
+    float or ndarray
+        Contact pressure [p_Hz].
+
+    Notes
+    -----
+    Source: [BP] Section "Small indentation limit", without its minus sign.
+    """
+    kappa = np.asarray(groups.relative_roughness)
+    sign = -1.0 if printed else 1.0
+    gaussian: Array = np.exp(-np.square(np.asarray(x, dtype=float)) / (2 * kappa))
+    return sign * np.sqrt(math.pi / (8 * kappa)) * gaussian
+
+
+def _below(x: Value) -> Array:
+    """Return 1 - x**2, nan outside the contact."""
+    x = np.asarray(x, dtype=float)
+    return np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)
+
+
+def _second(terms: int) -> int:
+    """Return 1 where the second term is wanted, and 0 where not."""
+    if terms not in (1, 2):
+        raise InputError(f"terms = {show(terms)}; it must be 1 or 2.")
+    return int(terms) - 1

@@ -1,0 +1,267 @@
+r"""Boundary lubrication: what slow speed takes from the asperities of a contact of small relative roughness.
+
+The contact at rest is that of :mod:`stribeck.asymptotics.dry.rest`, whose formulas are at hand here too.
+
+Source: [BP] Section "Boundary-to-mixed lubrication transition", Appendix C; theory.md, section 6.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+
+from stribeck.asymptotics.dry.rest import (
+    central_gap,
+    central_gap_small_indentation,
+    contact_pressure_small_indentation,
+    gap,
+    gap_small_indentation,
+    offset,
+    offset_small_indentation,
+)
+from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.rough.perturbation import PhiForm, phi_of, pressure_moment, shear
+from stribeck.contacts.line import Groups
+from stribeck.quantities.units import InputError, show
+
+__all__ = [
+    "central_gap",
+    "central_gap_small_indentation",
+    "contact_load_share",
+    "contact_pressure_small_indentation",
+    "fluid_load_share",
+    "friction",
+    "gap",
+    "gap_small_indentation",
+    "offset",
+    "offset_small_indentation",
+    "viscous_friction",
+]
+
+Viscous = Literal["paper", "balanced", "neglected"]
+
+SLOW = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Limit("paper_fluid_share", 0, 0.1))
+SLOWER = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01))
+"""Ranges of what fluid and asperities do together, and of the small part of it that the fluid does."""
+
+
+def _smoother(relative_roughness: float) -> Groups:
+    # So slow that the fluid carries 1e-6 of the load, and terms of higher order count for nothing.
+    load = 1e-3
+    speed = 1e-3 * float(phi_of(load)) ** -0.5 * relative_roughness**2
+    return Groups(speed, load, relative_roughness * load)
+
+
+def _slower(fluid_number: float) -> Groups:
+    return Groups(fluid_number * 1e-12, 0.1, 1e-7)
+
+
+@formula(
+    predicts="fluid_load_share",
+    plane="mixed",
+    limits=SLOWER,
+    worst=0.07,
+    small="relative_roughness",
+    error_order=2 / 3,
+    approach=_smoother,
+    steps=(1e-3, 1e-4, 1e-5),
+    source="[BP] Eq. (fluid-normal-dl), with 2/pi",
+)
+def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool = False) -> Value:
+    r"""Return the part of the load that the fluid carries at slow speed.
+
+    .. math:: \frac{F_f}{F_N} = \frac{\lambda^2}{\kappa^4} \, \phi(\bar F_N)
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses all three groups [-]; arrays broadcast.
+    form : {"quadrature", "closed", "asymptote", "power", "printed"}
+        Form of :func:`stribeck.asymptotics.rough.perturbation.phi`; "printed" is :math:`(-\ln \bar F_N)^5/2`.
+    printed : bool
+        With the factors of Eq. (fluid-normal): pi**2, as :math:`6 \pi \eta U a` is printed for :math:`6 \eta U a`, and phi
+        without its 2/pi.
+
+    Returns
+    -------
+    float or ndarray
+        Load share [-]; nan from load 1 on.
+
+    Raises
+    ------
+    InputError
+        If the form is unknown.
+
+    Notes
+    -----
+    With ``printed=True, form="printed"`` it is all that [BP] print.  The error, of order kappa**(2/3) with logarithms, comes
+    from the edge of the contact, which is a layer of that width.
+
+    Source: [BP] Eqs. (fluid-normal), (fluid-normal-dl).
+    """
+    number: Value = groups.speed / np.square(groups.relative_roughness)
+    share = np.square(number) * phi_of(groups.load, form)
+    if printed:
+        lacking = 1.0 if form == "printed" else math.pi / 2
+        share = math.pi**2 * lacking * share
+    return share
+
+
+@formula(
+    predicts="contact_load_share",
+    plane="mixed",
+    limits=SLOW,
+    worst=0.017,
+    small="fluid_number",
+    error_order=4,
+    approach=_slower,
+    steps=(2.0, 1.0, 0.5),
+    source="[BP] Eq. (friction_contact)",
+)
+def contact_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool = False) -> Value:
+    r"""Return the part of the load that asperities carry at slow speed.
+
+    .. math:: \frac{F_c}{F_N} = 1 - \frac{\lambda^2}{\kappa^4} \, \phi(\bar F_N)
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses all three groups [-]; arrays broadcast.
+    form : {"quadrature", "closed", "asymptote", "power", "printed"}
+        As in :func:`fluid_load_share`.
+    printed : bool
+        As in :func:`fluid_load_share`.
+
+    Returns
+    -------
+    float or ndarray
+        Load share [-], negative where the formula has long ceased to hold; nan from load 1 on.
+
+    Raises
+    ------
+    InputError
+        If the form is unknown.
+
+    Notes
+    -----
+    Source: [BP] Eq. (friction_contact).
+    """
+    return 1 - fluid_load_share.function(groups, form, printed)
+
+
+@formula(
+    predicts="viscous_friction",
+    plane="mixed",
+    limits=SLOWER,
+    worst=0.075,
+    small="relative_roughness",
+    error_order=2 / 3,
+    approach=_smoother,
+    steps=(1e-3, 1e-4, 1e-5),
+    source="stribeck.asymptotics.rough.boundary",
+)
+def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "paper") -> Value:
+    r"""Return the viscous friction at slow speed.
+
+    .. math::
+
+        \mu_f^\mathrm{balanced} &= \frac{2 \beta \bar F_N^{1/2}}{3 \pi} \frac{\lambda}{\kappa} S(\bar F_N) \\
+        \mu_f^\mathrm{paper} &= \mu_f^\mathrm{balanced}
+        + \frac{4 \beta \bar F_N^{1/2}}{\pi} \frac{\lambda}{\kappa^2} M(\bar F_N)
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses all three groups [-]; arrays broadcast.
+    beta : float
+        Coefficient of the contact law [-].
+    viscous : {"paper", "balanced", "neglected"}
+        Definition; or none of it.
+
+    Returns
+    -------
+    float or ndarray
+        Friction coefficient [-]; nan from load 1 on.
+
+    Raises
+    ------
+    InputError
+        If the definition is unknown.
+
+    Notes
+    -----
+    [BP] state only that it goes as :math:`\eta U a/(F_N h_\mathrm{rms})`, which is true of the balanced definition; by their
+    own it is larger by :math:`6 M/(S \kappa)`, 0.0701/kappa at load 0.1.
+
+    Source: theory.md, section 6; S and M are :func:`stribeck.asymptotics.rough.perturbation.shear` and ``pressure_moment``.
+    """
+    if viscous not in ("paper", "balanced", "neglected"):
+        raise InputError(f"viscous = {show(viscous)}; it must be 'paper', 'balanced' or 'neglected'.")
+    F, kappa = groups.load, np.asarray(groups.relative_roughness)
+    if viscous == "neglected":
+        return np.zeros(groups.shape)
+    friction: Value = 2 * beta * F**0.5 / (3 * math.pi) * groups.speed / kappa * shear(F)
+    if viscous == "paper":
+        friction = friction + 4 * beta * F**0.5 / math.pi * groups.speed / np.square(kappa) * pressure_moment(F)
+    return friction
+
+
+@formula(
+    predicts="friction",
+    plane="mixed",
+    limits=SLOW,
+    worst=0.017,
+    small="relative_roughness",
+    error_order=2 / 3,
+    approach=_smoother,
+    steps=(1e-3, 1e-4, 1e-5),
+    source="[BP] Eq. (friction_contact), with its viscous part",
+)
+def friction(
+    groups: Groups,
+    mu0: float = 1.0,
+    beta: float = 1.0,
+    viscous: Viscous = "paper",
+    form: PhiForm = "quadrature",
+    printed: bool = False,
+) -> Value:
+    r"""Return the friction in boundary lubrication.
+
+    .. math:: \mu = \mu_0 \left(1 - \frac{\lambda^2}{\kappa^4} \, \phi(\bar F_N)\right) + \mu_f
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses all three groups [-]; arrays broadcast.
+    mu0 : float
+        Friction coefficient of the dry contact [-].
+    beta : float
+        Coefficient of the contact law [-].
+    viscous : {"paper", "balanced", "neglected"}
+        Definition of the viscous part, as in :func:`viscous_friction`.
+    form : {"quadrature", "closed", "asymptote", "power", "printed"}
+        As in :func:`fluid_load_share`.
+    printed : bool
+        As in :func:`fluid_load_share`; what is printed has the viscous part neglected too.
+
+    Returns
+    -------
+    float or ndarray
+        Friction coefficient [-]; nan from load 1 on.
+
+    Raises
+    ------
+    InputError
+        If the form or the definition is unknown.
+
+    Notes
+    -----
+    [BP] Eq. (friction_contact) is ``viscous="neglected"``.  In the paper's own definition the neglected part is of first order
+    in the speed, and the load share of second.
+
+    Source: [BP] Eqs. (friction_contact), (fluid-normal-dl).
+    """
+    mu_f = viscous_friction.function(groups, beta, "neglected" if printed else viscous)
+    return mu0 * contact_load_share.function(groups, form, printed) + mu_f

@@ -1,0 +1,333 @@
+r"""Slow speed at a rough contact of small relative roughness: the fields to second order in the speed, and the fluid's load.
+
+With gaps in kappa u_Hz, :math:`H_0 = -\tfrac12 \ln F - \tfrac12 \ln(1 - x^2)`, and :math:`p_0 = (1 - x^2)^{1/2}`,
+
+.. math::
+
+    H_0^* = \frac{\int H_0^{-2} dx}{\int H_0^{-3} dx}, \quad
+    P_{f,1} = \int_{-1}^x \frac{H_0 - H_0^*}{H_0^3} dy, \quad
+    H_1 = \frac{P_{f,1}}{p_0}, \quad
+    P_{f,2} = \int_{-1}^x \frac{(3 H_0^* - 2 H_0) H_1}{H_0^4} dy
+
+all depend on the load alone; :mod:`stribeck.asymptotics.rough.slow_contact` integrates.
+
+Source: [BP] Appendix C and D, with the cubes that the former lacks.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from typing import Literal
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, formula
+from stribeck.asymptotics.rough.slow_contact import half_logarithm, of_load, outward
+from stribeck.contacts.line import Groups
+from stribeck.quantities.units import InputError, show
+
+PhiForm = Literal["quadrature", "closed", "asymptote", "power", "printed"]
+
+ASYMPTOTE = 96 - 128 * math.log(2)
+"""phi (-ln F)**6 as F -> 0."""
+
+POWER = 0.325
+"""Least-squares fit of ln(phi (-ln F)**5) over loads 1e-5 to 1e-1; [BP] print 0.510 = 0.325 pi/2."""
+
+CLOSED = (6.055, 4.462, 4.861, 1.498)
+"""a1, a2, b1, b2 of the closed form, with the least largest error."""
+
+
+def phi_of(load: Value, form: PhiForm = "quadrature") -> Value:
+    """Return :func:`phi` without a word about loads from 1 on, for formulas, which have their own."""
+    if form == "quadrature":
+        # By parts, -(2/pi) int x P_f2' dx.
+        return of_load(load, lambda c: -4 / math.pi * c.integral(c.x * c.second()))
+    L = 2 * half_logarithm(load)
+    if form == "closed":
+        a1, a2, b1, b2 = CLOSED
+        a3 = b2 * (1.5 * ASYMPTOTE) ** -0.4
+        ratio: Array = (1 + L * (b1 + L * b2)) / (1 + L * (a1 + L * (a2 + L * a3)))
+        return 2 / 3 * ratio**2.5 * L**-3.5
+    if form == "asymptote":
+        return ASYMPTOTE * L**-6
+    if form == "power":
+        return POWER * L**-5
+    if form == "printed":
+        return 0.5 * L**5
+    raise InputError(f"form = {show(form)}; it must be 'quadrature', 'closed', 'asymptote', 'power' or 'printed'.")
+
+
+def phi(load: Value, form: PhiForm = "quadrature") -> Value:
+    r"""Return the auxiliary function of the fluid's load, F_f/F_N = lambda**2/kappa**4 phi.
+
+    .. math::
+
+        \phi &= \frac2\pi \int_{-1}^1 P_{f,2} \, dx \\
+        \phi_\mathrm{closed} &= \frac{2}{3 L^{7/2}}
+        \left[\frac{1 + b_1 L + b_2 L^2}{1 + a_1 L + a_2 L^2 + a_3 L^3}\right]^{5/2}, \quad L = -\ln \bar F_N
+
+    Parameters
+    ----------
+    load : float or array_like
+        Load group [-], between 0 and 1.
+    form : {"quadrature", "closed", "asymptote", "power", "printed"}
+        The integral; the closed form; its limit :math:`(96 - 128 \ln 2)/L^6`; :math:`0.325/L^5`; the printed
+        :math:`L^5/2`.
+
+    Returns
+    -------
+    float or ndarray
+        phi [-], of the shape of ``load``; nan, with a warning, from load 1 on.
+
+    Raises
+    ------
+    InputError
+        If a load is no positive finite number, or the form is unknown.
+
+    Notes
+    -----
+    The quadrature is good to 1e-12 for loads 1e-300 to 0.999999.  The closed form is within 0.33 % of it for all these; it has
+    both limits, :math:`\tfrac23 L^{-7/2}` as F -> 1, where phi diverges as the gap closes at x = 0, and the asymptote as
+    F -> 0.  That is reached so slowly that it is 2.5 times too high at load 1e-4, by 45 % at 1e-12 and by 1.7 % at 1e-300.
+    The power is within 12 % for loads 1e-5 to 1e-1, and 78 % too high at 1e-12.
+
+    Source: [BP] Eq. (fluid-normal-dl) and Appendix D, where 2/pi is missing; Eq. (phi_approximation) prints the power with a
+    positive exponent.  Closed form and limits are ours.
+    """
+    # Groups know what a load is.
+    values = Groups(0.0, load, 0.0).load
+    if np.any(np.greater_equal(values, 1)):
+        message = "phi has no value, and is nan, from load 1 on, where there is no positive gap at rest."
+        warnings.warn(message, OutOfRangeWarning, stacklevel=2)
+    return phi_of(values, form)
+
+
+def pressure_moment(load: Value) -> Value:
+    r"""Return the moment of the fluid pressure of first order, which the contact pressure lacks.
+
+    .. math:: M = -\int_{-1}^1 x \, P_{f,1} \, dx = \int_0^1 x^2 \, \frac{H_0 - H_0^*}{H_0^3} \, dx
+
+    Parameters
+    ----------
+    load : float or array_like
+        Load group [-], > 0.
+
+    Returns
+    -------
+    float or ndarray
+        M [-], of the shape of ``load``; nan from load 1 on.
+
+    Notes
+    -----
+    Source: theory.md, section 6, with [BP] Appendix D.
+    """
+    return of_load(load, lambda c: c.integral(c.x**2 * c.first()))
+
+
+def shear(load: Value) -> Value:
+    r"""Return the shear stress on the substrate, integrated.
+
+    .. math:: S = \int_{-1}^1 \frac{1}{H_0} \left[1 + 3 \frac{H_0 - H_0^*}{H_0}\right] dx
+
+    Parameters
+    ----------
+    load : float or array_like
+        Load group [-], > 0.
+
+    Returns
+    -------
+    float or ndarray
+        S [-], of the shape of ``load``; nan from load 1 on.
+
+    Notes
+    -----
+    Source: theory.md, section 6, with the gap of [BP] Eq. (central_region_contact).
+    """
+    return of_load(load, lambda c: 2 * c.integral(1 / c.H + 3 * c.first(2)))
+
+
+def _slow(relative_roughness: float) -> Groups:
+    # So slow that the fluid carries 1e-8 of the load, and terms of higher order count for nothing.
+    load = 1e-3
+    return Groups(1e-4 * float(phi_of(load)) ** -0.5 * relative_roughness**2, load, relative_roughness * load)
+
+
+def _contact(groups: Groups) -> tuple[float, float]:
+    return -0.9, 0.9
+
+
+@formula(
+    predicts="flux_gap",
+    plane="rest",
+    limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3)),
+    worst=0.009,
+    small="relative_roughness",
+    error_order=2 / 3,
+    approach=_slow,
+    steps=(1e-3, 1e-4, 1e-5),
+    source="[BP] Appendix D",
+)
+def flux_gap(groups: Groups) -> Value:
+    r"""Return the flux gap of a slow rough contact.
+
+    .. math:: h^* = \kappa H_0^*, \quad H_0^* = \frac{\int_{-1}^1 H_0^{-2} dx}{\int_{-1}^1 H_0^{-3} dx}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
+
+    Returns
+    -------
+    float or ndarray
+        Flux gap [u_Hz]; nan from load 1 on.
+
+    Notes
+    -----
+    It has no term of first order in the speed.
+
+    Source: [BP] Appendix D.
+    """
+    return groups.relative_roughness * of_load(groups.load, lambda c: np.asarray((c.A + c.g_star)[..., 0, 0]))
+
+
+@formula(
+    predicts="fluid_pressure",
+    plane="mixed",
+    limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 1e-4)),
+    worst=0.07,
+    small="relative_roughness",
+    error_order=2 / 3,
+    approach=_slow,
+    steps=(1e-3, 1e-4, 1e-5),
+    interval=_contact,
+    source="[BP] Eq. (pf1), with the cube of Appendix D",
+)
+def fluid_pressure_first(groups: Groups, x: Value, printed: bool = False) -> Value:
+    r"""Return the fluid pressure to first order in the speed, odd in x.
+
+    .. math:: p_f = \frac{\lambda}{\kappa^2} P_{f,1}(x), \quad P_{f,1} = \int_{-1}^x \frac{H_0 - H_0^*}{H_0^3} \, dy
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses all three groups [-]; arrays broadcast with ``x``.
+    x : float or array_like
+        Positions [a].
+    printed : bool
+        With the denominator as printed in Appendix C, h_0 for its cube; then the pressure behind the contact is not zero.
+
+    Returns
+    -------
+    float or ndarray
+        Fluid pressure [p_Hz]; zero outside the contact, nan from load 1 on.
+
+    Notes
+    -----
+    Source: [BP] Eqs. (first-order_thin-film) and (pf1), which lack the cube that Appendix D has.
+    """
+    scale = groups.speed if printed else groups.speed / np.square(groups.relative_roughness)
+    return scale * _first_pressure(groups.load, x, 1 if printed else 3)
+
+
+def _first_pressure(load: Value, x: Value, power: int = 3) -> Array:
+    """Return the integral of (H_0 - H_0*)/H_0**power from -1 to x, or to 1 beyond."""
+    A, x = half_logarithm(load), np.asarray(x, dtype=float)
+    inside = np.abs(x) < 1
+    contact = outward(A, np.where(inside, x, 0.0))
+    centre = outward(A)
+    half = 0.0 if power == 3 else centre.integral(centre.first(power))
+    beyond = np.where(inside, contact.integral(contact.first(power)), np.where(np.isnan(A), A, 0.0))
+    return np.where(x < 0, beyond, 2 * half - beyond)
+
+
+@formula(
+    predicts="gap",
+    plane="mixed",
+    limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Limit("paper_fluid_share", 0, 0.1)),
+    worst=0.06,
+    small="relative_roughness",
+    error_order=1,
+    approach=_slow,
+    steps=(1e-3, 1e-4, 1e-5),
+    interval=_contact,
+    source="[BP] Eq. (h1)",
+)
+def gap_first(groups: Groups, x: Value) -> Value:
+    r"""Return the gap in the contact to first order in the speed.
+
+    .. math:: h = \kappa H_0 + \frac{\lambda}{\kappa} H_1, \quad H_1 = \frac{P_{f,1}}{(1 - x^2)^{1/2}}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses all three groups [-]; arrays broadcast with ``x``.
+    x : float or array_like
+        Positions [a].
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz]; nan outside the contact, where this has no value, and from load 1 on.
+
+    Notes
+    -----
+    The part odd in x is the second term.
+
+    Source: [BP] Eqs. (central_region_contact) and (h1).  They print h_1 ~ kappa for 1/kappa, and the step function of p_0 the
+    wrong way round.
+    """
+    x = np.asarray(x, dtype=float)
+    below = np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)
+    kappa = np.asarray(groups.relative_roughness)
+    H_0 = half_logarithm(groups.load) - 0.5 * np.log(below)
+    return kappa * H_0 + groups.speed / kappa * _first_pressure(groups.load, x) / np.sqrt(below)
+
+
+@formula(
+    predicts="fluid_pressure",
+    plane="mixed",
+    limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01)),
+    worst=0.085,
+    small="relative_roughness",
+    error_order=2 / 3,
+    approach=_slow,
+    steps=(1e-3, 1e-4, 1e-5),
+    interval=_contact,
+    source="[BP] Eqs. (pf1), (p2)",
+)
+def fluid_pressure_second(groups: Groups, x: Value) -> Value:
+    r"""Return the fluid pressure to second order in the speed.
+
+    .. math::
+
+        p_f = \frac{\lambda}{\kappa^2} P_{f,1} + \frac{\lambda^2}{\kappa^4} P_{f,2}, \quad
+        P_{f,2} = \int_{-1}^x \frac{(3 H_0^* - 2 H_0) H_1}{H_0^4} \, dy
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses all three groups [-]; arrays broadcast with ``x``.
+    x : float or array_like
+        Positions [a].
+
+    Returns
+    -------
+    float or ndarray
+        Fluid pressure [p_Hz]; zero outside the contact, nan from load 1 on.
+
+    Notes
+    -----
+    The part even in x is the second term, which carries load.
+
+    Source: [BP] Eqs. (pf1), with cubed denominator, and (p2).
+    """
+    number: Value = groups.speed / np.square(groups.relative_roughness)
+    A, x = half_logarithm(groups.load), np.asarray(x, dtype=float)
+    inside = np.abs(x) < 1
+    contact = outward(A, np.where(inside, x, 0.0))
+    second = np.where(inside, -contact.integral(contact.second()), 0.0)
+    return np.asarray(number * _first_pressure(groups.load, x) + np.square(number) * second)

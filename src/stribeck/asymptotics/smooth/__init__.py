@@ -1,0 +1,1 @@
+"""Films without asperities: inlet and outlet layers, thin films, rigid bodies."""

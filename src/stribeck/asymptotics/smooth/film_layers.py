@@ -1,0 +1,306 @@
+r"""Inlet and outlet of the smooth film, speed group -> 0: what joins the uniform film to the gap of Hertz outside.
+
+With :math:`\xi` from the edge outwards in units of :math:`\lambda^{2/5}` a, in both layers,
+
+.. math::
+
+    h = \lambda^{3/5} H(\xi), \qquad p_f = \lambda^{1/5} P(\xi), \qquad P' = \mp \frac{H - c}{H^3}, \qquad
+    H = H_H + c - \frac1\pi \int (P - P_H)(\eta) \, \ln|\xi - \eta| \, d\eta
+
+(minus in the inlet, where the flow goes to decreasing :math:`\xi`), and :math:`P - P_H` vanishes at both ends, carries no load
+and has no part in :math:`|\xi|^{-1/2}`, which would be a shift of the edge.  Inside, the film departs from c as
+:math:`H - c \to \pm c^3 (-2\xi)^{-1/2}`, which :math:`P - P_H` answers by :math:`|\xi|^{-3/2} \ln|\xi|`.
+
+In the contact both equations are linear for small disturbances, :math:`\delta H = \mp c^3 \, \delta P'` and a deflection under
+:math:`\delta P`, with the symbol :math:`1/|k| \pm i c^3 k`.  Its phase turns by half a turn along k, in one sense in the inlet
+and in the other in the outlet, so that the inlet has one condition more than the outlet: it has a solution for one c only, the
+film that it lets in, and the outlet has one for any c.
+
+Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner, Phys. Fluids 25, 101705 (2013); theory.md, section 7.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.smooth.half_line import HalfLine, Layer
+from stribeck.contacts.line import Groups
+from stribeck.numerics.newton import root_find
+from stribeck.numerics.threads import one_blas_thread
+
+RANGE = (Limit("speed", 1e-10, 1e-3),)
+WIDTHS = 5.0
+"""Distance from the edge, in widths of the layer, to which the fields are judged."""
+STEPS = (1e-5, 1e-6, 1e-7, 1e-8)
+
+
+def _smooth(speed: float) -> Groups:
+    return Groups(speed, 0.1, 0.0)
+
+
+def _at_inlet(groups: Groups) -> tuple[float, float]:
+    width = float(WIDTHS * groups.speed**0.4)
+    return -1 - width, -1 + width
+
+
+def _at_outlet(groups: Groups) -> tuple[float, float]:
+    width = float(WIDTHS * groups.speed**0.4)
+    return 1 - width, 1 + width
+
+
+@formula(
+    predicts="gap",
+    plane="smooth",
+    limits=RANGE,
+    worst=0.04,
+    small="speed",
+    error_order=0.4,
+    approach=_smooth,
+    steps=STEPS,
+    interval=_at_inlet,
+    source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
+)
+def gap_inlet(groups: Groups, x: Value) -> Value:
+    r"""Return the gap of a slow smooth film at its inlet.
+
+    .. math:: h = \lambda^{3/5} H_\mathrm{in}(\xi), \qquad \xi = -\frac{x + 1}{\lambda^{2/5}}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``speed`` [-]; arrays broadcast.
+    x : float or ndarray
+        Positions near -1 [a]; broadcast with the groups.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Notes
+    -----
+    Within 5 widths lambda**(2/5) of the edge the error is below 4 % of the largest gap there for speeds up to 0.001 and
+    falls as lambda**(2/5).  Inside, H tends
+    to :data:`.constants.FILM_CONSTANT`.
+
+    Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
+    """
+    return groups.speed**0.6 * inlet().gap(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
+
+
+@formula(
+    predicts="gap",
+    plane="smooth",
+    limits=RANGE,
+    worst=0.055,
+    small="speed",
+    error_order=0.4,
+    approach=_smooth,
+    steps=STEPS,
+    interval=_at_outlet,
+    source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
+)
+def gap_outlet(groups: Groups, x: Value) -> Value:
+    r"""Return the gap of a slow smooth film at its outlet.
+
+    .. math:: h = \lambda^{3/5} H_\mathrm{out}(\xi), \qquad \xi = \frac{x - 1}{\lambda^{2/5}}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``speed`` [-]; arrays broadcast.
+    x : float or ndarray
+        Positions near 1 [a]; broadcast with the groups.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Notes
+    -----
+    Within 5 widths lambda**(2/5) of the edge the error is below 5.5 % of the largest gap there for speeds up to 0.001 and
+    falls as lambda**(2/5).  The least gap is
+    :data:`.constants.MINIMUM_CONSTANT` lambda**(3/5), at x = 1 + :data:`.constants.MINIMUM_POSITION` lambda**(2/5).
+
+    Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
+    """
+    return groups.speed**0.6 * outlet().gap(np.divide(np.subtract(x, 1.0), groups.speed**0.4))
+
+
+@formula(
+    predicts="fluid_pressure",
+    plane="smooth",
+    limits=RANGE,
+    worst=0.09,
+    small="speed",
+    error_order=0.4,
+    approach=_smooth,
+    steps=STEPS,
+    interval=_at_inlet,
+    source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
+)
+def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
+    r"""Return the fluid pressure of a slow smooth film at its inlet.
+
+    .. math:: p_f = \lambda^{1/5} P_\mathrm{in}(\xi), \qquad \xi = -\frac{x + 1}{\lambda^{2/5}}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``speed`` [-]; arrays broadcast.
+    x : float or ndarray
+        Positions near -1 [a]; broadcast with the groups.
+
+    Returns
+    -------
+    float or ndarray
+        Fluid pressure [p_Hz].
+
+    Notes
+    -----
+    Within 5 widths lambda**(2/5) of the edge the error is below 9 % of the largest pressure there for speeds up to 0.001 and
+    falls as lambda**(2/5).
+
+    Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
+    """
+    return groups.speed**0.2 * inlet().pressure(np.divide(np.subtract(-1.0, x), groups.speed**0.4))
+
+
+@formula(
+    predicts="fluid_pressure",
+    plane="smooth",
+    limits=RANGE,
+    worst=0.095,
+    small="speed",
+    error_order=0.4,
+    approach=_smooth,
+    steps=STEPS,
+    interval=_at_outlet,
+    source="[BP] Section 'Smooth limit', after Snoeijer, Eggers and Venner (2013); solved here",
+)
+def fluid_pressure_outlet(groups: Groups, x: Value) -> Value:
+    r"""Return the fluid pressure of a slow smooth film at its outlet.
+
+    .. math:: p_f = \lambda^{1/5} P_\mathrm{out}(\xi), \qquad \xi = \frac{x - 1}{\lambda^{2/5}}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``speed`` [-]; arrays broadcast.
+    x : float or ndarray
+        Positions near 1 [a]; broadcast with the groups.
+
+    Returns
+    -------
+    float or ndarray
+        Fluid pressure [p_Hz].
+
+    Notes
+    -----
+    Within 5 widths lambda**(2/5) of the edge the error is below 9.5 % of the largest pressure there for speeds up to 0.001 and
+    falls as lambda**(2/5).
+
+    Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
+    """
+    return groups.speed**0.2 * outlet().pressure(np.divide(np.subtract(x, 1.0), groups.speed**0.4))
+
+
+@lru_cache(maxsize=4)
+def inlet(reach: float = 1e6, width: float = 0.25, order: int = 12) -> Layer:
+    """Solve the similarity problem of the inlet, which selects the film.
+
+    Parameters
+    ----------
+    reach : float
+        Half-width of the box, in units of the layer.
+    width, order : float, int
+        Width of the panels near the edge and nodes on each.
+
+    Returns
+    -------
+    Layer
+        Gap and pressure, the contact at negative coordinates; its ``constant`` is c.
+
+    Raises
+    ------
+    RuntimeError
+        If Newton's iteration fails, which it does not at the default panels.
+
+    Notes
+    -----
+    c is good to 1e-11 (``test_layers.py``), the fields to 2e-6: a finite reach shifts the edge by some 1/reach.
+    """
+    return _solve(HalfLine(reach, width, order), None)
+
+
+@lru_cache(maxsize=4)
+def outlet(reach: float = 1e6, width: float = 0.25, order: int = 12, film: float | None = None) -> Layer:
+    """Solve the similarity problem of the outlet, for a given c or for that of the inlet; otherwise as :func:`inlet`.
+
+    The least gap over c is good to 1e-9 (``test_layers.py``), the fields to 2e-6.
+    """
+    return _solve(HalfLine(reach, width, order), inlet(reach, width, order).constant if film is None else film)
+
+
+@one_blas_thread
+def _solve(line: HalfLine, film: float | None) -> Layer:
+    r"""Solve the inlet (``film`` None) or the outlet, with the gradient of P - P_B at the nodes as unknown.
+
+    The gradient is integrated from both ends, and the two integrals have to meet.  In the inlet that is the equation for c.
+    In the outlet it would be one equation too many, because the end of the box in the contact makes a layer of its own, one
+    like an inlet: there the second unknown is a pressure that P - P_B keeps at that end, and it vanishes with the reach.
+    """
+    xi, base, n = line.xi, line.base, len(line.xi)
+    D, sign = line.deflection_of_gradient, -1.0 if film is None else 1.0
+    scale = (1 + np.abs(xi)) ** -2.5
+    rows = np.where(xi > 0, 1 / scale, 1.0)
+    kept = np.where(xi < 0, 1.0, 0.0) / line.reach
+    of_kept = line.deflection @ kept
+
+    def fields(y: Array) -> tuple[Array, float, Array]:
+        """Return the gradient, c and the gap."""
+        g = scale * y[:n]
+        if film is None:
+            return g, y[n], base.gap + y[n] + D @ g
+        return g, film, base.gap + film + D @ g + of_kept * y[n]
+
+    def residual(y: Array) -> Array:
+        g, c, H = fields(y)
+        meeting = line.weights @ g + (0.0 if film is None else y[n] / line.reach)
+        return np.append(rows * (sign * (H - c) / H**3 - base.slope - g), meeting)
+
+    def jacobian(y: Array) -> Array:
+        _, c, H = fields(y)
+        by_gap = sign * (3 * c - 2 * H) / H**4
+        matrix = np.zeros((n + 1, n + 1), order="F")
+        matrix[:n, :n] = D * scale * (rows * by_gap)[:, None]
+        matrix[np.arange(n), np.arange(n)] -= rows * scale
+        matrix[n, :n] = line.weights * scale
+        matrix[:n, n] = rows * (by_gap - sign / H**3 if film is None else by_gap * of_kept)
+        matrix[n, n] = 0.0 if film is None else 1 / line.reach
+        return matrix
+
+    def change(y: Array, dy: Array) -> Array:
+        H = fields(y)[2]
+        return (fields(y + dy)[2] - H) / H
+
+    root = root_find(
+        residual,
+        jacobian,
+        np.append(np.zeros(n), 0.5 if film is None else 0.0),
+        fraction=lambda y, dy: 0.7 / max(0.7, -float(change(y, dy).min())),
+        size=lambda y, dy: float(np.abs(change(y, dy)).max()),
+        tolerance=1e-11,
+        chord=0.1,
+        singular_below=0.0,
+    )
+    if not root.outcome.ok:
+        raise RuntimeError(f"film layer with reach = {line.reach:g}, order = {line.order}: {root.outcome.value}")
+    g, c, H = fields(root.x)
+    q = line.integral(g) + (0.0 if film is None else kept * root.x[n])
+    return Layer(line, float(c), 0.0, q, H - base.gap - c)

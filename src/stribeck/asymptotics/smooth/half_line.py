@@ -1,0 +1,195 @@
+r"""What the boundary layers at the edge of a contact share: a half-space under a pressure that grows like that of Hertz.
+
+Near an edge of the Hertz contact, in a coordinate :math:`\xi` across the layer with the contact at :math:`\xi < 0`,
+
+.. math::
+
+    P_H = (-2\xi)^{1/2}, \; \xi < 0, \qquad H_H = \frac{2 \sqrt2}{3} \, \xi^{3/2}, \; \xi > 0, \qquad
+    H = H_H + C - \frac1\pi \int (P - P_H)(\eta) \, \ln|\xi - \eta| \, d\eta .
+
+The second derivative of the last equation is :math:`H'' = -\pi^{-1} \, \mathrm{PV} \!\int P'(\eta)/(\xi - \eta) \, d\eta`.
+As :math:`P_H` has a root that no polynomial resolves, it is replaced by a smooth pressure of the same far field whose gap is
+known: continued harmonically to the heights a = 1, 2, 3 above the line,
+
+.. math::
+
+    P_B = \sqrt2 \, \mathrm{Re} \sum_a c_a (i a - \xi)^{1/2}, \qquad
+    H_B = \frac{2 \sqrt2}{3} \, \mathrm{Re} \sum_a c_a (\xi + i a)^{3/2}, \qquad c = (3, -3, 1) .
+
+The weights make the moments 0, 1, 2 of a equal to 1, 0, 0, so that :math:`P_B - P_H` carries no load and falls as
+:math:`|\xi|^{-7/2}` inside and :math:`\xi^{-5/2}` outside.  What is left, :math:`P - P_B`, is smooth; its panels double in
+width with the distance.  Nothing here knows what presses: see :mod:`.edge_layer` and :mod:`.film_layers`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.numerics.panels import Mesh
+from stribeck.solids.half_plane import deflection_operator
+
+NEAR = 2.0
+"""Distance to which panels are of equal width; beyond it each is as wide as its distance."""
+
+Roots = tuple[Array, Array, Array]
+
+
+def _roots(xi: Array, a: float) -> Roots:
+    r"""Return :math:`m = |\xi + i a|`, :math:`(m - \xi)^{1/2}` and :math:`(m + \xi)^{1/2}`, none by a difference."""
+    m = np.hypot(xi, a)
+    large = np.sqrt(m + np.abs(xi))
+    inside = xi < 0
+    return m, np.where(inside, large, a / large), np.where(inside, a / large, large)
+
+
+def _differences(one: Roots, two: Roots, three: Roots) -> tuple[Array, Array]:
+    """Return the differences of (m - xi)**(1/2) from a = 1 to 2 and from 2 to 3, none by a difference."""
+    return 3 / ((one[0] + two[0]) * (one[1] + two[1])), 5 / ((two[0] + three[0]) * (two[1] + three[1]))
+
+
+@dataclass(frozen=True, eq=False)
+class Base:
+    """The smooth pressure of Hertz's far field at given positions, and its gap.
+
+    Parameters
+    ----------
+    xi : ndarray
+        Positions, the contact at negative ones.
+    """
+
+    xi: Array
+
+    @cached_property
+    def _roots(self) -> tuple[Roots, Roots, Roots]:
+        return _roots(self.xi, 1.0), _roots(self.xi, 2.0), _roots(self.xi, 3.0)
+
+    @property
+    def root(self) -> Array:
+        r"""A positive pressure of the same far field inside, :math:`[(1 + \xi^2)^{1/2} - \xi]^{1/2}`."""
+        return self._roots[0][1]
+
+    @property
+    def root_excess(self) -> Array:
+        """The difference of :attr:`root` and :attr:`pressure`, to full relative accuracy."""
+        first, second = _differences(*self._roots)
+        return 2 * first - second
+
+    @property
+    def pressure(self) -> Array:
+        """The pressure P_B."""
+        return self.root - self.root_excess
+
+    @property
+    def slope(self) -> Array:
+        """Its derivative."""
+        return np.asarray(sum(-0.5 * c * f / m for c, (m, f, _) in zip((3, -3, 1), self._roots, strict=True)))
+
+    @property
+    def gap(self) -> Array:
+        """The gap H_B."""
+        first, second = _differences(*self._roots)
+        (_, _, g1), (_, _, g2), (_, _, g3) = self._roots
+        return (3 * g1**3 - 3 * g2**3 + g3**3) / 3 - 3 * (second - first)
+
+
+@dataclass(frozen=True, eq=False)
+class HalfLine:
+    """Panels from ``-reach`` to about ``reach``; beyond them P - P_B is zero.
+
+    Parameters
+    ----------
+    reach : float
+        Least half-width of the box.
+    width : float
+        Width of the panels near the edge.
+    order : int
+        Nodes on each panel.
+    """
+
+    reach: float
+    width: float
+    order: int
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The panels; the last one, through infinity, carries nothing."""
+        near = self.width * np.arange(1, round(NEAR / self.width) + 1)
+        far = near[-1] * 2.0 ** np.arange(1, np.ceil(np.log2(self.reach / near[-1])) + 1)
+        positive = np.concatenate([near, far])
+        return Mesh(np.concatenate([-positive[::-1], [0.0], positive]), self.order)
+
+    @cached_property
+    def xi(self) -> Array:
+        """Nodes, shape (n,)."""
+        return self.mesh.nodes[: -self.order]
+
+    @cached_property
+    def base(self) -> Base:
+        """The smooth pressure of Hertz's far field at the nodes."""
+        return Base(self.xi)
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights of the integral, shape (n,)."""
+        return self.mesh.weights[: -self.order]
+
+    @cached_property
+    def deflection(self) -> Array:
+        """Matrix from nodal pressures to the deflection, shape (n, n)."""
+        return deflection_operator(self.mesh, self.xi)[:, : -self.order]
+
+    @cached_property
+    def deflection_of_gradient(self) -> Array:
+        """Matrix from nodal pressure gradients, integrated from both ends, to the deflection, shape (n, n)."""
+        padded = np.pad(self.deflection, ((0, 0), (0, self.order)))
+        return self.mesh.after_integral(padded)[:, : -self.order]
+
+    def integral(self, gradient: Array) -> Array:
+        """Return the integral of nodal values from either end to the nodes."""
+        return self.mesh.integral_from_infinity(np.append(gradient, np.zeros(self.order)))[: -self.order]
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """A solved boundary layer.
+
+    Attributes
+    ----------
+    line : HalfLine
+        Its panels.
+    constant : float
+        C, what the gap has beside the deflection.
+    load : float
+        Integral of P - P_H.
+    excess : ndarray, shape (n,)
+        P - P_B at the nodes.
+    deflection : ndarray, shape (n,)
+        Deflection under it.
+    """
+
+    line: HalfLine
+    constant: float
+    load: float
+    excess: Array
+    deflection: Array
+
+    def gap(self, xi: Array) -> Array:
+        """Return the gap H at any positions."""
+        logarithm = -self.load / (2 * np.pi) * np.log1p(np.square(xi))
+        nodal = self.deflection + self.load / (2 * np.pi) * np.log1p(np.square(self.line.xi))
+        return Base(xi).gap + self.constant + logarithm + self._between(nodal, xi, -0.5)
+
+    def pressure(self, xi: Array) -> Array:
+        """Return the pressure P at any positions; to 1e-12 only beyond the panels on the free side."""
+        return Base(xi).pressure + self._between(self.excess, xi, -1.5)
+
+    def _between(self, nodal: Array, xi: Array, power: float) -> Array:
+        """Interpolate what falls as a power of the distance, which continues it beyond the panels."""
+        mesh, end = self.line.mesh, self.line.mesh.edges[-1]
+        inside = np.clip(xi, -end, np.nextafter(end, 0.0)).ravel()
+        values = mesh.interpolate(np.append(nodal, np.zeros(self.line.order)), inside).reshape(np.shape(xi))
+        return np.asarray(values * np.maximum(1.0, np.abs(xi) / end) ** power)

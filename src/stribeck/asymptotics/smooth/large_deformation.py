@@ -1,0 +1,170 @@
+r"""Film and friction of the smooth contact at large deformation, where the speed group tends to zero.
+
+The film is thin and uniform in the Hertz contact, with inlet and outlet of width :math:`\lambda^{2/5}`, the parameter of all
+corrections.  Films depend on the speed group alone, the friction also on :math:`\beta \bar F_N^{1/2}`.
+
+Source: [BP] Section "Large deformation limit"; theory.md, section 7.
+"""
+
+from __future__ import annotations
+
+import math
+
+from stribeck.asymptotics.constants import FILM_CONSTANT, MINIMUM_CONSTANT, PRINTED_FILM_CONSTANT
+from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.contacts.line import Groups
+
+RANGE = (Limit("speed", 0.0, 1e-3),)
+
+
+def _at_speed(speed: float) -> Groups:
+    return Groups(speed, 0.1, 0.0)
+
+
+@formula(
+    predicts="central_gap",
+    plane="smooth",
+    limits=RANGE,
+    worst=0.015,
+    small="speed",
+    error_order=0.4,
+    approach=_at_speed,
+    steps=(1e-9, 1e-8, 1e-7),
+    source="[BP] Eq. (central_thickness_large)",
+)
+def central_gap_large(groups: Groups, *, printed: bool = False) -> Value:
+    r"""Return the gap at x = 0 at large deformation, speed group -> 0.
+
+    .. math:: h(0) = c \lambda^{3/5}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``speed`` [-]; arrays broadcast.
+    printed : bool
+        Whether with the constant 0.44 as printed.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Notes
+    -----
+    The next term, relative to it, is 0.245 lambda**(2/5).
+
+    Source: [BP] Eq. (central_thickness_large), with c = 0.44583 for the printed 0.44, which is 1.3 % low.
+    """
+    return (PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT) * groups.speed**0.6
+
+
+@formula(
+    predicts="flux_gap",
+    plane="smooth",
+    limits=RANGE,
+    worst=0.015,
+    small="speed",
+    error_order=0.4,
+    approach=_at_speed,
+    steps=(1e-9, 1e-8, 1e-7),
+    source="[BP] below Eq. (hstar)",
+)
+def flux_gap_large(groups: Groups) -> Value:
+    r"""Return the flux gap at large deformation, speed group -> 0.
+
+    .. math:: h^* = c \lambda^{3/5}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``speed`` [-]; arrays broadcast.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Notes
+    -----
+    As :func:`central_gap_large`; the two differ by less than 1e-3 even at the end of the range.
+
+    Source: [BP] below Eq. (hstar), with c = 0.44583 for the printed 0.44.
+    """
+    return FILM_CONSTANT * groups.speed**0.6
+
+
+@formula(
+    predicts="minimum_gap",
+    plane="smooth",
+    limits=RANGE,
+    worst=0.012,
+    small="speed",
+    error_order=0.4,
+    approach=_at_speed,
+    steps=(1e-9, 1e-8, 1e-7),
+    source="ours",
+)
+def minimum_gap_large(groups: Groups) -> Value:
+    r"""Return the least gap, at the outlet, at large deformation, speed group -> 0.
+
+    .. math:: \min h = 0.33794 \lambda^{3/5} = 0.75801 \, c \lambda^{3/5}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``speed`` [-]; arrays broadcast.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Notes
+    -----
+    The next term, relative to it, is 0.191 lambda**(2/5).  Without cavitation, as the whole model.
+
+    Source: ours, from the solver; :mod:`stribeck.asymptotics.smooth.film_layers` solves the outlet by itself.
+    """
+    return MINIMUM_CONSTANT * groups.speed**0.6
+
+
+@formula(
+    predicts="viscous_friction",
+    plane="smooth",
+    limits=(Limit("speed", 0.0, 1e-4),),
+    worst=0.083,
+    small="speed",
+    error_order=0.4,
+    approach=_at_speed,
+    steps=(1e-9, 1e-8, 1e-7),
+    source="[BP] Eq. (hydrofriction_large)",
+)
+def friction_large(groups: Groups, beta: float = 1.0, *, printed: bool = False) -> Value:
+    r"""Return the viscous friction at large deformation, speed group -> 0.
+
+    .. math:: \mu = \frac{4}{3 \pi c} \beta \bar F_N^{1/2} \lambda^{2/5}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``speed`` and ``load`` [-]; arrays broadcast.
+    beta : float
+        Coefficient of the contact law [-].
+    printed : bool
+        Whether with the constant 0.44 as printed.
+
+    Returns
+    -------
+    float or ndarray
+        Friction coefficient [-].
+
+    Notes
+    -----
+    The next term, relative to it, is 4.0 lambda**(2/5), so that the law is 8 % low at speed 1e-4.
+
+    Source: [BP] Eq. (hydrofriction_large), with c = 0.44583 for the printed 0.44 and the scale (F_N/(E* R))**(1/2) for
+    the printed (F_N R/E*)**(1/2), which has a dimension and is therefore no function of the groups; ``printed`` changes the
+    constant only.
+    """
+    c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
+    return 4 / (3 * math.pi * c) * beta * groups.load**0.5 * groups.speed**0.4

@@ -1,0 +1,1 @@
+"""The atlas: solved states of a box of groups as smooth functions."""

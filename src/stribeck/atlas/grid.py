@@ -1,0 +1,204 @@
+r"""Coordinates in which the solutions are smooth, and the blocks on which the atlas tabulates them.
+
+A state is :math:`s = \ln \lambda`, :math:`L = -\ln \bar F_N` and :math:`\kappa`. Three maps make its observables smooth:
+
+*Load.* At rest the gap at the centre is :math:`\kappa (L/2 + r(\kappa))` with :math:`r \approx \kappa` where that is small,
+and what slow fluid does goes with powers of it. So the coordinate is :math:`y = \ln(L + \delta)`,
+:math:`\delta = 2\kappa/(1 + \kappa)`, from the heaviest to the lightest load of a region.
+
+*Roughness.* Its logarithm.
+
+*Speed.* Speeds that go with the load and the roughness, smooth functions themselves, part it into segments: where roughness
+begins to yield (:math:`b_1`), and where asperities carry :math:`e^{-1.1}, e^{-2.6}, e^{-6.5}, e^{-30}` of the load
+(:math:`b_2 \dots b_5`). Below :math:`b_1` everything is analytic in :math:`\lambda^2`, the mirror image of a contact being
+the contact that slides the other way, and the coordinate is :math:`(\lambda/\lambda_1)^2`, with rest at its end; then the
+logarithm of the speed. Above :math:`b_5` there are no asperities left and the smooth film does not know the load.
+
+Here are maps and polynomials; the table is :mod:`stribeck.atlas.table`, how it is made :mod:`stribeck.evidence.atlas_build`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array, Indices
+
+LEAST_LOAD = 1e-6
+"""Least load group of the atlas."""
+
+LEAST_SPEED = 1e-12
+"""Least speed group of the atlas beside rest."""
+
+NEARLY_SMOOTH = 1e-3
+"""Relative roughness up to which heavy loads are a region of their own."""
+
+HEAVY = -math.log(0.99)
+"""L of the least of them. Towards load 1 the gap at rest closes, to 2 kappa, and the speed at which roughness begins to yield
+falls below the least speed: this region begins at that."""
+
+SHARES = (1.1, 2.6, 6.5, 30.0)
+"""Minus the logarithms of the contact shares at which the segments of speed end."""
+
+YIELDING = 0.2
+"""Sum of fluid over contact share and relative growth of the central gap up to which the coordinate is the squared speed."""
+
+BREAK_TERMS = 8
+"""Terms in load and in roughness of the polynomials for the speeds at which segments end."""
+
+SEGMENTS = 6
+"""Segments of speed with a table: the squared speed, two up to the share exp(-1.1), and three beyond; then the film."""
+
+
+@dataclass(frozen=True)
+class Region:
+    """Relative roughnesses and loads with one coordinate in load and the same numbers of nodes.
+
+    Attributes
+    ----------
+    roughness : tuple of float
+        Least and largest relative roughness.
+    logs : tuple of float
+        Least and largest L = -ln(load).
+    pieces : tuple of int
+        Pieces in roughness and load.
+    nodes : tuple of int
+        Nodes of a piece in roughness and load.
+    speeds : tuple of int
+        Nodes of each segment of speed.
+    closing : float
+        A constant delta; zero for ``2 kappa/(1 + kappa)``.
+    """
+
+    roughness: tuple[float, float]
+    logs: tuple[float, float]
+    pieces: tuple[int, int]
+    nodes: tuple[int, int]
+    speeds: tuple[int, ...]
+    closing: float = 0.0
+
+    @property
+    def has_rest(self) -> bool:
+        """Whether the segments begin at rest, else at :data:`LEAST_SPEED`."""
+        return self.speeds[0] > 0
+
+    @property
+    def roughness_slope(self) -> float:
+        """Derivative of the local coordinate of roughness by ln(kappa)."""
+        return 2 * self.pieces[0] / math.log(self.roughness[1] / self.roughness[0])
+
+    def roughness_coordinate(self, log_kappa: Array) -> Array:
+        """Return the coordinate in [-1, 1] of the logarithm of the relative roughness."""
+        low, high = (math.log(end) for end in self.roughness)
+        return np.asarray((2 * log_kappa - low - high) / (high - low))
+
+    def load_coordinate(self, log_load: Array, kappa: Array) -> Array:
+        """Return the coordinate in [-1, 1] of L = -ln(load)."""
+        delta = self._delta(kappa)
+        low, high = (np.log(end + delta) for end in self.logs)
+        return np.asarray((2 * np.log(log_load + delta) - low - high) / (high - low))
+
+    def load_slopes(self, log_load: Array, kappa: Array) -> tuple[Array, Array]:
+        """Return the derivatives of :meth:`load_coordinate` with respect to L and to the logarithm of kappa."""
+        delta = self._delta(kappa)
+        low, high = (np.log(end + delta) for end in self.logs)
+        here, first, last = 1 / (log_load + delta), *(1 / (end + delta) for end in self.logs)
+        part = (np.log(log_load + delta) - low) / (high - low)
+        by_delta = 2 * (here - first - part * (last - first)) / (high - low)
+        slope = np.zeros_like(delta) if self.closing else delta / (1 + kappa)
+        return 2 * here / (high - low), by_delta * slope
+
+    def log_load(self, coordinate: Array, kappa: Array) -> Array:
+        """Return L at a coordinate, the inverse of :meth:`load_coordinate`."""
+        delta = self._delta(kappa)
+        low, high = (np.log(end + delta) for end in self.logs)
+        return np.asarray(np.maximum(np.exp(low + 0.5 * (coordinate + 1) * (high - low)) - delta, 0.0))
+
+    def _delta(self, kappa: Array) -> Array:
+        return np.full_like(kappa, self.closing) if self.closing else 2 * kappa / (1 + kappa)
+
+
+LIGHTEST = -math.log(LEAST_LOAD)
+
+REGIONS = (
+    Region((1e-6, NEARLY_SMOOTH), (HEAVY, LIGHTEST), (2, 2), (10, 12), (10, 13, 12, 10, 14, 16)),
+    Region((1e-6, NEARLY_SMOOTH), (0.0, HEAVY), (2, 1), (10, 9), (0, 14, 14, 10, 12, 15), 0.006),
+    Region((NEARLY_SMOOTH, 1e-1), (0.0, LIGHTEST), (2, 3), (11, 10), (10, 12, 11, 10, 12, 16)),
+    Region((1e-1, 1e2), (0.0, LIGHTEST), (2, 2), (11, 9), (9, 11, 10, 9, 11, 14)),
+)
+"""The regions: nearly smooth ones, the heavy loads of these, and rougher ones."""
+
+
+def region_at(log_load: Array, kappa: Array) -> Indices:
+    """Return the region of states with a positive relative roughness."""
+    rough = np.searchsorted([region.roughness[0] for region in REGIONS[2:]], kappa, side="right")
+    return np.asarray(np.where(rough > 0, rough + 1, np.where(log_load < HEAVY, 1, 0)), dtype=np.intp)
+
+
+PIECES = sum(math.prod(region.pieces) for region in REGIONS)
+"""Pieces in roughness and load; each has :data:`SEGMENTS` blocks."""
+
+
+def piece_at(region: int, i: int, j: int) -> int:
+    """Return the number of the piece i in roughness and j in load of a region."""
+    before = sum(math.prod(other.pieces) for other in REGIONS[:region])
+    return before + i * REGIONS[region].pieces[1] + j
+
+
+def chebyshev(x: Array, terms: int) -> Array:
+    """Return the Chebyshev polynomials at ``x``, shape (terms, len(x))."""
+    values = np.empty((terms, x.size))
+    values[0] = 1.0
+    if terms > 1:
+        values[1] = x
+    twice = 2 * x
+    for n in range(2, terms):
+        np.multiply(twice, values[n - 1], out=values[n])
+        values[n] -= values[n - 2]
+    return values
+
+
+def chebyshev_slopes(x: Array, terms: int) -> Array:
+    """Return the derivatives of the Chebyshev polynomials at ``x``, shape (terms, len(x))."""
+    slopes = np.zeros((terms, x.size))
+    second, before, twice = np.ones(x.size), np.zeros(x.size), 2 * x
+    for n in range(1, terms):  # T_n' = n U_(n-1), with U the polynomials of the second kind
+        np.multiply(second, n, out=slopes[n])
+        second, before = twice * second - before, second
+    return slopes
+
+
+def nodes(count: int) -> Array:
+    """Return the zeros of a Chebyshev polynomial, ascending."""
+    return np.asarray(-np.cos(math.pi * (np.arange(count) + 0.5) / count))
+
+
+def to_coefficients(count: int) -> Array:
+    """Return the matrix from values at :func:`nodes` to Chebyshev coefficients."""
+    matrix = chebyshev(nodes(count), count) * (2 / count)
+    matrix[0] /= 2
+    return matrix
+
+
+def local(coordinate: Array, pieces: int) -> tuple[Indices, Array]:
+    """Return the piece that a coordinate in [-1, 1] lies on, and the coordinate in [-1, 1] of that piece."""
+    along = 0.5 * pieces * (coordinate + 1)
+    piece = np.clip(along.astype(np.intp), 0, pieces - 1)
+    return piece, np.clip(2 * (along - piece) - 1, -1.0, 1.0)
+
+
+def breaks_from(values: Array) -> Array:
+    """Return all ends of segments from b_1 .. b_5 along the first axis: b_1, the middle to b_2, b_2 .. b_5."""
+    return np.concatenate([values[:1], 0.5 * (values[:1] + values[1:2]), values[1:]])
+
+
+def segment_nodes(region: Region, ends: Array) -> Array:
+    """Return the logarithms of the speeds at the nodes of all segments that end at ``ends``."""
+    squared = np.empty(0) if not region.has_rest else ends[0] + 0.5 * np.log(0.5 * (nodes(region.speeds[0]) + 1))
+    others = [
+        low + 0.5 * (nodes(count) + 1) * (high - low)
+        for low, high, count in zip(ends[:-1], ends[1:], region.speeds[1:], strict=True)
+    ]
+    return np.concatenate([squared, *others])

@@ -1,0 +1,322 @@
+"""The table of the atlas: Chebyshev coefficients on blocks of speed, load and roughness, and their summation.
+
+On a block the observables are tensor products of Chebyshev polynomials in the coordinates of :mod:`stribeck.atlas.grid`.  What
+is tabulated are logarithms, see :data:`TABULATED`.  States are sorted by block; then the products of the polynomials in load
+and roughness of many states are one matrix, and the sum over them one matrix product.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import dataclass, field
+from functools import lru_cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array, Indices
+from stribeck.atlas.grid import (
+    BREAK_TERMS,
+    LEAST_SPEED,
+    PIECES,
+    REGIONS,
+    SEGMENTS,
+    Region,
+    breaks_from,
+    chebyshev,
+    chebyshev_slopes,
+    local,
+    piece_at,
+    region_at,
+)
+
+TABULATED = ("log_odds", "viscous_paper", "viscous_balanced", "central_gap", "minimum_gap", "flux_gap", "deflection")
+r"""What is tabulated, in the order of the table: the logarithms of fluid over contact share, of both viscous frictions over
+:math:`\beta \bar F_N^{1/2} \lambda` and of the three gaps, and the offset less the central gap. Below the first speed that
+segments end at, twice the logarithm of the speed is taken off the first."""
+
+FILE = "atlas.npz"
+
+SOLVER = (
+    "contact_laws",
+    "continuation",
+    "elasticity",
+    "equations",
+    "estimate",
+    "fill",
+    "follow",
+    "follower",
+    "mesh",
+    "newton",
+    "observables",
+    "refine",
+    "reynolds",
+    "start",
+    "states",
+    "together",
+)
+"""The modules whose hash says which solver made a table."""
+
+STEP = 2.0**-25
+"""Unit of the coefficients in the file, which holds whole numbers."""
+
+CHUNK = 1024
+"""States that are summed at once: their polynomials then fit into the cache."""
+
+FILM_RANGE = (math.log(LEAST_SPEED), math.log(1e6))
+"""Logarithms of the speeds between which smooth films are tabulated."""
+
+
+@dataclass(frozen=True, eq=False)
+class Values:
+    """What was read off the table for many states.
+
+    Attributes
+    ----------
+    values : ndarray, shape (functions, states)
+        The wanted of :data:`TABULATED`.
+    slopes : ndarray or None, shape (3, functions, states)
+        Their derivatives by ln(speed), -ln(load) and ln(relative roughness), if wanted.
+    film : ndarray of bool, shape (states,)
+        Where no asperities are left: there the first function, if wanted, is infinite.
+    """
+
+    values: Array
+    slopes: Array | None
+    film: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Coefficients of one block: ``coefficients[t, f, pair]`` is of the polynomials t, ``first[pair]``, ``second[pair]``."""
+
+    coefficients: Array
+    first: Indices
+    second: Indices
+    _chosen: dict[tuple[int, ...], Array] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def of(cls, dense: Array) -> Block:
+        """Return the block of coefficients along speed, roughness, load and function."""
+        first, second = np.nonzero(np.abs(dense).max(axis=(0, 3)))
+        return cls(np.ascontiguousarray(dense[:, first, second].transpose(0, 2, 1)), first, second)
+
+    def chosen(self, functions: tuple[int, ...]) -> Array:
+        """Return the coefficients of some functions as a matrix, a row for each polynomial in speed and function."""
+        if functions not in self._chosen:
+            part = self.coefficients[:, list(functions)]
+            self._chosen[functions] = np.ascontiguousarray(part.reshape(-1, part.shape[-1]))
+        return self._chosen[functions]
+
+    def sum(self, functions: tuple[int, ...], t: Array, k: Array, y: Array, slopes: bool) -> Array:
+        """Return values and, if wanted, derivatives by the three local coordinates, shape (1 or 4, functions, states)."""
+        terms, matrix = self.coefficients.shape[0], self.chosen(functions)
+        T = chebyshev(t, terms)
+        K, Y = chebyshev(k, int(self.first.max()) + 1), chebyshev(y, int(self.second.max()) + 1)
+        shape = terms, len(functions), t.size
+        partial = (matrix @ (K[self.first] * Y[self.second])).reshape(shape)
+        found = np.empty((4 if slopes else 1, len(functions), t.size))
+        np.einsum("tn,tfn->fn", T, partial, out=found[0])
+        if slopes:
+            np.einsum("tn,tfn->fn", chebyshev_slopes(t, terms), partial, out=found[1])
+            by_k = matrix @ (chebyshev_slopes(k, K.shape[0])[self.first] * Y[self.second])
+            by_y = matrix @ (K[self.first] * chebyshev_slopes(y, Y.shape[0])[self.second])
+            np.einsum("tn,tfn->fn", T, by_k.reshape(shape), out=found[2])
+            np.einsum("tn,tfn->fn", T, by_y.reshape(shape), out=found[3])
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """The whole table; :func:`load_table` reads the one that comes with the package.
+
+    Attributes
+    ----------
+    breaks : tuple of ndarray, each of shape (5, terms in roughness, terms in load)
+        For each region the coefficients of the logarithms of the speeds b_1 .. b_5.
+    blocks : tuple of Block or None
+        For each piece its segments; none where a region does not begin at rest.
+    film : ndarray, shape (pieces, terms, functions)
+        Smooth films along the logarithm of the speed, without the first function.
+    about : dict
+        Where the table comes from.
+    """
+
+    breaks: tuple[Array, ...]
+    blocks: tuple[Block | None, ...]
+    film: Array
+    about: dict[str, Any]
+
+    def ends(self, region: int, k: Array, y: Array) -> Array:
+        """Return the logarithms of the speeds at which segments end, shape (6, states), at the coordinates of a region."""
+        products = chebyshev(k, BREAK_TERMS)[:, None] * chebyshev(y, BREAK_TERMS)
+        return breaks_from(self.breaks[region].reshape(-1, BREAK_TERMS**2) @ products.reshape(BREAK_TERMS**2, -1))
+
+    def end_slopes(self, region: int, k: Array, y: Array) -> tuple[Array, Array]:
+        """Return the derivatives of :meth:`ends` by both coordinates."""
+        matrix = self.breaks[region].reshape(-1, BREAK_TERMS**2)
+        by_k = chebyshev_slopes(k, BREAK_TERMS)[:, None] * chebyshev(y, BREAK_TERMS)
+        by_y = chebyshev(k, BREAK_TERMS)[:, None] * chebyshev_slopes(y, BREAK_TERMS)
+        found = (breaks_from(matrix @ products.reshape(BREAK_TERMS**2, -1)) for products in (by_k, by_y))
+        return next(found), next(found)
+
+    def read(self, functions: tuple[int, ...], log_speed: Array, log_load: Array, kappa: Array, slopes: bool) -> Values:
+        """Return functions at states inside the box, flat arrays; -inf as ``log_speed`` is rest, ``kappa`` 0 smooth."""
+        states = log_speed.size
+        block = np.full(states, PIECES * SEGMENTS)
+        coordinates, chain = np.empty((3, states)), np.zeros((6, states if slopes else 0))
+        regions = np.where(kappa > 0, region_at(log_load, kappa), -1)
+        for number, region in enumerate(REGIONS):
+            inside = np.nonzero(regions == number)[0]
+            for start in range(0, inside.size, 4 * CHUNK):
+                part = inside[start : start + 4 * CHUNK]
+                block[part], coordinates[:, part], found_chain = self._place(
+                    number, region, log_speed[part], log_load[part], kappa[part], slopes
+                )
+                if found_chain is not None:
+                    chain[:, part] = found_chain
+        found = self._sums(functions, block, coordinates, slopes)
+        film = block == PIECES * SEGMENTS
+        if film.any():
+            found[..., film] = self._film(functions, log_speed[film], slopes)
+        by_state = None
+        if slopes:
+            t_s, t_L, y_L, t_kappa, y_kappa, k_kappa = chain
+            by_state = np.empty((3, len(functions), states))
+            by_state[0] = t_s * found[1]
+            by_state[1] = t_L * found[1] + y_L * found[3]
+            by_state[2] = t_kappa * found[1] + y_kappa * found[3] + k_kappa * found[2]
+            by_state[:, :, film] = 0.0
+            by_state[0][:, film] = found[1][:, film]
+        self._add_squared_speed(functions, found[0], by_state, log_speed, (block % SEGMENTS == 0) & ~film)
+        return Values(found[0], by_state, film)
+
+    def _sums(self, functions: tuple[int, ...], block: Indices, coordinates: Array, slopes: bool) -> Array:
+        """Return the sums of :meth:`Block.sum` for states in any order; those on no block are left open."""
+        order = np.argsort(block.astype(np.uint8), kind="stable")
+        counts = np.bincount(block, minlength=PIECES * SEGMENTS + 1)
+        ends = np.cumsum(counts).tolist()
+        coordinates = coordinates[:, order]
+        found = np.empty((4 if slopes else 1, len(functions), block.size))
+        for number in np.nonzero(counts[:-1])[0].tolist():
+            here = self.blocks[number]
+            assert here is not None
+            for start in range(ends[number] - int(counts[number]), ends[number], CHUNK):
+                part = slice(start, min(start + CHUNK, ends[number]))
+                t, k, y = coordinates[:, part]
+                found[..., part] = here.sum(functions, t, k, y, slopes)
+        result = np.empty_like(found)
+        result[..., order] = found
+        return result
+
+    def _place(
+        self, number: int, region: Region, s: Array, log_load: Array, kappa: Array, slopes: bool
+    ) -> tuple[Indices, Array, Array | None]:
+        """Return the block and the local coordinates of states of a region, and what the chain rule needs.
+
+        That is dt/ds, dt/dL, dy/dL, dt/dln(kappa), dy/dln(kappa) and dk/dln(kappa), all local.
+        """
+        k, y = region.roughness_coordinate(np.log(kappa)), region.load_coordinate(log_load, kappa)
+        ends = self.ends(number, k, y)
+        segment = np.maximum((s >= ends).sum(axis=0), 0 if region.has_rest else 1)
+        (i, k_local), (j, y_local) = (local(c, n) for c, n in zip((k, y), region.pieces, strict=True))
+        block = np.where(segment < SEGMENTS, SEGMENTS * (piece_at(number, 0, 0) + i * region.pieces[1] + j) + segment, -1)
+        block[segment >= SEGMENTS] = PIECES * SEGMENTS
+        at = np.arange(s.size)
+        high, low = ends[np.minimum(segment, SEGMENTS - 1), at], ends[np.clip(segment - 1, 0, SEGMENTS - 1), at]
+        squared = segment == 0
+        ratio = np.exp(2 * np.minimum(s - ends[0], 0.0))
+        length = np.where(squared, 1.0, high - low)
+        length[length == 0] = 1.0
+        t = np.where(squared, 2 * ratio - 1, np.clip(2 * (np.where(squared, low, s) - low) / length - 1, -1.0, 1.0))
+        coordinates = np.stack([t, k_local, y_local])
+        if not slopes:
+            return block, coordinates, None
+        by_k, by_y = self.end_slopes(number, k, y)
+        t_s = np.where(squared, 4 * ratio, 2 / length)
+        choose = np.minimum(segment, SEGMENTS - 1), np.clip(segment - 1, 0, SEGMENTS - 1)
+        # Below b_1 the coordinate moves with b_1; on the others low and high move it in proportion.
+        t_high = np.where(squared, -4 * ratio, -(t + 1) / length)
+        t_low = np.where(squared, 0.0, (t - 1) / length)
+        t_k, t_y = (t_high * end[choose[0], at] + t_low * end[choose[1], at] for end in (by_k, by_y))
+        y_L, y_kappa = region.load_slopes(log_load, kappa)
+        k_kappa = region.roughness_slope / region.pieces[0]
+        moved = t_k * k_kappa + t_y * y_kappa
+        scale = region.pieces[1]
+        slope_k = np.full_like(t_s, region.roughness_slope)
+        return block, coordinates, np.stack([t_s, t_y * y_L, scale * y_L, moved, scale * y_kappa, slope_k])
+
+    def _film(self, functions: tuple[int, ...], log_speed: Array, slopes: bool) -> Array:
+        """Return functions of smooth films and, if wanted, their derivative by ln(speed), as :meth:`Block.sum`."""
+        pieces, terms, _ = self.film.shape
+        low, high = FILM_RANGE
+        piece, x = local((2 * np.maximum(log_speed, low) - low - high) / (high - low), pieces)
+        found = np.zeros((4 if slopes else 1, len(functions), log_speed.size))
+        for number in np.unique(piece):
+            here = np.nonzero(piece == number)[0]
+            T = chebyshev(x[here], terms)
+            for row, function in enumerate(functions):
+                if function == 0:
+                    found[0, row, here] = np.inf
+                    continue
+                found[0, row, here] = self.film[number, :, function - 1] @ T
+                if slopes:
+                    slope = self.film[number, :, function - 1] @ chebyshev_slopes(x[here], terms)
+                    found[1, row, here] = slope * 2 * pieces / (high - low)
+        return found
+
+    @staticmethod
+    def _add_squared_speed(
+        functions: tuple[int, ...], values: Array, slopes: Array | None, log_speed: Array, squared: Array
+    ) -> None:
+        """Put back, in fresh arrays, the two powers of speed that were taken off the odds below b_1."""
+        if 0 in functions:
+            row = functions.index(0)
+            values[row] += np.where(squared, 2 * log_speed, 0.0)
+            if slopes is not None:
+                slopes[0, row] += np.where(squared, 2.0, 0.0)
+
+
+def pack(breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dict[str, Any]) -> dict[str, Any]:
+    """Return the arrays of the file for dense blocks, in whole units of :data:`STEP`."""
+    joined = np.concatenate([np.ascontiguousarray(np.moveaxis(block, 3, 0)).ravel() for block in blocks])
+    return {
+        "breaks": np.stack(breaks),
+        "blocks": np.round(joined / STEP).astype(np.int32),
+        "film": film,
+        "about": np.array(json.dumps(about)),
+    }
+
+
+def unpack(data: Any) -> Table:
+    """Return the table of the arrays of a file."""
+    flat, position = data["blocks"] * STEP, 0
+    blocks: list[Block | None] = []
+    for region in REGIONS:
+        for _ in range(math.prod(region.pieces)):
+            for count in region.speeds:
+                shape = len(TABULATED), count, *region.nodes
+                size = math.prod(shape)
+                dense = np.moveaxis(flat[position : position + size].reshape(shape), 0, 3)
+                blocks.append(Block.of(dense) if count else None)
+                position += size
+    return Table(tuple(data["breaks"]), tuple(blocks), data["film"], json.loads(str(data["about"])))
+
+
+def solver_hash() -> str:
+    """Return the SHA-256 of the sources of the solver."""
+    found = hashlib.sha256()
+    for name in SOLVER:
+        found.update(Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8").encode())
+    return found.hexdigest()
+
+
+@lru_cache(maxsize=1)
+def load_table() -> Table:
+    """Return the table that comes with the package, read on first use."""
+    with files("stribeck.atlas").joinpath(FILE).open("rb") as stream, np.load(stream) as data:
+        return unpack(data)

@@ -1,0 +1,1 @@
+"""Batches: arrays of states in one call."""

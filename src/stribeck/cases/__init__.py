@@ -1,0 +1,1 @@
+"""Cases: the TOML files that describe a contact."""

@@ -1,0 +1,425 @@
+"""Case files: a TOML file of quantities with units becomes a checked :class:`Case`.
+
+Everything that is wrong with a file is told in one go, a sentence for each problem, with the path, the table
+and the key. What a quantity may be is not written here but in :mod:`stribeck.quantities.inputs`.
+"""
+
+import difflib
+import functools
+import os
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from stribeck.cases.fit_settings import FitSettings, check_fit_table
+from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
+from stribeck.contacts.line import InputError, LineContact
+from stribeck.quantities.inputs import QUANTITIES, check_modulus_choice, quantity
+from stribeck.quantities.units import DIMENSIONS, FROM_HARDNESS, show
+
+__all__ = ["Case", "CurveSettings", "curve_range", "error_sentence", "example_of", "load_case", "read_toml"]
+
+Axis = Literal["speed", "load", "roughness"]
+Definition = Literal["paper", "balanced"]
+
+_LARGEST_FILE = 1_000_000  # [byte]
+
+# The symbols of the paper, which its readers may type.
+_SYMBOLS = {
+    "R": "radius",
+    "F_N": "load",
+    "eta": "viscosity",
+    "U": "speed",
+    "h_rms": "roughness",
+    "mu0": "friction_coefficient",
+    "mu_0": "friction_coefficient",
+    "E_star": "modulus",
+    "E": "youngs_modulus",
+    "nu": "poisson_ratio",
+}
+
+# What data sheets say, and what to make of it.
+_RMS = "heights are root mean squares, of Gaussian ones about 1.25 Ra: h_rms in [surface], or roughness in [contact]"
+_DATA_SHEET = dict.fromkeys(("shore", "shore_a", "hardness"), FROM_HARDNESS) | dict.fromkeys(("ra", "r_a", "rq", "r_q"), _RMS)
+
+# What Python's parser says of slips that are frequent, and what to do about them.
+_SLIPS = {
+    "Expected newline or end of document after a statement": 'a value with a unit stands in quotes, as in radius = "10 mm"',
+    "Cannot overwrite a value": "a key may stand once in its table",
+}
+
+
+@dataclass(frozen=True)
+class CurveSettings:
+    """What the ``[curve]`` table of a case asks for.
+
+    Parameters
+    ----------
+    over : {"speed", "load", "roughness"}
+        The quantity that varies along the curve.
+    range : tuple of float, optional
+        Its lowest and highest value in SI units; None is the automatic range.
+    points : int
+        Number of states on the curve.
+    """
+
+    over: Axis = "speed"
+    range: tuple[float, float] | None = None
+    points: int = 101
+
+
+@dataclass(frozen=True)
+class Case:
+    """One case file, checked, with its quantities in SI units.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    contact : LineContact
+        The quantities of the ``[contact]`` table.
+    law : {"exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"}
+        Name of the contact law of the ``[contact]`` table; the law itself is ``contact.law``.
+    curve : CurveSettings
+        The ``[curve]`` table.
+    rtol : float
+        Relative tolerance asked of the solver, from the ``[solver]`` table.
+    definition : {"paper", "balanced"}
+        Which friction force the outputs show, from the ``[solver]`` table.
+    title : str
+        Headline for outputs; empty where the file has none.
+    notes : str
+        Free text; empty where the file has none.
+    fit : FitSettings
+        The ``[fit]`` table, for :func:`stribeck.fit`.
+    """
+
+    path: Path
+    contact: LineContact
+    law: Law = "exponential"
+    curve: CurveSettings = field(default_factory=CurveSettings)
+    rtol: float = 1e-6
+    definition: Definition = "paper"
+    title: str = ""
+    notes: str = ""
+    fit: FitSettings = field(default_factory=FitSettings)
+
+
+def load_case(path: str | os.PathLike[str]) -> Case:
+    """Read and check a case file.
+
+    Parameters
+    ----------
+    path : str or path-like
+        A TOML file: a table ``[contact]`` (the arguments of :class:`LineContact`, and ``law`` by its name), a table
+        ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and where wanted ``[curve]``
+        (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md),
+        ``title`` and ``notes``.
+
+    Returns
+    -------
+    Case
+        The checked case.
+
+    Raises
+    ------
+    InputError
+        Where the file cannot be read, is no TOML, or has unknown, missing or impossible entries: a sentence
+        on each line, for all of its problems.
+    """
+    import pydantic
+
+    path = Path(path)
+    table = read_toml(path)
+    model = _model()
+    problems = []
+    fit = FitSettings()
+    if "fit" in table:
+        try:
+            fit = check_fit_table(table.pop("fit"))
+        except InputError as problem:
+            problems = str(problem).split("\n")
+    try:
+        checked = model(**table).model_dump()
+    except pydantic.ValidationError as failure:
+        problems += [error_sentence(model, error) for error in failure.errors(include_url=False)]
+    problems += _elasticity_problem(table.get("contact")) + _missing_from_surface(table)
+    if not problems:
+        law = checked["contact"]["law"]
+        try:
+            contact = LineContact(**contact_inputs(checked, path.parent))
+        except InputError as problem:
+            text = str(problem)
+            problems = [line if line.startswith(("[", "the table")) else f"[contact] {line}" for line in text.splitlines()]
+    if problems:
+        raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
+    return Case(
+        path=path,
+        contact=contact,
+        law=law,
+        curve=CurveSettings(**checked["curve"]),
+        title=checked["title"],
+        notes=checked["notes"],
+        fit=fit,
+        **checked["solver"],
+    )
+
+
+def contact_inputs(checked: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the arguments of :class:`LineContact` in a checked file, with the contact law made of its tables.
+
+    Parameters
+    ----------
+    checked : dict
+        The tables ``contact``, ``surface``, ``asperities`` and ``table``.
+    folder : pathlib.Path
+        Where files that they name lie.
+
+    Returns
+    -------
+    dict
+        The arguments that are given, and ``law``.
+
+    Raises
+    ------
+    InputError
+        Where the law or its tables are wrong, or an input is missing that they do not give.
+    """
+    inputs = dict(checked["contact"])
+    tables = {name: checked[name] for name in ("surface", "asperities", "table")}
+    found = law_of_file(inputs.pop("law"), inputs, tables, folder)
+    inputs = {name: value for name, value in inputs.items() if value is not None} | found.coefficients
+    return inputs | {"law": found.shape}
+
+
+def group_inputs(checked: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the groups and coefficients in a checked file, and ``law``, of which tables give nothing but the shape.
+
+    Parameters
+    ----------
+    checked : dict
+        The tables ``groups``, ``surface``, ``asperities`` and ``table``.
+    folder : pathlib.Path
+        Where files that they name lie.
+
+    Returns
+    -------
+    dict
+        Those that are given, and ``law``.
+
+    Raises
+    ------
+    InputError
+        Where the law or its tables are wrong.
+    """
+    inputs = {name: value for name, value in checked["groups"].items() if value is not None}
+    tables = {name: checked[name] for name in ("surface", "asperities", "table")}
+    return inputs | {"law": law_of_file(inputs.pop("law"), {}, tables, folder).shape}
+
+
+@functools.cache
+def surface_table(keys: tuple[str, ...]) -> Any:
+    """Return the pydantic model of a table with optional keys, which its own reader checks."""
+    from pydantic import ConfigDict, create_model
+
+    fields: dict[str, Any] = dict.fromkeys(keys, (Any, None))
+    return create_model("_".join(keys), __config__=ConfigDict(extra="forbid"), **fields)
+
+
+def read_toml(path: Path, kind: str = "case file", needed: str = "[contact]") -> dict[str, Any]:
+    """Return the tables of a TOML file.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    kind : str
+        What the file is, for sentences.
+    needed : str
+        The table without which it says nothing.
+
+    Returns
+    -------
+    dict
+        What the file says, at least one entry.
+
+    Raises
+    ------
+    InputError
+        Where the file cannot be read, is too large, empty or no TOML.
+    """
+    try:
+        with path.open("rb") as file:
+            content = file.read(_LARGEST_FILE + 1)
+    except (OSError, ValueError) as problem:
+        reason = getattr(problem, "strerror", problem)
+        received = f"{path} is a directory" if path.is_dir() else f"{path} cannot be read ({reason})"
+        raise InputError(f"{received}; give the path of a TOML {kind}.") from None
+    if len(content) > _LARGEST_FILE:
+        raise InputError(f"{path} has more than {_LARGEST_FILE} bytes; a {kind} is a page of TOML.")
+    try:
+        # Some editors write a byte-order mark, which TOML does not know.
+        table = tomllib.loads(content.decode("utf-8-sig"))
+    except UnicodeDecodeError as problem:
+        raise InputError(f"{path} is not text (byte {problem.start} is not UTF-8); a {kind} is a page of TOML.") from None
+    except (ValueError, RecursionError) as problem:
+        said = " ".join(str(problem).split())
+        advice = "".join(f"; {advice}" for slip, advice in _SLIPS.items() if said.startswith(slip))
+        raise InputError(f"{path} is not valid TOML: {said}{advice}.") from None
+    if not table:
+        raise InputError(f"{path} is empty; a {kind} needs at least the table {needed}.")
+    return table
+
+
+@functools.cache
+def _model() -> Any:
+    """Return the pydantic model of a case file, made on first use because pydantic is slow to import."""
+    from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
+
+    def check_quantity(value: Any, info: ValidationInfo) -> float:
+        return quantity(str(info.field_name), value)
+
+    def check_range(value: Any, info: ValidationInfo) -> tuple[float, float] | None:
+        return curve_range(value, info.data["over"]) if "over" in info.data else None
+
+    # A description completes the sentence "... must be ..." for what pydantic refuses by itself.
+    number = Annotated[float, BeforeValidator(check_quantity)]
+    text = Annotated[str, Field(strict=True, description="text in quotes")]
+
+    class Table(BaseModel):
+        model_config = ConfigDict(extra="forbid")
+
+    class Contact(Table):
+        radius: number
+        load: number
+        viscosity: number
+        speed: number
+        roughness: number | None = None
+        alpha: number | None = None
+        beta: number | None = None
+        friction_coefficient: number
+        modulus: number | None = None
+        youngs_modulus: number | None = None
+        poisson_ratio: number | None = None
+        law: Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")] = Case.law
+
+    class Curve(Table):
+        over: Annotated[Axis, Field(description="'speed', 'load' or 'roughness'")] = CurveSettings.over
+        range: Annotated[Any, BeforeValidator(check_range)] = None
+        points: Annotated[int, Field(strict=True, ge=2, le=100_000, description="a whole number from 2 to 100000")] = (
+            CurveSettings.points
+        )
+
+    class Solver(Table):
+        rtol: Annotated[
+            float,
+            Field(strict=True, ge=1e-11, le=1e-2, description="a number from 1e-11 to 1e-2, without quotes"),
+        ] = Case.rtol
+        definition: Annotated[Definition, Field(description="'paper' or 'balanced'")] = Case.definition
+
+    class File(Table):
+        contact: Annotated[Contact, Field(description="a table, [contact]")]
+        curve: Annotated[Curve, Field(description="a table, [curve]", default_factory=Curve)]
+        solver: Annotated[Solver, Field(description="a table, [solver]", default_factory=Solver)]
+        surface: Annotated[surface_table(SURFACE), Field(description="a table, [surface]")] = None  # type: ignore[valid-type]
+        asperities: Annotated[surface_table(ASPERITIES), Field(description="a table, [asperities]")] = None  # type: ignore[valid-type]
+        table: Annotated[surface_table(TABLE), Field(description="a table, [table]")] = None  # type: ignore[valid-type]
+        title: text = Case.title
+        notes: text = Case.notes
+
+    return File
+
+
+def curve_range(value: Any, over: str) -> tuple[float, float]:
+    """Return the ends of a curve in SI units.
+
+    Parameters
+    ----------
+    value : object
+        A list of two values with units or in SI.
+    over : str
+        What varies.
+
+    Returns
+    -------
+    tuple of float
+        The lowest and the highest value.
+
+    Raises
+    ------
+    InputError
+        Where these are no two positive values, the lowest first.
+    """
+    if not isinstance(value, list) or len(value) != 2:
+        raise InputError(f"range = {show(value)} must be a list of two values, the lowest and the highest {over}.")
+    low, high = (_range_end(end, over) for end in value)
+    if not low < high:
+        raise InputError(f"range = {show(value)} must increase; write the lowest {over} first.")
+    return low, high
+
+
+def _range_end(value: Any, over: str) -> float:
+    try:
+        result = quantity(over, value)
+    except InputError as problem:
+        raise InputError(f"in range, {problem}") from None
+    if result == 0:
+        raise InputError(f"in range, {over} = {show(value)} must be positive, because the curve is logarithmic.")
+    return result
+
+
+def _elasticity_problem(contact: Any) -> list[str]:
+    if not isinstance(contact, dict):
+        return []
+    try:
+        check_modulus_choice(*(contact.get(key) for key in ("modulus", "youngs_modulus", "poisson_ratio")))
+    except InputError as problem:
+        return [f"[contact] {problem}"]
+    return []
+
+
+def _missing_from_surface(table: dict[str, Any]) -> list[str]:
+    """Return sentences for inputs that neither ``[contact]`` nor a table of the surface gives."""
+    contact = table.get("contact")
+    if not isinstance(contact, dict) or "surface" in table or "asperities" in table or contact.get("law") == "persson":
+        return []
+    return [f"[contact] {key} is missing; {example_of(key)}." for key in FROM_TABLES if key not in contact]
+
+
+def error_sentence(file: Any, error: Any) -> str:
+    """Return the sentence for one of pydantic's errors in a ``file`` of tables."""
+    *tables, key = [str(part) for part in error["loc"][:2]]
+    model = file.model_fields[tables[0]].annotation if tables else file
+    where = f"[{tables[0]}] " if tables else ""
+    shown = key if key.isprintable() else repr(key)
+    if error["type"] == "missing":
+        return f"{where}{key} is missing; {example_of(key)}." if tables else f"the table [{key}] is missing."
+    if error["type"] == "extra_forbidden":
+        return f"{where}{shown} = {show(error['input'])} is not a known key; {_nearest(file, model, key)}."
+    if error["type"] == "value_error":
+        return f"{where}{error['ctx']['error']}"
+    return f"{where}{key} = {show(error['input'])} must be {model.model_fields[key].description}."
+
+
+def example_of(key: str) -> str:
+    """Return the advice to add a quantity, with an example of its value."""
+    dimension = DIMENSIONS[QUANTITIES[key].dimension]
+    value = f'"{dimension.example}"' if dimension.unit else dimension.example
+    return f"add {dimension.noun}, for example {key} = {value}"
+
+
+def _nearest(file: Any, model: Any, key: str) -> str:
+    if key.lower() in _DATA_SHEET:
+        return _DATA_SHEET[key.lower()]
+    known = list(model.model_fields)
+    meant = _SYMBOLS.get(key, key)
+    if meant in known:
+        return f"write {meant}"
+    for name, info in file.model_fields.items():
+        if model is not info.annotation and meant in getattr(info.annotation, "model_fields", {}):
+            return f"it belongs in the table [{name}]"
+    if meant in file.model_fields:
+        return "it belongs at the top of the file, before the first table"
+    near = difflib.get_close_matches(key.lower(), known, n=1)
+    return f"did you mean {near[0]}" if near else f"known are {', '.join(known)}"

@@ -1,0 +1,273 @@
+"""What the ``[fit]`` table of a case asks for: free quantities, bounds, priors, noise, and the columns of the data.
+
+Only what can be said without the data is checked here; what a column holds is for :mod:`stribeck.fits.measurements`.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from stribeck.quantities.inputs import QUANTITIES, quantity
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["FREE", "FitSettings", "Prior", "check_fit_table", "free_names"]
+
+Noise = Literal["relative", "absolute"]
+
+FREE = ("friction_coefficient", "roughness", "beta", "alpha", "modulus", "viscosity", "load", "radius")
+"""Inputs that may be fitted, in the order of outputs; all of them enter friction through groups, mu0 and beta."""
+
+DEFAULT_FREE = ("friction_coefficient", "roughness")
+
+SYMBOLS = {
+    "mu0": "friction_coefficient",
+    "mu_0": "friction_coefficient",
+    "h_rms": "roughness",
+    "E_star": "modulus",
+    "eta": "viscosity",
+    "F_N": "load",
+    "R": "radius",
+}
+"""Letters of the paper that may stand for names."""
+
+COLUMNS = ("speed", "speed_viscosity", "hersey_number", "friction", "error", "curve")
+"""What a column of the data may be, beside the inputs of :data:`FREE`, which tell curves apart."""
+
+KEYS = ("free", "per_curve", "noise", "relative_error", "absolute_error", "robust", "magnitudes", "header_row")
+TABLES = ("columns", "units", "bounds", "priors", "curves")
+
+LARGEST_FACTOR = 1e6
+
+
+@dataclass(frozen=True)
+class Prior:
+    """What is known of an input before the data: normal in its logarithm.
+
+    Parameters
+    ----------
+    value : float
+        Its median, in SI units.
+    factor : float
+        The factor > 1 by which it is known: ``value / factor`` to ``value * factor`` holds it with 68 % probability.
+    """
+
+    value: float
+    factor: float
+
+
+@dataclass(frozen=True)
+class FitSettings:
+    """What the ``[fit]`` table of a case asks for.
+
+    Parameters
+    ----------
+    free : tuple of str
+        Inputs to fit; empty for the default, friction coefficient and roughness.
+    per_curve : tuple of str
+        Those of them that each curve has for itself; the others are shared.
+    noise : {"relative", "absolute"}
+        Which error of the friction coefficient is alike in all rows, where no errors are given.
+    relative_error, absolute_error : float, optional
+        Known standard error of the friction coefficient, relative and absolute [-].
+    robust : bool
+        Whether outliers are kept from steering the fit.
+    magnitudes : bool
+        Whether signs of speed and friction are dropped, as of strokes to and fro.
+    header_row : int, optional
+        Row of the data file that holds the names of the columns; the first that is no comment by default.
+    columns : dict
+        What a column is -> its header, or a list of headers for several friction columns.
+    units : dict
+        What a column is -> its unit.
+    bounds : dict
+        Input -> lowest and highest value in SI units.
+    priors : dict
+        Input -> :class:`Prior`.
+    curves : dict
+        Name of a curve -> inputs in SI units in which it differs from the case.
+    """
+
+    free: tuple[str, ...] = ()
+    per_curve: tuple[str, ...] = ()
+    noise: Noise = "relative"
+    relative_error: float | None = None
+    absolute_error: float | None = None
+    robust: bool = False
+    magnitudes: bool = False
+    header_row: int | None = None
+    columns: dict[str, str | list[str]] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    bounds: dict[str, tuple[float, float]] = field(default_factory=dict)
+    priors: dict[str, Prior] = field(default_factory=dict)
+    curves: dict[str, dict[str, float]] = field(default_factory=dict)
+
+
+def check_fit_table(table: Any) -> FitSettings:
+    """Return the settings that a ``[fit]`` table asks for.
+
+    Parameters
+    ----------
+    table : object
+        What TOML made of it.
+
+    Returns
+    -------
+    FitSettings
+        The settings, quantities in SI units.
+
+    Raises
+    ------
+    InputError
+        A sentence on each line for all of its problems, each with table and key.
+    """
+    if not isinstance(table, dict):
+        raise InputError(f"fit = {show(table)} must be a table, [fit].")
+    problems: list[str] = []
+    found: dict[str, Any] = {}
+
+    def attempt(where: str, key: str, check: Any, *arguments: Any) -> Any:
+        try:
+            return check(*arguments)
+        except InputError as problem:
+            problems.append(f"[{where}] {problem}")
+            return None
+
+    for key, value in table.items():
+        if key in KEYS:
+            found[key] = attempt("fit", key, _setting, key, value)
+        elif key in TABLES:
+            found[key] = {}
+            if not isinstance(value, dict):
+                problems.append(f"[fit] {key} = {show(value)} must be a table, [fit.{key}].")
+                continue
+            for name, entry in value.items():
+                if key == "curves":
+                    found[key][name] = attempt("fit.curves", name, _curve, name, entry)
+                else:
+                    pair = attempt(f"fit.{key}", name, _entry, key, name, entry)
+                    if pair is not None:
+                        found[key][pair[0]] = pair[1]
+        else:
+            problems.append(f"[fit] {_unknown(key, value, (*KEYS, *TABLES))}")
+    if problems:
+        raise InputError("\n".join(problems))
+    settings = FitSettings(**found)
+    extra = [name for name in settings.per_curve if name not in (settings.free or DEFAULT_FREE)]
+    if extra:
+        raise InputError(f"[fit] per_curve has {extra[0]}, which is not in free; add it there.")
+    return settings
+
+
+def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
+    """Return names of inputs to fit, checked, in the order of :data:`FREE`.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Names or the symbols of the paper, such as ``h_rms``.
+    where : str
+        Where they stand, for sentences.
+
+    Returns
+    -------
+    tuple of str
+        The names.
+
+    Raises
+    ------
+    InputError
+        If one is unknown, not to be fitted, or there twice.
+    """
+    found = []
+    for name in names:
+        meant = SYMBOLS.get(name, name) if isinstance(name, str) else name
+        if meant in ("speed", "U"):
+            raise InputError(f"{where} has {show(name)}, which is measured; a common factor on it is that of the viscosity.")
+        if meant not in FREE:
+            near = difflib.get_close_matches(str(name).lower(), FREE, n=1)
+            hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(FREE)}."
+            raise InputError(f"{where} has {show(name)}, which is no input that can be fitted; {hint}")
+        if meant in found:
+            raise InputError(f"{where} has {meant} twice; name each input once.")
+        found.append(meant)
+    return tuple(sorted(found, key=FREE.index))
+
+
+def _setting(key: str, value: Any) -> Any:
+    if key in ("free", "per_curve"):
+        if not isinstance(value, list) or (key == "free" and not value):
+            raise InputError(f'{key} = {show(value)} must be a list of inputs, such as ["friction_coefficient", "roughness"].')
+        return free_names(value, key)
+    if key == "noise":
+        if value not in ("relative", "absolute"):
+            raise InputError(f"noise = {show(value)} must be 'relative' or 'absolute'.")
+        return value
+    if key in ("robust", "magnitudes"):
+        if not isinstance(value, bool):
+            raise InputError(f"{key} = {show(value)} must be true or false, without quotes.")
+        return value
+    if key == "header_row":
+        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= 100_000:
+            raise InputError(f"header_row = {show(value)} must be the number of a row, counted from 1.")
+        return value
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not number or not 0 < value < math.inf:
+        raise InputError(f"{key} = {show(value)} must be a positive number, such as 0.02.")
+    return float(value)
+
+
+def _entry(table: str, name: str, value: Any) -> tuple[str, Any]:
+    if table in ("bounds", "priors"):
+        [meant] = free_names([name], f"[fit.{table}]")
+        return meant, _bounds(meant, value) if table == "bounds" else _prior(meant, value)
+    known = (*COLUMNS, *(each for each in FREE if each != "friction_coefficient"))
+    meant = SYMBOLS.get(name, name)
+    if meant not in known:
+        raise InputError(_unknown(name, value, known))
+    texts = value if table == "columns" and name == "friction" and isinstance(value, list) else [value]
+    if not texts or not all(isinstance(text, str) and text.strip() for text in texts):
+        wanted = "the header of a column" if table == "columns" else "a unit"
+        raise InputError(f"{name} = {show(value)} must be {wanted}, as text in quotes.")
+    return meant, value
+
+
+def _bounds(name: str, value: Any) -> tuple[float, float]:
+    if not isinstance(value, list) or len(value) != 2:
+        raise InputError(f"{name} = {show(value)} must be a list of two values, the lowest and the highest.")
+    low, high = (quantity(name, each) for each in value)
+    if not 0 < low < high:
+        raise InputError(f"{name} = {show(value)} must be two positive values, the lowest first.")
+    return low, high
+
+
+def _prior(name: str, value: Any) -> Prior:
+    if not isinstance(value, dict) or set(value) != {"value", "factor"}:
+        raise InputError(f"{name} = {show(value)} must be a table such as {{ value = ..., factor = 1.2 }}.")
+    factor, median = value["factor"], quantity(name, value["value"])
+    if isinstance(factor, bool) or not isinstance(factor, int | float) or not 1 < factor <= LARGEST_FACTOR:
+        raise InputError(f"{name} has factor = {show(factor)}, which must be a number above 1: 1.2 is 'known within 20 %'.")
+    if median == 0:
+        raise InputError(f"{name} has value = {show(value['value'])}, which must be positive.")
+    return Prior(median, float(factor))
+
+
+def _curve(name: str, entry: Any) -> dict[str, float]:
+    if not isinstance(entry, dict):
+        raise InputError(f"{name} = {show(entry)} must be a table of inputs, [fit.curves.{name}].")
+    found = {}
+    for key, value in entry.items():
+        meant = SYMBOLS.get(key, key)
+        if meant not in FREE or meant not in QUANTITIES:
+            raise InputError(f"{name}: {_unknown(key, value, FREE)}")
+        found[meant] = quantity(meant, value)
+    return found
+
+
+def _unknown(key: str, value: Any, known: tuple[str, ...]) -> str:
+    near = difflib.get_close_matches(key.lower(), known, n=1)
+    hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}."
+    return f"{key} = {show(value)} is not a known key; {hint}"

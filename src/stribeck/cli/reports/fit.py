@@ -1,0 +1,144 @@
+"""A fit in words and as a table: what ``stribeck fit`` prints. Nothing is computed here."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from stribeck.fits.case_file import format_interval, format_value
+from stribeck.fits.posterior import Posterior
+from stribeck.fits.result import Fit, FittedInput
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import format_si
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+TABLE = 140
+"""Width that the table may take [letters]."""
+
+__all__ = ["fit_json", "print_fit"]
+
+
+def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (), posterior: Posterior | None = None) -> None:
+    """Print a fit: how it ended, the inputs with their intervals, what the residuals say, and notes.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    fit : Fit
+        The fit.
+    title : str
+        Headline; empty for none.
+    files : sequence of str
+        Files that were written.
+    posterior : Posterior, optional
+        The posterior, if it was drawn.
+    """
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+
+    def say(text: str, style: str = "") -> None:
+        console.print(text, style=style or None, markup=False, highlight=False, soft_wrap=True)
+
+    if title:
+        say(title, "bold")
+    data = fit.data
+    curves = f", {len(data.curves)} curves" if len(data.curves) > 1 else ""
+    say(f"{len(data)} rows{curves} of {data.path or 'measured friction'}; contact law: {fit.law}; friction: {fit.definition}.")
+    say(fit.outcome.value, "" if fit.converged else "bold red")
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for name in ["input", "fitted", "error", "68 %", "95 %", "case", *(["posterior 95 %"] if posterior else [])]:
+        table.add_column(name, no_wrap=True)
+    for i, each in enumerate(fit.inputs):
+        row = [each.label, format_value(each), _error(each), format_interval(each, 0.68), format_interval(each, 0.95)]
+        row.append(format_value(each, each.start))
+        if posterior:
+            low, high = posterior.interval_95[i]
+            row.append(f"{format_value(each, low)} to {format_value(each, high)}")
+        table.add_row(*row)
+    # Wider than a narrow terminal rather than cut: an end of an interval without its digits is none.
+    Console(file=console.file, width=max(TABLE, console.width)).print(table)
+    if fit.held:
+        say(_held(fit))
+    say(_noise(fit))
+    shift = (
+        ""
+        if math.isnan(fit.solver_shift)
+        else f"; iterated on the atlas, from which it moved by {fit.solver_shift:.1g} errors"
+    )
+    say(f"Fitted friction is solved, within {fit.model_error:.1g}{shift}.")
+    if posterior:
+        say(posterior.message)
+    for sentence in fit.quality.messages:
+        say(f"Warning: {sentence}", "bold yellow")
+    for each_weak in fit.undetermined:
+        message = each_weak.message
+        say(f"Warning: {message}", "bold yellow")
+    for note in fit.notes:
+        say(f"Note: {note}", "yellow")
+    for name in files:
+        say(f"Written: {name}")
+
+
+def fit_json(fit: Fit, title: str, files: Sequence[str] = (), posterior: Posterior | None = None) -> dict[str, Any]:
+    """Return a fit with its title, the files written and the posterior.
+
+    Parameters
+    ----------
+    fit : Fit
+        The fit.
+    title : str
+        Headline.
+    files : sequence of str
+        Files that were written.
+    posterior : Posterior, optional
+        The posterior, if it was drawn.
+
+    Returns
+    -------
+    dict
+        Ready for :func:`stribeck.cli.reports.json.dump`.
+    """
+    found: dict[str, Any] = {"title": title} | fit.to_dict() | {"files": list(files)}
+    if posterior is not None:
+        names = ("acceptance", "autocorrelation_time", "converged", "message")
+        found["posterior"] = {name: getattr(posterior, name) for name in names} | {
+            "interval_68": dict(zip([each.label for each in fit.inputs], posterior.interval_68, strict=True)),
+            "interval_95": dict(zip([each.label for each in fit.inputs], posterior.interval_95, strict=True)),
+            "draws": len(posterior.samples),
+        }
+    return found
+
+
+def _error(each: FittedInput) -> str:
+    if math.isnan(each.standard_error):
+        return "at its bound"
+    return f"{100 * each.standard_error:.2g} %" if each.standard_error < 1 else "unknown"
+
+
+def _held(fit: Fit) -> str:
+    shown = []
+    for name in fit.held:
+        values = {getattr(contact, name) for contact in fit.contacts}
+        known = format_si(values.pop(), QUANTITIES[name].dimension, 4) if len(values) == 1 else "of each curve"
+        shown.append(f"{name} {known}")
+    return (
+        f"Counted as known exactly: {', '.join(shown)}. "
+        "No error above holds theirs; in the table [fit] of the case, free and priors bring them in."
+    )
+
+
+def _noise(fit: Fit) -> str:
+    quality = fit.quality
+    said = "their order looks like noise" if quality.structure_probability >= 0.01 else "their order is not that of noise"
+    if math.isnan(fit.noise):
+        return (
+            f"Residuals: chi squared {quality.chi_squared:.3g} for {quality.degrees_of_freedom:.3g} degrees of freedom "
+            f"(p = {quality.chi_squared_probability:.2g}); {said} (p = {quality.structure_probability:.2g})."
+        )
+    size = f"{100 * fit.noise:.2g} %" if fit.logarithmic else f"{fit.noise:.2g}"
+    return f"Residuals: {size} of noise; {said} (p = {quality.structure_probability:.2g})."

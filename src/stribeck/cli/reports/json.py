@@ -1,0 +1,235 @@
+"""Results as JSON, for the commands with ``--json``."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import LawShape
+from stribeck.cli.reports.words import Elasticities, contact_part, hersey_of, part_error, regime_now, strongest
+from stribeck.contacts.line import LineContact
+from stribeck.curves.landmarks import Landmark
+from stribeck.curves.result import StribeckCurve
+from stribeck.files.datasets import GROUPS, INPUTS, si_films, unit_of
+from stribeck.regimes.distances import Crossing, Distance, TransitionDistances
+from stribeck.solver.solution import Solution
+
+__all__ = ["curve_json", "dump", "law_json", "regimes_json", "solution_json"]
+
+
+def dump(content: dict[str, Any]) -> str:
+    """Return content as JSON text; what is not finite becomes null, as JSON knows no nan.
+
+    Parameters
+    ----------
+    content : dict
+        Numbers, text, arrays, sequences and dictionaries of these.
+
+    Returns
+    -------
+    str
+        The text.
+    """
+    return json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False)
+
+
+def _plain(content: Any) -> Any:
+    if isinstance(content, dict):
+        return {name: _plain(value) for name, value in content.items()}
+    if isinstance(content, np.ndarray):
+        return _plain(content.tolist())
+    if isinstance(content, list | tuple):
+        return [_plain(value) for value in content]
+    if isinstance(content, float) and not math.isfinite(content):
+        return None
+    return content
+
+
+def solution_json(solution: Solution, mu0: float | None = None, beta: float | None = None) -> dict[str, Any]:
+    """Return :meth:`Solution.to_dict`, and under ``si`` inputs and films of the contact, if any, in SI units.
+
+    Parameters
+    ----------
+    solution : Solution
+        The state.
+    mu0, beta : float, optional
+        As in :meth:`Solution.friction`.
+
+    Returns
+    -------
+    dict
+        Ready for :func:`dump`.
+    """
+    found: dict[str, Any] = solution.to_dict(mu0, beta)
+    found["hersey_number"] = hersey_of(solution, beta)
+    if solution.contact is not None:
+        films = si_films(solution)
+        found["si"] = {
+            **_inputs(solution.contact),
+            **{name: value for name, (value, _, _) in films.items()},
+            "units": _units() | {name: unit for name, (_, unit, _) in films.items()},
+        }
+    return found
+
+
+def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[str, Any]:
+    """Return a curve with its settings, landmarks and points.
+
+    Parameters
+    ----------
+    curve : StribeckCurve
+        The curve.
+    title : str
+        Headline.
+    files : sequence of str
+        Files that were written.
+
+    Returns
+    -------
+    dict
+        Ready for :func:`dump`.
+    """
+    names = (
+        "contact_load_share",
+        "fluid_load_share",
+        "central_gap",
+        "minimum_gap",
+        "flux_gap",
+        "lambda_ratio",
+    )
+    return {
+        "title": title,
+        "over": curve.over,
+        "unit": "1" if curve.contact is None else unit_of(curve.over),
+        "definition": curve.definition,
+        **law_json(curve.law),
+        "rtol": curve.rtol,
+        "mu0": curve.mu0,
+        "beta": curve.beta,
+        "inputs": None if curve.contact is None else _inputs(curve.contact),
+        "units": None if curve.contact is None else _units(),
+        "minimum": None if curve.minimum is None else _landmark(curve.minimum),
+        "transitions": [_landmark(mark) for mark in curve.transitions],
+        "regimes": [{"regime": name, "from": low, "to": high} for name, low, high in curve.regime_ranges],
+        "points": {
+            "value": curve.values,
+            **{f"{name}_group": np.asarray(getattr(curve.groups, name)) for name in GROUPS},
+            "hersey_number": curve.hersey_number,
+            "hydrodynamic_friction": curve.hydrodynamic_friction,
+            "friction": curve.friction,
+            "friction_contact": curve.friction_contact,
+            "friction_viscous": curve.friction_viscous,
+            "friction_error": curve.friction_error,
+            "regime": curve.regimes,
+            **{name: curve.observable(name) for name in names},
+        },
+        "requested_points": curve.requested,
+        "complete": curve.outcome.ok,
+        "error_estimate": curve.error_estimate,
+        "outcome": curve.outcome.name,
+        "message": curve.outcome.value,
+        "notes": list(curve.notes),
+        "files": list(files),
+    }
+
+
+def regimes_json(
+    solution: Solution, elasticities: Elasticities, curve: StribeckCurve, distances: TransitionDistances, title: str = ""
+) -> dict[str, Any]:
+    """Return the regime of a state, the transitions around it and what moves its friction.
+
+    Parameters
+    ----------
+    solution : Solution
+        The state, of a contact.
+    elasticities : dict of str to float
+        Those of its friction.
+    curve : StribeckCurve
+        The curve over the speed through it.
+    distances : TransitionDistances
+        The way to the next regimes.
+    title : str
+        Headline.
+
+    Returns
+    -------
+    dict
+        Ready for :func:`dump`.
+    """
+    assert solution.contact is not None
+    friction = solution.friction(definition=curve.definition)
+    speed = solution.contact.speed
+    return {
+        "title": title,
+        "regime": regime_now(solution, curve.definition),
+        "speed": speed,
+        "unit": unit_of("speed"),
+        "fluid_load_share": solution.fluid_load_share,
+        "fluid_load_share_error": solution.errors["fluid_load_share"],
+        "contact_friction_share": contact_part(friction),
+        "contact_friction_share_error": part_error(friction),
+        "friction": friction.total,
+        "friction_error": friction.error,
+        "definition": curve.definition,
+        "transitions": [
+            {**_landmark(mark), "factor": mark.value / speed if speed > 0 else math.inf} for mark in curve.transitions
+        ],
+        "regimes": [{"regime": name, "from": low, "to": high} for name, low, high in curve.regime_ranges],
+        "distances": {distance.name: _distance(distance) for distance in distances.distances},
+        "elasticities": elasticities,
+        "moves_friction_most": strongest(elasticities),
+        **law_json(solution.groups.law),
+        "inputs": _inputs(solution.contact),
+        "units": _units(),
+        "error_estimate": max(solution.error_estimate, curve.error_estimate),
+        "outcome": curve.outcome.name,
+        "message": curve.outcome.value,
+        "notes": [*solution.notes, *distances.notes],
+    }
+
+
+def law_json(law: LawShape | None) -> dict[str, Any]:
+    """Return name and parameters of a contact law.
+
+    Parameters
+    ----------
+    law : LawShape or None
+        The law; None is the exponential one.
+
+    Returns
+    -------
+    dict
+        ``contact_law`` and ``contact_law_parameters``.
+    """
+    if law is None:
+        return {"contact_law": "exponential", "contact_law_parameters": {}}
+    return {"contact_law": law.name, "contact_law_parameters": law.parameters}
+
+
+def _distance(distance: Distance) -> dict[str, Any]:
+    return {
+        "less": None if distance.less is None else _crossing(distance.less),
+        "more": None if distance.more is None else _crossing(distance.more),
+        "searched": list(distance.searched),
+        "unit": unit_of(distance.name),
+    }
+
+
+def _crossing(mark: Crossing) -> dict[str, Any]:
+    return {"regime": mark.regime, "value": mark.value, "factor": mark.factor}
+
+
+def _landmark(mark: Landmark) -> dict[str, Any]:
+    return {"name": mark.name, "value": mark.value, "friction": mark.friction}
+
+
+def _inputs(contact: LineContact) -> dict[str, float]:
+    return {name: getattr(contact, name) for name in INPUTS}
+
+
+def _units() -> dict[str, str]:
+    return {name: unit_of(name) for name in INPUTS}

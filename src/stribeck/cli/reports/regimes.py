@@ -1,0 +1,145 @@
+"""The regime of a contact in words: where its transitions lie, what it takes to reach them, what moves its friction."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from stribeck.cli.reports.words import (
+    LABELS,
+    Elasticities,
+    contact_part,
+    part_error,
+    place,
+    print_head,
+    print_outcome,
+    regime_now,
+    say,
+    strongest,
+    table_of,
+)
+from stribeck.curves.landmarks import Landmark
+from stribeck.curves.result import StribeckCurve
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import format_share, format_si
+from stribeck.regimes.distances import Crossing, Distance, TransitionDistances
+from stribeck.solver.solution import Solution
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+__all__ = ["print_regimes"]
+
+
+def print_regimes(
+    console: Console,
+    solution: Solution,
+    elasticities: Elasticities,
+    curve: StribeckCurve,
+    distances: TransitionDistances,
+    title: str,
+) -> None:
+    """Print in which regime a contact runs, where the transitions lie, and what moves its friction.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    solution : Solution
+        The state, of a contact.
+    elasticities : dict of str to float
+        Those of its friction.
+    curve : StribeckCurve
+        The curve over the speed through it.
+    distances : TransitionDistances
+        The way to the next regimes.
+    title : str
+        Headline.
+    """
+    contact = solution.contact
+    assert contact is not None
+    print_head(console, title, contact, solution.groups)
+    friction = solution.friction(definition=curve.definition)
+    speed = format_si(contact.speed, "speed")
+    say(
+        console,
+        f"At {speed} lubrication is {regime_now(solution, curve.definition)}: the fluid carries "
+        f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load, asperities cause "
+        f"{format_share(contact_part(friction), part_error(friction))} of the friction coefficient {friction.total:.4g}.",
+    )
+    for line in _ways(distances):
+        say(console, line)
+    if curve.transitions:
+        table = table_of("where", "speed", "from here", "friction", right=(1, 3))
+        for mark in curve.transitions:
+            table.add_row(mark.name, place(curve, mark.value, 4), _way(mark, contact.speed), f"{mark.friction:.4g}")
+        console.print(table)
+    else:
+        say(
+            console,
+            "No transition lies between the boundary plateau and the hydrodynamic branch of this contact.",
+        )
+    table = table_of("input", "value", "elasticity", "10 % more gives", right=(1, 2, 3))
+    for name in sorted(elasticities, key=lambda name: -abs(elasticities[name])):
+        value, slope = getattr(contact, name), elasticities[name]
+        text = format_si(value, QUANTITIES[name].dimension)
+        table.add_row(LABELS.get(name, name), text, f"{slope:+.3f}", f"{100 * _change(1.1, slope):+.2g} % friction")
+    console.print(table)
+    most = strongest(elasticities)
+    if most is not None:
+        slope = elasticities[most]
+        factor = 0.9 if slope > 0 else 1.1
+        way, gain = "less" if slope > 0 else "more", f"{-100 * _change(factor, slope):.3g} %"
+        name = LABELS.get(most, most)
+        say(
+            console,
+            f"The {name} moves friction most: 10 % {way} of it lowers friction by {gain}, all else kept.",
+        )
+    notes = [*solution.notes, *distances.notes]
+    print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), notes)
+
+
+def _ways(distances: TransitionDistances) -> Iterator[str]:
+    """Yield a sentence for each regime that is near: what it takes of each input, and what leads nowhere."""
+    for regime in distances.targets:
+        found = [(distance, distance.towards(regime)) for distance in distances.distances]
+        ways = [f"{distance.name} {_step(distance.name, mark)}" for distance, mark in found if mark is not None]
+        barren = [_searched(distance) for distance, mark in found if mark is None]
+        if not ways:
+            yield f"To reach {regime}: nothing within reach, by {', '.join(barren)}."
+            continue
+        rest = f"; none within reach by {', '.join(barren)}" if barren else ""
+        yield f"To reach {regime}: {', or '.join(ways)}{rest}."
+    if any(distance.name == "viscosity" and (distance.less or distance.more) for distance in distances.distances):
+        yield "Speed and viscosity count as their product, so that their factors are the same."
+
+
+def _step(name: str, mark: Crossing) -> str:
+    """Return how far an input is to be changed, as ``x 3.1 (0.31 m/s)``."""
+    if mark.value == 0:
+        return "of any size"
+    value = format_si(mark.value, QUANTITIES[name].dimension, 4)
+    if math.isinf(mark.factor):
+        return f"from zero to {value}"
+    return f"x {mark.factor:.3g} ({value})" if mark.factor >= 1 else f"/ {1 / mark.factor:.3g} ({value})"
+
+
+def _searched(distance: Distance) -> str:
+    low, high = distance.searched
+    if low == high:  # it cannot lead anywhere, and a note says why
+        return distance.name
+    ends = (format_si(value, QUANTITIES[distance.name].dimension) for value in (low, high))
+    return f"{distance.name} (range searched {' to '.join(ends)})"
+
+
+def _way(mark: Landmark, speed: float) -> str:
+    if speed == 0:
+        return "from rest"
+    factor = mark.value / speed
+    return f"{factor:.3g}x faster" if factor >= 1 else f"{1 / factor:.3g}x slower"
+
+
+def _change(factor: float, slope: float) -> float:
+    """Return the relative change of friction where an input with this elasticity is multiplied."""
+    return float(factor**slope - 1)

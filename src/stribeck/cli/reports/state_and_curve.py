@@ -1,0 +1,123 @@
+"""A state and a curve in words: what the commands print. Nothing is computed here but percentages."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from stribeck.cli.reports.words import (
+    contact_part,
+    digits,
+    error_text,
+    hersey_of,
+    length,
+    part,
+    place,
+    print_head,
+    print_outcome,
+    say,
+    table_of,
+)
+from stribeck.contacts.friction import DEFINITIONS
+from stribeck.curves.elasticities import regime_of
+from stribeck.curves.result import StribeckCurve
+from stribeck.solver.solution import Solution
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+__all__ = ["print_curve", "print_solution"]
+
+
+def print_solution(
+    console: Console, solution: Solution, title: str, mu0: float | None = None, beta: float | None = None
+) -> None:
+    """Print one state as a table with units and errors.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    solution : Solution
+        The state.
+    title : str
+        Headline.
+    mu0, beta : float, optional
+        As in :meth:`Solution.friction`.
+    """
+    print_head(console, title, solution.contact, solution.groups)
+    columns = (0, 1, 3) if solution.contact is None else (0, 1, 2, 3)
+    table = table_of(*(("quantity", "value", "in SI", "error")[i] for i in columns))
+    for row in _solution_rows(solution, mu0, beta):
+        table.add_row(*(row[i] for i in columns))
+    console.print(table)
+    print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes)
+
+
+def _solution_rows(solution: Solution, mu0: float | None, beta: float | None) -> Iterator[tuple[str, str, str, str]]:
+    errors = solution.errors
+    for definition in DEFINITIONS:
+        f = solution.friction(mu0, beta, definition)
+        relative = f.error / f.total if f.total > 0 else 0.0
+        yield f"friction coefficient ({definition})", digits(f.total, relative), "", error_text(relative)
+        yield "  from asperities", part(f.contact, f.error), "", ""
+        yield "  from the fluid", part(f.viscous, f.error), "", ""
+    for name, label in (
+        ("contact_load_share", "load on asperities"),
+        ("fluid_load_share", "load on the fluid"),
+    ):
+        yield label, part(getattr(solution, name), errors[name]), "", error_text(errors[name])
+    scales = None if solution.contact is None else solution.contact.hertz
+    for name, label in (
+        ("central_gap", "central film"),
+        ("minimum_gap", "least film"),
+        ("flux_gap", "flux film h*"),
+        ("offset", "offset z0"),
+    ):
+        value = getattr(solution, name)
+        si = "" if scales is None else length(value * scales.indentation, errors[name])
+        unit = " u_Hz" if math.isfinite(value) else ""
+        yield label, f"{digits(value, errors[name])}{unit}", si, error_text(errors[name])
+    si = "" if scales is None else length(solution.minimum_position * scales.half_width, 1e-4)
+    yield "place of the least film", f"{solution.minimum_position:.4g} a", si, ""
+    yield "Lambda (film over h_rms/alpha)", digits(solution.lambda_ratio, 1e-4), "", ""
+    if not math.isnan(solution.central_area_fraction):
+        area, error = solution.central_area_fraction, solution.central_area_fraction_error
+        yield "real contact area at x = 0", part(area, error), "", error_text(error / area) if area > 0 else ""
+    regime = regime_of(solution.fluid_load_share, contact_part(solution.friction(mu0, beta)))
+    yield "Hersey number", f"{hersey_of(solution, beta):.4g}", "", ""
+    yield "regime", regime, "", ""
+
+
+def print_curve(console: Console, curve: StribeckCurve, title: str, files: Sequence[str]) -> None:
+    """Print what a curve holds: inputs, regimes, transitions, error, notes, files.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    curve : StribeckCurve
+        The curve.
+    title : str
+        Headline.
+    files : sequence of str
+        Files that were written.
+    """
+    print_head(console, title, curve.contact, curve.groups, curve.over)
+    low, high = place(curve, curve.values[0]), place(curve, curve.values[-1])
+    say(console, f"{len(curve)} point{'s' * (len(curve) > 1)}, {curve.over} {low} to {high}.")
+    table = table_of("regime", "from", "to", right=(1, 2))
+    for regime, first, last in curve.regime_ranges:
+        table.add_row(regime, place(curve, first), place(curve, last))
+    console.print(table)
+    if curve.transitions:
+        table = table_of("where", curve.over, "friction", right=(1, 2))
+        for mark in curve.transitions:
+            table.add_row(mark.name, place(curve, mark.value, 7), f"{mark.friction:.7g}")
+        console.print(table)
+    if curve.minimum is None:
+        say(console, "Friction has no minimum inside this range.")
+    print_outcome(console, curve.outcome.value, curve.error_estimate, curve.notes)
+    for name in files:
+        say(console, f"Written: {name}")

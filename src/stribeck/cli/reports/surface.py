@@ -1,0 +1,98 @@
+"""What a scan says of a surface, in words; the JSON is :meth:`Surface.to_dict`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from stribeck.quantities.units import format_si
+from stribeck.surfaces.analysis import Surface
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+__all__ = ["print_surface"]
+
+
+def print_surface(console: Console, surface: Surface, written: Sequence[str] = ()) -> None:
+    """Print the numbers of a surface with their errors, and what must be known about them.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to print.
+    surface : Surface
+        The surface.
+    written : sequence of str
+        Files that were written.
+    """
+    for line in [*surface_lines(surface), *(f"Written: {name}" for name in written)]:
+        console.print(line, markup=False, highlight=False, soft_wrap=True)
+
+
+def surface_lines(surface: Surface) -> list[str]:
+    """Return the lines that are printed."""
+    found, scan = surface.to_dict(), surface.topography
+    kind = "line" if scan.is_line else "map"
+    points = " x ".join(map(str, scan.heights.shape))
+    size = " x ".join(format_si(length, "length") for length in scan.size)
+    lines = [
+        f"{scan.source or 'Heights'}: {kind} of {points} points, {size}",
+        "",
+        _row("tilt taken away", ", ".join(f"{1e3 * slope:.3g} mrad" for slope in surface.shape.tilt) or "none", ""),
+    ]
+    if found["body_radius"] is not None:
+        bulge = "convex" if surface.shape.curvatures[0] < 0 else "concave"
+        lines.append(_length("radius of the body", found["body_radius"], found["body_radius_error"], bulge))
+    lines.append(_length("rms height of the scan", found["scan_rms_height"], None, "about that shape"))
+    lines += ["", "Self-affine spectrum through it"]
+    r = surface.roughness
+    lines.append(_length("rms height h_rms", r.h_rms, found["h_rms_error"], ""))
+    lines.append(_row("Hurst exponent", f"{r.hurst:.3f}", f"+- {found['hurst_error']:.2g}"))
+    for name, label, end in (
+        ("q0", "longest wavelength 2 pi/q0", "end of the scan, not of the surface"),
+        ("roll_off", "roll-off wavelength", "none seen"),
+        ("q1", "shortest wavelength 2 pi/q1", "end of the reliable range, not of the surface"),
+    ):
+        q, error = found[name], found[f"{name}_error"]
+        if name == "roll_off" and error is None:
+            lines.append(_row(label, "none seen", ""))
+            continue
+        lines.append(
+            _length(
+                label, 2 * math.pi / q, None if error is None else 2 * math.pi / q * error / q, end if error is None else ""
+            )
+        )
+    lines += [
+        _row("rms slope", f"{found['rms_slope']:.3g}", "grows with q1"),
+        _row("rms curvature", format_si(found["rms_curvature"], "wavenumber"), "grows with q1"),
+        "",
+        f"Contact law by Persson's theory, gamma = {surface.gamma:g}",
+        _row(
+            "alpha",
+            f"{found['alpha']:.3f}",
+            f"+- {found['alpha_error']:.2g}; {found['measured_alpha']:.3f} from the measured spectrum",
+        ),
+        _row(
+            "beta",
+            f"{found['beta']:.4g}",
+            f"+- {found['beta_error']:.2g}; {found['measured_beta']:.4g} from the measured spectrum",
+        ),
+    ]
+    return [*lines, *([""] if surface.notes else []), *surface.notes]
+
+
+def _row(label: str, value: str, remark: str) -> str:
+    return f"  {label:<30}{value:<14}{remark}".rstrip()
+
+
+def error_text(error: float) -> str:
+    """Return a length with two digits and no power of ten."""
+    number, _, unit = format_si(error, "length", 2).partition(" ")
+    return f"{float(number):g} {unit}"
+
+
+def _length(label: str, value: float, error: float | None, remark: str) -> str:
+    parts = [f"+- {error_text(error)}" if error is not None else "", remark]
+    return _row(label, format_si(value, "length"), ", ".join(filter(None, parts)))

@@ -1,0 +1,164 @@
+"""Words that reports share: numbers with the digits that their errors allow, headlines, notes, tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stribeck._types import LawShape
+from stribeck.contacts.friction import Definition, Friction
+from stribeck.contacts.line import Groups, LineContact
+from stribeck.curves.elasticities import regime_of
+from stribeck.curves.result import StribeckCurve
+from stribeck.files.datasets import GROUPS, INPUTS
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import format_bound, format_si
+from stribeck.solver.solution import Solution
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+LABELS = {
+    "friction_coefficient": "dry friction coefficient",
+    "alpha": "alpha of the contact law",
+    "beta": "beta of the contact law",
+}
+"""Names of inputs that are not words by themselves."""
+
+HANDS_ON = ("speed", "load", "viscosity", "modulus", "radius", "roughness", "friction_coefficient")
+"""Inputs that one may change; alpha and beta follow from the surface."""
+
+Elasticities = dict[str, float]
+
+
+def contact_part(friction: Friction) -> float:
+    """Return the part of friction that asperities cause."""
+    return friction.contact / friction.total if friction.total > 0 else 0.0
+
+
+def part_error(friction: Friction) -> float:
+    """Return the absolute error of that part."""
+    return friction.error / friction.total if friction.total > 0 else 0.0
+
+
+def regime_now(solution: Solution, definition: Definition) -> str:
+    """Return the regime of a state."""
+    return regime_of(solution.fluid_load_share, contact_part(solution.friction(definition=definition)))
+
+
+def hersey_of(solution: Solution, beta: float | None) -> float:
+    """Return the Hersey number, of groups by the beta of the contact law."""
+    if solution.contact is None and beta is not None:
+        return float(solution.groups.hersey_number(beta))
+    return solution.hersey_number
+
+
+def strongest(elasticities: Elasticities) -> str | None:
+    """Return the input at hand that moves friction most; None where none does."""
+    found = max(HANDS_ON, key=lambda name: abs(np.nan_to_num(elasticities[name])))
+    return found if abs(np.nan_to_num(elasticities[found])) > 0 else None
+
+
+def place(curve: StribeckCurve, value: float, digits: int = 3) -> str:
+    """Return a value of what a curve runs over, with its unit."""
+    if curve.contact is None:
+        return f"{value:.{digits}g}"
+    return format_si(value, QUANTITIES[curve.over].dimension, digits)
+
+
+def digits(value: float, error: float) -> str:
+    """Return a number with the digits that its relative error allows."""
+    if not math.isfinite(value):
+        return "none" if math.isnan(value) else "infinite"
+    return f"{value:.{_count(error)}g}"
+
+
+def length(value: float, error: float) -> str:
+    """Return a length with the digits that its relative error allows."""
+    if not math.isfinite(value):
+        return ""
+    return format_si(value, "length", _count(error))
+
+
+def _count(error: float) -> int:
+    """Return how many digits a relative error allows, 3 to 9."""
+    return 9 if error <= 0 else min(9, max(3, math.ceil(-math.log10(error))))
+
+
+def error_text(relative: float) -> str:
+    """Return a relative error as text."""
+    return f"{relative:.0e}" if math.isfinite(relative) else ""
+
+
+def part(value: float, error: float) -> str:
+    """Return a part of a sum with the digits that its absolute error allows, or that error as a bound."""
+    if 0 < value <= error:
+        return format_bound(error)
+    return digits(value, error / value if value > 0 else error)
+
+
+def print_head(console: Console, title: str, contact: LineContact | None, groups: Groups, over: str | None = None) -> None:
+    """Print the headline, the inputs and the groups, without those that vary."""
+    if title:
+        console.print(title, style="bold", markup=False, highlight=False)
+    if contact is not None:
+        shown = [
+            f"{LABELS.get(name, name)} {format_si(getattr(contact, name), QUANTITIES[name].dimension, 4)}"
+            for name in INPUTS
+            if name != over
+        ]
+        say(console, f"Contact: {', '.join(shown)}.")
+    constant = []
+    for name in GROUPS:
+        values = np.asarray(getattr(groups, name))
+        if values.ndim == 0 or (len(values) and np.ptp(values) <= 1e-12 * values[0]):
+            constant.append(f"{name} {float(values.flat[0]):.6g}")
+    say(console, f"Groups: {', '.join(constant)}.")
+    if groups.law is not None:
+        say(console, law_sentence(groups.law))
+
+
+def law_sentence(law: LawShape) -> str:
+    """Return name and parameters of a contact law as a sentence.
+
+    Parameters
+    ----------
+    law : LawShape
+        The law.
+
+    Returns
+    -------
+    str
+        Such as ``"Contact law: persson (alpha 2.09, beta 0.0143)."``
+    """
+    numbers = ", ".join(
+        f"{name.replace('_', ' ')} {value if isinstance(value, str) else f'{value:.4g}'}"
+        for name, value in law.parameters.items()
+    )
+    return f"Contact law: {law.name}{f' ({numbers})' if numbers else ''}."
+
+
+def print_outcome(console: Console, outcome: str, error: float, notes: Sequence[str]) -> None:
+    """Print how a solve ended, its error and notes."""
+    say(console, f"{outcome} Largest estimated relative error: {error:.1e}.")
+    for note in notes:
+        console.print(f"Note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+
+
+def say(console: Console, text: str) -> None:
+    """Print a sentence as it stands."""
+    console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def table_of(*columns: str, right: Sequence[int] = ()) -> Any:
+    """Return an empty table with these columns."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for i, name in enumerate(columns):
+        table.add_column(name, justify="right" if i in right else "left", no_wrap=True)
+    return table

@@ -1,0 +1,1 @@
+"""Contact laws: the pressure of the asperities at a separation of the surfaces."""

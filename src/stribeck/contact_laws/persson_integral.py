@@ -1,0 +1,210 @@
+r"""Persson's integral over the power spectrum, and the table of separation and pressure that is made of it.
+
+With :math:`G(q) = (\pi \int_{q_0}^q q'^3 C\, \mathrm{d}q')^{1/2}`, the mean separation :math:`u` at the mean pressure
+:math:`p = P E^*` is
+
+.. math::
+
+    u(P) = \frac{2}{\sqrt\pi} \int_0^{G(q_1)} J(P/G) \frac{\mathrm{d}G}{q}, \qquad
+    J(t) = \int_t^\infty \left[\gamma + 3 (1 - \gamma) \operatorname{erf}^2 t'\right] e^{-t'^2} \frac{\mathrm{d}t'}{t'}
+
+which is the published integral with :math:`G` as variable (docs/surfaces.md), so that nothing is singular.  It is taken for
+unit rms height and unit :math:`q_0`, on which the shape of the law does not depend.
+
+Source: [YP08] for the integral, [Persson07] for the limit of small pressure.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import special
+
+from stribeck._types import Array
+from stribeck.contact_laws.spectrum import Spectrum
+from stribeck.quantities.units import InputError
+
+__all__ = ["Integral", "tabulate"]
+
+TOLERANCE = 1e-11
+"""Largest error of the logarithm of the pressure that the table may have between its points."""
+
+FADED = 37.0
+"""Logarithm by which the excess over the exponential, which fades as exp(-s), is below double precision."""
+
+STIFFEST = 26.3
+"""Pressure over G(q_1) E* at the end of the table; the separation is near 1e-306 there."""
+
+MOST_POINTS = 20_000
+
+_SCALED = 36.0
+"""Square of the argument from which erf is one to double precision."""
+
+
+@dataclass(frozen=True)
+class Integral:
+    """Nodes G and weights (2/pi^(1/2)) dG/q of the integral over the spectrum, for unit rms height."""
+
+    gamma: float
+    G: Array
+    weight: Array
+    stiffness: float
+    alpha: float
+    beta: float
+
+    @classmethod
+    def of(cls, spectrum: Spectrum, gamma: float) -> Integral:
+        """Return the integral over a spectrum, with the exponential limit of the law."""
+        G, weight = _nodes(spectrum)
+        total = math.fsum(weight)
+        mean_log = math.fsum(weight * np.log(G)) / total
+        jump = 3 * (1 - gamma) / gamma * _erf_part()[1]
+        return cls(
+            gamma=gamma,
+            G=G,
+            weight=weight,
+            stiffness=math.sqrt(spectrum.moment(2) / 2),
+            alpha=1 / (gamma * total),
+            beta=math.exp(mean_log - 0.5 * np.euler_gamma + jump),
+        )
+
+    def separation(self, y: Array) -> Array:
+        """Return ln s and its first two derivatives with respect to y = ln Phi, a row each."""
+        # The factor exp(-t_1^2), t_1 = P/G(q_1), is taken out of all three sums, so that they do not underflow.
+        P = self.beta * np.exp(y)[:, None]
+        least = (P[:, 0] / self.stiffness) ** 2
+        t = P / self.G
+        fade = np.exp(np.minimum(least[:, None] - t * t, 0.0)) * self.weight
+        erf, share = special.erf(t), 3 * (1 - self.gamma)
+        rate = self.gamma + share * erf * erf
+        bend = 4 / math.sqrt(math.pi) * share * erf * t * np.exp(-t * t) - 2 * t * t * rate
+        s = np.sum(_scaled_J(t, self.gamma) * fade, axis=1)
+        first, second = -np.sum(rate * fade, axis=1) / s, -np.sum(bend * fade, axis=1) / s
+        return np.stack((np.log(self.alpha * s) - least, first, second - first * first))
+
+
+def _nodes(spectrum: Spectrum) -> tuple[Array, Array]:
+    """Return nodes G(q) and weights of the integral over dG/q, fine towards both ends of the spectrum.
+
+    Towards q_0 the panels shrink with G down to where J is negligible at any pressure of the table, towards q_1 down to
+    the width of the layer that counts near full contact.
+    """
+    t, w = np.polynomial.legendre.leggauss(16)
+    q, C, power = spectrum.wavenumber, spectrum.density, 4 - spectrum.exponent
+    below = np.concatenate(([0.0], np.cumsum(math.pi * spectrum.stretches(3))))
+    nodes, weights = [], []
+    for i, width in enumerate(np.diff(np.log(q))):
+        edges = np.linspace(0.0, 1.0, 2 + int(width / 0.5))
+        if i == q.size - 2:
+            edges = np.concatenate((edges[:-1], 1 - (1 - edges[-2]) * 0.5 ** np.arange(1, 14), [1.0]))
+        if i == 0:
+            # In tau, with q = q_0 exp(width tau^2), the root of G at q_0 is gone.
+            edges = np.sqrt(edges)
+            edges = np.concatenate(([0.0], edges[1] * 0.5 ** np.arange(50, 0, -1), edges[1:]))
+        tau = (0.5 * np.diff(edges)[:, None] * (t + 1) + edges[:-1, None]).ravel()
+        step = (0.5 * np.diff(edges)[:, None] * w).ravel()
+        log_q, rate = (width * tau**2, 2 * width * tau) if i == 0 else (width * tau, np.full_like(tau, width))
+        z = power[i] * log_q
+        small = np.abs(z) < 1e-9
+        rise = log_q * np.where(small, 1 + z / 2, np.expm1(z) / np.where(small, 1.0, z))
+        G = np.sqrt(below[i] + math.pi * C[i] * q[i] ** 4 * rise)
+        density = C[i] * np.exp(-spectrum.exponent[i] * log_q)
+        wavenumber = q[i] * np.exp(log_q)
+        # dG/q = pi q^3 C dq/(2 G q) and dq = q dln q.
+        nodes.append(G)
+        weights.append(math.pi * wavenumber**3 * density / (2 * G) * rate * step)
+    return np.concatenate(nodes), 2 / math.sqrt(math.pi) * np.concatenate(weights)
+
+
+def _scaled_J(t: Array, gamma: float) -> Array:  # noqa: N802
+    """Return exp(t^2) J(t)."""
+    square = t * t
+    large = square > _SCALED
+    near = np.where(large, 1.0, t)
+    factor, nodes = np.exp(near * near), np.where(large, square, _SCALED)
+    exponential = np.where(large, _laguerre(nodes), factor * special.exp1(near * near))
+    erf_part = np.where(large, 0.5 * exponential, _erf_part()[0](near))
+    return np.asarray(0.5 * gamma * exponential + 3 * (1 - gamma) * erf_part)
+
+
+def _laguerre(x: Array) -> Array:
+    """Return exp(x) E_1(x) for ``x`` of 36 and more."""
+    nodes, weights = np.polynomial.laguerre.laggauss(16)
+    total = np.zeros_like(x)
+    for node, weight in zip(nodes, weights, strict=True):
+        total += weight / (x + node)
+    return total
+
+
+@functools.cache
+def _erf_part() -> tuple[np.polynomial.Chebyshev, float]:
+    r"""Return a polynomial for exp(t^2) K(t) up to t = 6, where K(t) is the integral of erf^2 exp(-t'^2)/t' from t, and K(0).
+
+    With z = t'^2 - t^2 the first is half the integral of exp(-z) erf^2(r)/r^2 over z, r^2 = t^2 + z, which is smooth.
+    """
+    x, w = np.polynomial.legendre.leggauss(16)
+    edges = np.linspace(0.0, 40.0, 17)
+    z = (0.5 * np.diff(edges)[:, None] * (x + 1) + edges[:-1, None]).ravel()
+    weight = (0.5 * np.diff(edges)[:, None] * w).ravel() * np.exp(-z) / 2
+
+    def scaled(t: Array) -> Array:
+        square = np.asarray(t)[..., None] ** 2 + z
+        return np.asarray(np.sum(weight * special.erf(np.sqrt(square)) ** 2 / square, axis=-1))
+
+    fit = np.polynomial.Chebyshev.interpolate(scaled, 72, domain=[0.0, math.sqrt(_SCALED)])
+    return fit, float(scaled(np.array(0.0)))
+
+
+def tabulate(integral: Integral) -> tuple[Array, Array, float]:
+    """Return the knots ln s, the coefficients of the excess ln Phi + s between them, and its largest error."""
+    delay = math.log(max(1.0, integral.beta * integral.alpha))
+    y = _start(integral, -FADED - delay)
+    jets = integral.separation(y)
+    checked, error = np.zeros(y.size - 1, dtype=bool), 0.0
+    while not checked.all():
+        if y.size > MOST_POINTS:
+            raise InputError("Persson's law of this spectrum could not be tabulated; give a smoother spectrum.")
+        open_intervals = np.flatnonzero(~checked)
+        middle = 0.5 * (y[open_intervals] + y[open_intervals + 1])
+        jet = integral.separation(middle)
+        knots, coefficients = _quintics(y, jets)
+        # Knots run from small to large separation, against y.
+        c = coefficients[:, y.size - 2 - open_intervals]
+        t = jet[0] - knots[y.size - 2 - open_intervals]
+        value = ((((c[5] * t + c[4]) * t + c[3]) * t + c[2]) * t + c[1]) * t + c[0]
+        miss = np.abs(value - (middle + np.exp(jet[0])))
+        good = miss <= TOLERANCE
+        error = max(error, float(np.max(miss[good], initial=0.0)))
+        checked[open_intervals[good]] = True
+        split = open_intervals[~good]
+        y = np.insert(y, split + 1, middle[~good])
+        jets = np.insert(jets, split + 1, jet[:, ~good], axis=1)
+        checked = np.insert(checked, split + 1, False)
+    knots, coefficients = _quintics(y, jets)
+    return knots, coefficients, error
+
+
+def _start(integral: Integral, lowest: float) -> Array:
+    """Return first points ln Phi, from ``lowest`` to the stiffest, finer in the pressure where it moves little."""
+    turn = math.log(integral.stiffness / integral.beta)
+    above = np.log(np.linspace(1.0, STIFFEST, 40)) + turn
+    return np.concatenate((np.linspace(lowest, turn, 60)[:-1], above))
+
+
+def _quintics(y: Array, jets: Array) -> tuple[Array, Array]:
+    """Return knots and polynomials of the excess through its values and two derivatives with respect to ln s."""
+    x, x_y, x_yy = jets[:, ::-1]
+    s, slope = np.exp(x), 1 / x_y
+    f = np.stack((y[::-1] + s, slope + s, -x_yy * slope**3 + s))
+    h = np.diff(x)
+    c0, c1, c2 = f[0, :-1], f[1, :-1], f[2, :-1] / 2
+    a = (f[0, 1:] - c0) - h * (c1 + h * c2)
+    b = h * (f[1, 1:] - c1 - 2 * h * c2)
+    c = h * h * (f[2, 1:] - 2 * c2)
+    c3 = (10 * a - 4 * b + 0.5 * c) / h**3
+    c4 = (-15 * a + 7 * b - c) / h**4
+    c5 = (6 * a - 3 * b + 0.5 * c) / h**5
+    return x, np.stack((c0, c1, c2, c3, c4, c5))

@@ -1,0 +1,348 @@
+r"""Power spectra of isotropic rough surfaces: self-affine ones in closed form, measured ones as tables.
+
+The spectrum :math:`C(q)` is that of the surface in two dimensions, with the wave number :math:`q = 2\pi/\text{wavelength}`:
+
+.. math::
+
+    h_\mathrm{rms}^2 = 2\pi \int_{q_0}^{q_1} q\, C(q)\, \mathrm{d}q
+
+Both kinds are straight between their points on double logarithmic axes, so all their moments are closed forms.  Lengths
+are in metres at the border; any other unit serves as long as all lengths share it.
+
+Source: [Persson05] for the convention and the self-affine form.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.quantities.units import InputError, format_si, show
+
+__all__ = ["SelfAffine", "Spectrum", "height_of_roughness", "positive"]
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    r"""Isotropic power spectrum as a table, a power law between neighbouring points and zero outside.
+
+    Parameters
+    ----------
+    wavenumber : array_like
+        Wave numbers :math:`q` of the points, rising [1/m].
+    density : array_like
+        Spectrum :math:`C` of the surface in two dimensions there, positive [m^4].
+
+    Raises
+    ------
+    InputError
+        Where the table is too short, unsorted, or has a value that is no positive number; the row is named.
+
+    Notes
+    -----
+    Moments are exact for the table; how well the table stands for a surface is not judged here.
+    Source: [Persson05], with its normalisation of C.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> round(Spectrum([1.0, np.e], [1.0, np.exp(-2.0)]).rms_height ** 2 / (2 * np.pi), 12)
+    1.0
+    """
+
+    wavenumber: Array
+    density: Array
+
+    def __post_init__(self) -> None:
+        """Check the table and keep read-only copies."""
+        for name in ("wavenumber", "density"):
+            object.__setattr__(self, name, _column(name, getattr(self, name)))
+        if self.wavenumber.shape != self.density.shape:
+            raise InputError(
+                f"the spectrum has {self.wavenumber.size} wave numbers and {self.density.size} densities; "
+                "give one density for each wave number."
+            )
+        if self.wavenumber.size < 2:
+            raise InputError("the spectrum has fewer than two points; give at least two, of different wave numbers.")
+        if not np.all(np.diff(self.wavenumber) > 0):
+            row = int(np.argmin(np.diff(self.wavenumber) > 0)) + 2
+            raise InputError(
+                f"wavenumber in row {row} = {self.wavenumber[row - 1]:g} is not above the one before it, "
+                f"{self.wavenumber[row - 2]:g}; sort the rows by wave number and keep one for each."
+            )
+
+    @property
+    def lowest(self) -> float:
+        """Wave number of the longest roughness, the long cut-off q_0 [1/m]."""
+        return float(self.wavenumber[0])
+
+    @property
+    def highest(self) -> float:
+        """Wave number of the shortest roughness, the short cut-off q_1 [1/m]."""
+        return float(self.wavenumber[-1])
+
+    @cached_property
+    def exponent(self) -> Array:
+        """Power -d ln C/d ln q of each stretch between two points."""
+        return np.asarray(-np.diff(np.log(self.density)) / np.diff(np.log(self.wavenumber)))
+
+    def at(self, wavenumber: Array) -> Array:
+        """Return the spectrum at wave numbers.
+
+        Parameters
+        ----------
+        wavenumber : array_like
+            Wave numbers [1/m].
+
+        Returns
+        -------
+        ndarray
+            C(q) [m^4], zero outside the table.
+        """
+        q = np.asarray(wavenumber, dtype=float)
+        inside = (q >= self.lowest) & (q <= self.highest)
+        logs = np.interp(np.log(np.where(inside, q, self.lowest)), np.log(self.wavenumber), np.log(self.density))
+        return np.where(inside, np.exp(logs), 0.0)
+
+    def stretches(self, order: float) -> Array:
+        r"""Return the integral of each stretch of the table.
+
+        .. math:: \int_{q_i}^{q_{i+1}} q^n C(q)\, \mathrm{d}q
+
+        Parameters
+        ----------
+        order : float
+            Power n.
+
+        Returns
+        -------
+        ndarray
+            One integral for each stretch [m^(3-n)].
+        """
+        q, n = self.wavenumber, order + 1
+        return q[:-1] ** n * self.density[:-1] * _growth(n - self.exponent, np.diff(np.log(q)))
+
+    def moment(self, order: float) -> float:
+        r"""Return a moment of the spectrum.
+
+        .. math:: m_n = 2\pi \int_{q_0}^{q_1} q^{n+1} C(q)\, \mathrm{d}q
+
+        Parameters
+        ----------
+        order : float
+            Order n: 0 is the mean square of height, 2 that of the slope, 4 that of the Laplacian.
+
+        Returns
+        -------
+        float
+            The moment [m^(2-n)].
+        """
+        return 2 * math.pi * math.fsum(self.stretches(order + 1))
+
+    @property
+    def rms_height(self) -> float:
+        """Root mean square of the height [m]."""
+        return math.sqrt(self.moment(0))
+
+    @property
+    def rms_slope(self) -> float:
+        """Root mean square of the gradient of the height [1]; that along a line is smaller by the root of 2."""
+        return math.sqrt(self.moment(2))
+
+    @property
+    def rms_curvature(self) -> float:
+        """Root mean square of the mean curvature, half the Laplacian of the height [1/m]."""
+        return 0.5 * math.sqrt(self.moment(4))
+
+    def scaled(self, rms_height: float) -> Spectrum:
+        """Return the spectrum of the same shape with another rms height.
+
+        Parameters
+        ----------
+        rms_height : float
+            Root mean square of the height [m].
+
+        Returns
+        -------
+        Spectrum
+            The spectrum, all densities multiplied by one number.
+
+        Raises
+        ------
+        InputError
+            Where ``rms_height`` is not a positive number, or more than the longest wavelength, as a factor would be.
+        """
+        return self._with_height(height_of_roughness(rms_height, 2 * math.pi / self.lowest))
+
+    def _with_height(self, rms_height: float) -> Spectrum:
+        return Spectrum(self.wavenumber, self.density * (rms_height / self.rms_height) ** 2)
+
+    def between(self, lowest: float, highest: float) -> Spectrum:
+        """Return the part of the spectrum between two wave numbers.
+
+        Parameters
+        ----------
+        lowest, highest : float
+            Wave numbers [1/m]; those outside the table are moved to its ends.
+
+        Returns
+        -------
+        Spectrum
+            The part, with points at its ends.
+
+        Raises
+        ------
+        InputError
+            Where nothing of the table lies between them.
+        """
+        low, high = max(positive("lowest", lowest), self.lowest), min(positive("highest", highest), self.highest)
+        if not low < high:
+            raise InputError(
+                f"no part of the spectrum lies between {lowest:g} and {highest:g} 1/m; "
+                f"it reaches from {self.lowest:g} to {self.highest:g} 1/m."
+            )
+        q = self.wavenumber
+        inner = q[(q > low * (1 + 1e-12)) & (q < high * (1 - 1e-12))]
+        nodes = np.concatenate(([low], inner, [high]))
+        return Spectrum(nodes, self.at(nodes))
+
+
+@dataclass(frozen=True)
+class SelfAffine:
+    r"""Self-affine roughness: a flat roll-off, then a power law.
+
+    .. math::
+
+        C(q) = C_r \begin{cases} 1 & q_0 \le q \le q_r \\ (q/q_r)^{-2(1+H)} & q_r \le q \le q_1 \end{cases}
+
+    Parameters
+    ----------
+    h_rms : float
+        Root mean square of the height, which sets :math:`C_r` [m].
+    q0 : float
+        Wave number :math:`q_0` of the longest roughness [1/m].
+    q1 : float
+        Wave number :math:`q_1` of the shortest roughness [1/m].
+    hurst : float
+        Hurst exponent :math:`0 < H \le 1` [-].
+    roll_off : float, optional
+        Wave number :math:`q_r` from which the spectrum falls [1/m]; :math:`q_0` by default, that is no roll-off.
+
+    Raises
+    ------
+    InputError
+        Where a value is no number in its range, or the wave numbers are not in this order.
+
+    Notes
+    -----
+    Source: [Persson05]; q_0 is called q_L there where a roll-off follows it, and q_r then q_0.
+
+    Examples
+    --------
+    >>> surface = SelfAffine(h_rms=1e-6, q0=1e5, q1=1e8, hurst=0.8)
+    >>> round(surface.spectrum.rms_height, 18)
+    1e-06
+    """
+
+    h_rms: float
+    q0: float
+    q1: float
+    hurst: float
+    roll_off: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the values and make them floats."""
+        for name in ("h_rms", "q0", "q1", "hurst"):
+            object.__setattr__(self, name, positive(name, getattr(self, name)))
+        if self.hurst > 1:
+            raise InputError(f"hurst = {self.hurst:g} is above 1; the Hurst exponent lies between 0 and 1, often near 0.8.")
+        roll_off = self.q0 if self.roll_off is None else positive("roll_off", self.roll_off)
+        object.__setattr__(self, "roll_off", roll_off)
+        if not self.q0 < self.q1:
+            raise InputError(
+                f"q1 = {self.q1:g} is not above q0 = {self.q0:g}; q0 belongs to the longest roughness, q1 to the shortest."
+            )
+        if not self.q0 <= roll_off < self.q1:
+            raise InputError(f"roll_off = {roll_off:g} lies outside q0 = {self.q0:g} to q1 = {self.q1:g}, q1 excluded.")
+
+    @cached_property
+    def spectrum(self) -> Spectrum:
+        """The spectrum as a table of two or three points."""
+        roll_off = self.q0 if self.roll_off is None else self.roll_off
+        falling = (self.q1 / roll_off) ** (-2 * (1 + self.hurst))
+        if roll_off > self.q0:
+            table = Spectrum(np.array([self.q0, roll_off, self.q1]), np.array([1.0, 1.0, falling]))
+        else:
+            table = Spectrum(np.array([self.q0, self.q1]), np.array([1.0, falling]))
+        return table._with_height(self.h_rms)
+
+    def scaled(self, rms_height: float) -> SelfAffine:
+        """Return the surface of the same shape of the spectrum with another rms height.
+
+        Parameters
+        ----------
+        rms_height : float
+            Root mean square of the height [m].
+
+        Returns
+        -------
+        SelfAffine
+            The surface.
+
+        Raises
+        ------
+        InputError
+            Where ``rms_height`` is not a positive number, or more than the longest wavelength, as a factor would be.
+        """
+        return replace(self, h_rms=height_of_roughness(rms_height, 2 * math.pi / self.q0))
+
+
+def _growth(power: Array, width: Array) -> Array:
+    """Return the integral of exp(power t) over t from 0 to ``width``, also where the power vanishes."""
+    z = power * width
+    small = np.abs(z) < 1e-9
+    return np.asarray(width * np.where(small, 1 + z / 2, np.expm1(z) / np.where(small, 1.0, z)))
+
+
+def positive(name: str, value: object) -> float:
+    """Return a positive number as a float, or raise the sentence that names it."""
+    try:
+        number = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        number = math.nan
+    if isinstance(value, bool | str) or not (math.isfinite(number) and number > 0):
+        raise InputError(f"{name} = {show(value)} is not a positive number; give one above zero, in SI units.")
+    return number
+
+
+def height_of_roughness(value: object, longest_wavelength: float) -> float:
+    """Return an rms height, or raise the sentence that says that it is one, where it cannot be that of a roughness."""
+    height = positive("rms_height", value)
+    if height > longest_wavelength:
+        raise InputError(
+            f"rms_height = {show(value)} would be {format_si(height, 'length')}, more than the longest wavelength of the "
+            f"roughness, {format_si(longest_wavelength, 'length')}; give the new rms height in m, such as 1e-6, not a factor."
+        )
+    return height
+
+
+def _column(name: str, values: object) -> Array:
+    try:
+        array = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} of the spectrum is not a column of numbers.") from None
+    if array.ndim != 1:
+        raise InputError(f"{name} of the spectrum has the shape {array.shape}; give a column of numbers.")
+    good = np.isfinite(array) & (array > 0)
+    if not good.all():
+        row = int(np.argmin(good)) + 1
+        raise InputError(
+            f"{name} in row {row} of the spectrum = {array[row - 1]:g} is not a positive number; "
+            "remove the rows where the spectrum has gaps, or fill them."
+        )
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,274 @@
+"""Contact law of a user as a table of separations and pressures.
+
+The table is checked when the law is made: the pressure must be positive and fall from row to row. It is interpolated in the
+logarithm of the pressure, as smoothly as its rows allow.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stribeck._types import Array
+from stribeck.files.two_columns import read_two_columns
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["TableLaw"]
+
+LEAST_ROWS = 4
+
+PLAIN, WITH_UNITS = ("separation", "pressure"), {"gap": "length", "pressure": "pressure"}
+"""Headers of a file."""
+
+STRAY = 3.0
+"""Factor by which the slope between two rows may leave those of the straight lines around it: a cubic that is monotone keeps
+to it, and a smoother interpolant is refused where it does not."""
+
+LEFT_OVER = 1e-3
+"""Pressure at the end of a table over the largest of a state above which the state says that the table was left."""
+
+
+@dataclass(frozen=True)
+class TableLaw:
+    r"""Contact law through the rows of a table.
+
+    .. math:: \Phi(s_i) = p_i/(\beta E^*), \qquad s_i = \alpha h_i/h_\mathrm{rms}
+
+    Parameters
+    ----------
+    separation : array_like, shape (n,)
+        Separations, ascending, at least four [-].
+    pressure : array_like, shape (n,)
+        Pressures there over beta E*, positive and descending [-].
+    title : str
+        What the table is, for outputs.
+
+    Raises
+    ------
+    InputError
+        If a row is no pair of finite numbers, separations do not ascend, or pressures are not positive and descending; the
+        sentence names the row, the first being row 1.
+
+    Notes
+    -----
+    Between the rows ln(Phi) is a spline of degree five, else three, where it falls everywhere and its slope stays within a
+    factor three of the straight lines around it; else the cubic that is monotone piece by piece.  Outside the rows it goes on
+    straight, and a solution whose pressure lies there says so in its notes.
+    """
+
+    separation: tuple[float, ...]
+    pressure: tuple[float, ...]
+    title: str = ""
+
+    def __init__(self, separation: ArrayLike, pressure: ArrayLike, title: str = "") -> None:
+        s, p = _column("separation", separation), _column("pressure", pressure)
+        _check_rows(s, p)
+        object.__setattr__(self, "separation", tuple(s))
+        object.__setattr__(self, "pressure", tuple(p))
+        object.__setattr__(self, "title", str(title))
+
+    @classmethod
+    def read(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        alpha: float | None = None,
+        beta: float | None = None,
+        roughness: float | None = None,
+        modulus: float | None = None,
+    ) -> TableLaw:
+        """Read the table from a CSV file.
+
+        Parameters
+        ----------
+        path : str or path-like
+            A text file with a header, ``separation, pressure`` for numbers without units or, for example,
+            ``gap [um], pressure [MPa]``, and a row of two numbers on each line; commas, semicolons or tabs part them.
+        alpha, beta, roughness, modulus : float, optional
+            Coefficients of the contact, h_rms [m] and E* [Pa], which a table with units needs.
+
+        Returns
+        -------
+        TableLaw
+            The law, its title the name of the file.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read or is no such table; the sentence names line and column.
+        """
+        rows, units = read_two_columns(Path(path), PLAIN, WITH_UNITS)
+        s, p = rows[:, 0], rows[:, 1]
+        if units is not None:
+            needed = {"alpha": alpha, "beta": beta, "roughness": roughness, "modulus": modulus}
+            missing = [name for name, value in needed.items() if not value]
+            if missing:
+                raise InputError(
+                    f"{path} has units, so that {' and '.join(missing)} of the contact must be given and positive."
+                )
+            assert alpha and beta and roughness and modulus
+            s, p = s * (units[0] * alpha / roughness), p * (units[1] / (beta * modulus))
+        try:
+            return cls(s, p, title=Path(path).name)
+        except InputError as problem:
+            raise InputError(f"{path}: {problem}") from None
+
+    @property
+    def name(self) -> str:
+        """The word ``"table"``."""
+        return "table"
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """Title, number of rows and their first and last separation."""
+        found: dict[str, float | str] = {"title": self.title} if self.title else {}
+        return found | {
+            "rows": float(len(self.separation)),
+            "first_separation": self.separation[0],
+            "last_separation": self.separation[-1],
+        }
+
+    @property
+    def lowest(self) -> float:
+        """Minus infinity: the table goes on straight."""
+        return -math.inf
+
+    @cached_property
+    def _spline(self) -> tuple[Any, Any, int]:
+        """The interpolant of ln(Phi), its derivative, and its degree."""
+        return _interpolant(np.array(self.separation), np.log(np.array(self.pressure)))
+
+    @cached_property
+    def _ends(self) -> tuple[float, float, float, float]:
+        """First and last separation, and the slopes there."""
+        first, last = self.separation[0], self.separation[-1]
+        slope = self._spline[1]
+        return first, last, float(slope(first)), float(slope(last))
+
+    @property
+    def degree(self) -> int:
+        """Degree of the interpolant: 5, 3, or 1 for the cubic of which only the slope is continuous."""
+        return self._spline[2]
+
+    def log_pressure(self, separation: Array) -> Array:
+        """Return ln(Phi) at the separation s.
+
+        Parameters
+        ----------
+        separation : ndarray
+            Separation s, of any shape [-].
+
+        Returns
+        -------
+        ndarray
+            Logarithm of p/(beta E*), of the same shape.
+        """
+        s = np.asarray(separation, dtype=float)
+        first, last, slope_first, slope_last = self._ends
+        inside = np.clip(s, first, last)
+        outside = s - inside
+        return np.asarray(self._spline[0](inside) + np.where(outside < 0, slope_first, slope_last) * outside)
+
+    def log_slope(self, separation: Array) -> Array:
+        """Return d ln(Phi)/ds at the separation s.
+
+        Parameters
+        ----------
+        separation : ndarray
+            Separation s, of any shape [-].
+
+        Returns
+        -------
+        ndarray
+            The derivative, negative.
+        """
+        first, last, _, _ = self._ends
+        return np.asarray(self._spline[1](np.clip(np.asarray(separation, dtype=float), first, last)))
+
+    def notes(self, separation: float) -> tuple[str, ...]:
+        """Return what to know about a state.
+
+        Parameters
+        ----------
+        separation : float
+            Its least separation [-].
+
+        Returns
+        -------
+        tuple of str
+            One sentence each.
+        """
+        first, last = self.separation[0], self.separation[-1]
+        found = []
+        if separation < first:
+            found.append(
+                f"The least separation is {separation:.3g}, below the first row of the contact law's table, {first:.3g}: "
+                "the law is continued there by its tangent."
+            )
+        largest = float(self.log_pressure(np.array([separation]))[0])
+        left = math.exp(min(0.0, math.log(self.pressure[-1]) - largest))
+        if left > LEFT_OVER:
+            found.append(
+                f"The last row of the contact law's table, {last:.3g}, still has {100 * left:.2g} % of the largest contact "
+                "pressure: beyond it the law is continued by its tangent."
+            )
+        return tuple(found)
+
+
+def _column(name: str, values: ArrayLike) -> list[float]:
+    try:
+        found = np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        found = np.empty((0, 0))
+    if found.ndim != 1:
+        raise InputError(f"{name} = {show(values)}; it must be a list of numbers, one for each row of the table.")
+    return [float(value) for value in found]
+
+
+def _check_rows(s: Sequence[float], p: Sequence[float]) -> None:
+    """Refuse rows that are no contact law, naming the first."""
+    if len(s) != len(p):
+        raise InputError(f"separation has {len(s)} rows and pressure {len(p)}; they must be equally many.")
+    if len(s) < LEAST_ROWS:
+        raise InputError(f"the table of the contact law has {len(s)} rows; at least {LEAST_ROWS} are needed.")
+    for i in range(len(s)):
+        row = f"row {i + 1} of the contact law's table"
+        if not (math.isfinite(s[i]) and math.isfinite(p[i])):
+            raise InputError(f"{row}, {s[i]:g} and {p[i]:g}, is not finite; remove it or repair it.")
+        if p[i] <= 0:
+            raise InputError(f"{row}: pressure {p[i]:g} must be positive; end the table where contact ends.")
+        if i and s[i] <= s[i - 1]:
+            raise InputError(f"{row}: separation {s[i]:g} must exceed that of the row before, {s[i - 1]:g}.")
+        if i and p[i] >= p[i - 1]:
+            raise InputError(f"{row}: pressure {p[i]:g} must be below that of the row before, {p[i - 1]:g}.")
+
+
+def _interpolant(s: Array, f: Array) -> tuple[Any, Any, int]:
+    """Return the smoothest decreasing interpolant, its derivative, and its degree (1 where only the slope is continuous)."""
+    from scipy.interpolate import CubicHermiteSpline, PchipInterpolator, make_interp_spline  # slow to import
+
+    secants = np.diff(f) / np.diff(s)
+    around = np.stack([np.append(secants[:1], secants[:-1]), secants, np.append(secants[1:], secants[-1:])])
+    low, high = STRAY * around.min(axis=0), around.max(axis=0) / STRAY
+    parts = np.linspace(0.0, 1.0, 33)
+    points = s[:-1] + parts[:, None] * np.diff(s)
+    for degree in (5, 3):
+        if len(s) > degree:
+            spline = make_interp_spline(s, f, k=degree)
+            slope = spline.derivative()
+            if ((slope(points) >= low) & (slope(points) <= high)).all():
+                return spline, slope, degree
+    slopes = PchipInterpolator(s, f).derivative()(s)
+    for end, secant in ((0, secants[0]), (-1, secants[-1])):
+        if slopes[end] >= 0.0:
+            slopes[end] = secant
+    cubics = CubicHermiteSpline(s, f, slopes)
+    return cubics, cubics.derivative(), 1

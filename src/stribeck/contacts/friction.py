@@ -1,0 +1,56 @@
+"""The friction coefficient: its parts, the two definitions of its viscous part, and the coefficients that it needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from stribeck.contacts.line import LineContact
+from stribeck.quantities.inputs import quantity
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["DEFINITIONS", "Definition", "Friction", "check_definition", "coefficients"]
+
+Definition = Literal["paper", "balanced"]
+
+DEFINITIONS: tuple[Definition, ...] = ("paper", "balanced")
+"""Definitions of the viscous friction: Eq. (friction) of [BP], and the force on the substrate (theory.md, section 6)."""
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Friction coefficient and its two parts.
+
+    Attributes
+    ----------
+    contact : float
+        Part from asperities, mu0 times their share of the load [-].
+    viscous : float
+        Part from the fluid [-].
+    total : float
+        Their sum [-].
+    error : float
+        Estimated absolute error of the sum [-].
+    """
+
+    contact: float
+    viscous: float
+    total: float
+    error: float
+
+
+def coefficients(contact: LineContact | None, mu0: float | None, beta: float | None) -> tuple[float, float]:
+    """Return mu0 and beta as given, else those of the contact, else 1."""
+    if mu0 is None:
+        mu0 = 1.0 if contact is None else contact.friction_coefficient
+    if beta is None:
+        beta = 1.0 if contact is None else contact.beta
+    return quantity("friction_coefficient", mu0), quantity("beta", beta)
+
+
+def check_definition(definition: str) -> Definition:
+    """Return ``definition`` if it names one of :data:`DEFINITIONS`."""
+    for known in DEFINITIONS:
+        if definition == known:
+            return known
+    raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.")

@@ -1,0 +1,174 @@
+r"""The three dimensionless groups of the model: all that the equations see.
+
+Source: [Bertin & Pouliquen] the definitions of :math:`\lambda`, :math:`\bar F_N` and :math:`\bar h_\mathrm{rms}` below
+Eq. (Hertz_scales).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array, LawShape
+from stribeck.quantities.inputs import check_law, quantity
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["Groups"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Groups:
+    r"""The dimensionless groups of the model: one state, or arrays of states that broadcast.
+
+    .. math::
+
+        \lambda = \frac{3\pi^2}{4} \frac{\eta U R E^*}{F_N^2}, \quad
+        \bar F_N = \frac{F_N}{\pi \beta^2 R E^*}, \quad
+        \bar h_\mathrm{rms} = \frac{h_\mathrm{rms}}{4 \alpha \beta^2 R}
+
+    Parameters
+    ----------
+    speed : float or array_like
+        :math:`\lambda \ge 0` [-]; zero is the quasistatic contact.
+    load : float or array_like
+        :math:`\bar F_N > 0` [-]; from one on, the exponential contact law is outside its range.
+    roughness : float or array_like
+        :math:`\bar h_\mathrm{rms} \ge 0` [-]; zero is the smooth contact.
+    law : LawShape, optional
+        Contact law :math:`\Phi`, the pressure over :math:`\beta E^*` at the separation :math:`\alpha h/h_\mathrm{rms}`; the
+        exponential law of the paper by default.
+
+    Raises
+    ------
+    InputError
+        Where a group is no real number, not finite or out of range, or the three shapes do not broadcast, or the law is none.
+
+    Notes
+    -----
+    Arrays are kept as read-only float64 copies, each in its own shape. Friction needs the coefficient
+    :math:`\beta` of the contact law too, see :meth:`hersey_number` and :meth:`slope`.
+
+    Source: [Bertin & Pouliquen] Section "Dimensional analysis".
+    """
+
+    speed: float | Array
+    load: float | Array
+    roughness: float | Array
+    law: LawShape | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        """Check the groups and make them floats or read-only arrays."""
+        check_law(self.law)
+        for name, positive in (("speed", False), ("load", True), ("roughness", False)):
+            object.__setattr__(self, name, _group(name, getattr(self, name), positive))
+        try:
+            _ = self.shape
+        except ValueError:
+            shapes = ", ".join(f"{name} {np.shape(getattr(self, name))}" for name in ("speed", "load", "roughness"))
+            raise InputError(f"the shapes of the groups do not broadcast: {shapes}.") from None
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the three groups broadcast together; ``()`` for one state."""
+        if isinstance(self.speed, float) and isinstance(self.load, float) and isinstance(self.roughness, float):
+            return ()
+        return np.broadcast_shapes(np.shape(self.speed), np.shape(self.load), np.shape(self.roughness))
+
+    @property
+    def relative_roughness(self) -> float | Array:
+        r"""Roughness over Hertz indentation, :math:`\kappa = \bar h_\mathrm{rms}/\bar F_N` [-]."""
+        with np.errstate(all="ignore"):
+            return self.roughness / self.load
+
+    def hersey_number(self, beta: float = 1.0) -> float | Array:
+        r"""Return the Hersey number.
+
+        .. math:: \frac{\eta U}{F_N} = \frac{4 \beta^2 \bar F_N \lambda}{3 \pi}
+
+        Parameters
+        ----------
+        beta : float
+            Coefficient :math:`\beta` of the contact law [-].
+
+        Returns
+        -------
+        float or ndarray
+            Hersey number [-], of the broadcast shape.
+
+        Raises
+        ------
+        InputError
+            Where ``beta`` is not a positive number.
+        """
+        beta = quantity("beta", beta)
+        with np.errstate(all="ignore"):
+            return 4 * beta * beta * self.load * self.speed / (3 * math.pi)
+
+    def slope(self, beta: float = 1.0) -> float | Array:
+        r"""Return the slope of the cylinder at the edge of the Hertz contact.
+
+        .. math:: \frac{a}{R} = 2 \beta \bar F_N^{1/2}
+
+        Parameters
+        ----------
+        beta : float
+            Coefficient :math:`\beta` of the contact law [-].
+
+        Returns
+        -------
+        float or ndarray
+            Half-width of the Hertz contact over the radius [-], of the shape of ``load``.
+
+        Raises
+        ------
+        InputError
+            Where ``beta`` is not a positive number.
+        """
+        return 2 * quantity("beta", beta) * self.load**0.5
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether the groups have the same shapes and values."""
+        if not isinstance(other, Groups):
+            return NotImplemented
+        names = ("speed", "load", "roughness")
+        same = all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
+        return same and self.law == other.law
+
+    def __hash__(self) -> int:
+        """Hash by value."""
+        values = (np.asarray(value) for value in (self.speed, self.load, self.roughness))
+        return hash((*((value.shape, value.tobytes()) for value in values), self.law))
+
+    def __repr__(self) -> str:
+        """Return the groups, and the law where it is not the exponential one."""
+        law = "" if self.law is None else f", law={self.law!r}"
+        return f"Groups(speed={self.speed!r}, load={self.load!r}, roughness={self.roughness!r}{law})"
+
+
+def _group(name: str, value: Any, positive: bool) -> float | Array:
+    if type(value) is float and (0.0 < value < math.inf or (value == 0.0 and not positive)):
+        return value + 0.0
+    try:
+        raw = np.asarray(value)
+    except ValueError:  # ragged lists
+        raw = np.asarray(None)
+    if raw.dtype.kind not in "iuf":
+        raise InputError(
+            f"{name} = {show(value)} is not a real number; groups are bare numbers or arrays of them, "
+            "for values with units use LineContact."
+        )
+    with np.errstate(over="ignore"):
+        # The sum makes a copy, and no negative zero, which would hash apart from zero.
+        array = np.asarray(raw, dtype=np.float64) + 0.0
+    wrong = ~np.isfinite(array) | (array <= 0 if positive else array < 0)
+    if np.any(wrong):
+        received = f"= {show(value)}" if array.ndim == 0 else f"has the value {array[wrong].flat[0]:g} and"
+        allowed = "positive" if positive else "zero or positive"
+        raise InputError(f"{name} {received} must be finite and {allowed}.")
+    if array.ndim == 0:
+        return float(array)
+    array.setflags(write=False)
+    return array

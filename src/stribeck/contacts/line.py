@@ -1,0 +1,275 @@
+"""The line contact in SI units, and the dimensionless groups that the model makes of it.
+
+:class:`LineContact` is what a tribologist knows; it turns into :class:`Groups` and back, and gives the Hertz scales with
+which results return to SI. No equation is solved here.
+
+Source: [Bertin & Pouliquen] Eq. (Hertz_scales).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Self
+
+from stribeck._types import LawShape
+from stribeck.contacts.groups import Groups
+from stribeck.quantities.inputs import INPUTS, check_law, check_modulus_choice, quantity
+from stribeck.quantities.units import InputError
+
+__all__ = ["Groups", "HertzScales", "InputError", "LineContact"]
+
+
+@dataclass(frozen=True)
+class HertzScales:
+    r"""Scales of the dry contact of a smooth cylinder, in SI units.
+
+    .. math::
+
+        a = \left(\frac{4 F_N R}{\pi E^*}\right)^{1/2}, \quad u_\mathrm{Hz} = \frac{a^2}{R}, \quad
+        p_\mathrm{Hz} = \frac{2 F_N}{\pi a}
+
+    Parameters
+    ----------
+    half_width : float
+        :math:`a`, the scale of lengths along the contact [m].
+    indentation : float
+        :math:`u_\mathrm{Hz}`, the scale of gaps [m].
+    pressure : float
+        :math:`p_\mathrm{Hz}`, the largest pressure of the dry contact and the scale of pressures [Pa].
+
+    Notes
+    -----
+    Source: [Bertin & Pouliquen] Eq. (Hertz_scales).
+    """
+
+    half_width: float
+    indentation: float
+    pressure: float
+
+
+@dataclass(frozen=True, init=False)
+class LineContact:
+    r"""A rigid rough cylinder sliding on a lubricated elastic half-space, in SI units.
+
+    Every quantity is text with a unit (``"10 mm"``) or a bare number in SI units; floats in SI are kept.
+
+    Parameters
+    ----------
+    radius : str or float
+        Radius :math:`R > 0` of the cylinder [m].
+    load : str or float
+        Normal load per unit length :math:`F_N > 0` [N/m].
+    viscosity : str or float
+        Viscosity :math:`\eta > 0` of the fluid [Pa s].
+    speed : str or float
+        Sliding speed :math:`U \ge 0` [m/s].
+    roughness : str or float
+        Root-mean-square roughness :math:`h_\mathrm{rms} \ge 0` [m].
+    alpha : float
+        Coefficient :math:`\alpha > 0` of the contact law
+        :math:`p_c = \beta E^* \exp(-\alpha h/h_\mathrm{rms})` [-]; about 2 for self-affine surfaces.
+    beta : float
+        Coefficient :math:`\beta > 0` of the same law [-]; about the wave number of the longest roughness
+        times :math:`h_\mathrm{rms}`, so 1e-3 to 1e-1 for real surfaces.
+    friction_coefficient : float
+        Friction coefficient :math:`\mu_0 \ge 0` of the solid contact [-].
+    modulus : str or float, optional
+        Effective modulus :math:`E^* = E/(1 - \nu^2) > 0` [Pa]; or give the next two.
+    youngs_modulus : str or float, optional
+        Young's modulus :math:`E > 0` of the half-space [Pa].
+    poisson_ratio : float, optional
+        Poisson ratio :math:`0 \le \nu \le 1/2` of the half-space [-].
+    law : LawShape, optional
+        Contact law :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
+
+    Attributes
+    ----------
+    groups : Groups
+        The dimensionless groups.
+    hertz : HertzScales
+        The scales with which dimensionless results return to SI.
+    hersey_number : float
+        :math:`\eta U/F_N` [-].
+
+    Raises
+    ------
+    InputError
+        Where a value is impossible, a unit is wrong, or the modulus is given twice or not at all.
+
+    Notes
+    -----
+    ``modulus`` always holds :math:`E^*` afterwards; ``youngs_modulus`` and ``poisson_ratio`` are not kept.
+
+    Source: [Bertin & Pouliquen] Eq. (contact_pressure) for the contact law, Section "Dimensional analysis"
+    for the groups. The paper calls :math:`\beta` a number of order unity; for real surfaces it is small.
+
+    Examples
+    --------
+    >>> contact = LineContact(radius="10 mm", modulus="2.1 MPa", load="50 N/m", viscosity="1 mPa*s",
+    ...                       speed="0.1 m/s", roughness="1 um", alpha=2.0, beta=0.05,
+    ...                       friction_coefficient=0.8)
+    >>> round(contact.groups.load, 3)
+    0.303
+    """
+
+    radius: float
+    load: float
+    viscosity: float
+    speed: float
+    roughness: float
+    alpha: float
+    beta: float
+    friction_coefficient: float
+    modulus: float
+    law: LawShape | None
+
+    def __init__(
+        self,
+        *,
+        radius: str | float,
+        load: str | float,
+        viscosity: str | float,
+        speed: str | float,
+        roughness: str | float,
+        alpha: float,
+        beta: float,
+        friction_coefficient: float,
+        modulus: str | float | None = None,
+        youngs_modulus: str | float | None = None,
+        poisson_ratio: float | None = None,
+        law: LawShape | None = None,
+    ) -> None:
+        check_modulus_choice(modulus, youngs_modulus, poisson_ratio)
+        if modulus is None:
+            modulus = quantity("youngs_modulus", youngs_modulus) / (1 - quantity("poisson_ratio", poisson_ratio) ** 2)
+        given = {
+            "radius": radius,
+            "load": load,
+            "viscosity": viscosity,
+            "speed": speed,
+            "roughness": roughness,
+            "alpha": alpha,
+            "beta": beta,
+            "friction_coefficient": friction_coefficient,
+            "modulus": modulus,
+        }
+        for name, value in given.items():
+            object.__setattr__(self, name, quantity(name, value))
+        object.__setattr__(self, "law", check_law(law))
+        self._check_scales()
+
+    @property
+    def groups(self) -> Groups:
+        """The dimensionless groups, see :class:`Groups`."""
+        eta, U, R, E_star, F_N = self.viscosity, self.speed, self.radius, self.modulus, self.load
+        # Quotients one by one: a product of small numbers may underflow where the group itself does not.
+        return Groups(
+            speed=3 * math.pi**2 / 4 * (eta * U / F_N) * (R / F_N * E_star),
+            load=F_N / R / E_star / self.beta / self.beta / math.pi,
+            roughness=self.roughness / R / self.beta / self.beta / self.alpha / 4,
+            law=self.law,
+        )
+
+    @property
+    def hertz(self) -> HertzScales:
+        """The Hertz scales, see :class:`HertzScales`."""
+        R, E_star, F_N = self.radius, self.modulus, self.load
+        a = math.sqrt(F_N / E_star) * math.sqrt(4 * R / math.pi)
+        return HertzScales(half_width=a, indentation=4 * F_N / E_star / math.pi, pressure=2 * F_N / a / math.pi)
+
+    @property
+    def hersey_number(self) -> float:
+        r"""The Hersey number :math:`\eta U/F_N` [-]."""
+        return self.viscosity * self.speed / self.load
+
+    def replace(self, **changes: Any) -> Self:
+        """Return a copy with some of the inputs changed.
+
+        Parameters
+        ----------
+        **changes : str or float
+            Arguments of :class:`LineContact`; ``youngs_modulus`` and ``poisson_ratio`` together replace the
+            modulus.
+
+        Returns
+        -------
+        LineContact
+            The changed contact.
+
+        Raises
+        ------
+        InputError
+            Where a value is impossible, as in :class:`LineContact`.
+        """
+        kept: dict[str, Any] = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        if "youngs_modulus" in changes or "poisson_ratio" in changes:
+            del kept["modulus"]
+        return type(self)(**(kept | changes))
+
+    @classmethod
+    def from_groups(
+        cls,
+        groups: Groups,
+        *,
+        radius: str | float,
+        modulus: str | float,
+        viscosity: str | float,
+        alpha: float,
+        beta: float,
+        friction_coefficient: float,
+    ) -> Self:
+        r"""Return the contact whose :attr:`groups` are ``groups``.
+
+        .. math::
+
+            F_N = \pi \beta^2 R E^* \bar F_N, \quad
+            U = \frac{4}{3\pi^2} \frac{\lambda F_N^2}{\eta R E^*}, \quad
+            h_\mathrm{rms} = 4 \alpha \beta^2 R \bar h_\mathrm{rms}
+
+        Parameters
+        ----------
+        groups : Groups
+            Groups of one state.
+        radius, modulus, viscosity : str or float
+            As in :class:`LineContact`.
+        alpha, beta, friction_coefficient : float
+            As in :class:`LineContact`.
+
+        Returns
+        -------
+        LineContact
+            The contact, with load, speed and roughness in SI.
+
+        Raises
+        ------
+        InputError
+            Where the groups hold more than one state, or a value is impossible.
+        """
+        if groups.shape != ():
+            raise InputError(f"groups of shape {groups.shape} hold many states; from_groups takes one, without arrays.")
+        R, E_star = quantity("radius", radius), quantity("modulus", modulus)
+        eta, beta, alpha = quantity("viscosity", viscosity), quantity("beta", beta), quantity("alpha", alpha)
+        F_N = math.pi * beta * beta * R * E_star * float(groups.load)
+        return cls(
+            radius=R,
+            load=F_N,
+            viscosity=eta,
+            speed=4 / (3 * math.pi**2) * float(groups.speed) * (F_N / eta) * (F_N / R / E_star),
+            roughness=4 * alpha * beta * beta * R * float(groups.roughness),
+            alpha=alpha,
+            beta=beta,
+            friction_coefficient=friction_coefficient,
+            modulus=E_star,
+            law=groups.law,
+        )
+
+    def _check_scales(self) -> None:
+        """Refuse values, each possible alone, whose groups leave the range of double precision."""
+        try:
+            _ = self.groups, self.hertz
+        except (InputError, ZeroDivisionError):
+            values = ", ".join(f"{name} = {getattr(self, name):g}" for name in INPUTS)
+            raise InputError(
+                f"the dimensionless groups of this contact leave the range of double precision; check {values} (all in SI)."
+            ) from None

@@ -1,0 +1,202 @@
+"""Curves over speed, load or roughness read off the atlas, with minimum and transitions located on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.atlas import reading as atlas
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.line import Groups, InputError, LineContact
+from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
+from stribeck.quantities.units import show
+
+ERROR = 1e-4
+"""Relative error that is stated for what is read off the atlas, its bound in docs/atlas.md."""
+
+OBSERVABLES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
+
+SUBDIVISION = 33
+ROUNDS = 4
+"""Points and rounds of the search for a crossing between two points."""
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Where a curve on the atlas has its minimum or a transition.
+
+    Attributes
+    ----------
+    name : str
+        What it is, in words, as on a solved curve.
+    value : float
+        Where along the curve: group [-], or SI where the curve has a contact.
+    friction : float
+        Friction coefficient there [-].
+    """
+
+    name: str
+    value: float
+    friction: float
+
+
+@dataclass(frozen=True, eq=False)
+class AtlasCurve:
+    """Friction along one coordinate as the atlas has it: what a :class:`StribeckCurve` tells, without its solved fields.
+
+    Attributes
+    ----------
+    over : str
+        What varies.
+    values : ndarray, shape (n,)
+        Where the points lie, ascending: the group [-], or SI units where the curve has a contact.
+    groups_at : callable
+        The groups at an array of such values.
+    contact : LineContact or None
+        The contact.
+    mu0, beta : float
+        Friction coefficient of the dry contact and coefficient of the contact law [-].
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    """
+
+    over: str
+    values: Array
+    groups_at: Callable[[Array], Groups]
+    contact: LineContact | None
+    mu0: float
+    beta: float
+    definition: Definition
+
+    def __post_init__(self) -> None:
+        """Refuse a law that the atlas does not hold."""
+        atlas.check_law(self.groups_at(self.values[:1]))
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return len(self.values)
+
+    @cached_property
+    def groups(self) -> Groups:
+        """Groups of the points, as arrays."""
+        return self.groups_at(self.values)
+
+    def observable(self, name: str) -> Array:
+        """Return a load share, a gap or the offset of every point.
+
+        Parameters
+        ----------
+        name : str
+            One of :data:`OBSERVABLES`.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Its values, in the order of :attr:`values`.
+
+        Raises
+        ------
+        InputError
+            If the atlas has no such function.
+        """
+        if name not in OBSERVABLES:
+            raise InputError(f"name = {show(name)}; the atlas has {', '.join(OBSERVABLES)}.")
+        return np.asarray(getattr(atlas, name)(self.groups))
+
+    @cached_property
+    def friction(self) -> Array:
+        """Friction coefficient [-]."""
+        return self._friction_at(self.values)
+
+    @property
+    def friction_viscous(self) -> Array:
+        """Viscous part of the friction coefficient [-]."""
+        return np.asarray(atlas.viscous_friction(self.groups, self.beta, self.definition))
+
+    @property
+    def friction_contact(self) -> Array:
+        """Contact part of the friction coefficient [-]."""
+        return np.asarray(self.mu0 * self.observable("contact_load_share"))
+
+    @property
+    def friction_error(self) -> Array:
+        """Stated absolute error of the friction coefficient [-]."""
+        return ERROR * self.friction
+
+    @property
+    def regimes(self) -> tuple[Regime, ...]:
+        """Lubrication regime of each point."""
+        shares = zip(self.observable("fluid_load_share"), self.friction_contact, self.friction, strict=True)
+        return tuple(regime_of(fluid, contact / total if total > 0 else 0.0) for fluid, contact, total in shares)
+
+    @cached_property
+    def minimum(self) -> Mark | None:
+        """The least friction, where its slope vanishes; None where the curve has none inside."""
+        i = int(np.argmin(self.friction))
+        if not 0 < i < len(self) - 1:
+            return None
+        return self._mark("minimum of friction", i - 1, i + 1, self._slope_at)
+
+    @cached_property
+    def transitions(self) -> tuple[Mark, ...]:
+        """The boundaries between regimes, where the load is shared in halves, and the friction minimum, ascending."""
+        found = [] if self.minimum is None else [self.minimum]
+        for name, line, function in (
+            ("fluid carries {:.0%} of the load", BOUNDARY_FLUID_SHARE, self._fluid_at),
+            ("fluid carries {:.0%} of the load", 0.5, self._fluid_at),
+            ("asperities cause {:.0%} of the friction", HYDRODYNAMIC_CONTACT_SHARE, self._contact_part_at),
+        ):
+            crossings = np.nonzero(np.diff(np.sign(function(self.values) - line)))[0]
+            if len(crossings):
+                i = int(crossings[0])
+
+                def above(values: Array, function: Callable[[Array], Array] = function, line: float = line) -> Array:
+                    return function(values) - line
+
+                found.append(self._mark(name.format(line), i, i + 1, above))
+        return tuple(sorted(found, key=lambda mark: mark.value))
+
+    def local_minima(self) -> tuple[Mark, ...]:
+        """Return all minima of the friction inside the curve, those above the boundary plateau too."""
+        slope = self._slope_at(self.values)
+        crossings = np.nonzero((slope[:-1] < 0) & (slope[1:] >= 0))[0]
+        return tuple(self._mark("minimum of friction", int(i), int(i) + 1, self._slope_at) for i in crossings)
+
+    def _mark(self, name: str, first: int, last: int, function: Callable[[Array], Array]) -> Mark:
+        value = crossing(function, float(self.values[first]), float(self.values[last]))
+        return Mark(name, value, float(self._friction_at(np.array([value]))[0]))
+
+    def _friction_at(self, values: Array) -> Array:
+        return np.asarray(atlas.friction(self.groups_at(values), self.mu0, self.beta, self.definition))
+
+    def _slope_at(self, values: Array) -> Array:
+        """Return the derivative of the friction along the curve."""
+        slopes = atlas.friction_derivatives(self.groups_at(values), self.mu0, self.beta, self.definition)
+        direction = [float(name == self.over) for name in ("speed", "load", "roughness")]
+        if self.contact is not None and self.over == "load":
+            direction[0] = -2.0
+        return np.asarray(np.tensordot(direction, slopes, 1))
+
+    def _fluid_at(self, values: Array) -> Array:
+        return np.asarray(atlas.fluid_load_share(self.groups_at(values)))
+
+    def _contact_part_at(self, values: Array) -> Array:
+        contact = self.mu0 * np.asarray(atlas.contact_load_share(self.groups_at(values)))
+        return np.asarray(contact / np.maximum(self._friction_at(values), 1e-300))
+
+
+def crossing(function: Callable[[Array], Array], low: float, high: float) -> float:
+    """Return where a function of an array changes its sign, the first such place between two positive numbers."""
+    for _ in range(ROUNDS):
+        points = np.geomspace(low, high, SUBDIVISION)
+        values = function(points)
+        changes = np.nonzero(np.diff(np.sign(values)))[0]
+        i = int(changes[0]) if len(changes) else int(np.argmin(np.abs(values[:-1])))
+        low, high = float(points[i]), float(points[i + 1])
+    first, last = function(np.array([low, high]))
+    part = 0.5 if first == last else float(np.clip(first / (first - last), 0.0, 1.0))
+    return float(low * (high / low) ** part)

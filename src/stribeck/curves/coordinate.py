@@ -1,0 +1,107 @@
+"""What a curve runs along: speed, load or roughness, as the arguments of a curve say it.
+
+One group varies, or one SI quantity of a contact, on a logarithmic scale; all else stays.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.line import Groups, LineContact
+from stribeck.equations.sensitivity import GROUPS
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import InputError, show, to_si
+from stribeck.solver.solve import as_groups
+
+__all__ = ["Coordinate", "Over", "check_inside", "read_problem"]
+
+Over = Literal["speed", "load", "roughness"]
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """The coordinate of a curve: the logarithm of one group, or of one SI quantity of a contact."""
+
+    over: Over
+    base: Groups | LineContact
+
+    def contact_at(self, s: float) -> LineContact | None:
+        """Return the contact at coordinate s."""
+        return self.base.replace(**{self.over: math.exp(s)}) if isinstance(self.base, LineContact) else None
+
+    def groups_at(self, s: float) -> Groups:
+        """Return the groups at coordinate s."""
+        contact = self.contact_at(s)
+        if contact is not None:
+            return contact.groups
+        assert isinstance(self.base, Groups)
+        varied: dict[str, Any] = {self.over: math.exp(s)}
+        return replace(self.base, **varied)
+
+    def groups_along(self, values: Array) -> Groups:
+        """Return the groups at many values of what varies, as arrays."""
+        groups = [self.groups_at(s) for s in np.log(values).tolist()]
+        return Groups(*(np.array([float(getattr(g, name)) for g in groups]) for name in GROUPS), law=self.base.law)
+
+    @property
+    def direction(self) -> Array:
+        """Derivatives of ln(speed), ln(load), ln(roughness) of the groups along s."""
+        if isinstance(self.base, LineContact) and self.over == "load":
+            return np.array([-2.0, 1.0, 0.0])
+        return np.array([1.0 if name == self.over else 0.0 for name in GROUPS])
+
+
+def read_problem(
+    problem: LineContact | Groups | None, given: dict[Over, Any]
+) -> tuple[LineContact | Groups, Over, Array | None]:
+    """Return what stays fixed, what varies, and its ends or points; None where they are to be found."""
+    ranges = [name for name, value in given.items() if value is not None and np.ndim(value) > 0]
+    if len(ranges) > 1:
+        raise InputError(f"{' and '.join(ranges)} are both ranges; a curve varies one of speed, load and roughness.")
+    over: Over = ranges[0] if ranges else "speed"
+    fixed = {name: value for name, value in given.items() if value is not None and name not in ranges}
+    if problem is None:
+        missing = [name for name in GROUPS if name != over and name not in fixed]
+        if missing:
+            raise InputError(f"{' and '.join(missing)} missing; give a LineContact, or the groups that do not vary.")
+        low = 1.0 if not ranges else float(np.asarray(given[over], dtype=float).ravel()[0])
+        base: LineContact | Groups = Groups(**{**fixed, over: low})
+    elif isinstance(problem, LineContact):
+        base = problem.replace(**fixed) if fixed else problem
+    else:
+        as_groups(problem)
+        base = replace(problem, **fixed)
+    if not ranges:
+        return base, over, None
+    return base, over, _ends(over, given[over], isinstance(base, LineContact))
+
+
+def _ends(over: Over, value: Any, si: bool) -> Array:
+    """Return the ends or points of a range as ascending positive numbers."""
+    items = [value] if isinstance(value, str) else list(value)
+    if si:
+        numbers = [to_si(item, QUANTITIES[over].dimension, over) for item in items]
+    else:
+        try:
+            numbers = [float(item) for item in items]
+        except (TypeError, ValueError):
+            raise InputError(f"{over} = {show(value)}; a range of groups is made of plain numbers.") from None
+    found = np.asarray(numbers)
+    if len(found) < 2 or not np.isfinite(found).all() or not (found > 0).all() or not (np.diff(found) > 0).all():
+        raise InputError(
+            f"{over} = {show(value)}; a range is two or more finite positive numbers that ascend, such as (1e-9, 10)."
+        )
+    return found
+
+
+def check_inside(coordinate: Coordinate, values: Array) -> None:
+    """Refuse a range whose groups cannot be formed."""
+    for value in (values[0], values[-1]):
+        groups = coordinate.groups_at(math.log(value))
+        if groups.speed == 0 and groups.roughness == 0:
+            raise InputError("speed and roughness are both zero; the dry smooth contact has no curve, use solve.")

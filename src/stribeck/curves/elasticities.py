@@ -1,0 +1,166 @@
+"""The lubrication regime of a state, read off its solved fields, and what would move its friction."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, overload
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.atlas import reading as atlas
+from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.line import LineContact
+from stribeck.equations.sensitivity import friction_slopes
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.units import InputError, show
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import check_rtol, finish, solve, solved_point
+
+Regime = Literal["boundary", "mixed", "hydrodynamic"]
+Method = Literal["solver", "atlas"]
+
+METHODS: tuple[Method, ...] = ("solver", "atlas")
+"""Where states come from: solved, or read off :mod:`stribeck.atlas`."""
+
+BOUNDARY_FLUID_SHARE = 0.05
+"""Part of the load on the fluid up to which lubrication is called boundary: friction is within 5 % of the plateau."""
+
+HYDRODYNAMIC_CONTACT_SHARE = 0.1
+"""Part of the friction from asperities up to which lubrication is called hydrodynamic; at the friction minimum of smooth
+contacts it is about 2/(2 + 3 Lambda), 6 to 18 % for Lambda from 10 to 3."""
+
+
+def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:
+    """Return the regime from the part of the load on the fluid and the part of the friction from asperities.
+
+    Parameters
+    ----------
+    fluid_load_share : float
+        Part of the load that the fluid carries [-].
+    contact_friction_share : float
+        Contact part of the friction over all of it [-].
+
+    Returns
+    -------
+    str
+        ``"hydrodynamic"`` where asperities cause at most 10 % of the friction, else ``"boundary"`` where the fluid carries
+        at most 5 % of the load, else ``"mixed"``.
+    """
+    if contact_friction_share <= HYDRODYNAMIC_CONTACT_SHARE:
+        return "hydrodynamic"
+    return "boundary" if fluid_load_share <= BOUNDARY_FLUID_SHARE else "mixed"
+
+
+EXPONENTS = {
+    "speed": (1, 0, 0),
+    "load": (-2, 1, 0),
+    "viscosity": (1, 0, 0),
+    "modulus": (1, -1, 0),
+    "radius": (1, -1, -1),
+    "roughness": (0, 0, 1),
+    "alpha": (0, 0, -1),
+    "beta": (0, -2, -2),
+    "friction_coefficient": (0, 0, 0),
+}
+"""Exponents with which each input enters the groups of speed, load and roughness."""
+
+
+@overload
+def friction_elasticities(
+    contact: LineContact, *, rtol: float = ..., definition: Definition = ..., method: Literal["solver"] = ...
+) -> tuple[Solution, dict[str, float]]: ...
+
+
+@overload
+def friction_elasticities(
+    contact: LineContact, *, rtol: float = ..., definition: Definition = ..., method: Literal["atlas"]
+) -> tuple[None, dict[str, float]]: ...
+
+
+@one_blas_thread
+def friction_elasticities(
+    contact: LineContact,
+    *,
+    rtol: float = 1e-6,
+    definition: Definition = "paper",
+    method: Method = "solver",
+) -> tuple[Solution | None, dict[str, float]]:
+    r"""Solve a contact and tell how its friction answers to each input.
+
+    .. math::
+
+        \epsilon_X = \frac{d \ln \mu}{d \ln X}
+        = \frac{1}{\mu} \left[ \sum_G n_{GX} \frac{\partial \mu}{\partial \ln G}
+        + \left.\frac{\partial \mu}{\partial \ln X}\right|_G \right]
+
+    with G the three groups and n their exponents, :data:`EXPONENTS`. The last term is the contact part of the
+    friction for the friction coefficient and the viscous part for beta.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    rtol : float
+        Relative tolerance of the state.
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    method : {"solver", "atlas"}
+        Whether the state is solved, or read off :mod:`stribeck.atlas`, where nothing but the numbers comes back.
+
+    Returns
+    -------
+    Solution or None
+        The state; None from the atlas.
+    dict of str to float
+        Elasticity by name of the input: 0.5 means that 1 % more of it makes 0.5 % more friction; nan where
+        there is no friction.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range, or the contact outside that of the atlas.
+
+    Notes
+    -----
+    At speed zero friction is that of the dry contact, and at roughness zero the roughness group is held at zero,
+    both exactly.
+    """
+    check_rtol(rtol)
+    definition = check_definition(definition)
+    if check_method(method) == "atlas":
+        return None, _from_atlas(contact, definition)
+    groups = contact.groups
+    if groups.speed == 0:
+        solution, slopes = solve(contact, rtol=rtol), np.zeros(3)
+    else:
+        point = solved_point(groups, rtol)
+        solution = finish(point, groups, contact, rtol)
+        assert point.state is not None
+        slopes = friction_slopes(point.state, contact.friction_coefficient, contact.beta, definition)
+    friction = solution.friction(definition=definition)
+    return solution, _elasticities(slopes, friction.contact, friction.viscous)
+
+
+def check_method(method: str) -> Method:
+    """Return ``method`` if it is one of the two."""
+    for known in METHODS:
+        if method == known:
+            return known
+    raise InputError(f"method = {show(method)}; it must be {' or '.join(map(repr, METHODS))}.")
+
+
+def _from_atlas(contact: LineContact, definition: Definition) -> dict[str, float]:
+    groups, mu0, beta = contact.groups, contact.friction_coefficient, contact.beta
+    viscous = float(atlas.viscous_friction(groups, beta, definition))
+    slopes = atlas.friction_derivatives(groups, mu0, beta, definition)
+    return _elasticities(slopes, mu0 * float(atlas.contact_load_share(groups)), viscous)
+
+
+def _elasticities(slopes: Array, contact: float, viscous: float) -> dict[str, float]:
+    """Return the elasticities by the derivatives of the friction and its two parts."""
+    direct = {"friction_coefficient": contact, "beta": viscous}
+    total = (contact + viscous) or math.nan
+    return {
+        name: (float(slopes @ np.array(exponents)) + direct.get(name, 0.0)) / total for name, exponents in EXPONENTS.items()
+    }

@@ -1,0 +1,268 @@
+"""The picture of a Stribeck curve, in both representations of the paper; beside it that of one state.
+
+matplotlib comes with the extra ``plot`` and is imported on first use.
+"""
+
+from __future__ import annotations
+
+import math
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.files.pictures import (
+    CONTACT,
+    FLUID,
+    GREY,
+    INK,
+    MARK,
+    SYMBOLS,
+    TINTS,
+    add_legend,
+    finish_figure,
+    footer_lines,
+    input_texts,
+    law_text,
+    make_logarithmic,
+    new_figure,
+    si_text,
+)
+from stribeck.files.writing import PathLike
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import DIMENSIONS
+from stribeck.solver.plot import plot_profile
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from stribeck.curves.result import StribeckCurve
+
+__all__ = ["plot_curve", "plot_profile"]
+
+DECADES_BELOW = 1.3
+"""How far below the least friction the axis goes on, so that both parts of the friction show."""
+
+FEW = 25
+"""Number of points up to which each is marked."""
+
+
+def plot_curve(curve: StribeckCurve, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
+    """Draw a Stribeck curve.
+
+    The first panel shows friction and its parts against the Hersey number, or against what varies where that
+    is not the speed; the second shows friction against the law of the hydrodynamic branch, or the shares of
+    the load where that law says nothing. Regimes are shaded, minimum and transitions marked; the footer holds
+    the inputs.
+
+    Parameters
+    ----------
+    curve : StribeckCurve
+        The curve.
+    path : str or path-like, optional
+        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+    force : bool
+        Whether an existing file is replaced; otherwise it is kept.
+    title : str
+        Headline.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written, or exists and ``force`` is not given.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
+    by_speed = curve.over == "speed" and curve.contact is not None
+    figure, (left, right) = new_figure(
+        (11.0, 5.0 if by_speed else 4.6),
+        _footer(curve),
+        columns=2,
+        top=1.0 if by_speed else 0.6,
+        title=title or "Stribeck curve",
+    )
+    x, label = _abscissa(curve)
+    _draw_friction(left, curve, x)
+    left.set_xlabel(label)
+    for axes in (left, right):
+        axes.set_ylabel(r"friction coefficient $\mu$")
+    if by_speed and curve.contact is not None:
+        per_hersey = curve.contact.load / curve.contact.viscosity
+
+        def speed(hersey: Any) -> Any:
+            return hersey * per_hersey
+
+        def hersey(speed: Any) -> Any:
+            return speed / per_hersey
+
+        top = left.secondary_xaxis("top", functions=(speed, hersey))
+        top.set_xlabel("sliding speed $U$ (m/s)", color=GREY, fontsize=9)
+        top.tick_params(colors=GREY, labelsize=8, direction="in", which="both")
+    law = curve.hydrodynamic_friction
+    if (law > 0).all() and curve.over != "roughness":
+        _draw_friction(right, curve, law, parts=False)
+        right.set_xlabel("friction coefficient by the hydrodynamic law")
+        right.set_ylim(left.get_ylim())
+        ends = np.array(right.get_ylim())
+        right.plot(
+            ends,
+            ends,
+            color=GREY,
+            lw=1.2,
+            ls=(0, (5, 3)),
+            zorder=2,
+            label="the law itself, $y = x$",
+            scalex=False,
+        )
+    else:
+        _draw_shares(right, curve, x)
+        right.set_xlabel(label)
+        right.set_ylabel("share of the load")
+    add_legend(figure, (left, right))
+    return finish_figure(figure, path, force)
+
+
+def _abscissa(curve: StribeckCurve) -> tuple[Array, str]:
+    """Return the first panel's abscissa and its label."""
+    if curve.over == "speed":
+        return curve.hersey_number, r"Hersey number $\eta U/F_N$"
+    if curve.contact is None:
+        symbol = {"load": r"$F_N/(\pi\beta^2 R E^*)$", "roughness": r"$h_\mathrm{rms}/(4\alpha\beta^2 R)$"}[curve.over]
+        return curve.values, f"{curve.over} group {symbol}"
+    unit = DIMENSIONS[QUANTITIES[curve.over].dimension].unit
+    return curve.values, f"{curve.over} {SYMBOLS[curve.over]} ({unit})"
+
+
+def _draw_friction(axes: Axes, curve: StribeckCurve, x: Array, *, parts: bool = True) -> None:
+    """Draw friction, its parts, the regimes and the landmarks against x."""
+    total, error = curve.friction, curve.friction_error
+    style: dict[str, Any] = {"marker": "o", "ms": 3.0} if len(curve) <= FEW else {}
+    make_logarithmic(axes, "x", x)
+    if (total > 0).any():
+        axes.set_yscale("log")
+    axes.plot(x, total, color=INK, lw=2.2, zorder=4, label=r"friction $\mu$", **style)
+    if parts:
+        axes.plot(
+            x,
+            curve.friction_contact,
+            color=CONTACT,
+            lw=1.5,
+            ls=(0, (6, 2)),
+            zorder=5,
+            label="from asperities",
+        )
+        axes.plot(x, curve.friction_viscous, color=FLUID, lw=1.5, ls="-.", zorder=5, label="from the fluid")
+    if (error > 0.01 * total).any():
+        axes.fill_between(x, total - error, total + error, color=INK, alpha=0.2, lw=0, zorder=3, label="its error")
+    if (total > 0).any():
+        low, high = total[total > 0].min(), total.max()
+        seen = [part.max() for part in (curve.friction_contact, curve.friction_viscous) if part.max() > 1e-4 * high]
+        axes.set_ylim(min([low / 10**DECADES_BELOW, *(part / 5 for part in seen)]), high * 3)
+    if len(curve) > 1:
+        axes.set_xlim(x.min(), x.max())
+    _shade(axes, curve, x)
+    for mark in curve.transitions:
+        at = np.exp(np.interp(math.log(mark.value), np.log(curve.values), np.log(x)))
+        if mark is curve.minimum:
+            label = rf"minimum, $\mu$ = {mark.friction:.3g} at {_place(curve, mark.value)}"
+            axes.plot(at, mark.friction, "o", ms=8, color=MARK, mec="white", mew=1.2, zorder=6, label=label)
+        elif "50%" in mark.name:
+            label = f"fluid carries half the load, at {_place(curve, mark.value)}"
+            axes.plot(at, mark.friction, "D", ms=6, color=FLUID, mec="white", mew=1.0, zorder=5, label=label)
+    _strip(axes, curve, x)
+
+
+def _draw_shares(axes: Axes, curve: StribeckCurve, x: Array) -> None:
+    """Draw the shares of the load against x."""
+    make_logarithmic(axes, "x", x)
+    axes.plot(
+        x,
+        curve.observable("contact_load_share"),
+        color=CONTACT,
+        lw=1.8,
+        ls=(0, (6, 2)),
+        label="from asperities",
+    )
+    axes.plot(x, curve.observable("fluid_load_share"), color=FLUID, lw=1.8, ls="-.", label="from the fluid")
+    axes.set_ylim(-0.04, 1.12)
+    if len(curve) > 1:
+        axes.set_xlim(x.min(), x.max())
+    _shade(axes, curve, x)
+
+
+def _shade(axes: Axes, curve: StribeckCurve, x: Array) -> None:
+    """Shade the regimes and name those that have room for it."""
+    whole = math.log(x.max() / x.min()) if len(x) > 1 else 0.0
+    for regime, low, high in curve.regime_ranges:
+        if whole == 0:
+            continue
+        first, last = np.exp(np.interp(np.log([low, high]), np.log(curve.values), np.log(x)))
+        axes.axvspan(first, last, color=TINTS[regime], lw=0, zorder=0)
+        share = abs(math.log(last / first)) / whole
+        if share > 0.0165 * len(regime):
+            axes.text(
+                math.sqrt(first * last),
+                0.965,
+                regime,
+                transform=axes.get_xaxis_transform(),
+                ha="center",
+                va="top",
+                size=9,
+                color=GREY,
+                style="italic",
+            )
+
+
+def _strip(axes: Axes, curve: StribeckCurve, x: Array) -> None:
+    """Hatch a strip along the axis where the contact law is outside its range."""
+    outside = np.array([any("outside its range" in note for note in s.notes) for s in curve.solutions])
+    if outside.any():
+        axes.fill_between(
+            x,
+            0.0,
+            0.035,
+            where=outside.tolist(),
+            transform=axes.get_xaxis_transform(),
+            facecolor="none",
+            edgecolor=CONTACT,
+            hatch="//////",
+            lw=0.0,
+            zorder=2,
+            label="contact law outside its range",
+        )
+
+
+def _place(curve: StribeckCurve, value: float) -> str:
+    if curve.contact is None:
+        return f"{curve.over} group {value:.3g}"
+    return si_text(value, curve.over, 3)
+
+
+def _footer(curve: StribeckCurve) -> list[tuple[str, str]]:
+    count = f"{len(curve)} points" if len(curve) == curve.requested else f"{len(curve)} of {curve.requested} points"
+    law = law_text(curve.solutions[0]) if len(curve) else ""
+    first = [*input_texts(curve.contact, None if curve.over != "speed" else "speed", curve.over)]
+    if curve.contact is None:
+        first += [rf"$\mu_0$ = {curve.mu0:.4g}", rf"$\beta$ = {curve.beta:.4g}"]
+    groups = curve.groups
+    for name in ("speed", "load", "roughness"):
+        values = np.asarray(getattr(groups, name))
+        if np.ptp(values) <= 1e-12 * values[0]:
+            first.append(f"{name} group {values[0]:.4g}")
+    second = [
+        law,
+        f"viscous friction: definition {curve.definition}",
+        f"rtol {curve.rtol:g}",
+        f"estimated error {curve.error_estimate:.1e}",
+        count,
+        f"stribeck {version('stribeck')}",
+    ]
+    notes = list(curve.notes) if curve.outcome.ok else [curve.outcome.value, *curve.notes]
+    return footer_lines([first, second], notes, 172)

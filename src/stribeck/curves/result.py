@@ -1,0 +1,314 @@
+"""A solved Stribeck curve: its points, friction and regimes along them, its minimum and its transitions."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stribeck._types import Array, LawShape
+from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.line import Groups, LineContact
+from stribeck.curves.coordinate import Coordinate, Over
+from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
+from stribeck.curves.landmarks import Landmark, locate
+from stribeck.equations.sensitivity import GROUPS, friction_slopes
+from stribeck.numerics.newton import Outcome
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import format_si
+from stribeck.solver.refinement import Point
+from stribeck.solver.solution import Solution
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["StribeckCurve"]
+
+
+@dataclass(frozen=True, eq=False)
+class StribeckCurve:
+    """Converged states along one coordinate, and the friction on them.
+
+    Attributes
+    ----------
+    over : {"speed", "load", "roughness"}
+        What varies.
+    values : ndarray, shape (n,)
+        Where the points lie, ascending: the group [-], or SI units where the curve has a contact.
+    solutions : tuple of Solution
+        The state of each point.
+    contact : LineContact or None
+        The contact, at its own speed, load and roughness.
+    mu0, beta : float
+        Friction coefficient of the dry contact and coefficient of the contact law [-].
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    rtol : float
+        Relative tolerance of each state.
+    outcome : Outcome
+        CONVERGED, or why points are missing.
+    requested : int
+        Points asked for.
+    """
+
+    over: Over
+    values: Array
+    solutions: tuple[Solution, ...]
+    contact: LineContact | None
+    mu0: float
+    beta: float
+    definition: Definition
+    rtol: float
+    outcome: Outcome
+    requested: int
+    _points: tuple[Point, ...] = field(repr=False)
+    _path: Coordinate = field(repr=False)
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return len(self.solutions)
+
+    @property
+    def groups(self) -> Groups:
+        """Groups of the points, as arrays."""
+        columns = (np.array([float(getattr(s.groups, name)) for s in self.solutions]) for name in GROUPS)
+        return Groups(*columns, law=self.law)
+
+    @property
+    def law(self) -> LawShape | None:
+        """Contact law of all points; None is the exponential one."""
+        return self._path.base.law
+
+    def observable(self, name: str) -> Array:
+        """Return an attribute of every solution as an array.
+
+        Parameters
+        ----------
+        name : str
+            Name of a number that :class:`Solution` has, such as ``"central_gap"``.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Its values, in the order of :attr:`values`.
+        """
+        return np.array([getattr(s, name) for s in self.solutions])
+
+    @cached_property
+    def _friction(self) -> Array:
+        found = [s.friction(self.mu0, self.beta, self.definition) for s in self.solutions]
+        return np.array([[f.contact, f.viscous, f.total, f.error] for f in found]).reshape(-1, 4)
+
+    @property
+    def friction_contact(self) -> Array:
+        """Contact part of the friction coefficient [-]."""
+        return np.asarray(self._friction[:, 0])
+
+    @property
+    def friction_viscous(self) -> Array:
+        """Viscous part of the friction coefficient [-]."""
+        return np.asarray(self._friction[:, 1])
+
+    @property
+    def friction(self) -> Array:
+        """Friction coefficient [-]."""
+        return np.asarray(self._friction[:, 2])
+
+    @property
+    def friction_error(self) -> Array:
+        """Estimated absolute error of the friction coefficient [-]."""
+        return np.asarray(self._friction[:, 3])
+
+    @property
+    def hersey_number(self) -> Array:
+        """Hersey number eta U/F_N of the points [-]."""
+        return np.asarray(self.groups.hersey_number(self.beta))
+
+    @property
+    def hydrodynamic_friction(self) -> Array:
+        """Friction of smooth surfaces by the paper's law, the abscissa of its second representation [-]."""
+        return np.asarray(hydrodynamic.friction(self.groups, self.beta))
+
+    @property
+    def regimes(self) -> tuple[Regime, ...]:
+        """Lubrication regime of each point."""
+        shares = zip(self.observable("fluid_load_share"), self.friction_contact, self.friction, strict=True)
+        return tuple(regime_of(fluid, contact / total if total > 0 else 0.0) for fluid, contact, total in shares)
+
+    @cached_property
+    def regime_ranges(self) -> tuple[tuple[Regime, float, float], ...]:
+        """Regimes along the curve, ascending: name, and the values between which it holds.
+
+        They meet at a located transition where there is one, else in the middle between two points.
+        """
+        regimes = self.regimes
+        edges = [float(self.values[0])]
+        names = [regimes[0]]
+        marks = [mark.value for mark in self.transitions if mark is not self.minimum]
+        for i in range(1, len(self)):
+            if regimes[i] != names[-1]:
+                low, high = float(self.values[i - 1]), float(self.values[i])
+                edges.append(next((value for value in marks if low <= value <= high), math.sqrt(low * high)))
+                names.append(regimes[i])
+        return tuple(zip(names, edges, [*edges[1:], float(self.values[-1])], strict=True))
+
+    @property
+    def error_estimate(self) -> float:
+        """Largest estimated relative error over all points."""
+        return max((s.error_estimate for s in self.solutions), default=math.nan)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What to know before using the numbers; each sentence says which points it concerns."""
+        found: dict[str, list[tuple[float, str]]] = {}
+        for value, solution in zip(self.values.tolist(), self.solutions, strict=True):
+            for note in solution.notes:
+                # The numbers in it, which differ from point to point, are those of the first point.
+                kind = re.sub(r"[-+]?[0-9][-+.0-9e]*", "", note)
+                found.setdefault(kind, []).append((value, note))
+        return tuple(self._note(points) for points in found.values())
+
+    def _note(self, points: list[tuple[float, str]]) -> str:
+        first, last = points[0][0], points[-1][0]
+        if self.contact is None:
+            where = f"{self.over} group {first:.3g} to {last:.3g}"
+        else:
+            ends = (format_si(value, QUANTITIES[self.over].dimension) for value in (first, last))
+            where = f"{self.over} {' to '.join(ends)}"
+        return f"{points[0][1]} ({len(points)} of {len(self)} points, {where}.)"
+
+    @cached_property
+    def minimum(self) -> Landmark | None:
+        """The friction minimum, located on solved states where the slope vanishes; None where the curve has none inside."""
+        moves = bool(np.all(np.asarray(self.groups.speed) > 0))  # at rest friction is that of the dry contact throughout
+        i = int(np.argmin(self.friction)) if moves and len(self) > 2 else 0
+        if not 0 < i < len(self) - 1:
+            return None
+
+        def slope(point: Point) -> float:
+            assert point.state is not None
+            slopes = friction_slopes(point.state, self.mu0, self.beta, self.definition)
+            return float(slopes @ self._path.direction)
+
+        return self._landmark("minimum of friction", i - 1, i + 1, slope)
+
+    @cached_property
+    def transitions(self) -> tuple[Landmark, ...]:
+        """The boundaries between regimes, where the load is shared in halves, and the friction minimum.
+
+        As far as the curve holds them, ascending: where the fluid carries 5 % and 50 % of the load, where asperities cause
+        10 % of the friction, and where friction is least.
+        """
+        fluid = self.observable("fluid_load_share")
+        contact = self.friction_contact / np.maximum(self.friction, 1e-300)
+        found = [self.minimum]
+
+        def cross(name: str, line: float, values: Array, of: Callable[[Point], float]) -> None:
+            crossings = np.nonzero(np.diff(np.sign(values - line)))[0]
+            if len(crossings):
+                i = int(crossings[0])
+                found.append(self._landmark(name.format(line), i, i + 1, lambda point: of(point) - line))
+
+        cross("fluid carries {:.0%} of the load", BOUNDARY_FLUID_SHARE, fluid, _fluid)
+        cross("fluid carries {:.0%} of the load", 0.5, fluid, _fluid)
+        cross("asperities cause {:.0%} of the friction", HYDRODYNAMIC_CONTACT_SHARE, contact, self._contact_part)
+        return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
+
+    def _contact_part(self, point: Point) -> float:
+        assert point.values is not None
+        contact = self.mu0 * point.values.contact_load_share
+        return contact / (contact + self.beta * float(getattr(point.values, f"viscous_{self.definition}")))
+
+    def _landmark(self, name: str, first: int, last: int, function: Callable[[Point], float]) -> Landmark | None:
+        """Return the landmark where ``function`` of the solved state vanishes between two points, or None."""
+        found = locate(function, first, last, coordinate=self._path, values=self.values, points=self._points, rtol=self.rtol)
+        if found is None:
+            return None
+        value, solution = found
+        return Landmark(name, value, solution.friction(self.mu0, self.beta, self.definition).total, solution)
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the curve as an xarray Dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Observables, friction, regimes and inputs of each point, with units and long names as attributes;
+            needs the extra ``data``.
+        """
+        from stribeck.files.datasets import curve_dataset
+
+        return curve_dataset(self)
+
+    def to_netcdf(self, path: Any, *, force: bool = False) -> None:
+        """Write the curve as NetCDF.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+        force : bool
+            Whether an existing file is replaced; else it is kept and the call refused.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given.
+        """
+        from stribeck.files.datasets import write_netcdf
+
+        write_netcdf(self.to_dataset(), path, force=force)
+
+    def to_csv(self, path: Any, *, force: bool = False) -> None:
+        """Write the curve as CSV.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+        force : bool
+            Whether an existing file is replaced; else it is kept and the call refused.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given.
+        """
+        from stribeck.files.datasets import write_csv
+
+        write_csv(self.to_dataset(), path, force=force)
+
+    def plot(self, path: Any = None, *, force: bool = False) -> Any:
+        """Draw the curve.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            Image file to write as well, its format by its ending.
+        force : bool
+            Whether an existing file is replaced; else it is kept and the call refused.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure; needs the extra ``plot``.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given.
+        """
+        from stribeck.curves.plot import plot_curve
+
+        return plot_curve(self, path, force=force)
+
+
+def _fluid(point: Point) -> float:
+    assert point.values is not None
+    return point.values.fluid_load_share

@@ -1,0 +1,191 @@
+"""The solver along speed, load or roughness: the states of a Stribeck curve, by continuation or off the atlas."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stribeck._types import Array, LawShape
+from stribeck.contacts.friction import Definition, check_definition, coefficients
+from stribeck.contacts.line import Groups, LineContact
+from stribeck.curves.atlas_curve import AtlasCurve
+from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_problem
+from stribeck.curves.elasticities import Method, check_method
+from stribeck.curves.landmarks import Landmark
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.speed_range import automatic_speeds
+from stribeck.numerics.newton import Outcome
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.units import InputError, show
+from stribeck.solver.path import follow
+from stribeck.solver.refinement import Point
+from stribeck.solver.solve import SolveError, check_rtol, describe, finish, solution_of, with_law
+
+__all__ = ["Landmark", "StribeckCurve", "stribeck_curve"]
+
+POINTS_RANGE = (2, 100_000)
+
+
+@overload
+def stribeck_curve(
+    problem: LineContact | Groups | None = ...,
+    *,
+    speed: ArrayLike | Sequence[str] | None = ...,
+    load: ArrayLike | Sequence[str] | None = ...,
+    roughness: ArrayLike | Sequence[str] | None = ...,
+    points: int = ...,
+    rtol: float = ...,
+    mu0: float | None = ...,
+    beta: float | None = ...,
+    definition: Definition = ...,
+    on_point: Callable[[int, int], object] | None = ...,
+    law: str | LawShape | None = ...,
+    method: Literal["solver"] = ...,
+) -> StribeckCurve: ...
+
+
+@overload
+def stribeck_curve(
+    problem: LineContact | Groups | None = ...,
+    *,
+    speed: ArrayLike | Sequence[str] | None = ...,
+    load: ArrayLike | Sequence[str] | None = ...,
+    roughness: ArrayLike | Sequence[str] | None = ...,
+    points: int = ...,
+    rtol: float = ...,
+    mu0: float | None = ...,
+    beta: float | None = ...,
+    definition: Definition = ...,
+    on_point: Callable[[int, int], object] | None = ...,
+    law: str | LawShape | None = ...,
+    method: Literal["atlas"],
+) -> AtlasCurve: ...
+
+
+@one_blas_thread
+def stribeck_curve(
+    problem: LineContact | Groups | None = None,
+    *,
+    speed: ArrayLike | Sequence[str] | None = None,
+    load: ArrayLike | Sequence[str] | None = None,
+    roughness: ArrayLike | Sequence[str] | None = None,
+    points: int = 101,
+    rtol: float = 1e-6,
+    mu0: float | None = None,
+    beta: float | None = None,
+    definition: Definition = "paper",
+    on_point: Callable[[int, int], object] | None = None,
+    law: str | LawShape | None = None,
+    method: Method = "solver",
+) -> StribeckCurve | AtlasCurve:
+    """Solve the contact along speed, load or roughness.
+
+    Parameters
+    ----------
+    problem : LineContact or Groups, optional
+        The contact; what varies in it is replaced.  Without it the other two groups are given as keywords.
+    speed, load, roughness : float, or (low, high), or array_like, optional
+        A pair is the range of what varies, with ``points`` in between, evenly in the logarithm; a longer array gives the
+        points themselves.  Groups [-], or SI numbers or text with units where ``problem`` is a LineContact.  Without any
+        pair the speed varies, from the boundary plateau to the hydrodynamic branch, as far as the solver reaches.
+    points : int
+        Number of points, 2 to 100000.
+    rtol : float
+        Relative tolerance of each state.
+    mu0, beta : float, optional
+        Friction coefficient of the dry contact and coefficient of the contact law [-]; those of the contact, or 1.
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction, see :meth:`Solution.friction`.
+    on_point : callable, optional
+        ``on_point(done, points)`` is called after each point, for progress.
+    law : str or LawShape, optional
+        Contact law as in :func:`stribeck.solve`; that of the problem if omitted.
+    method : {"solver", "atlas"}
+        Whether each state is solved, or read off :mod:`stribeck.atlas`: within 1e-4, thousands of times as fast, without
+        fields; ``rtol`` and ``on_point`` then have no effect.
+
+    Returns
+    -------
+    StribeckCurve
+        All points, ascending; after Ctrl-C those that were finished, with outcome INTERRUPTED. From the atlas an
+        :class:`stribeck.curves.atlas_curve.AtlasCurve`, with the same values, friction, observables, minimum and transitions.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range, or a point outside that of the atlas.
+    SolveError
+        If the first state cannot be solved.
+
+    Notes
+    -----
+    States follow one another by continuation; each meets ``rtol`` by its own error estimate.
+    """
+    check_rtol(rtol)
+    definition = check_definition(definition)
+    given: dict[Over, Any] = {"speed": speed, "load": load, "roughness": roughness}
+    base, over, ends = read_problem(problem, given)
+    base = with_law(base, law)
+    contact = base if isinstance(base, LineContact) else None
+    mu0, beta = coefficients(contact, mu0, beta)
+    if isinstance(points, bool) or not isinstance(points, int) or not POINTS_RANGE[0] <= points <= POINTS_RANGE[1]:
+        raise InputError(f"points = {show(points)}; it must be a whole number from {POINTS_RANGE[0]} to {POINTS_RANGE[1]}.")
+    coordinate = Coordinate(over, base)
+    if ends is None:
+        values = _automatic(coordinate, mu0, beta, definition, points)
+    elif len(ends) == 2:
+        values = np.geomspace(ends[0], ends[1], points)
+    else:
+        values = ends
+    check_inside(coordinate, values)
+    if check_method(method) == "atlas":
+        return AtlasCurve(over, values, coordinate.groups_along, contact, mu0, beta, definition)
+    descending = values[::-1]
+    done = 0
+    targets = np.log(descending)
+    wanted = set(targets.tolist())
+
+    def report(s: float, point: Point) -> None:
+        nonlocal done
+        if s in wanted and on_point is not None:
+            done += 1
+            on_point(done, len(values))
+
+    path = follow(coordinate.groups_at, targets.tolist(), rtol, report)
+    found = {s: p for s, p in zip(path.coordinates, path.states, strict=True) if s in wanted}
+    if not found:
+        if path.failure is not None:
+            finish(path.failure, coordinate.groups_at(float(targets[0])), contact, rtol)
+        raise SolveError(path.outcome, None, f"{describe(coordinate.groups_at(float(targets[0])))}: {path.outcome.value}")
+    solutions, kept, where = [], [], []
+    for value, s in zip(values, targets[::-1].tolist(), strict=True):
+        if s in found:
+            solution = solution_of(found[s], coordinate.contact_at(s), rtol)
+            assert solution is not None
+            solutions.append(solution)
+            kept.append(found[s])
+            where.append(value)
+    return StribeckCurve(
+        over=over,
+        values=np.array(where),
+        solutions=tuple(solutions),
+        contact=contact,
+        mu0=mu0,
+        beta=beta,
+        definition=definition,
+        rtol=rtol,
+        outcome=path.outcome if path.failure is None or path.outcome is not Outcome.PATH_LOST else path.failure.outcome,
+        requested=len(values),
+        _points=tuple(kept),
+        _path=coordinate,
+    )
+
+
+def _automatic(coordinate: Coordinate, mu0: float, beta: float, definition: Definition, points: int) -> Array:
+    """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm."""
+    groups = coordinate.groups_at(0.0)
+    low, high = automatic_speeds(groups, mu0, beta, definition)
+    return np.geomspace(low / float(groups.speed), high / float(groups.speed), points)

@@ -1,0 +1,1 @@
+"""The coupled equations of gap, contact pressure and fluid pressure on a mesh, with their error estimate."""

@@ -1,0 +1,276 @@
+r"""A-posteriori error of the observables: what the mesh, Newton's iteration and rounding leave.
+
+The state is put on the same panels with more nodes, where the pressures that its gap implies are evaluated anew.  The
+residual that they leave is the defect of the state, and one solve with the factors of Newton's last Jacobian turns it into the
+change of the unknowns that removing the defect would bring, to first order:
+
+.. math:: \delta y = -J^{-1} R_\mathrm{fine}(y)
+
+Rounding is treated alike: the residual is known to a few units in the last place of its largest term, with signs that
+nobody knows, of which a few patterns are tried, constant on panels: what differs from node to node moves no film.  All changes
+become errors of the observables by their gradients.
+To them comes what the polynomials on the panels miss between the nodes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from stribeck._types import Array, Indices
+from stribeck.equations.line import LOAD, Operators
+from stribeck.equations.observables import NAMES, Observables, far_gap, friction_integrals, friction_scale, gradients
+from stribeck.equations.state import Rows
+from stribeck.fluids import newtonian as reynolds
+from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
+from stribeck.solids.half_plane import (
+    Blocks,
+    log_moments,
+    near_distance,
+    near_infinity,
+    near_panels,
+    nodes_at_infinity,
+    nodes_on_panel,
+    panels_from_infinity,
+)
+
+EXTRA_NODES = 2
+"""Nodes that a panel gains where the defect is evaluated."""
+
+SAFETY = 2.0
+"""Factor from the estimated to the stated error."""
+
+DEFECT_SAFETY = 3.0
+"""The same of the defect, of which the finer nodes see a part only where the pressures need many more."""
+
+FLAT = 0.2
+"""Where the gap differs from the flux gap by less than this part of itself all over a panel, the pressure gradient is smoother
+than its formula in the gap, which there is the difference of nearly equal numbers; it is interpolated itself."""
+
+ROUNDING_UNITS = 2.0
+"""Units in the last place by which the residual may be wrong all over a panel; checked against meshes that should agree."""
+
+PATTERNS = 5
+"""Patterns of signs of these: the mean square of what they change is known from so many within a factor of two."""
+
+DEVIATIONS = 2.0
+"""Standard deviations of these changes that are stated as the error by rounding."""
+
+OFFSET_FLOOR = 1e-3
+"""The error of the offset is relative to it where it exceeds this; it crosses zero."""
+
+GAP_FLOOR = 1e-3
+"""At speed zero the gap crosses zero too: its error is relative to it where it exceeds this part of kappa."""
+
+
+def _by_highest(s: Array, order: int) -> Array:
+    """Moments of the logarithm with the degrees that a panel of ``order`` nodes gains, at the near ones of targets s."""
+    near = np.abs(s) < near_distance(order)
+    found = np.zeros((len(s), EXTRA_NODES))
+    found[near] = log_moments(s[near], order + EXTRA_NODES)[:, order:]
+    return found
+
+
+def _seen_from_infinity(centre: Array, half_width: Array, nodes: Array) -> Array:
+    """Nodes of a panel in ``x``, in units of the edge of the panel through infinity, in the coordinate of that one."""
+    return np.asarray(1 / (centre + half_width * nodes))
+
+
+_ON_PANELS = Blocks(nodes_on_panel, _by_highest)
+_AT_INFINITY = Blocks(nodes_at_infinity, _by_highest)
+_OF_INFINITY = Blocks(_seen_from_infinity, _by_highest)
+
+
+@dataclass(frozen=True, eq=False)
+class FineOperators:
+    """The panels of a mesh with more nodes, and the deflection that pressures there cause at the nodes of the mesh.
+
+    The degrees that the mesh itself holds deflect as on it.  Those above fall so fast with the distance from their panel that
+    only its neighbourhood feels them.
+    """
+
+    coarse: Mesh
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The panels with :data:`EXTRA_NODES` more nodes."""
+        return self.coarse.refined(self.coarse.order + EXTRA_NODES)
+
+    @cached_property
+    def _lowered(self) -> Array:
+        """Fine nodal values -> coarse nodal values of the polynomial without its highest degrees."""
+        m = self.coarse.order
+        return legendre.legvander(reference(m).nodes, m - 1) @ reference(self.mesh.order).to_legendre[:m]
+
+    @cached_property
+    def _of_highest(self) -> Array:
+        """Highest Legendre coefficients on all panels -> the deflection by them, shape (size, panels * EXTRA_NODES)."""
+        mesh, m = self.coarse, self.coarse.order
+        found = np.zeros((mesh.panels, m, mesh.panels, EXTRA_NODES))
+        target, source, places = near_panels(mesh)
+        found[target, :, source] = _ON_PANELS.at(places, m)
+        outermost, places = np.flatnonzero(near_infinity(mesh)), panels_from_infinity(mesh)
+        found[-1, :, outermost] = _AT_INFINITY.at([places[k] for k in outermost], m)
+        found[:-1, :, -1] = _OF_INFINITY.at(places, m)
+        found[-1, :, -1] = _by_highest(reference(m).nodes, m)
+        found *= mesh.half_widths[:, None] / -np.pi
+        return found.reshape(mesh.size, -1)
+
+    def deflection(self, pressure: Array, operators: Operators) -> Array:
+        """Return the deflection at the coarse nodes under rows of fine ``pressure``, by the ``operators`` of the mesh."""
+        density = (pressure * self.mesh.stretch).reshape(len(pressure), self.mesh.panels, -1)
+        lowered = (density @ self._lowered.T).reshape(len(pressure), -1) / self.coarse.stretch
+        highest = density @ reference(self.mesh.order).to_legendre[self.coarse.order :].T
+        return lowered @ operators.deflection.T + highest.reshape(len(pressure), -1) @ self._of_highest.T
+
+
+@dataclass(frozen=True)
+class ErrorEstimate:
+    """Estimated errors of the observables, each an array of shape (len(NAMES),); nan for one that does not exist.
+
+    Attributes
+    ----------
+    discretisation, interpolation, rounding : ndarray
+        Absolute errors left by mesh and iteration at the nodes, by the polynomials between them, and by rounding.
+    scales : ndarray
+        What each is relative to: one for the load shares, the observable itself for the others.
+    """
+
+    discretisation: Array = field(repr=False)
+    interpolation: Array = field(repr=False)
+    rounding: Array = field(repr=False)
+    scales: Array = field(repr=False)
+
+    def at_most(self, difference: Array) -> ErrorEstimate:
+        """Return the estimate with no discretisation error above twice the ``difference`` from a clearly coarser mesh.
+
+        Where the film is thin the pressure between the nodes, not the state, makes the defect large.
+        """
+        return replace(self, discretisation=np.fmin(self.discretisation, SAFETY * difference))
+
+    @property
+    def relative(self) -> Array:
+        """Relative errors of the observables in the order of :data:`observables.NAMES`.
+
+        Where rounding makes the nodal gaps uneven the polynomials between them measure just that, so that the larger counts.
+        """
+        return np.asarray((self.discretisation + np.maximum(self.interpolation, self.rounding)) / self.scales)
+
+    @property
+    def total(self) -> float:
+        """The largest relative error."""
+        return float(np.nanmax(self.relative))
+
+    @property
+    def between_nodes(self) -> float:
+        """The part of it that the polynomials between the nodes cause."""
+        return float(np.nanmax(self.interpolation / self.scales))
+
+    @property
+    def at_nodes(self) -> float:
+        """The part of it that mesh and iteration cause at the nodes."""
+        return float(np.nanmax(self.discretisation / self.scales))
+
+    @property
+    def floor(self) -> float:
+        """The part of it that rounding causes and no mesh removes."""
+        return float(np.nanmax(self.rounding / self.scales))
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What may be wrong with states.
+
+    ``unknowns``, shape (1 + PATTERNS, rows, unknowns), are the changes that defect and rounding may cause, the defect first;
+    ``friction``, shape (2, rows), is by how much the two friction integrals change on the finer nodes.
+    """
+
+    unknowns: Array = field(repr=False)
+    friction: Array = field(repr=False)
+
+
+def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
+    """Return what defect, quadrature and rounding may change in states; ``observed`` as in :func:`error_estimates`."""
+    equations, op, y = states.equations, states.equations.operators, states.y
+    coarse, mesh = fine.coarse, fine.mesh
+    h, z0, h_star = y[:, :-2], y[:, -2:-1], y[:, -1:]
+    gap = np.exp(coarse.to_order(np.log(h / coarse.far), mesh.order)) * mesh.far
+    own, finer = slice(-coarse.order, None), slice(-mesh.order, None)  # through infinity, where the gap holds a logarithm
+    smooth = h[:, own] - far_gap(coarse.nodes[own])
+    gap[:, finer] = smooth @ between_orders(coarse.order, mesh.order) + far_gap(mesh.nodes[finer])
+    slopes = reynolds.gradient(gap, h_star)
+    flat = (np.abs(h - h_star) < FLAT * h).reshape(len(y), coarse.panels, -1).all(axis=2)
+    if flat.any():
+        smooth = coarse.to_order(reynolds.gradient(h, h_star), mesh.order)
+        slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
+    pressure = equations.law.pressure(gap) + equations.speed * mesh.integral_from_infinity(slopes)
+    deflection = fine.deflection(pressure, op)
+    residual = np.empty((1 + PATTERNS, *y.shape))
+    residual[0, :, :-2] = h - z0 - op.parabola - deflection
+    residual[0, :, -2] = pressure @ mesh.weights - LOAD
+    residual[0, :, -1] = np.ravel(equations.flux_scale) * (slopes @ mesh.weights)
+    size = np.finfo(float).eps * ROUNDING_UNITS
+    residual[1:, :, :-2] = size * (np.abs(z0) + op.parabola + np.abs(deflection))
+    residual[1:, :, -2] = size * LOAD
+    residual[1:, :, -1] = size * np.ravel(equations.flux_scale) * (np.abs(slopes) @ mesh.weights)
+    residual[1:] *= _signs(coarse.panels, coarse.order)[:, None]
+    friction = np.zeros((2, len(y)))
+    if equations.moves:
+        scale = np.ravel(friction_scale(states.load, equations.speed))
+        friction = np.abs(scale * friction_integrals(mesh, gap, h_star, slopes) - observed[:, -2:].T)
+    return Changes(states.correction(residual), friction)
+
+
+def interpolation_errors(states: Rows, minimum_positions: Array) -> Array:
+    """Return the absolute errors of the interpolated central and least gap, shape (2, rows)."""
+    mesh = states.equations.operators.mesh
+    central = int(np.searchsorted(mesh.edges, 0.0))
+    least = np.clip(np.searchsorted(mesh.edges, minimum_positions) - 1, 0, mesh.panels - 1)
+    panels = np.stack([np.full_like(least, central), least])
+    gap = states.y[:, :-2].reshape(len(least), mesh.panels, -1)[np.arange(len(least)), panels]
+    return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
+
+
+def reads_off(mesh: Mesh, gap: Array, rtol: float) -> bool:
+    """Tell whether the central and the least gap are interpolated to ``rtol``: what a mesh kept along a path loses first."""
+    panels = [int(np.searchsorted(mesh.edges, 0.0)), int(np.argmin(gap)) // mesh.order]
+    return bool((_between_nodes(mesh, gap.reshape(mesh.panels, -1)[panels], panels) <= rtol).all())
+
+
+def _between_nodes(mesh: Mesh, gap: Array, panels: Indices | list[int]) -> Array:
+    """Return the relative errors of gaps, shape (..., order), interpolated between the nodes of their ``panels``."""
+    return np.asarray(SAFETY * interpolation_error(np.log(gap / mesh.far.reshape(mesh.panels, -1)[panels])))
+
+
+@lru_cache(maxsize=64)
+def _signs(panels: int, order: int) -> Array:
+    """Return fixed patterns of signs, each the same all over a panel, shape (PATTERNS, panels * order + 2)."""
+    signs = np.random.default_rng(panels).choice(np.array([-1.0, 1.0]), (PATTERNS, panels + 2))
+    return np.hstack([np.repeat(signs[:, 2:], order, axis=1), signs[:, :2]])
+
+
+def error_estimates(states: Rows, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
+    """Return the estimated errors of what was ``observed`` on states.
+
+    At speed zero the values may be those of the same state under another load, see ``refine.quasistatic_shift``.
+    """
+    values = np.array([one.array() for one in observed])
+    changed = changes(states, values, fine)
+    rows = gradients(states.equations, states.y, states.load)
+    effects = np.abs(np.matmul(rows.transpose(1, 0, 2), changed.unknowns.transpose(1, 2, 0)))
+    effects[:, -2:, 0] += changed.friction.T
+    interpolation = np.zeros_like(values)
+    interpolation[:, 2:4] = interpolation_errors(states, np.array([one.minimum_position for one in observed])).T
+    scales = np.abs(values)
+    scales[:, :2] = 1.0
+    offset = NAMES.index("offset")
+    scales[:, offset] = np.maximum(scales[:, offset], OFFSET_FLOOR)
+    if not states.equations.moves:
+        scales[:, 2:4] = np.maximum(scales[:, 2:4], GAP_FLOOR * states.equations.law.decay)
+    scales[scales == 0] = 1.0
+    rounding = DEVIATIONS * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
+    parts = (DEFECT_SAFETY * effects[:, :, 0], interpolation, rounding, scales)
+    return [ErrorEstimate(*row) for row in zip(*parts, strict=True)]

@@ -1,0 +1,368 @@
+"""Discrete states: the unknowns on one mesh, how they are predicted on another, and how that mesh is chosen.
+
+A state knows its groups, its equations and the Newton iteration that made it.  Between meshes travel the logarithm of the
+gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and the fluid pressure.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from scipy.linalg import lapack
+
+from stribeck._types import Array, Numbers
+from stribeck.contact_laws.scaled import ContactLaw, contact_law
+from stribeck.contacts.line import Groups
+from stribeck.equations.line import Equations, Operators
+from stribeck.numerics.continuation import extrapolation_weights
+from stribeck.numerics.newton import Factors, Outcome, Root, root_find
+from stribeck.numerics.panels import Mesh, adapt
+
+CHORD = 0.25
+"""Contraction above which a kept factorisation is given up."""
+
+LARGEST_AMPLIFICATION = 40.0
+"""Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
+
+ROUNDING = 1e-9
+"""Relative rounding of what tells where a panel lies."""
+
+LONG_REACH_ORDER = 14
+"""Nodes a panel from which the panel through infinity begins twice as far out, to keep up with them: the logarithm in the
+gap limits its order."""
+
+PREDICTION_GOAL = 0.5
+"""Relative error of the predicted gap at which the step of a path is kept."""
+
+
+class Guess(Protocol):
+    """A guessed state, on the whole line."""
+
+    @property
+    def flux_gap(self) -> float:
+        """Guess of the flux gap."""
+
+    @property
+    def offset(self) -> float:
+        """Guess of the offset."""
+
+    @property
+    def least_position(self) -> float:
+        """About where the gap is least."""
+
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
+
+
+class RowsGuess(Protocol):
+    """What :func:`mesh_for` asks of guesses of states in rows."""
+
+    @property
+    def flux_gap(self) -> Array:
+        """Guess of the flux gaps, a column."""
+
+    @property
+    def least_position(self) -> Array:
+        """About where the gaps are least, a column."""
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithms of the gaps and, if known, the fluid pressures at ``x``, shape (1 or 2, rows, len(x))."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """States that share a mesh, as observables and error estimates want them.
+
+    Attributes
+    ----------
+    equations : Equations
+        Theirs; speed and law hold columns where there are several states.
+    y : ndarray, shape (rows, N + 2)
+        The unknowns of each.
+    load : float or ndarray
+        Load group; a column of them where there are several states.
+    correction : callable
+        What removes residuals, shape (..., rows, N + 2), to first order, -J^-1 of each.
+    """
+
+    equations: Equations
+    y: Array
+    load: Numbers
+    correction: Callable[[Array], Array]
+
+
+def correction(factors: Factors, residuals: Array) -> Array:
+    """Return what removes residuals, shape (..., n), by the factors of a Jacobian, in its units of the unknowns."""
+    columns = residuals.reshape(-1, residuals.shape[-1]).T
+    return np.asarray(-lapack.dgetrs(*factors, columns)[0].T.reshape(residuals.shape))
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A solution of the discrete equations, or the last iterate towards one.
+
+    Attributes
+    ----------
+    groups : Groups
+        Scalar groups.
+    equations : Equations
+        The discrete problem.
+    y : ndarray
+        Gap at the nodes, offset, flux gap.
+    root : Root
+        The Newton iteration that ended here.
+    prediction_error : float
+        Largest relative change of the gap from its guess.
+    """
+
+    groups: Groups
+    equations: Equations
+    y: Array
+    root: Root
+    prediction_error: float
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh of the state."""
+        return self.equations.operators.mesh
+
+    @property
+    def gap(self) -> Array:
+        """Gap at the nodes [u_Hz]."""
+        return self.y[:-2]
+
+    @property
+    def offset(self) -> float:
+        """Offset z0 [u_Hz]."""
+        return float(self.y[-2])
+
+    @property
+    def flux_gap(self) -> float:
+        """Flux gap h* [u_Hz]."""
+        return float(self.y[-1])
+
+    @property
+    def least_position(self) -> float:
+        """The node where the gap is least."""
+        return float(self.mesh.nodes[np.argmin(self.gap)])
+
+    @property
+    def outcome(self) -> Outcome:
+        """Outcome of the Newton iteration; one stopped by rounding counts as converged, its error is estimated."""
+        return Outcome.CONVERGED if self.root.outcome is Outcome.ROUNDING else self.root.outcome
+
+    def without_factors(self) -> State:
+        """Return the state without Newton's factors, which are as large as an operator and serve only its neighbour."""
+        return replace(self, root=replace(self.root, factors=None))
+
+    @property
+    def rows(self) -> Rows:
+        """The state as the only one of its mesh."""
+        factors = self.root.factors
+        assert factors is not None
+        units = self.equations.units(self.y)
+        return Rows(self.equations, self.y[None], float(self.groups.load), lambda r: units * correction(factors, r))
+
+    @property
+    def effort(self) -> float:
+        """What :func:`continuation.march` steers by: 4 where the cubic prediction was as good as wanted."""
+        return 4.0 + 0.5 * math.log2(max(self.prediction_error, 1e-9) / PREDICTION_GOAL)
+
+    @cached_property
+    def _log_gap(self) -> Array:
+        return np.log(self.gap)
+
+    @cached_property
+    def shape(self) -> Array:
+        """Logarithm of the gap over ``scale**2 + x**2`` at the nodes: what the panels interpolate."""
+        return np.log(self.gap / self.mesh.far)
+
+    @cached_property
+    def _nodal(self) -> Array:
+        """Nodal fields of the guess that this state is for others: :attr:`shape` and fluid pressure."""
+        return np.stack([self.shape, self.equations.pressures(self.y)[1]])
+
+    @cached_property
+    def _on_other_mesh(self) -> dict[Mesh, Array]:
+        return {}
+
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``; that on the mesh last asked for is kept."""
+        if mesh is self.mesh:
+            return self._log_gap
+        if mesh not in self._on_other_mesh:
+            shape = self.mesh.interpolate(self.shape, mesh.nodes)
+            self._on_other_mesh.clear()
+            self._on_other_mesh[mesh] = shape + np.log(self.mesh.scale**2 + mesh.nodes**2)
+        return self._on_other_mesh[mesh]
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap and the fluid pressure at ``x``."""
+        found = self.mesh.interpolate(self._nodal, x)
+        found[0] += np.log(self.mesh.scale**2 + x * x)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Extrapolation:
+    """A guess from the states before it along a path."""
+
+    weights: Array
+    states: Sequence[State]
+
+    @property
+    def flux_gap(self) -> float:
+        """Extrapolated in its logarithm."""
+        return math.exp(sum(w * math.log(s.flux_gap) for w, s in zip(self.weights, self.states, strict=True)))
+
+    @property
+    def offset(self) -> float:
+        """That of the last state; Newton's first step corrects it exactly."""
+        return self.states[-1].offset
+
+    @property
+    def least_position(self) -> float:
+        """That of the last state."""
+        return self.states[-1].least_position
+
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
+        log_gap = np.zeros(mesh.size)
+        for w, s in zip(self.weights, self.states, strict=True):
+            log_gap += w * s.log_gap(mesh)
+        return log_gap
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap and the fluid pressure at ``x``."""
+        fields = np.zeros((2, x.size))
+        for w, s in zip(self.weights, self.states, strict=True):
+            fields += w * s.fields(x)
+        return fields
+
+
+def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
+    """Return the guess at coordinate ``s`` by the highest polynomial through ``history`` that does not amplify errors."""
+    for first in range(len(history) - 1):
+        points = history[first:]
+        weights = extrapolation_weights([c for c, _ in points], s)
+        if np.abs(weights).sum() <= LARGEST_AMPLIFICATION:
+            return Extrapolation(weights, [state for _, state in points])
+    return history[-1][1]
+
+
+def mesh_for(
+    guess: Guess | RowsGuess,
+    groups: Groups,
+    law: ContactLaw,
+    order: int,
+    tolerance: float,
+    gap_tolerance: float = 1e-2,
+    profile_tolerance: float = np.inf,
+) -> Mesh:
+    """Return the coarsest mesh that resolves a guess, or those of many states that are to share it.
+
+    Parameters
+    ----------
+    guess : Guess or RowsGuess
+        The fields to resolve: contact and fluid pressure to ``tolerance``, relative to what a Hertz pressure has at that
+        distance from its edge, the square root of the half-width of the panel; the viscous shear 1/h, relative to that at
+        zero, to ``tolerance`` too, the logarithm of the gap to ten times that.
+    groups : Groups
+        Scalar groups; columns for states in rows.
+    law : ContactLaw
+        Contact pressure from the gap.
+    order : int
+        Nodes a panel.
+    tolerance : float
+        Legendre tail allowed on each panel.
+    profile_tolerance : float
+        That of the logarithm of the gap on all other panels, where it is below ten times ``tolerance``.
+    gap_tolerance : float
+        That of the logarithm of the gap on the panels where the central and the least gap are read off.
+
+    Raises
+    ------
+    MeshTooLargeError
+        If more panels are needed than :data:`mesh.MAX_PANELS`.
+    """
+    central_gap = np.exp(guess.fields(np.zeros(1))[0])
+    width = np.sqrt(1.0 + central_gap)
+    scale = 2.0 ** round(float(np.log2(width).mean()))
+
+    def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
+        flat = x.ravel()
+        found = guess.fields(flat)
+        gap = np.exp(found[0])
+        if len(found) == 2:
+            fluid = found[1]
+        else:
+            slopes = groups.speed * (gap - guess.flux_gap) / gap**3
+            fluid = slopes * np.repeat(half_widths, x.shape[1])
+        edge_scale = np.minimum(1.0, half_widths / width) ** 0.5
+        pressures = width / np.repeat(edge_scale, x.shape[1], axis=-1) * np.stack([law.pressure(gap), fluid])
+        nodal = (*gap.shape[:-1], *x.shape)
+        shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
+        centres = x.mean(axis=1)
+        at_zero = np.abs(centres) <= (1 + ROUNDING) * half_widths
+        read_off = at_zero | (np.abs(centres - guess.least_position) <= half_widths)
+        read_off &= stretch[:, 0] == 1.0
+        weight = max(0.1, tolerance / profile_tolerance)
+        shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[..., None]
+        shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
+        return np.concatenate([stretch * pressures.reshape(2, *nodal), shape[None], shear[None]])
+
+    start = guess.mesh if isinstance(guess, State) else None
+    reach = (8 if order < LONG_REACH_ORDER else 16) * scale
+    return adapt(fields, scale, reach, order, tolerance, start)
+
+
+def factors_on(operators: Operators, state: State) -> Factors:
+    """Return the factors of the Jacobian at a state, put on the mesh of ``operators``, in units of the unknowns."""
+    flux_gap = state.flux_gap
+    y = np.append(np.exp(state.log_gap(operators.mesh)), [state.offset, flux_gap])
+    equations = Equations(operators, float(state.groups.speed), contact_law(state.groups), flux_gap**2)
+    lu, pivots, _ = lapack.dgetrf(equations.relative_jacobian(y), overwrite_a=True)
+    return lu, pivots
+
+
+def solve_state(
+    groups: Groups,
+    operators: Operators,
+    guess: Guess,
+    tolerance: float,
+    max_steps: int = 40,
+    factors: Factors | None = None,
+) -> State:
+    """Return the state of the discrete equations on the mesh of ``operators`` nearest to ``guess``.
+
+    ``factors`` are those of a neighbour on the same mesh, to be used for as long as its Jacobian makes the steps contract.
+    """
+    flux_gap = guess.flux_gap
+    equations = Equations(operators, float(groups.speed), contact_law(groups), flux_gap**2)
+    y = np.empty(operators.mesh.size + 2)
+    y[:-2] = np.exp(guess.log_gap(operators.mesh))
+    y[-2:] = guess.offset, flux_gap
+    root = root_find(
+        equations.residual,
+        equations.relative_jacobian,
+        y,
+        fraction=equations.admissible,
+        size=equations.size,
+        tolerance=tolerance,
+        max_steps=max_steps,
+        chord=CHORD,
+        factors=factors,
+        units=equations.units,
+        overwrite_jacobian=True,
+        singular_below=0.0,
+    )
+    error = float(np.abs(y[:-2] / root.x[:-2] - 1).max())
+    return State(groups, equations, root.x, root, error)

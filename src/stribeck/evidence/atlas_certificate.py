@@ -1,0 +1,189 @@
+"""How wrong the atlas is: against states solved from cold that its table was not made from.
+
+``make certificate``, or ``python -m stribeck.evidence.atlas_certificate``, prints the tables of docs/atlas.md and draws its map.
+"""
+
+from __future__ import annotations
+
+import argparse
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.atlas import reading as atlas
+from stribeck.contacts.line import Groups
+from stribeck.solver.solve import solve
+
+RTOL = 1e-7
+"""Tolerance of the states that judge, as far as double precision gives it."""
+
+LEAST_SHARE = 1e-9
+"""Contact share from which its relative error counts; so small a part of the load is felt nowhere else."""
+
+LEAST_FLUID = 1e-3
+"""Fluid share from which the solver, which bounds its absolute error, can judge."""
+
+OFFSET_FLOOR = 1.0
+"""The offset crosses zero: below this its error is absolute."""
+
+SHARED = 0.01
+"""Least of the two load shares of states in mixed lubrication, which are judged apart as well."""
+
+TRIES = 20
+"""States drawn for each in mixed lubrication; about one in nine is."""
+
+FRICTIONS = ((1.0, "paper"), (1.0, "balanced"), (0.01, "paper"), (0.01, "balanced"))
+"""Coefficients of the contact law and definitions, at friction coefficient 1 of the dry contact."""
+
+FILMS = ("central_gap", "minimum_gap", "flux_gap")
+
+QUANTITIES = (
+    *(f"friction, {definition}, beta = {beta:g}" for beta, definition in FRICTIONS),
+    "viscous friction, paper",
+    "viscous friction, balanced",
+    *FILMS,
+    "offset",
+    "contact load share",
+    "fluid load share",
+)
+"""What is judged, in the order of the errors."""
+
+
+@dataclass(frozen=True, eq=False)
+class Certificate:
+    """Errors of the atlas on random states.
+
+    Attributes
+    ----------
+    speed, load, relative_roughness : ndarray, shape (n,)
+        The states.
+    contact_share : ndarray, shape (n,)
+        Solved load share of the asperities.
+    errors : ndarray, shape (n, len(QUANTITIES))
+        Relative errors; nan where a load share is too small to count.
+    """
+
+    speed: Array
+    load: Array
+    relative_roughness: Array
+    contact_share: Array
+    errors: Array
+
+    @property
+    def friction(self) -> Array:
+        """Largest error of all frictions on each state."""
+        return np.asarray(self.errors[:, : len(FRICTIONS)].max(axis=1))
+
+    @property
+    def film(self) -> Array:
+        """Largest error of the three gaps on each state."""
+        first = QUANTITIES.index(FILMS[0])
+        return np.asarray(self.errors[:, first : first + len(FILMS)].max(axis=1))
+
+
+def random_states(states: int, seed: int, mixed: bool = False) -> tuple[Array, Array, Array]:
+    """Return speeds, loads and relative roughnesses, evenly distributed in their logarithms over the box of the atlas.
+
+    Where ``mixed``, only states on which by the atlas fluid and asperities both carry at least :data:`SHARED`.
+    """
+    rng = np.random.default_rng(seed)
+    drawn = TRIES * states if mixed else states
+    speed, load, kappa = (np.exp(rng.uniform(np.log(ends[0]), np.log(ends[1]), drawn)) for ends in atlas.BOX.values())
+    if mixed:
+        share = np.asarray(atlas.contact_load_share(Groups(speed, load, kappa * load)))
+        kept = np.nonzero((share > SHARED) & (share < 1 - SHARED))[0][:states]
+        speed, load, kappa = speed[kept], load[kept], kappa[kept]
+    return speed, load, kappa
+
+
+def solved(state: tuple[float, float, float]) -> Array:
+    """Return the observables of speed, load and relative roughness from cold."""
+    speed, load, kappa = state
+    return solve(Groups(speed, load, kappa * load), rtol=RTOL, on_failure="return").observables.array()
+
+
+def certify(states: int, seed: int, workers: int = 1, mixed: bool = False) -> Certificate:
+    """Solve random states and compare the atlas with them, see :func:`random_states`."""
+    drawn = random_states(states, seed, mixed)
+    if workers > 1:
+        with ProcessPoolExecutor(workers) as pool:
+            observed = np.array(list(pool.map(solved, zip(*drawn, strict=True), chunksize=20)))
+    else:
+        observed = np.array([solved(state) for state in zip(*drawn, strict=True)])
+    return compare(*drawn, observed)
+
+
+def compare(speed: Array, load: Array, kappa: Array, observed: Array) -> Certificate:
+    """Return the errors of the atlas on solved states."""
+    groups = Groups(speed, load, kappa * load)
+    contact, fluid, central, minimum, flux, offset, paper, balanced = observed.T
+    viscous = {"paper": paper, "balanced": balanced}
+    found = [
+        np.abs(atlas.friction(groups, 1.0, beta, "balanced" if definition == "balanced" else "paper"))
+        / (contact + beta * viscous[definition])
+        for beta, definition in FRICTIONS
+    ]
+    found += [atlas.viscous_friction(groups) / paper, atlas.viscous_friction(groups, 1.0, "balanced") / balanced]
+    found += [atlas.central_gap(groups) / central, atlas.minimum_gap(groups) / minimum, atlas.flux_gap(groups) / flux]
+    found += [1 + (atlas.offset(groups) - offset) / np.maximum(np.abs(offset), OFFSET_FLOOR)]
+    contact_counts = np.where(contact > LEAST_SHARE, contact, np.nan)
+    fluid_counts = np.where(fluid > LEAST_FLUID, fluid, np.nan)
+    found += [atlas.contact_load_share(groups) / contact_counts, atlas.fluid_load_share(groups) / fluid_counts]
+    return Certificate(speed, load, kappa, contact, np.abs(np.stack(found, axis=1) - 1))
+
+
+def table(certificate: Certificate) -> str:
+    """Return the errors as a table, with the state where each is worst."""
+    lines = ["| relative error | median | 99 % within | worst | where: speed, load, kappa |", "|---|---|---|---|---|"]
+    for name, errors in zip(QUANTITIES, certificate.errors.T, strict=True):
+        worst = int(np.nanargmax(errors))
+        where = ", ".join(f"{getattr(certificate, axis)[worst]:.2g}" for axis in atlas.BOX)
+        numbers = f"{np.nanmedian(errors):.1e} | {np.nanquantile(errors, 0.99):.1e} | {errors[worst]:.1e}"
+        lines.append(f"| {name.replace('_', ' ')} | {numbers} | {where} |")
+    return "\n".join(lines)
+
+
+def draw(certificate: Certificate, path: Path) -> None:
+    """Draw the worst errors of friction and film over speed and relative roughness, and over load and relative roughness."""
+    from matplotlib.colors import LogNorm
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 7), layout="constrained")
+    panels = figure.subplots(2, 2, sharey=True)
+    kappa = np.log10(certificate.relative_roughness)
+    for row, (name, errors) in zip(panels, (("friction", certificate.friction), ("film", certificate.film)), strict=True):
+        for axes, across in zip(row, ("speed", "load"), strict=True):
+            x = np.log10(getattr(certificate, across))
+            bins = [np.log10(np.geomspace(*atlas.BOX[side], 25)) for side in (across, "relative_roughness")]
+            place = tuple(np.clip(np.digitize(v, b) - 1, 0, 23) for v, b in zip((x, kappa), bins, strict=True))
+            worst = np.zeros((24, 24))
+            np.maximum.at(worst, place, np.maximum(errors, 1e-16))
+            shown = np.where(worst > 0, worst, np.nan).T
+            image = axes.pcolormesh(*(10**b for b in bins), shown, norm=LogNorm(1e-8, 1e-4), cmap="viridis")
+            axes.set(xscale="log", yscale="log", xlabel=across, title=f"{name}: worst relative error")
+    for row in panels:
+        row[0].set_ylabel("relative roughness")
+    figure.colorbar(image, ax=panels, extend="both")
+    figure.savefig(path, dpi=110)
+
+
+def main() -> None:
+    """Print the tables and draw the map."""
+    parser = argparse.ArgumentParser(description="Compare the atlas with random states solved from cold.")
+    parser.add_argument("--states", type=int, default=5000)
+    parser.add_argument("--seed", type=int, default=271828)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--map", type=Path, default=Path("docs") / "images" / "atlas_error.png")
+    arguments = parser.parse_args()
+    certificate = certify(arguments.states, arguments.seed, arguments.workers)
+    print(f"{arguments.states} states\n\n{table(certificate)}", flush=True)
+    mixed = certify(arguments.states, arguments.seed + 1, arguments.workers, mixed=True)
+    print(f"\n{arguments.states} states, both load shares above {SHARED:.0%}\n\n{table(mixed)}")
+    draw(certificate, arguments.map)
+
+
+if __name__ == "__main__":
+    main()

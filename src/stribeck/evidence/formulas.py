@@ -1,0 +1,404 @@
+"""Formulas judged by the solver: what each of them predicts, solved, and the relative error, at a state or over a grid.
+
+Source: none; this is the evidence for :data:`stribeck.asymptotics.FORMULAS`, shown in validity.md.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import lru_cache, partial
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stribeck._types import Array, Flags
+from stribeck.asymptotics.formula import Formula
+from stribeck.contacts.friction import DEFINITIONS, Definition
+from stribeck.contacts.line import Groups
+from stribeck.curves.landmarks import Landmark
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.files.writing import MissingExtraError
+from stribeck.quantities.units import InputError, show
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import SolveError, solve
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["AXES", "FIELDS", "MEASURED", "RTOL", "error_map", "error_maps", "judged_groups", "kind_of", "relative_error"]
+
+FIELDS = ("gap", "pressure", "contact_pressure", "fluid_pressure")
+"""Fields along the contact: predicted by formulas of the groups and of positions x."""
+
+POSITIONS = 201
+"""Positions in its interval at which a field is judged."""
+
+RTOL = 1e-7
+"""Relative tolerance of the states that judge."""
+
+SMALL_SHARE = 1e-3
+"""Share of the load that the fluid carries below which a state is not taken from a row: the errors of shares are absolute, and
+on a mesh that was made for faster states so small a share can be off by 1e-3 of itself."""
+
+CURVE_POINTS = 41
+"""Points of the curve on which a minimum or a load share is looked for, which is then located exactly."""
+
+
+@lru_cache(maxsize=4096)
+def _state(groups: Groups) -> Solution:
+    return solve(groups, rtol=RTOL)
+
+
+@lru_cache(maxsize=512)
+def _curve(groups: Groups, mu0: float, beta: float, definition: Definition) -> StribeckCurve:
+    coefficients: dict[str, Any] = {"mu0": mu0, "beta": beta, "definition": definition}
+    curve: StribeckCurve = stribeck_curve(
+        load=groups.load, roughness=groups.roughness, points=CURVE_POINTS, rtol=RTOL, **coefficients
+    )
+    return curve
+
+
+def _coefficients(options: dict[str, Any]) -> dict[str, Any]:
+    """Return what the options of a formula ask of the solver: 1 and the definition of the paper, where they do not say."""
+    definition = options.get("definition", options.get("viscous"))
+    known = definition if definition in DEFINITIONS else "paper"
+    return {"mu0": options.get("mu0", 1.0), "beta": options.get("beta", 1.0), "definition": known}
+
+
+def _minimum(groups: Groups, options: dict[str, Any]) -> Landmark | None:
+    return _curve(replace(groups, speed=1.0), **_coefficients(options)).minimum
+
+
+def _fluid_share(groups: Groups, share: str) -> Landmark | None:
+    marks = _curve(replace(groups, speed=1.0), **_coefficients({})).transitions
+    return next((mark for mark in marks if mark.name == f"fluid carries {share} of the load"), None)
+
+
+def _of_landmark(mark: Landmark | None, value: Callable[[Landmark], float]) -> float:
+    return math.nan if mark is None else value(mark)
+
+
+OF_STATE: dict[str, Callable[[Solution, dict[str, Any]], float]] = {
+    "central_gap": lambda s, _: s.central_gap,
+    "flux_gap": lambda s, _: s.flux_gap,
+    "minimum_gap": lambda s, _: s.minimum_gap,
+    "offset": lambda s, _: s.offset,
+    "contact_load_share": lambda s, _: s.contact_load_share,
+    "fluid_load_share": lambda s, _: s.fluid_load_share,
+    "viscous_friction": lambda s, options: s.friction(**_coefficients(options)).viscous,
+    "friction": lambda s, options: s.friction(**_coefficients(options)).total,
+}
+"""Quantities of one state, with the options of the formula."""
+
+LOCATED: dict[str, Callable[[Groups, dict[str, Any]], float]] = {
+    "speed_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.value),
+    "friction_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.friction),
+    "lambda_ratio_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.solution.lambda_ratio),
+    "speed_at_5_percent_fluid": lambda g, _: _of_landmark(_fluid_share(g, "5%"), lambda mark: mark.value),
+    "speed_at_half_fluid": lambda g, _: _of_landmark(_fluid_share(g, "50%"), lambda mark: mark.value),
+}
+"""Quantities located on a curve over the speed, which the speed of the groups does not touch."""
+
+
+def _measured(name: str, groups: Groups, **options: Any) -> float:
+    return LOCATED[name](groups, options) if name in LOCATED else OF_STATE[name](_state(groups), options)
+
+
+MEASURED: dict[str, Callable[..., float]] = {name: partial(_measured, name) for name in (*OF_STATE, *LOCATED)}
+"""What the solver gives for each quantity that a formula predicts, as a function of the groups, for friction also of mu0, beta
+(1 by default) and definition (that of the paper)."""
+
+AXES: dict[str, dict[str, tuple[float, ...]]] = {
+    "smooth": {"speed": (-11, 8, 4)},
+    "rest": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-6, 3, 3)},
+    "mixed": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 0, 3), "speed": (-12, 2, 3)},
+    "located": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 0, 2)},
+}
+"""What the error depends on for each kind of formula, and where it is mapped: loads, or decades and points in each of them."""
+
+LABELS = {"load": "load group", "relative_roughness": "relative roughness h_rms/F_N", "speed": "speed group"}
+
+ROUNDING = 1e-12
+
+SMOOTH_LOAD = 0.1
+"""Load at which smooth contacts are solved; their relative errors do not depend on it."""
+
+
+def judged_groups(formula: Formula[Any], groups: Groups) -> Groups:
+    """Return the groups at which a formula is judged: with roughness or speed zero if it is about the limit.
+
+    Parameters
+    ----------
+    formula : Formula
+        The formula.
+    groups : Groups
+        Any state.
+
+    Returns
+    -------
+    Groups
+        The state to solve.
+    """
+    if formula.plane == "smooth":
+        return replace(groups, roughness=0.0)
+    return replace(groups, speed=0.0) if formula.plane == "rest" else groups
+
+
+def relative_error(formula: Formula[Any], groups: Groups, **options: Any) -> float:
+    r"""Return the error of a formula relative to the solver at one state.
+
+    .. math:: \epsilon = \frac{f - s}{s}, \qquad \epsilon = \frac{\max_x |f - s|}{\max_x |s|} \text{ for a field}
+
+    Parameters
+    ----------
+    formula : Formula
+        The formula.
+    groups : Groups
+        One state.
+    **options
+        Arguments of the formula beside the groups; mu0, beta and definition hold for the solver too.
+
+    Returns
+    -------
+    float
+        The error, signed but for a field; nan where the solver has no such quantity.
+    """
+    state = judged_groups(formula, groups)
+    if formula.predicts in FIELDS:
+        return _field_error(formula, groups, _state(state), options)
+    found = float(formula.function(groups, **options))
+    right = MEASURED[formula.predicts](state, **options)
+    return (found - right) / right
+
+
+def _field_error(formula: Formula[Any], groups: Groups, state: Solution, options: dict[str, Any]) -> float:
+    assert formula.interval is not None, f"{formula.name} is a field and has no interval"
+    ends = formula.interval(groups)
+    if not np.isfinite(ends).all():
+        return math.nan
+    x: Array = np.linspace(*ends, POSITIONS)
+    right = getattr(state.profile(x), formula.predicts)
+    found = formula.function(groups, x, **options)
+    return float(np.abs(found - right).max() / np.abs(right).max())
+
+
+def kind_of(formula: Formula[Any]) -> str:
+    """Return what the error of a formula depends on, as a key of :data:`AXES`.
+
+    Parameters
+    ----------
+    formula : Formula
+        The formula.
+
+    Returns
+    -------
+    str
+        Its plane, or ``"located"`` where it predicts what is located on a curve over the speed.
+    """
+    return "located" if formula.predicts in LOCATED else formula.plane
+
+
+def error_map(
+    formula: Formula[Any],
+    *,
+    load: ArrayLike | None = None,
+    relative_roughness: ArrayLike | None = None,
+    speed: ArrayLike | None = None,
+    predicts: str | None = None,
+    **options: Any,
+) -> xarray.Dataset:
+    r"""Return the error of a formula relative to the solver over a grid of states.
+
+    .. math:: \epsilon = \frac{f - s}{s}, \qquad \epsilon = \frac{\max_x |f - s|}{\max_x |s|} \text{ for a field}
+
+    Parameters
+    ----------
+    formula : Formula
+        The formula.
+    load, relative_roughness, speed : float or array_like, shape (n,), optional
+        The grid [-], ascending; by default that of :data:`AXES`, as on validity.md.  What the error does not depend on is
+        not used: of formulas for smooth contacts all but the speed, of those at rest and of located quantities the speed.
+    predicts : str, optional
+        Key of :data:`MEASURED` to judge by, where the options make the formula predict something else.
+    **options
+        Arguments of the formula beside the groups; mu0, beta and definition hold for the solver too.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``error``, signed but for a field, nan where formula or solver has no value, and ``valid``, whether a state is in the
+        formula's range, over those of load, relative_roughness and speed on which the error depends; needs the extra ``data``.
+
+    Raises
+    ------
+    InputError
+        If an axis is not made of ascending numbers, positive but for a speed of zero, or ``predicts`` is unknown.
+    MissingExtraError
+        If xarray is not installed.
+
+    Notes
+    -----
+    States are solved to ``rtol`` 1e-7, along rows over the speed.  On rows fields are good to 1e-4 between the nodes.
+    """
+    if predicts is not None and predicts not in MEASURED:
+        raise InputError(f"predicts = {show(predicts)}; it must be one of {', '.join(MEASURED)}.")
+    judged = formula if predicts is None else replace(formula, predicts=predicts)
+    grid = {"load": load, "relative_roughness": relative_roughness, "speed": speed}
+    return _maps(kind_of(judged), [judged], _axes(kind_of(judged), grid), options)[formula.name]
+
+
+def error_maps(
+    formulas: Sequence[Formula[Any]],
+    *,
+    load: ArrayLike | None = None,
+    relative_roughness: ArrayLike | None = None,
+    speed: ArrayLike | None = None,
+) -> dict[str, xarray.Dataset]:
+    """Return the maps of several formulas, each state being solved once for all of them.
+
+    Parameters
+    ----------
+    formulas : sequence of Formula
+        The formulas.
+    load, relative_roughness, speed : float or array_like, shape (n,), optional
+        As in :func:`error_map`.
+
+    Returns
+    -------
+    dict of str to xarray.Dataset
+        What :func:`error_map` returns, by name of the formula.
+
+    Raises
+    ------
+    InputError
+        If an axis is not made of ascending numbers, positive but for a speed of zero.
+    MissingExtraError
+        If xarray is not installed.
+    """
+    grid = {"load": load, "relative_roughness": relative_roughness, "speed": speed}
+    found: dict[str, xarray.Dataset] = {}
+    for kind in AXES:
+        members = [formula for formula in formulas if kind_of(formula) == kind]
+        if members:
+            found |= _maps(kind, members, _axes(kind, grid), {})
+    return {formula.name: found[formula.name] for formula in formulas}
+
+
+def _axes(kind: str, given: dict[str, ArrayLike | None]) -> dict[str, Array]:
+    """Return the grid for a kind of formulas, as given or else as in :data:`AXES`."""
+    found = {}
+    for name, default in AXES[kind].items():
+        value = given[name]
+        if value is None and name != "load":
+            low, high, each = default
+            value = np.logspace(low, high, round((high - low) * each) + 1)
+        axis = np.atleast_1d(np.asarray(default if value is None else value, dtype=float))
+        least = 0.0 if name == "speed" else math.ulp(0.0)
+        if axis.ndim != 1 or not np.isfinite(axis).all() or not (np.diff(axis) > 0).all() or not (axis >= least).all():
+            raise InputError(f"{name} = {show(value)}; a map needs positive numbers that ascend (a speed may be zero).")
+        found[name] = axis
+    return found
+
+
+def _maps(
+    kind: str, formulas: Sequence[Formula[Any]], axes: dict[str, Array], options: dict[str, Any]
+) -> dict[str, xarray.Dataset]:
+    """Return the maps of formulas of one kind."""
+    loads = axes.get("load", np.array([SMOOTH_LOAD]))
+    kappas = axes.get("relative_roughness", np.zeros(1))
+    speeds = axes.get("speed", np.array([1.0 if kind == "located" else 0.0]))
+    shape = len(loads), len(kappas), len(speeds)
+    fields = [formula for formula in formulas if formula.predicts in FIELDS]
+    wanted = {formula.predicts for formula in formulas} - set(FIELDS)
+    right = {name: np.full(shape, math.nan) for name in wanted}
+    errors = {formula.name: np.full(shape, math.nan) for formula in fields}
+    estimate = 0.0
+    for i, load in enumerate(loads.tolist()):
+        for j, kappa in enumerate(kappas.tolist()):
+            base = Groups(1.0, load, kappa * load)
+            for name in wanted & set(LOCATED):
+                right[name][i, j, 0] = LOCATED[name](base, options)
+            for k, found_in_row in _row(base, speeds) if kind != "located" else ():
+                small = "fluid_load_share" in wanted and 0 < found_in_row.fluid_load_share < SMALL_SHARE
+                state = _state(found_in_row.groups) if small else found_in_row
+                estimate = max(estimate, state.error_estimate)
+                for name in wanted:
+                    right[name][i, j, k] = OF_STATE[name](state, options)
+                for formula in fields:
+                    groups = replace(base, speed=float(speeds[k]))
+                    errors[formula.name][i, j, k] = _field_error(formula, groups, state, options)
+    groups = Groups(speeds, loads[:, None, None], kappas[:, None] * loads[:, None, None])
+    found = {}
+    for formula in formulas:
+        if formula not in fields:
+            with np.errstate(all="ignore"):
+                values = np.broadcast_to(formula.function(groups, **options), shape)
+                errors[formula.name] = (values - right[formula.predicts]) / right[formula.predicts]
+        valid = np.broadcast_to(_valid(formula, groups), shape)
+        found[formula.name] = _dataset(formula, options, axes, errors[formula.name], valid, estimate)
+    return found
+
+
+def _valid(formula: Formula[Any], groups: Groups) -> Flags:
+    """Return where a formula is in its range, to which its ends belong although the grid is rounded."""
+    steps = 1 - ROUNDING, 1 + ROUNDING
+    near = [replace(groups, speed=groups.speed * i, roughness=groups.roughness * j) for i in steps for j in steps]
+    return np.asarray(np.logical_or.reduce([formula.valid(state) for state in near]))
+
+
+def _row(base: Groups, speeds: Array) -> list[tuple[int, Solution]]:
+    """Return the states of one load and roughness over the speed that could be solved, with their places in ``speeds``."""
+    moving = [k for k, speed in enumerate(speeds.tolist()) if speed > 0]
+    # Two speeds would be the ends of a curve.
+    alone = list(range(len(speeds))) if len(moving) < 3 else [k for k in range(len(speeds)) if k not in moving]
+    found = [(k, _state(replace(base, speed=float(speeds[k])))) for k in alone]
+    if len(moving) > 2:
+        try:
+            curve = stribeck_curve(load=base.load, roughness=base.roughness, speed=speeds[moving], rtol=RTOL)
+        except SolveError:
+            return found
+        places = dict(zip(speeds.tolist(), range(len(speeds)), strict=True))
+        found += [(places[value], state) for value, state in zip(curve.values.tolist(), curve.solutions, strict=True)]
+    return found
+
+
+def _dataset(
+    formula: Formula[Any], options: dict[str, Any], axes: dict[str, Array], error: Array, valid: Flags, estimate: float
+) -> xarray.Dataset:
+    try:
+        import xarray
+    except ImportError:
+        raise MissingExtraError("a map of errors", "data", "xarray") from None
+    shape = tuple(map(len, axes.values()))
+    given = ", ".join(f"{name}={value!r}" for name, value in options.items())
+    field = formula.predicts in FIELDS
+    label = f"error of {formula.name} relative to the solver" + (
+        ", largest over x relative to the largest value" if field else ""
+    )
+    return xarray.Dataset(
+        {
+            "error": (tuple(axes), error.reshape(shape), {"units": "1", "long_name": label}),
+            "valid": (
+                tuple(axes),
+                valid.reshape(shape),
+                {"units": "1", "long_name": f"whether in its range: {formula.range}"},
+            ),
+        },
+        coords={name: (name, values, {"units": "1", "long_name": LABELS[name]}) for name, values in axes.items()},
+        attrs={
+            "title": f"{formula.name}({given})" if given else formula.name,
+            "formula": formula.name,
+            "predicts": formula.predicts,
+            "reference": formula.source,
+            "range": formula.range,
+            "worst_stated": formula.worst,
+            "rtol": RTOL,
+            "error_estimate": estimate,
+            "source": f"stribeck {version('stribeck')}",
+        },
+    )

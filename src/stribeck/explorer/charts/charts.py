@@ -1,0 +1,292 @@
+"""The four charts of the page: friction, gap, pressure, phase diagram, each as plain data by its own function."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.friction import Definition
+from stribeck.explorer.answer import Answer, round_down, round_up
+from stribeck.explorer.charts.echarts import Options, chart, legend, line, linear_axis, log_axis, marker, pairs
+from stribeck.explorer.charts.palette import PIN_DASHES, Palette
+from stribeck.explorer.curves import Curve
+from stribeck.explorer.measured import Measured
+from stribeck.quantities.units import DIMENSIONS, format_si
+
+__all__ = ["CHARTS", "all_charts"]
+
+CHARTS = ("friction", "gap", "pressure", "diagram")
+
+POLYGON = """(params, api) => {
+  const points = [];
+  for (let i = 0; i < api.value(2); i++) points.push(api.coord([api.value(2 * i + 3), api.value(2 * i + 4)]));
+  return {type: 'polygon', shape: {points}, style: {fill: api.visual('color')}, silent: true};
+}"""
+"""One polygon: a point of it, the number of its points, and all their coordinates in one row."""
+
+
+def all_charts(
+    answer: Answer, pins: Sequence[tuple[str, Curve, float]], measured: Sequence[Measured], palette: Palette
+) -> dict[str, Options]:
+    """Return the options of all charts.
+
+    Parameters
+    ----------
+    answer : Answer
+        What is shown.
+    pins : sequence of (str, Curve, float)
+        Pinned curves: name, curve, Hersey number at 1 m/s.
+    measured : sequence of Measured
+        Measured curves.
+    palette : Palette
+        Colours.
+
+    Returns
+    -------
+    dict of str to dict
+        By the names of :data:`CHARTS`.
+    """
+    return {
+        "friction": friction_chart(answer, pins, measured, palette),
+        "gap": gap_chart(answer, palette),
+        "pressure": pressure_chart(answer, palette),
+        "diagram": diagram_chart(answer, palette),
+    }
+
+
+def friction_chart(
+    answer: Answer, pins: Sequence[tuple[str, Curve, float]], measured: Sequence[Measured], palette: Palette
+) -> Options:
+    """Return friction over the speed or the Hersey number, with the present point, pins and measured curves."""
+    inputs, curve = answer.inputs, answer.curve
+    contact = inputs.contact
+    hersey = contact.viscosity / contact.load
+    scale = 1.0 if inputs.abscissa == "speed" else hersey
+    ends = answer.speeds[0] * scale, answer.speeds[1] * scale
+    chosen = inputs.definition
+    other: Definition = "balanced" if chosen == "paper" else "paper"
+    names = {"paper": "friction as printed", "balanced": "friction, balanced"}
+    series: list[Options] = []
+    heights: list[float] = []
+    if curve is not None:
+        x = curve.speed * scale
+        solid, viscous = curve.contact, curve.friction[chosen] - curve.contact
+        heights += [*_range(curve.friction[chosen]), *_range(curve.friction[other])]
+        series += [
+            line("other", names[other], x, curve.friction[other], palette.ink, 1.0, [3, 3]),
+            line("contact", "from asperities", x, solid, palette.contact, 1.4, [7, 3]),
+            line("viscous", "from the fluid", x, viscous, palette.fluid, 1.4, [9, 3, 2, 3]),
+            line("friction", names[chosen], x, curve.friction[chosen], palette.ink, 2.4),
+        ]
+        if curve.stale:
+            for old in series:
+                old["lineStyle"]["opacity"] = 0.25
+        series[-1]["markArea"] = _regime_areas(curve, answer.speeds, scale, palette)
+    for i, (name, pinned, their_hersey) in enumerate(pins):
+        factor = 1.0 if inputs.abscissa == "speed" else their_hersey
+        values = pinned.friction[chosen]
+        heights += _range(values)
+        series.append(line(f"pin{i}", name, pinned.speed * factor, values, palette.pins[i % 6], 1.8, PIN_DASHES[i % 6]))
+    for i, found in enumerate(measured):
+        heights += _range(found.friction)
+        points = pairs(found.speed * scale, found.friction)
+        look = {"color": "transparent", "borderColor": palette.mark, "borderWidth": 1.6}
+        series.append(
+            {
+                "id": f"measured{i}",
+                "name": found.name,
+                "type": "scatter",
+                "data": points,
+                "symbol": ("circle", "diamond", "triangle")[i % 3],
+                "symbolSize": 7,
+                "itemStyle": look,
+                "z": 4,
+            }
+        )
+    friction = answer.solution.friction(definition=chosen).total
+    heights += [friction] if friction > 0 else []
+    low, high = _friction_limits(heights)
+    minimum = None if curve is None else curve.transition("minimum")
+    if minimum is not None:
+        x = np.full(2, minimum.speed * scale)
+        series.append(line("minimum", "least friction", x, np.array([low, high]), palette.mark, 1.4, [2, 3]))
+    point = [contact.speed * scale if contact.speed > 0 else ends[0], friction]
+    series.append(marker("point", point, palette))
+    unit = "sliding speed U (m/s)" if inputs.abscissa == "speed" else "Hersey number ηU/F (–)"
+    options = chart(palette, log_axis(unit, *ends, palette), log_axis("friction coefficient µ", low, high, palette), series)
+    listed = [names[chosen], names[other], "from asperities", "from the fluid"] if curve is not None else []
+    listed += [s["name"] for s in series if s["id"].startswith(("pin", "measured", "minimum"))]
+    return options | {"legend": legend(palette, listed, [found.name for found in measured])}
+
+
+def gap_chart(answer: Answer, palette: Palette) -> Options:
+    """Return the gap along the contact, with the roughness and the formulas in whose range the state is."""
+    contact, profile = answer.inputs.contact, answer.profile
+    x_scale, x_unit, x_end = _length_axis(answer)
+    values = profile.gap
+    u, u_unit = _unit(contact.hertz.indentation * float(np.abs(values).max()), "length")
+    scale = contact.hertz.indentation / u
+    rms = contact.alpha * float(contact.groups.relative_roughness)
+    positive = values[values > 0]
+    least = float(positive.min()) if len(positive) else 1e-6
+    shown = [least, float(values.max())]
+    series = [line("gap", "gap", profile.x * x_scale, np.where(values > 0, values, np.nan) * scale, palette.ink, 2.2)]
+    if rms > 0.03 * least:
+        shown.append(rms)
+        series.append(line("rms", "roughness", np.array([-x_end, x_end]), np.full(2, rms * scale), palette.grey, 1.2, [6, 4]))
+    series += _thin_series(answer, ("gap",), x_scale, scale, palette)
+    low, high = round_down(min(shown) * scale), round_up(max(shown) * scale)
+    y = log_axis(f"gap ({u_unit})", low, high, palette)
+    options = chart(palette, linear_axis(f"position x ({x_unit})", -x_end, x_end, palette), y, series)
+    return options | {"legend": legend(palette, [s["name"] for s in series])}
+
+
+def pressure_chart(answer: Answer, palette: Palette) -> Options:
+    """Return the pressures along the contact, with that of Hertz and the formulas in whose range the state is."""
+    contact, profile = answer.inputs.contact, answer.profile
+    x_scale, x_unit, x_end = _length_axis(answer)
+    unit, name = _unit(contact.hertz.pressure, "pressure")
+    scale = contact.hertz.pressure / unit
+    x = profile.x * x_scale
+    hertz_x = np.linspace(-1, 1, 101)
+    series = [
+        line("total", "total", x, profile.pressure * scale, palette.ink, 2.2),
+        line("contact", "asperities", x, profile.contact_pressure * scale, palette.contact, 1.8, [7, 3]),
+        line("fluid", "fluid", x, profile.fluid_pressure * scale, palette.fluid, 1.8, [9, 3, 2, 3]),
+        line("hertz", "Hertz", hertz_x * x_scale, np.sqrt(1 - hertz_x**2) * scale, palette.grey, 1.2, [2, 3]),
+    ]
+    series += _thin_series(answer, ("pressure", "contact_pressure", "fluid_pressure"), x_scale, scale, palette)
+    most = max(1.0, float(profile.pressure.max()), float(profile.fluid_pressure.max())) * scale
+    least = min(0.0, float(profile.fluid_pressure.min()), float(profile.pressure.min())) * scale
+    high = round_up(1.02 * most)
+    low = 0.0 if least > -0.01 * high else -round_up(-1.02 * least)
+    y = linear_axis(f"pressure ({name})", low, high, palette)
+    options = chart(palette, linear_axis(f"position x ({x_unit}); fluid enters left", -x_end, x_end, palette), y, series)
+    return options | {"legend": legend(palette, [s["name"] for s in series])}
+
+
+def diagram_chart(answer: Answer, palette: Palette) -> Options:
+    """Return the regimes over speed and roughness at the present load, with the present point and the path of the speed."""
+    diagram, contact = answer.diagram, answer.inputs.contact
+    low, high = answer.speeds
+    roughness = diagram.roughness
+    known = ~np.isnan(diagram.boundary)
+    begin = np.clip(diagram.hydrodynamic, low, high)
+    end = np.minimum(np.clip(diagram.boundary, low, high), begin)
+    series: list[Options] = []
+    if known.any() and not diagram.message:
+        rows = roughness[known]
+        left, right = np.full(len(rows), low), np.full(len(rows), high)
+        b, h = end[known], begin[known]
+        for name, one, two in (("boundary", left, b), ("mixed", b, h), ("hydrodynamic", h, right)):
+            outline = [*pairs(one, rows), *pairs(two[::-1], rows[::-1])]
+            row = [*outline[0], len(outline), *(value for point in outline for value in point)]
+            series.append(
+                {
+                    "id": f"area-{name}",
+                    "name": name,
+                    "type": "custom",
+                    ":renderItem": POLYGON,
+                    "clip": True,
+                    "silent": True,
+                    "data": [row],
+                    "color": palette.tints[name],
+                    "itemStyle": {"color": palette.tints[name]},
+                    "tooltip": {"show": False},
+                    "z": 1,
+                }
+            )
+            series.append(_region_name(name, one, two, rows, palette))
+        inside = (b > low) & (b < high)
+        series.append(line("end", "boundary ends", np.where(inside, b, np.nan), rows, palette.contact, 1.8, [7, 3]))
+        inside = (h > low) & (h < high)
+        series.append(line("begin", "hydrodynamic begins", np.where(inside, h, np.nan), rows, palette.fluid, 1.8))
+        least = diagram.minimum[known]
+        least = np.where((least > low) & (least < high), least, np.nan)
+        series.append(line("minimum", "least friction", least, rows, palette.mark, 1.6, [2, 3]))
+    height = min(max(contact.roughness, float(roughness[0])), float(roughness[-1]))
+    series.append(line("path", "path of the speed", np.array([low, high]), np.full(2, height), palette.grey, 1.0, [4, 4]))
+    series.append(marker("point", [min(max(contact.speed, low), high), height], palette))
+    x = log_axis("sliding speed U (m/s)", low, high, palette)
+    y = log_axis("roughness (m)", float(roughness[0]), float(roughness[-1]), palette)
+    options = chart(palette, x, y, series)
+    listed = ["boundary ends", "hydrodynamic begins", "least friction"]
+    return options | {"legend": legend(palette, [name for name in listed if any(s["name"] == name for s in series)])}
+
+
+def _region_name(name: str, one: Array, two: Array, rows: Array, palette: Palette) -> Options:
+    """Return the name of a regime where its region is widest, or nothing where it is too narrow for it."""
+    width = np.log10(two / one)
+    place = np.arange(len(rows)) / len(rows)
+    i = int(np.argmax(np.where((place < 0.1) | (place > 0.8), -1.0, width)))
+    wide = width[i] > 0.15 * math.log10(two.max() / one.min())
+    return {
+        "id": f"name-{name}",
+        "name": f"{name} region",
+        "type": "scatter",
+        "data": [[math.sqrt(one[i] * two[i]), float(rows[i])]] if wide else [],
+        "symbolSize": 0.1,
+        "silent": True,
+        "tooltip": {"show": False},
+        "label": {"show": True, "formatter": name, "color": palette.grey, "fontSize": 12, "fontStyle": "italic"},
+        "z": 2,
+    }
+
+
+def _regime_areas(curve: Curve, ends: tuple[float, float], scale: float, palette: Palette) -> Options:
+    """Return the grounds of the regimes behind a curve."""
+    low, high = (end * scale for end in ends)
+    first, last = curve.transition("boundary"), curve.transition("hydrodynamic")
+    b = low if first is None else min(max(first.speed * scale, low), high)
+    h = (high if first is not None else b) if last is None else min(max(last.speed * scale, b), high)
+    pieces = (("boundary", low, b), ("mixed", b, h), ("hydrodynamic", h, high))
+    label = {"show": True, "position": "insideTop", "color": palette.grey, "fontSize": 12, "fontStyle": "italic"}
+    data = [
+        [{"name": name, "xAxis": start, "itemStyle": {"color": palette.tints[name]}, "label": label}, {"xAxis": end}]
+        for name, start, end in pieces
+        if end > start * 1.0001 and not curve.stale
+    ]
+    return {"silent": True, "data": data}
+
+
+def _thin_series(answer: Answer, fields: Sequence[str], x_scale: float, scale: float, palette: Palette) -> list[Options]:
+    return [
+        line(
+            f"thin-{found.name}",
+            f"{found.name.rpartition('.')[2].replace('_', ' ')} (±{100 * found.worst:.2g} %)",
+            found.x * x_scale,
+            np.where(found.value > 0, found.value, np.nan) * scale if found.predicts == "gap" else found.value * scale,
+            palette.thin,
+            1.0,
+        )
+        for found in answer.thin
+        if found.predicts in fields
+    ]
+
+
+def _range(values: Array) -> list[float]:
+    positive = values[values > 0]
+    return [float(positive.min()), float(positive.max())] if len(positive) else []
+
+
+def _friction_limits(values: Sequence[float]) -> tuple[float, float]:
+    """Return ends of the axis of friction in whole or third decades, so that it rests while a slider moves."""
+    low, high = (min(values), max(values)) if values else (1e-3, 1.0)
+    return round_down(low / 3), round_up(high * 1.25)
+
+
+def _length_axis(answer: Answer) -> tuple[float, str, float]:
+    """Return the factor from half-widths to a unit, its name, and the end of the axis in it."""
+    a = answer.inputs.contact.hertz.half_width
+    unit, name = _unit(a * answer.reach, "length")
+    return a / unit, name, float(f"{a * answer.reach / unit:.6g}")
+
+
+def _unit(value: float, dimension: str) -> tuple[float, str]:
+    """Return the unit in which a value reads best, its size and its name."""
+    name = format_si(value, dimension).rpartition(" ")[2]
+    power = next(power for power, known in DIMENSIONS[dimension].steps.items() if known == name)
+    return 10.0**power, name

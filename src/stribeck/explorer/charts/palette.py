@@ -1,0 +1,67 @@
+"""Colours of the page, by light and by dark: those of Okabe and Ito, which most colour-blind readers tell apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, TINTS
+
+__all__ = ["DARK", "LIGHT", "PIN_DASHES", "Palette"]
+
+
+@dataclass(frozen=True)
+class Palette:
+    """Colours of charts.
+
+    Attributes
+    ----------
+    ink, grey, grid, card : str
+        Of lines and text, of what stands back, of grids, of the ground.
+    contact, fluid, mark, thin : str
+        Of what asperities cause, of what the fluid causes, of marks, of formulas.
+    tints : dict of str to str
+        Ground of each regime.
+    pins : tuple of str
+        Of pinned curves.
+    """
+
+    ink: str
+    grey: str
+    grid: str
+    card: str
+    contact: str
+    fluid: str
+    mark: str
+    thin: str
+    tints: dict[str, str]
+    pins: tuple[str, ...]
+
+
+LIGHT = Palette(
+    ink=INK,
+    grey=GREY,
+    grid="#e7eaee",
+    card="#ffffff",
+    contact=CONTACT,
+    fluid=FLUID,
+    mark=MARK,
+    thin="#009e73",
+    tints=TINTS,
+    pins=("#009e73", "#a6761d", "#7b52ab", "#5e7c99", "#b2457d", "#4d4d4d"),
+)
+
+DARK = Palette(
+    ink="#e8ecf1",
+    grey="#96a0ab",
+    grid="#2b323b",
+    card="#181c22",
+    contact="#ff8c52",
+    fluid="#5ab4f0",
+    mark="#e59fc4",
+    thin="#35c9a0",
+    tints={"boundary": "#33251f", "mixed": "#2b2920", "hydrodynamic": "#1a2a38"},
+    pins=("#35c9a0", "#d6a54c", "#b491e0", "#9db4cc", "#ea8fbd", "#bdbdbd"),
+)
+
+PIN_DASHES = ([8, 4], [2, 3], [10, 3, 2, 3], [5, 2], [12, 4], [3, 6])
+"""Dashes of pinned curves, so that they differ without colours too."""

@@ -1,0 +1,281 @@
+"""The page: its elements, and what each of them shows.
+
+It knows nothing of how an answer is found; :class:`stribeck.explorer.tab.Tab` gives it one and does what the user asks for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from html import escape
+from typing import Any
+
+from nicegui import ui
+from nicegui.json import dumps
+
+from stribeck.explorer import downloads as files
+from stribeck.explorer import inputs, table
+from stribeck.explorer.answer import Answer
+from stribeck.explorer.charts import charts
+from stribeck.explorer.charts.echarts import data_only, difference
+from stribeck.explorer.charts.palette import DARK, LIGHT
+from stribeck.explorer.downloads import Shown
+from stribeck.explorer.inputs import FIELDS, GROUP_FIELDS, Inputs
+from stribeck.explorer.measured import Measured
+from stribeck.explorer.url import Pin
+
+__all__ = ["Page"]
+
+PATIENCE = 2.0
+"""Seconds after which a browser that does not answer gets the next picture all the same."""
+
+LARGEST_FILE = 5_000_000
+REJECTED = f"Only .toml, .csv and .txt are read, up to {LARGEST_FILE // 1_000_000} MB."
+
+DEFINITIONS = {"paper": "as printed", "balanced": "balanced"}
+ABSCISSAS = {"speed": "speed", "hersey": "Hersey number"}
+
+
+class Knob(ui.element, component="knob.js"):
+    """Field, unit and slider of one quantity.
+
+    Parameters
+    ----------
+    name : str
+        Key of :data:`FIELDS` or :data:`GROUP_FIELDS`.
+    start : dict
+        What it shows first, as of :func:`knob_state`.
+    """
+
+    def __init__(self, name: str, start: dict[str, Any]) -> None:
+        super().__init__()
+        shown = GROUP_FIELDS.get(name) or FIELDS[name]
+        self._props |= {"name": name, "label": shown.label, "symbol": shown.symbol, "start": start}
+        self._props |= {"low": math.log10(shown.low), "high": math.log10(shown.high)}
+        self.classes("knob-box")
+
+
+def knob_state(now: Inputs, name: str) -> dict[str, Any]:
+    """Return what the knob of a quantity shows."""
+    unit = now.units.get(name, "")
+    units = list(dict.fromkeys((*FIELDS[name].units, unit))) if name in FIELDS and unit else []
+    place = round(inputs.position(now, name), 4)
+    return {"text": inputs.number_text(now, name), "unit": unit, "units": units, "place": place}
+
+
+class Page:
+    """The elements of one page.
+
+    Parameters
+    ----------
+    now : Inputs
+        What its fields show first.
+    """
+
+    def __init__(self, now: Inputs) -> None:
+        self.client = ui.context.client
+        self.moved: int | None = None
+        self.knobs: dict[str, Knob] = {}
+        self.charts: dict[str, ui.echart] = {}
+        self.toggles: dict[str, ui.toggle] = {}
+        self.shown: dict[str, Any] = {}
+        self.dark = ui.dark_mode(None)
+        self.palette = LIGHT
+        self.build(now)
+
+    # --- the elements ---
+
+    def build(self, now: Inputs) -> None:
+        """Make all elements."""
+        with ui.element("main").classes("explorer"):
+            self.build_bar(now)
+            with ui.element("section").classes("card controls").props('aria-label="Inputs"'):
+                self.build_controls(now)
+            with ui.element("div").classes("middle"):
+                with ui.element("section").classes("card friction").props('aria-label="Stribeck curve"'):
+                    self.build_friction(now)
+                with ui.element("section").classes("card fields").props('aria-label="Gap and pressure"'):
+                    ui.html("<h2>Gap and pressure along the contact</h2>", sanitize=False)
+                    with ui.element("div").classes("pair"):
+                        self.chart("gap", "Gap along the contact")
+                        self.chart("pressure", "Contact and fluid pressure along the contact")
+            with ui.element("div").classes("side"):
+                with ui.element("section").classes("card numbers").props('aria-label="Numbers"'):
+                    self.status = ui.label().classes("status").props('role="status"')
+                    self.numbers = ui.html("", sanitize=False)
+                with ui.element("section").classes("card more").props('aria-label="Distances"'):
+                    ui.html("<h2>To the next regimes, by each input</h2>", sanitize=False)
+                    self.distances = ui.html('<p class="caption">solved when the sliders rest</p>', sanitize=False)
+                with ui.element("section").classes("card diagram").props('aria-label="Phase diagram"'):
+                    self.diagram_head = ui.html("<h2>Regimes</h2>", sanitize=False)
+                    self.chart("diagram", "Regimes over speed and roughness")
+        self.keyboard = ui.keyboard()
+
+    def build_bar(self, now: Inputs) -> None:
+        """Make the line of title and buttons."""
+        with ui.element("header").classes("bar"):
+            self.title = ui.html("", sanitize=True, tag="h1")
+            self.upload = (
+                ui.upload(auto_upload=True, multiple=True, max_file_size=LARGEST_FILE)
+                .on(
+                    "rejected",
+                    lambda: self.complain(REJECTED),
+                )
+                .props('accept=".toml,.csv,.txt" aria-hidden="true"')
+                .classes("hidden-upload")
+            )
+            with button("Load", "upload_file", "Load a case (TOML) or a measured curve (CSV)") as load:
+                load.on("click", js_handler=f"() => getElement({self.upload.id}).pickFiles()")
+            with button("Save", "download", "Download what is shown"):
+                with ui.menu():
+                    self.save_items = {kind: ui.menu_item(label) for label, kind in files.KINDS.items()}
+            self.pin_button = button("Pin", "push_pin", "Keep this curve to compare (p)")
+            button("Link", "link", "Copy the address of this state (l)").on("click", js_handler="() => explorerCopy()")
+            self.theme_button = button("", "contrast", "Light or dark (t)").props("aria-label='Light or dark'")
+            self.show_title(now)
+
+    def build_controls(self, now: Inputs) -> None:
+        """Make fields and sliders of the contact and of the groups."""
+        ui.html("<h2>Contact</h2>", sanitize=False)
+        for name in FIELDS:
+            self.knobs[name] = Knob(name, knob_state(now, name))
+        ui.html("<h2>Dimensionless groups</h2>", sanitize=False)
+        for name in GROUP_FIELDS:
+            self.knobs[name] = Knob(name, knob_state(now, name))
+        ui.html(
+            '<p class="caption">A group moves load, speed and roughness; the other two groups stay.</p>',
+            sanitize=False,
+        )
+
+    def build_friction(self, now: Inputs) -> None:
+        """Make the chart of friction with its switches and the list of pins."""
+        with ui.element("div").classes("head"):
+            ui.html("<h2>Stribeck curve</h2>", sanitize=False)
+            self.source = ui.html("", sanitize=False).classes("caption")
+            with ui.element("div").classes("choice"):
+                for options, name in ((DEFINITIONS, "definition"), (ABSCISSAS, "abscissa")):
+                    toggle = ui.toggle(options, value=getattr(now, name))
+                    toggle.props(f'no-caps unelevated dense aria-label="{name}"')
+                    self.toggles[name] = toggle
+        self.chips = ui.element("div").classes("chips")
+        self.chart("friction", "Friction over speed")
+
+    def chart(self, name: str, label: str) -> None:
+        """Make an empty chart."""
+        self.charts[name] = ui.echart({}).classes(f"chart chart-{name}").props(f'role="img" aria-label="{label}"')
+
+    # --- what they show ---
+
+    def show_title(self, now: Inputs) -> None:
+        """Show the headline of the case."""
+        title = escape(now.title)
+        self.title.content = f"<b>stribeck</b> explorer<span>{title}</span>"
+
+    def show_address(self, query: str) -> None:
+        """Put a state into the address."""
+        self.client.run_javascript(f"history.replaceState(null, '', {dumps(query)})")
+
+    def copy_address(self) -> None:
+        """Put the address into the clipboard."""
+        self.client.run_javascript("explorerCopy()")
+
+    def show_choices(self, now: Inputs) -> None:
+        """Show the definition of friction, and what the curve is drawn over."""
+        for name, toggle in self.toggles.items():
+            toggle.value = getattr(now, name)
+
+    def mark(self, name: str, text: str, sentence: str) -> None:
+        """Mark a field with a sentence; what has no field goes to the line above the numbers."""
+        if name in self.knobs:
+            self.knobs[name].run_method("complain", text, sentence)
+        else:
+            self.status.text = sentence
+
+    def renew(self, name: str) -> None:
+        """Let a field be shown anew, without mark."""
+        self.shown.pop(name, None)
+
+    def set_theme(self, dark: bool) -> None:
+        """Take the colours of the theme."""
+        self.dark.value = dark
+        self.palette = DARK if dark else LIGHT
+
+    def show_chips(
+        self,
+        pins: Sequence[Pin],
+        measured: Sequence[Measured],
+        unpin: Callable[[Pin], None],
+        forget: Callable[[Measured], None],
+    ) -> None:
+        """List the pinned and the measured curves, each with what is called when it is removed."""
+        self.chips.clear()
+        with self.chips:
+            for i, pin in enumerate(pins):
+                chip = ui.chip(pin.name, icon="push_pin", removable=True)
+                chip.style(f"--curve: {self.palette.pins[i % 6]}")
+                chip.on("remove", lambda pin=pin: unpin(pin))
+            for found in measured:
+                chip = ui.chip(found.name, icon="scatter_plot", removable=True).style(f"--curve: {self.palette.mark}")
+                chip.on("remove", lambda found=found: forget(found))
+
+    def complain(self, text: str) -> None:
+        """Show sentences about a file until they are read."""
+        with self.client, ui.dialog(value=True), ui.card():
+            for line in text.splitlines():
+                ui.label(line)
+
+    def options(self, seen: Shown) -> dict[str, dict[str, Any]]:
+        """Return what all charts show."""
+        return charts.all_charts(seen.answer, seen.pins, seen.measured, self.palette)
+
+    def draw_all(self, now: Inputs, seen: Shown) -> None:
+        """Put whole charts and all numbers into a page that is being made."""
+        for name, options in self.options(seen).items():
+            self.charts[name].options.update(options)
+            self.shown[f"chart-{name}"] = data_only(options)
+        for element, content in self.words(seen.answer):
+            element.content = content
+        self.shown |= {name: knob_state(now, name) for name in self.knobs}
+
+    def words(self, answer: Answer) -> list[tuple[ui.html, str]]:
+        """Return the numbers, and the lines that go with the charts."""
+        waits = answer.curve is None or answer.curve.stale
+        source = "solved when the sliders rest" if answer.curve is None or waits else answer.curve.source
+        load = f"{float(answer.inputs.contact.groups.load):.3g}"
+        return [
+            (self.numbers, table.numbers_html(answer, table.numbers(answer))),
+            (self.source, source),
+            (self.diagram_head, f"<h2>Regimes <span class='caption'>at this load (group {load})</span></h2>"),
+        ]
+
+    async def draw(self, now: Inputs, seen: Shown) -> None:
+        """Send what changed, and wait until the browser has drawn it."""
+        frame: dict[str, Any] = {"html": [], "charts": [], "knobs": [], "moved": self.moved}
+        self.moved = None
+        for element, content in self.words(seen.answer):
+            if self.shown.get(element.html_id) != content:
+                self.shown[element.html_id] = content
+                frame["html"].append([element.html_id, content])
+        for name, whole in self.options(seen).items():
+            options = data_only(whole)
+            changed = difference(self.shown[f"chart-{name}"], options)
+            self.shown[f"chart-{name}"] = options
+            if changed is not None:
+                frame["charts"].append([self.charts[name].id, *changed])
+        for name, knob in self.knobs.items():
+            state = knob_state(now, name)
+            if self.shown.get(name) != state:
+                self.shown[name] = state
+                frame["knobs"].append([knob.id, state])
+        try:
+            await self.client.run_javascript(f"return explorerFrame({dumps(frame)})", timeout=PATIENCE)
+        except TimeoutError:  # a tab in the background answers when it is looked at
+            pass
+
+
+def button(label: str, icon: str, tooltip: str) -> ui.button:
+    """Return a quiet button."""
+    made = ui.button(label, icon=icon, color=None).props("flat dense no-caps")
+    with made:
+        ui.tooltip(tooltip)
+    return made

@@ -1,0 +1,221 @@
+"""The numbers of an answer, each with its error, as rows and as HTML."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+
+from stribeck.explorer.answer import Answer
+from stribeck.explorer.curves import Transition
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import format_si
+from stribeck.regimes.distances import TransitionDistances
+
+__all__ = ["Row", "distances_html", "numbers", "numbers_html"]
+
+MOST_DIGITS = 6
+
+
+@dataclass(frozen=True)
+class Row:
+    """One number.
+
+    Attributes
+    ----------
+    key : str
+        Its name in the package.
+    label : str
+        Its name in words.
+    value : float
+        The number, in SI units.
+    error : float
+        Its estimated absolute error; zero for what follows from the inputs alone, nan where it is not known.
+    text : str
+        The number as shown, with its unit.
+    error_text : str
+        The error as shown.
+    """
+
+    key: str
+    label: str
+    value: float
+    error: float
+    text: str
+    error_text: str
+
+
+def numbers(answer: Answer) -> list[Row]:
+    """Return friction by both definitions, shares, films, ratios and the nearest transitions.
+
+    Parameters
+    ----------
+    answer : Answer
+        What is shown.
+
+    Returns
+    -------
+    list of Row
+        The numbers in their order.
+    """
+    solution, contact = answer.solution, answer.inputs.contact
+    errors, scales = solution.errors, contact.hertz
+    rows = []
+    for definition, name in (("paper", "Friction µ, as printed"), ("balanced", "Friction µ, balanced")):
+        friction = solution.friction(definition=definition)  # type: ignore[arg-type]
+        rows.append(_row(f"friction_{definition}", name, friction.total, friction.error))
+    chosen = solution.friction(definition=answer.inputs.definition)
+    if chosen.total > 0:
+        part = chosen.contact / chosen.total
+        rows.append(_share("contact_friction_share", "Friction from asperities", part, chosen.error / chosen.total))
+    for key, name in (("fluid_load_share", "Load on the fluid"), ("contact_load_share", "Load on asperities")):
+        rows.append(_share(key, name, getattr(solution, key), errors[key]))
+    for key, name, gap in (
+        ("central_film_thickness", "Central film h(0)", solution.central_gap),
+        ("minimum_film_thickness", "Least film", solution.minimum_gap),
+    ):
+        error = errors[key.replace("film_thickness", "gap")]
+        rows.append(_row(key, name, gap * scales.indentation, abs(gap) * scales.indentation * error, "length"))
+    ratio = solution.lambda_ratio
+    rows.append(_row("lambda_ratio", "Lambda ratio α h(0)/h<sub>rms</sub>", ratio, abs(ratio) * errors["central_gap"]))
+    rows.append(_row("hersey_number", "Hersey number ηU/F<sub>N</sub>", contact.hersey_number, 0.0))
+    rows += _transition_rows(answer)
+    return rows
+
+
+def _transition_rows(answer: Answer) -> list[Row]:
+    """Return by which factor of the speed boundary lubrication ends and hydrodynamic lubrication begins."""
+    names = {
+        "boundary": "Boundary ends at speed",
+        "hydrodynamic": "Hydrodynamic from speed",
+        "minimum": "Least friction at speed",
+    }
+    rows = []
+    for name, label in names.items():
+        mark = None if answer.curve is None else answer.curve.transition(name)
+        key = f"speed_factor_{name}"
+        if mark is None:
+            rows.append(Row(key, label, math.nan, math.nan, "none", ""))
+            continue
+        text = format_si(mark.speed, "speed").replace("*", "·")
+        speed = answer.inputs.contact.speed
+        factor = mark.speed / speed if speed > 0 else math.inf
+        if speed > 0:
+            text = f"{text} ({_times(factor)})"
+        rows.append(Row(key, label, factor, factor * mark.error, text, _relative(mark)))
+    return rows
+
+
+def _relative(mark: Transition) -> str:
+    return "located on solved states" if math.isnan(mark.error) else f"± {_small(100 * mark.error)} %"
+
+
+def _times(factor: float) -> str:
+    return f"× {factor:.3g}" if factor >= 1 else f"÷ {1 / factor:.3g}"
+
+
+def _share(key: str, label: str, value: float, error: float) -> Row:
+    if value <= error:
+        return Row(key, label, value, error, f"< {_small(100 * error)} %", "")
+    text = f"{100 * value:.{_count(value, error)}g} %"
+    return Row(key, label, value, error, text, f"± {_small(100 * error)} %")
+
+
+def _row(key: str, label: str, value: float, error: float, dimension: str = "number") -> Row:
+    if math.isinf(value):
+        return Row(key, label, value, 0.0, "∞ (smooth)", "")
+    number, _, unit = format_si(value, dimension, _count(value, error)).replace("*", "·").partition(" ")
+    scale = float(number) / value if unit and value else 1.0
+    shown = f"± {_small(error * abs(scale))} {unit}".rstrip() if error > 0 else "from the inputs"
+    return Row(key, label, value, error, f"{number} {unit}".rstrip(), shown)
+
+
+def _count(value: float, error: float) -> int:
+    """Return how many digits of a value its error leaves, at most :data:`MOST_DIGITS`."""
+    if error <= 0 or value == 0:
+        return 5
+    return max(1, min(MOST_DIGITS, math.floor(math.log10(abs(value) / error)) + 1))
+
+
+def _small(error: float) -> str:
+    """Return an error with one digit."""
+    mantissa, _, exponent = f"{error:.0e}".partition("e")
+    return f"{mantissa}e{int(exponent)}" if abs(int(exponent)) > 2 else f"{float(f'{error:.0e}'):g}"
+
+
+def numbers_html(answer: Answer, rows: Sequence[Row]) -> str:
+    """Return regime, numbers and notes as HTML; each value stands in full in ``data-value``.
+
+    Parameters
+    ----------
+    answer : Answer
+        What is shown.
+    rows : sequence of Row
+        Its numbers.
+
+    Returns
+    -------
+    str
+        HTML without text of the user.
+    """
+    solution = answer.solution
+    return "".join(
+        [
+            f'<div class="regime {answer.regime}" data-key="regime" data-value="{answer.regime}">{answer.regime}'
+            f"<small>{_regime_words(answer)}</small></div>",
+            "<table>",
+            *(_line(row) for row in rows),
+            "</table>",
+            _notes([*solution.notes, answer.diagram.message]),
+        ]
+    )
+
+
+def _regime_words(answer: Answer) -> str:
+    words = {
+        "boundary": "the fluid carries at most 5 % of the load",
+        "mixed": "fluid and asperities both carry the load",
+        "hydrodynamic": "asperities cause at most 10 % of the friction",
+    }
+    return words[answer.regime]
+
+
+def _line(row: Row) -> str:
+    return (
+        f'<tr data-key="{row.key}" data-value="{row.value!r}" data-error="{row.error!r}"><th scope="row">{row.label}</th>'
+        f"<td>{escape(row.text)}</td><td>{escape(row.error_text)}</td></tr>"
+    )
+
+
+def _notes(notes: Iterable[str]) -> str:
+    return "".join(f'<p class="note">{escape(note)}</p>' for note in notes if note)
+
+
+def distances_html(distances: TransitionDistances) -> str:
+    """Return the way to the next regimes in each input as HTML.
+
+    Parameters
+    ----------
+    distances : TransitionDistances
+        Of the state that is shown.
+
+    Returns
+    -------
+    str
+        A table with a line for each input and a column for each regime beside the present one.
+    """
+    targets = distances.targets
+    lines = ["<table><tr><th></th>", *(f'<th scope="col">to {target}</th>' for target in targets), "</tr>"]
+    for distance in distances.distances:
+        lines.append(f'<tr data-key="{distance.name}"><th scope="row">{distance.name}</th>')
+        for target in targets:
+            mark = distance.towards(target)
+            if mark is None:
+                lines.append("<td>none within reach</td>")
+                continue
+            value = format_si(mark.value, QUANTITIES[distance.name].dimension).replace("*", "·")
+            factor = f"{_times(mark.factor)} " if 0 < mark.factor < math.inf else ""
+            lines.append(f'<td data-value="{mark.factor!r}">{factor}<small>{escape(value)}</small></td>')
+        lines.append("</tr>")
+    return "".join([*lines, "</table>", _notes(distances.notes)])

@@ -1,0 +1,173 @@
+"""Figure 10: how the fluid takes load from the asperities at slow speed, and the function phi of the load that rules it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.asymptotics.rough import boundary, perturbation
+from stribeck.curves.result import StribeckCurve
+from stribeck.figures import style
+from stribeck.figures.article.stribeck_cases import CASES, case_coords, drawn_cases, over, solved_cases
+from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.states import Work, column, dataset
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SPEEDS = 1e-9, 30.0
+LOADS = 1e-12, 0.7
+"""Loads of panel (b)."""
+
+FITTED = 1e-5, 0.1
+"""Loads over which the power of the paper was fitted."""
+
+SHOWN = CASES.index((0.1, 1e-4))
+"""The case of which friction is taken apart: the blue one of the paper."""
+
+LAWS = {
+    "share_law": (r"$\lambda^2 \phi/\kappa^4$, $\phi$ with $2/\pi$", style.FLUID, style.DASHED),
+    "share_without_factor": (r"$\phi$ without $2/\pi$, as printed", style.CONTACT, style.DASHED),
+    "share_printed_groups": (r"and $6\pi\eta Ua$ for $6\eta Ua$, as printed", style.MARK, style.DASHED),
+    "share_printed": (r"and $\phi = \frac{1}{2} L^{+5}$, as printed", style.GREY, style.DASHED),
+}
+PHI = {
+    "phi": ("quadrature", style.INK, "-"),
+    "phi_closed": ("ours, closed form", style.MARK, style.DASHED),
+    "phi_power": (r"$0.325\,L^{-5}$", style.FLUID, style.DASHED),
+    "phi_asymptote": (r"$(96 - 128 \ln 2)\,L^{-6}$", style.GREEN, style.DOTTED),
+    "phi_printed": (r"printed: $\frac{1}{2} L^{+5}$", style.CONTACT, style.DASHED),
+}
+"""Label, colour and dashes of each law."""
+
+
+def _compute(report: Report) -> xarray.Dataset:
+    work = Work(report, steps=len(CASES))
+    curves = solved_cases(work, SPEEDS, points=85)
+    friction, law = over(curves, "friction"), over(curves, "hydrodynamic_friction")
+    share = np.array([curve.observable("contact_load_share") for curve in curves])
+    boundary_law = np.array([boundary.friction.function(curve.groups, viscous="neglected") for curve in curves])
+    shown = _taken_apart(curves[SHOWN])
+    loads = np.geomspace(*LOADS, 121)
+    phis = {
+        "phi": perturbation.phi(loads),
+        "phi_closed": perturbation.phi(loads, form="closed"),
+        "phi_power": perturbation.phi(loads, form="power"),
+        "phi_asymptote": perturbation.phi(loads, form="asymptote"),
+        "phi_printed": perturbation.phi(loads, form="printed"),
+    }
+    fitted = (loads >= FITTED[0]) & (loads <= FITTED[1])
+    off = {name: np.abs(values / phis["phi"] - 1) for name, values in phis.items()}
+    slope = np.gradient(np.log(phis["phi"]), np.log(-np.log(loads)))
+    excess = friction.max(axis=1, where=share > 0.9, initial=0.0) - 1
+    fluid = shown["fluid_load_share"]
+    slow = int(np.argmin(np.abs(np.log(fluid / 1e-3))))
+    ratios = {name: fluid[slow] / shown[name][slow] for name in LAWS}
+    at_one = float(np.interp(0.0, np.log(shown["share_law"]), fluid))
+    at_load, printed = float(perturbation.phi(0.1)), float(perturbation.phi(0.1, form="printed"))
+    finding = (
+        f"at load {CASES[SHOWN][0]}, roughness {CASES[SHOWN][1]:g} the fluid's part of the load is {ratios['share_law']:.2f} "
+        f"of the formula where it is 1e-3, {ratios['share_without_factor']:.2f} without 2/pi and "
+        f"{ratios['share_printed']:.0e} of all that is printed; where the formula reaches 1 it is {at_one:.2f}. The printed "
+        f"friction first rises above mu_0, by {100 * excess[SHOWN]:.2f} %, by a viscous part of first order in the speed. phi "
+        f"at load 0.1 is {at_load:.3e}, printed {printed:.0f}; the power -5 is within "
+        f"{100 * off['phi_power'][fitted].max():.0f} % from {FITTED[0]:g} to {FITTED[1]:g}, where the local power of L is "
+        f"{slope[fitted].min():.1f} to {slope[fitted].max():.1f}; our closed form within {100 * off['phi_closed'].max():.2f} "
+        "%."
+    )
+    grid = "case", "speed"
+    variables = {
+        "friction": column(grid, friction, "friction coefficient, definition paper"),
+        "hydrodynamic_friction": column(grid, law, "friction of smooth surfaces by the root of squares of the paper"),
+        "contact_load_share": column(grid, share, "part of the load on asperities"),
+        "boundary_friction": column(grid, boundary_law, "mu_0 (1 - F_f/F_N) with F_f from phi by quadrature"),
+        "excess": column("case", excess, "largest friction where asperities carry more than 90 % of the load, less mu_0"),
+    }
+    variables |= {
+        name: column("speed", values, f"of the blue case: {name.replace('_', ' ')}") for name, values in shown.items()
+    }
+    for name, values in phis.items():
+        variables[name] = column("phi_load", values, f"the function {name.replace('_', ' ')} of the load")
+    variables["power_of_logarithm"] = column("phi_load", slope, "d ln phi / d ln(-ln load)")
+    variables["share_at_criterion"] = column((), at_one, "part of the load on the fluid where lambda^2 phi/kappa^4 = 1")
+    for name, ratio in ratios.items():
+        variables[f"{name}_ratio"] = column((), ratio, f"part of the load on the fluid over {name}, where it is near 1e-3")
+    coords = case_coords() | {
+        "speed": column("speed", curves[0].values, "speed group lambda"),
+        "phi_load": column("phi_load", loads, "load group"),
+    }
+    return dataset(variables, coords, finding=finding, shown_case=SHOWN, **work.attributes)
+
+
+def _taken_apart(curve: StribeckCurve) -> dict[str, Array]:
+    """Return how far the friction of one case lies below mu_0 by both definitions, the load on the fluid, and its laws."""
+    groups = curve.groups
+    law = np.asarray(boundary.fluid_load_share.function(groups))
+    balanced = np.array([solution.friction(definition="balanced").total for solution in curve.solutions])
+    return {
+        "fluid_load_share": curve.observable("fluid_load_share"),
+        "fall_paper": 1 - curve.friction,
+        "fall_balanced": 1 - balanced,
+        "share_law": law,
+        "share_without_factor": math.pi / 2 * law,
+        "share_printed_groups": np.asarray(boundary.fluid_load_share.function(groups, printed=True)),
+        "share_printed": np.asarray(boundary.fluid_load_share.function(groups, form="printed", printed=True)),
+    }
+
+
+def _draw(data: xarray.Dataset) -> Figure:
+    figure = style.new_figure(data, 11.5, 7.4)
+    a, shares, b, ratios = style.panels(figure, 2, 2)
+    for i, look, label in drawn_cases(data):
+        a.semilogx(data.hydrodynamic_friction[i], data.friction[i], markevery=2, label=label, **look)
+        a.plot(data.hydrodynamic_friction[i], data.boundary_friction[i], color=look["color"], ls=style.DOTTED, lw=1.5)
+    a.set(xlabel=r"$\mu_{f,\mathrm{th}}$", ylabel=r"friction coefficient $\mu$", ylim=(0, 1.35), xlim=(3e-5, 2))
+    style.letter(a, "a", r"dotted: $\mu_0(1 - F_f/F_N)$")
+    style.legend(a, loc="lower left", title=r"$\bar F_N$,  $\bar h_\mathrm{rms}$", fontsize=7.5)
+    _draw_shares(shares, data)
+    for name, (label, colour, dashes) in PHI.items():
+        b.loglog(data.phi_load, data[name], color=colour, ls=dashes, lw=1.6, label=label)
+        ratios.semilogx(data.phi_load, data[name] / data.phi, color=colour, ls=dashes, lw=1.6, label=label)
+    b.set(xlabel=r"load $\bar F_N$", ylabel=r"$\phi$", ylim=(1e-9, 1e9))
+    style.letter(b, "b", r"auxiliary function $\phi$, $L = -\ln \bar F_N$")
+    style.legend(b, loc="center left", bbox_to_anchor=(0.0, 0.62))
+    ratios.axvspan(*FITTED, color="#f4f4f2", lw=0, zorder=0)
+    ratios.text(1e-3, 0.15, "range of the fit", size=8, color=style.GREY, ha="center")
+    ratios.set(xlabel=r"load $\bar F_N$", ylabel=r"form over quadrature", ylim=(0, 4))
+    style.letter(ratios, "+", "ratio to the quadrature")
+    style.legend(ratios, loc="upper left", handles=ratios.lines[1:])
+    return figure
+
+
+def _draw_shares(axes: Axes, data: xarray.Dataset) -> None:
+    case = int(data.attrs["shown_case"])
+    every = slice(None, None, 2)
+    for name, marker, face, label in (
+        ("fluid_load_share", "o", style.INK, "load on the fluid, solved"),
+        ("fall_balanced", "s", "white", r"$1 - \mu/\mu_0$, balance of forces"),
+        ("fall_paper", "^", "white", r"$1 - \mu/\mu_0$, definition of the paper"),
+    ):
+        axes.loglog(
+            data.speed[every], data[name].where(data[name] > 0)[every], marker, color=style.INK, mfc=face, ms=4, label=label
+        )
+    for name, (label, colour, dashes) in LAWS.items():
+        axes.plot(data.speed, data[name], color=colour, ls=dashes, lw=1.5, label=label)
+    axes.set(xlabel=r"speed $\lambda$", ylabel="share of load or friction", xlim=(1e-9, 1e-3), ylim=(1e-8, 1e2))
+    load, roughness = (style.power(float(data[name][case])) for name in ("load", "roughness"))
+    style.letter(axes, "+", rf"printed and corrected, $\bar F_N$ = {load}, $\bar h_\mathrm{{rms}}$ = {roughness}")
+    style.legend(axes, loc="lower right", fontsize=7.5)
+
+
+FIGURE = PaperFigure(
+    name="10",
+    title="Boundary-to-mixed lubrication transition",
+    claim="friction follows mu_0 (1 - F_f/F_N) remarkably well as the speed falls, F_f/F_N = 1 is where the transition lies, "
+    "and (1/2)(-ln F)^5 provides a very good description of phi.",
+    compute=_compute,
+    draw=_draw,
+)

@@ -1,0 +1,105 @@
+"""Figure 11: the regimes over speed, load and roughness as solved, and the formulas for their ends, printed and corrected."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from stribeck.figures import style
+from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.numerics.newton import Outcome
+from stribeck.regimes.phase_diagram import phase_diagram
+from stribeck.regimes.plot import draw_phase_diagram, draw_phase_space
+from stribeck.solver.solve import SolveError
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+LOADS = (0.01, 0.1)
+"""Load groups: the back and the front of the paper."""
+
+ROUGHNESSES = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2)
+"""Roughness groups, denser where the lines meet."""
+
+SPEEDS = 1e-9, 1e2
+RTOL = 1e-6
+
+SMOOTHEST = 1e-3
+"""Roughness group up to which the lines are far enough apart to be compared with formulas."""
+
+MERGING = ("merging_roughness", "formula_merging_roughness")
+
+
+def _compute(report: Report) -> xarray.Dataset:
+    found = phase_diagram(
+        load=LOADS,
+        roughness=ROUGHNESSES,
+        speed=SPEEDS,
+        points={"load": 2, "speed": 34},
+        rtol=RTOL,
+        merging=True,
+        on_point=report,
+    )
+    if found.attrs["outcome"] == Outcome.INTERRUPTED.value:
+        raise KeyboardInterrupt
+    if not found.attrs["complete"]:
+        reasons = {text for text in found.message.values.ravel() if text}
+        raise SolveError(Outcome.PATH_LOST, None, " ".join(sorted(reasons)) or found.attrs["outcome"])
+    attributes = {name: found.attrs[name] for name in ("rtol", "mu0", "beta", "definition", "complete", "outcome")}
+    attributes |= {"error_estimate": float(found.error_estimate.max()), "finding": _finding(found)}
+    found = found.drop_vars(["message", "outcome"])
+    found.attrs = attributes
+    return found
+
+
+def _finding(data: xarray.Dataset) -> str:
+    smooth = data.sel(roughness=slice(None, SMOOTHEST))
+    corrected, printed = (
+        smooth[f"{name}_speed_boundary_to_mixed"] / smooth.speed_at_5_percent_fluid for name in ("formula", "printed")
+    )
+    half = smooth.formula_speed_boundary_to_mixed / smooth.speed_at_half_fluid
+    minimum, ours = (smooth[f"{name}_speed_at_minimum"] / smooth.speed_at_minimum for name in ("printed", "formula"))
+    five = smooth.formula_speed_at_5_percent_fluid / smooth.speed_at_5_percent_fluid
+    off = 100 * max(float(abs(ratio - 1).max()) for ratio in (ours, five))
+    merging, formula = (", ".join(f"{value:.2g}" for value in data[name].values) for name in MERGING)
+    finding = (
+        f"up to roughness {SMOOTHEST:g} the criterion of the paper, with phi corrected, gives {_span(corrected)} times the "
+        f"speed at which the fluid carries 5 % of the load and {_span(half)} times that of one half; as printed "
+        f"{_span(printed)} times the former, deep in the boundary regime. The printed speed of least friction is "
+        f"{_span(minimum)} times the solved; our formulas for the 5 % and the minimum are within {off:.0f} %. Falling "
+        f"friction ends at roughness {merging} for loads {LOADS[0]}, {LOADS[1]}, by our formula at {formula}."
+    )
+    return finding
+
+
+def _span(ratio: xarray.DataArray) -> str:
+    return f"{float(ratio.min()):.2g} to {float(ratio.max()):.2g}"
+
+
+def _draw(data: xarray.Dataset) -> Figure:
+    figure = style.new_figure(data, 13.0, 6.6)
+    grid = figure.add_gridspec(2, 2, width_ratios=[1.35, 1], height_ratios=[1, 1])
+    space: Any = figure.add_subplot(grid[:, 0], projection="3d")
+    draw_phase_space(space, data)
+    space.set_title("front: load 0.1, back: load 0.01; full lines and surfaces solved", loc="left", size=9.5, color=style.INK)
+    for row, load in enumerate((LOADS[1], LOADS[0])):
+        axes = figure.add_subplot(grid[row, 1])
+        style.house_style(axes)
+        draw_phase_diagram(axes, data, load)
+        style.letter(axes, "+", f"load {load:g}, with what the paper prints")
+    space.set_box_aspect((1.5, 1.1, 0.95), zoom=1.04)
+    handles, labels = figure.axes[1].get_legend_handles_labels()
+    # Our formulas have one style and one label for three lines.
+    unique = dict(zip(labels, handles, strict=True))
+    style.legend(space, handles=list(unique.values()), labels=list(unique), loc="upper left", ncols=2)
+    return figure
+
+
+FIGURE = PaperFigure(
+    name="11",
+    title="Regimes over speed, load and roughness",
+    claim="three regimes follow one another with speed; the formulas for both transitions separate them, and their lines "
+    "merge at large roughness.",
+    compute=_compute,
+    draw=_draw,
+)

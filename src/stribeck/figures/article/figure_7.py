@@ -1,0 +1,160 @@
+"""Figure 7: Stribeck curves over the Hersey number, and over the friction that their speed causes between smooth surfaces."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.asymptotics.rough import transitions
+from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.contacts.line import Groups
+from stribeck.figures import style
+from stribeck.figures.article.stribeck_cases import (
+    CASES,
+    LOADS,
+    REPORTED,
+    ROUGHNESSES,
+    case_coords,
+    draw_reports,
+    drawn_cases,
+    over,
+    report_variables,
+    solved_cases,
+)
+from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.states import Work, column, dataset
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SPEEDS = 1e-8, 1e3
+PREDICTED = 1e-8, 1e-2
+"""Roughness groups over which Lambda is predicted."""
+
+HYDRODYNAMIC_SHARE = 1e-3
+"""Part of the friction from asperities below which a state counts as hydrodynamic here: a tenth of a percent."""
+
+
+def _compute(report: Report) -> xarray.Dataset:
+    work = Work(report, steps=len(CASES))
+    curves = solved_cases(work, SPEEDS, points=67)
+    friction, hersey = over(curves, "friction"), over(curves, "hersey_number")
+    law = over(curves, "hydrodynamic_friction")
+    uniform = np.array([hydrodynamic.friction_uniform.function(curve.groups) for curve in curves])
+    fluid_film = over(curves, "friction_contact") < HYDRODYNAMIC_SHARE * friction
+    off, ours = (np.where(fluid_film, friction / x - 1, np.nan) for x in (law, uniform))
+    minima = [curve.minimum for curve in curves]
+    least = {
+        "minimum_hersey": [m.solution.hersey_number if m else math.nan for m in minima],
+        "minimum_friction": [m.friction if m else math.nan for m in minima],
+        "minimum_law": [float(hydrodynamic.friction.function(m.solution.groups)) if m else math.nan for m in minima],
+        "minimum_lambda_ratio": [m.solution.lambda_ratio if m else math.nan for m in minima],
+    }
+    spread = _spread(hersey, friction, fluid_film)
+    slopes = np.gradient(np.log(friction[0]), np.log(hersey[0]))
+    slopes = np.where(fluid_film[0], slopes, np.nan)
+    groups = Groups(1.0, np.array(LOADS)[:, None], np.geomspace(*PREDICTED, 61))
+    predicted = transitions.lambda_ratio_at_minimum.function(groups)
+    finding = (
+        f"over the Hersey number the hydrodynamic branches of loads {LOADS[0]} and {LOADS[1]} differ by up to {spread:.2f} "
+        f"times; over mu_f,th they lie from {100 * np.nanmin(off):.1f} to {100 * np.nanmax(off):+.1f} % of the line y = x, "
+        f"the error of mu_f,th itself (over our uniform law within {100 * np.nanmax(np.abs(ours)):.2f} %). The slope grows "
+        f"from {np.nanmin(slopes):.2f} to {np.nanmax(slopes):.2f}. Lambda at the minimum falls from "
+        f"{np.nanmax(least['minimum_lambda_ratio']):.1f} to {np.nanmin(least['minimum_lambda_ratio']):.1f} with roughness; "
+        f"load {CASES[-1][0]} with roughness {CASES[-1][1]} has no minimum below its plateau. The paper names only load 0.1 "
+        "with roughness 1e-4 and prints no table of the others."
+    )
+    grid = "case", "speed"
+    variables = {
+        "hersey_number": column(grid, hersey, "Hersey number eta U/F_N for beta = 1"),
+        "friction": column(grid, friction, "friction coefficient, definition paper"),
+        "hydrodynamic_friction": column(grid, law, "friction of smooth surfaces by the root of squares of the paper"),
+        "uniform_friction": column(grid, uniform, "friction of smooth surfaces by our uniform law"),
+        "distance": column(grid, off, "friction over hydrodynamic_friction - 1 where asperities cause < 0.1 % of it"),
+        "uniform_distance": column(grid, ours, "the same over uniform_friction"),
+        "hersey_spread": column((), spread, "largest ratio of hydrodynamic frictions at one Hersey number"),
+        "slope": column("speed", slopes, "d ln friction / d ln Hersey number of the first case, where hydrodynamic"),
+        "predicted_lambda_ratio": column(("predicted_load", "predicted_roughness"), predicted, "Lambda at the minimum, law"),
+    }
+    variables |= {name: column("case", values, f"{name.replace('_', ' ')} of friction") for name, values in least.items()}
+    coords = case_coords() | {
+        "speed": column("speed", curves[0].values, "speed group lambda"),
+        "predicted_load": column("predicted_load", LOADS, "load group"),
+        "predicted_roughness": column("predicted_roughness", np.geomspace(*PREDICTED, 61), "roughness group h_rms"),
+    }
+    reports = "; ".join(REPORTED)
+    return dataset(variables | report_variables(), coords, finding=finding, reports=reports, **work.attributes)
+
+
+def _spread(hersey: Array, friction: Array, fluid_film: Flags) -> float:
+    """Return the largest ratio of the frictions of both loads, smoothest case of each, where both are hydrodynamic."""
+    heavy, light = 0, len(ROUGHNESSES)
+    x, y = np.log(hersey[light][fluid_film[light]]), np.log(friction[light][fluid_film[light]])
+    at = np.log(hersey[heavy][fluid_film[heavy]])
+    both = (at >= x[0]) & (at <= x[-1])
+    difference = np.interp(at[both], x, y) - np.log(friction[heavy][fluid_film[heavy]])[both]
+    return float(np.exp(np.abs(difference).max()))
+
+
+def _draw(data: xarray.Dataset) -> Figure:
+    figure = style.new_figure(data, 13.0, 4.9)
+    a, b, c = style.panels(figure, 1, 3, width_ratios=[1, 1, 1.05])
+    _draw_curves(a, data, "hersey_number", "minimum_hersey")
+    a.set(xlabel=r"Hersey number $\eta U/F_N$", ylabel=r"friction coefficient $\mu$", xlim=(1e-9, 30), ylim=(3e-3, 150))
+    style.letter(a, "a", r"over the Hersey number, $\beta = \mu_0 = 1$")
+    style.legend(a, loc="upper left", title=r"$\bar F_N$,  $\bar h_\mathrm{rms}$", fontsize=7.5)
+    style.slope(a, 3e-5, 5e-3, 0.4, "2/5")
+    style.slope(a, 0.3, 2.2, 2 / 3, "2/3")
+    line = np.array([1e-3, 200])
+    b.plot(line, line, color=style.INK, lw=1.1, ls=style.DASHED, label="$y = x$")
+    _draw_curves(b, data, "hydrodynamic_friction", "minimum_law", labels=False)
+    b.set(xlabel=r"$\mu_{f,\mathrm{th}}$", ylabel=r"friction coefficient $\mu$", xlim=(3e-5, 150), ylim=(3e-3, 150))
+    style.letter(b, "b", "over the friction of smooth surfaces")
+    style.legend(b, loc="upper left")
+    _draw_ratios(c, data)
+    return figure
+
+
+def _draw_curves(axes: Axes, data: xarray.Dataset, x: str, minimum: str, labels: bool = True) -> None:
+    for i, look, label in drawn_cases(data):
+        axes.loglog(data[x][i], data.friction[i], markevery=2, label=label if labels else None, **look)
+        if np.isfinite(data[minimum].values[i]):
+            words = "least friction" if i == 0 and not labels else None
+            axes.plot(data[minimum][i], data.minimum_friction[i], "v", color=style.MARK, ms=5, zorder=5, label=words, ls="")
+
+
+def _draw_ratios(axes: Axes, data: xarray.Dataset) -> None:
+    for load, ratios, dashes in zip(
+        data.predicted_load.values, data.predicted_lambda_ratio.values, (style.DASHED, style.DOTTED), strict=True
+    ):
+        axes.loglog(data.predicted_roughness, ratios, color=style.INK, ls=dashes, lw=1.4, label=f"formula, load {load:g}")
+    for i, look, _ in drawn_cases(data):
+        axes.plot(data["roughness"][i], data.minimum_lambda_ratio[i], **look | {"ms": 7})
+    draw_reports(axes, data, 0.66)
+    axes.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"$\Lambda$ at the minimum of friction", ylim=(0.3, 3e5))
+    axes.set_xlim(1e-8, 10 ** (-8 + 6 / 0.66))
+    axes.set_xticks([1e-8, 1e-6, 1e-4, 1e-2])
+    axes.minorticks_off()
+    axes.text(
+        0.03, 0.97,
+        "The paper draws curves of Bongaerts 2007 here, whose data\n"
+        "are not public to us: bars show the ranges of $\\Lambda$ that\nthe paper quotes, at no roughness in particular.",
+        transform=axes.transAxes, size=7.5, color=style.GREY, va="top",
+    )  # fmt: skip
+    style.letter(axes, "c", r"instead of measured curves: $\Lambda$, solved and reported")
+    style.legend(axes, loc="lower left", bbox_to_anchor=(0.0, 0.52))
+
+
+FIGURE = PaperFigure(
+    name="7",
+    title="Stribeck curves of several loads and roughnesses",
+    claim="the hydrodynamic branches spread slightly over the Hersey number, with slopes 2/5 and 2/3, and collapse onto the "
+    "line y = x over mu_f,th; smoother surfaces and larger loads shift the transition to slower speeds and less friction.",
+    compute=_compute,
+    draw=_draw,
+)

@@ -1,0 +1,136 @@
+"""Figure 8: gap and pressures on the way from boundary to hydrodynamic lubrication, between the two limits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stribeck.asymptotics.rough import boundary
+from stribeck.contacts.line import Groups
+from stribeck.figures import style
+from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.states import Work, column, dataset
+from stribeck.solids import hertz
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+LOAD, ROUGHNESS = 0.1, 1e-4
+SPEEDS = tuple(10.0 ** (exponent / 2) for exponent in range(-11, -5))
+"""Speed groups of the profiles, 3.16e-6 to 1e-3 as in the paper, in steps of half a decade."""
+
+CURVE = 1e-8, 0.1
+CORE = 0.9
+"""Half the width, over a, in which profiles are compared with the limits; the layers at the edges lie outside."""
+
+CYAN = "#56b4e9"
+
+
+def _compute(report: Report) -> xarray.Dataset:
+    work = Work(report, steps=len(SPEEDS) + 2)
+    curve = work.curve(load=LOAD, roughness=ROUGHNESS, speed=CURVE, points=71)
+    states = [work.solve(speed, LOAD, ROUGHNESS) for speed in SPEEDS]
+    smooth = work.solve(SPEEDS[-1], LOAD, 0.0)
+    x, inside = np.linspace(-1.6, 1.6, 641), np.linspace(-0.998, 0.998, 499)
+    profiles = [state.profile(x) for state in states]
+    gaps, fluid, contact = (
+        np.array([getattr(profile, name) for profile in profiles]) for name in ("gap", "fluid_pressure", "contact_pressure")
+    )
+    dry = hertz.pressure(x)
+    rough_contact = boundary.gap.function(Groups(0.0, LOAD, ROUGHNESS), inside)
+    core = np.abs(x) <= CORE
+    at_core = np.array([profile.gap[core] for profile in profiles])
+    distances = {
+        "gap_distance": (at_core / boundary.gap.function(Groups(0.0, LOAD, ROUGHNESS), x[core]) - 1, "rough contact"),
+        "film_distance": (at_core / smooth.profile(x[core]).gap - 1, "film of the smooth contact at the largest speed"),
+        "contact_distance": (contact[:, core] - dry[core], "Hertz pressure, in p_Hz"),
+        "fluid_distance": (fluid[:, core] - dry[core], "Hertz pressure, in p_Hz"),
+    }
+    furthest = {name: np.abs(values).max(axis=1) for name, (values, _) in distances.items()}
+    shares = np.array([state.fluid_load_share for state in states])
+    rise = np.diff(contact, axis=0)
+    step, place = np.unravel_index(np.argmax(rise), rise.shape)
+    finding = (
+        f"inside {CORE} a, gap and contact pressure of the slowest profile are within {100 * furthest['gap_distance'][0]:.0f} "
+        f"% and {furthest['contact_distance'][0]:.2f} p_Hz of the limit at rest, as the fluid pressure, still almost odd in "
+        f"x, reaches {fluid[0].max():.2f} p_Hz where it carries {100 * shares[0]:.1f} % of the load; the fluid pressure of "
+        f"the fastest is within {furthest['fluid_distance'][-1]:.2f} p_Hz of Hertz, carries {100 * shares[-1]:.1f} % and "
+        f"holds the gap within {100 * furthest['film_distance'][-1]:.1g} % of the smooth film. The contact pressure falls as "
+        f"a whole, not everywhere: at x = {x[place]:.2f} a it grows by {rise[step, place]:.2f} p_Hz between two of the speeds."
+    )
+    variables = {
+        "hersey_number": column("curve_speed", curve.hersey_number, "Hersey number eta U/F_N of the curve for beta = 1"),
+        "friction": column("curve_speed", curve.friction, "friction coefficient, definition paper"),
+        "profile_hersey": column("speed", [state.groups.hersey_number() for state in states], "Hersey number of the profiles"),
+        "profile_friction": column("speed", [state.friction().total for state in states], "friction coefficient there"),
+        "fluid_load_share": column("speed", shares, "part of the load on the fluid"),
+        "central_gap": column("speed", [state.central_gap for state in states], "gap at x = 0 over u_Hz"),
+        "gap": column(("speed", "x"), gaps, "gap over u_Hz"),
+        "fluid_pressure": column(("speed", "x"), fluid, "fluid pressure over p_Hz"),
+        "contact_pressure": column(("speed", "x"), contact, "contact pressure over p_Hz"),
+        "rough_contact": column("inside", rough_contact, "rough-contact gap over u_Hz"),
+        "hertz_pressure": column("x", dry, "Hertz pressure over p_Hz"),
+    }
+    for name, (_, limit) in distances.items():
+        variables[name] = column("speed", furthest[name], f"largest distance from the {limit}, for |x| < {CORE} a")
+    coords = {
+        "curve_speed": column("curve_speed", curve.values, "speed group lambda of the curve"),
+        "speed": column("speed", SPEEDS, "speed group lambda of the profiles"),
+        "x": column("x", x, "position over a"),
+        "inside": column("inside", inside, "position over a, inside the contact"),
+    }
+    return dataset(variables, coords, finding=finding, load_group=LOAD, roughness_group=ROUGHNESS, **work.attributes)
+
+
+def _draw(data: xarray.Dataset) -> Figure:
+    figure = style.new_figure(data, 11.0, 7.0)
+    a, b, c, d = style.panels(figure, 2, 2)
+    colours = style.sequence(len(data.speed))
+    _draw_curve(a, data, colours)
+    for axes, name in ((b, "gap"), (c, "fluid_pressure"), (d, "contact_pressure")):
+        for colour, speed, values in zip(colours, data.speed.values, data[name].values, strict=True):
+            axes.plot(data.x, values, color=colour, lw=1.5, label=style.power(speed))
+        axes.set(xlabel="$x/a$", xlim=(-1.6, 1.6))
+    b.plot(data.inside, data.rough_contact, color=CYAN, lw=1.8, ls=style.DASHED, label="rough contact")
+    b.set(yscale="log", ylabel=r"$h/u_\mathrm{Hz}$", ylim=(8e-4, 0.8))
+    style.letter(b, "b", "gap")
+    style.legend(b, loc="upper center", title=r"speed $\lambda$", ncols=2)
+    for axes, which, text, kind in ((c, "c", "fluid pressure", "f"), (d, "d", "contact pressure", "c")):
+        axes.plot(data.x, data.hertz_pressure, color=style.INK, lw=1.2, ls=style.DASHED, label="Hertz")
+        axes.set(ylabel=rf"$p_{kind}/p_\mathrm{{Hz}}$", ylim=(-0.24, 1.1))
+        axes.axhline(0.0, color=style.GREY, lw=0.6)
+        style.letter(axes, which, text)
+    low = float(data.fluid_pressure.min())
+    c.annotate(
+        "negative:\nno cavitation", (1.05, low), (1.56, 0.3), size=8, color=style.GREY, ha="right",
+        arrowprops={"arrowstyle": "->", "color": style.GREY, "lw": 0.8},
+    )  # fmt: skip
+    style.legend(c, loc="upper left", handles=c.lines[-2:-1])
+    style.legend(d, loc="upper left", handles=d.lines[-2:-1])
+    return figure
+
+
+def _draw_curve(axes: Axes, data: xarray.Dataset, colours: list[str]) -> None:
+    axes.loglog(data.hersey_number, data.friction, color=style.INK, lw=1.2)
+    every = slice(None, None, 3)
+    axes.plot(data.hersey_number[every], data.friction[every], "o", color=style.INK, ms=3, mfc="white")
+    for colour, place, value in zip(colours, data.profile_hersey.values, data.profile_friction.values, strict=True):
+        axes.axvline(place, color=colour, lw=1.6, zorder=0)
+        axes.plot(place, value, "o", color=colour, ms=7, mec="white", zorder=5)
+    axes.set(xlabel=r"Hersey number $\eta U/F_N$", ylabel=r"friction coefficient $\mu$", ylim=(1e-2, 3))
+    axes.set_xlim(float(data.hersey_number[0]), float(data.hersey_number[-1]))
+    load, roughness = (style.power(data.attrs[f"{name}_group"]) for name in ("load", "roughness"))
+    style.letter(axes, "a", rf"Stribeck curve, $\bar F_N$ = {load}, $\bar h_\mathrm{{rms}}$ = {roughness}")
+
+
+FIGURE = PaperFigure(
+    name="8",
+    title="Profiles in the mixed-lubrication regime",
+    claim="with speed, gap and fluid pressure gradually rise and the contact pressure falls, from the rough-contact gap "
+    "under Hertz pressure on the asperities to Hertz pressure in the fluid.",
+    compute=_compute,
+    draw=_draw,
+)

@@ -1,0 +1,109 @@
+"""The panels of figure 9: friction around its minimum by the solver and by the formulas, and what is known of the minimum."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from stribeck.figures import style
+from stribeck.figures.article.stribeck_cases import draw_reports, drawn_cases
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+LEAST_FILM, LARGEST_FILM, LARGEST_KAPPA = 3.0, 20.0, 0.1
+"""Film ratios and relative roughness within which the formulas for friction are compared."""
+
+FORMS = {
+    "exact": (r"Lambert's $W$", style.DASHED),
+    "expansion": ("its expansion", style.DOTTED),
+    "uniform": ("ours", "-"),
+}
+FRICTIONS = {
+    "friction_exact": (r"with Lambert's $W$", style.DASHED),
+    "friction_leading": (r"$\Lambda = -\ln k$, power $+2/3$", style.DOTTED),
+    "friction_printed": (r"as printed, power $-2/3$", (0, (1, 3))),
+    "friction_uniform": ("ours", "-"),
+}
+"""Label and dashes of each law of the minimum."""
+
+LOAD_COLOURS = (style.FLUID, style.CONTACT)
+
+
+def draw(data: xarray.Dataset) -> Figure:
+    """Return figure 9."""
+    figure = style.new_figure(data, 13.0, 7.6)
+    a, b, d, errors, c, ratios = style.panels(figure, 2, 3)
+    for i, look, label in drawn_cases(data):
+        x = data.hydrodynamic_friction[i]
+        a.loglog(x, data.friction[i], markevery=2, label=label, **look)
+        shown = data.film_ratio[i] > LEAST_FILM
+        a.plot(x.where(shown), data.law_large[i].where(shown), color=style.INK, ls=style.DASHED, lw=1.0, zorder=4)
+        a.plot(x.where(shown), data.law_uniform[i].where(shown), color=style.MARK, ls=style.DOTTED, lw=1.6, zorder=5)
+        if float(data["roughness"][i] / data["load"][i]) <= LARGEST_KAPPA:
+            for name, dashes in (("large_error", style.DASHED), ("uniform_error", "-")):
+                errors.semilogx(data.film_ratio[i], 100 * data[name][i], color=look["color"], ls=dashes, lw=1.3)
+    a.set(xlabel=r"$\mu_{f,\mathrm{th}}$", ylabel=r"friction coefficient $\mu$", xlim=(5e-4, 10), ylim=(2e-4, 10))
+    style.letter(a, "a", "dashed: the paper's formula; dotted: ours")
+    style.legend(a, loc="lower right", title=r"$\bar F_N$,  $\bar h_\mathrm{rms}$", fontsize=7.5, ncols=2)
+    errors.axhline(0.0, color=style.GREY, lw=0.8)
+    errors.set(
+        xlabel=r"film ratio $c\lambda^{3/5}/\kappa$", ylabel="formula over solver − 1 (%)", xlim=(1, 100), ylim=(-100, 60)
+    )
+    style.letter(errors, "+", "error of the friction: dashed the paper's, full ours")
+    _draw_lambda(b, data)
+    _draw_reported(d, data)
+    _draw_friction(c, ratios, data)
+    return figure
+
+
+def _draw_lambda(axes: Axes, data: xarray.Dataset) -> None:
+    for i, (load, colour) in enumerate(zip(data.minimum_load.values, LOAD_COLOURS, strict=True)):
+        x = data.minimum_roughness[i]
+        axes.semilogx(x, data.lambda_ratio[i], "o", color=colour, ms=5, label=f"solved, load {load:g}")
+        axes.plot(x, data.film_ratio_at_minimum[i], "o", color=colour, mfc="white", ms=5)
+        for form, (label, dashes) in FORMS.items():
+            axes.plot(x, data[f"lambda_{form}"][i], color=colour, ls=dashes, lw=1.2, label=label if i else None)
+    axes.axhline(float(data.textbook), color=style.GREY, lw=1.2, ls=style.DASHED, label="textbook, Spikes 1997")
+    axes.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"$\Lambda$ at the minimum of friction", ylim=(0, 19))
+    style.letter(axes, "b", r"full dots $h(0)$, open dots $c\lambda^{3/5}$, over $\kappa$")
+    style.legend(axes, loc="upper right", ncols=2)
+
+
+def _draw_friction(axes: Axes, ratios: Axes, data: xarray.Dataset) -> None:
+    for i, (load, colour) in enumerate(zip(data.minimum_load.values, LOAD_COLOURS, strict=True)):
+        x = data.minimum_roughness[i]
+        axes.loglog(x, data.least_friction[i], "o", color=colour, ms=5, label=f"solved, load {load:g}")
+        for name, (label, dashes) in FRICTIONS.items():
+            shown = {"color": colour, "ls": dashes, "lw": 1.2, "label": label if i else None}
+            axes.plot(x, data[name][i], **shown)
+            ratios.loglog(x, data[name][i] / data.least_friction[i], **shown)
+    ratios.axhline(1.0, color=style.GREY, lw=0.8)
+    axes.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"least friction $\mu_\mathrm{min}$", ylim=(2e-5, 5))
+    ratios.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"formula over solver", ylim=(0.03, 2))
+    style.letter(axes, "c", "least friction")
+    style.letter(ratios, "+", "the same over the solved: corrected and printed")
+    style.legend(axes, loc="upper left")
+
+
+def _draw_reported(axes: Axes, data: xarray.Dataset) -> None:
+    axes.loglog(data.k, data.lambda_of_number, color=style.INK, lw=1.6, label=r"$\Lambda^{1/3} e^{-\Lambda} = k$")
+    solved = zip(data.minimum_load.values, LOAD_COLOURS, data.number.values, data.lambda_ratio.values, strict=True)
+    for load, colour, numbers, ratios in solved:
+        axes.plot(numbers, ratios, "o", color=colour, ms=4, label=f"solved, load {load:g}")
+    draw_reports(axes, data, 0.66)
+    first, last = float(data.k[0]), float(data.k[-1])
+    axes.set_xlim(first, first * (last / first) ** (1 / 0.66))
+    axes.set(xlabel=r"$k \propto (\beta/\mu_0)\, \bar h_\mathrm{rms}^{2/3} \bar F_N^{1/3}$", ylim=(0.3, 3e5))
+    axes.set_ylabel(r"$\Lambda$ at the minimum of friction")
+    axes.set_xticks([1e-8, 1e-6, 1e-4, 1e-2])
+    axes.minorticks_off()
+    axes.text(
+        0.03, 0.97,
+        "The paper draws data of Bongaerts 2007 here, which are\n"
+        "not public to us: bars show the ranges that it quotes,\nat no roughness in particular.",
+        transform=axes.transAxes, size=7.5, color=style.GREY, va="top",
+    )  # fmt: skip
+    style.letter(axes, "d", r"instead of measured data: $\Lambda$, solved and reported")
+    style.legend(axes, loc="lower left", bbox_to_anchor=(0.0, 0.5))

@@ -1,0 +1,181 @@
+"""The style of all pictures: colours, symbols, the empty figure with headline and footer, legend and file.
+
+matplotlib comes with the extra ``plot`` and is imported on first use. Figures are made without pyplot, so
+that they need no display and change no settings of the caller.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from stribeck._types import Array
+from stribeck.contacts.line import LineContact
+from stribeck.files.writing import MissingExtraError, PathLike, replacing
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import format_si
+from stribeck.solver.solution import Solution
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+PICTURES = (".png", ".svg", ".pdf")
+"""Endings of the pictures."""
+
+# Okabe and Ito's colours, which most colour-blind readers tell apart; dashes differ as well.
+INK = "#1f2328"
+GREY = "#6e7781"
+CONTACT = "#d55e00"
+FLUID = "#0072b2"
+MARK = "#cc79a7"
+TINTS = {"boundary": "#fbe9dd", "mixed": "#f6f3e3", "hydrodynamic": "#e2eff8"}
+
+SYMBOLS = {
+    "radius": "$R$",
+    "modulus": "$E^*$",
+    "load": "$F_N$",
+    "viscosity": r"$\eta$",
+    "speed": "$U$",
+    "roughness": r"$h_\mathrm{rms}$",
+    "alpha": r"$\alpha$",
+    "beta": r"$\beta$",
+    "friction_coefficient": r"$\mu_0$",
+}
+
+LINE = 0.19
+LEGEND = 0.55
+"""Heights of a line of the footer and of the legend [inch]."""
+
+
+def new_figure(
+    size: tuple[float, float],
+    footer: Sequence[tuple[str, str]],
+    *,
+    title: str,
+    columns: int = 1,
+    rows: int = 1,
+    top: float = 0.6,
+) -> tuple[Figure, list[Axes]]:
+    """Return an empty figure in house style, with title and footer, and its axes."""
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingExtraError("a picture", "plot", "matplotlib") from None
+    width, height = size
+    height += LINE * len(footer) + LEGEND
+    figure = Figure(figsize=(width, height), dpi=150, facecolor="white")
+    FigureCanvasAgg(figure)
+    low = (LINE * len(footer) + LEGEND + 0.72) / height
+    high = 1 - top / height
+    grid = figure.add_gridspec(
+        rows, columns, left=0.8 / width, right=1 - 0.25 / width, bottom=low, top=high, wspace=0.2, hspace=0.08
+    )
+    axes = [figure.add_subplot(grid[i, j]) for i in range(rows) for j in range(columns)]
+    for ax in axes:
+        for side in ax.spines.values():
+            side.set(color=GREY, linewidth=0.8)
+        ax.tick_params(which="both", direction="in", top=True, right=True, colors=INK, labelsize=9)
+        ax.xaxis.label.set(color=INK, size=10.5)
+        ax.yaxis.label.set(color=INK, size=10.5)
+    headline = textwrap.shorten(title, int(7.3 * width), placeholder=" …")
+    place = 0.8 / width, 1 - 0.16 / height
+    figure.text(*place, headline, size=14, weight="bold", color=INK, va="top", parse_math=False)
+    for i, (line, colour) in enumerate(reversed(footer)):
+        figure.text(0.8 / width, (0.14 + LINE * i) / height, line, size=8, color=colour, va="bottom")
+    return figure, axes
+
+
+def make_logarithmic(axes: Axes, which: str, values: Array) -> None:
+    """Make an axis logarithmic, with plain numbers and some between the decades where these are few."""
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+
+    axes.set(**{f"{which}scale": "log"})
+    axis = axes.xaxis if which == "x" else axes.yaxis
+    positive = values[values > 0]
+    if not positive.size or positive.max() > 300 * positive.min():
+        return
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_formatter("{x:g}")
+    if positive.max() > 10 * positive.min():
+        axis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+    else:
+        axis.set_major_locator(MaxNLocator(4))
+        axis.set_minor_locator(NullLocator())
+
+
+def add_legend(figure: Figure, axes: Sequence[Axes], columns: int = 4) -> None:
+    """Put one legend for all axes under them, where it covers nothing."""
+    found: dict[str, Any] = {}
+    for ax in axes:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            found.setdefault(label, handle)
+    bottom = axes[-1].get_position().y0 - 0.52 / figure.get_figheight()
+    figure.legend(
+        list(found.values()),
+        list(found),
+        loc="upper left",
+        bbox_to_anchor=(0.7 / figure.get_figwidth(), bottom),
+        ncols=columns,
+        frameon=False,
+        fontsize=8.5,
+        labelcolor=INK,
+        handlelength=2.6,
+        columnspacing=2.0,
+    )
+
+
+def finish_figure(figure: Figure, path: PathLike | None, force: bool) -> Figure:
+    """Write the figure where wanted, and return it."""
+    if path is not None:
+        with replacing(path, PICTURES, force=force) as temporary:
+            figure.savefig(temporary)
+    return figure
+
+
+def si_text(value: float, name: str, digits: int) -> str:
+    """Return an input of a contact with its unit."""
+    return format_si(value, QUANTITIES[name].dimension, digits).replace("*", "·")
+
+
+def input_texts(contact: LineContact | None, *without: str | None) -> list[str]:
+    """Return the inputs of a contact in words, but for those that vary."""
+    if contact is None:
+        return []
+    return [
+        f"{symbol} = {si_text(getattr(contact, name), name, 4)}" for name, symbol in SYMBOLS.items() if name not in without
+    ]
+
+
+def law_text(solution: Solution) -> str:
+    """Return name and parameters of the contact law."""
+    if solution.law in ("dry contact", "smooth"):
+        return solution.law
+    numbers = ", ".join(
+        f"{name.replace('_', ' ')} {value if isinstance(value, str) else f'{value:.4g}'}"
+        for name, value in solution.law_parameters.items()
+    )
+    return f"{solution.law} contact law" + (f" ({numbers})" if numbers else "")
+
+
+def footer_lines(parts: Sequence[Sequence[str]], notes: Sequence[str], width: int) -> list[tuple[str, str]]:
+    """Return lines of text with their colours, none longer than ``width``."""
+    lines: list[tuple[str, str]] = []
+    for part in parts:
+        line = ""
+        for item in filter(None, part):
+            if line and len(_plain(line)) + len(_plain(item)) + 2 > width:
+                lines.append((line + ",", GREY))
+                line = ""
+            line += f", {item}" if line else item
+        if line:
+            lines.append((line, GREY))
+    return lines + [(line, CONTACT) for note in notes for line in textwrap.wrap(note, width)]
+
+
+def _plain(text: str) -> str:
+    """Return text without the signs of mathematical typesetting, to count its letters."""
+    return re.sub(r"\\mathrm|\\(alpha|beta|eta|mu|pi)|[$_{}^\\]", "x", text).replace("xx", "x")

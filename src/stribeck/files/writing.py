@@ -1,0 +1,124 @@
+"""Files of results: judged before the work, written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from stribeck.quantities.units import InputError
+
+__all__ = ["MissingExtraError", "PathLike", "check_output", "replacing"]
+
+PathLike = str | os.PathLike[str]
+
+
+class MissingExtraError(InputError, ImportError):
+    """A library that only some outputs need is not installed; the message says how to install it."""
+
+    def __init__(self, purpose: str, extra: str, library: str) -> None:
+        super().__init__(f"{purpose} needs {library}; install it with: pip install 'stribeck[{extra}]'.")
+
+
+def check_output(path: PathLike, suffixes: Collection[str], *, force: bool = False) -> Path:
+    """Return where a file shall be written, or refuse a place where it cannot.
+
+    Parameters
+    ----------
+    path : str or path-like
+        Name of the file; a link stands for what it points at.
+    suffixes : collection of str
+        Endings that are known, such as ``".nc"``, in the order to name them.
+    force : bool
+        Whether an existing file may be replaced.
+
+    Returns
+    -------
+    pathlib.Path
+        The file to write.
+
+    Raises
+    ------
+    InputError
+        If the ending is unknown, the file exists and ``force`` is not given, or its folder cannot be written.
+    """
+    given = Path(path)
+    if given.suffix.lower() not in suffixes:
+        *others, last = suffixes
+        known = f"{', '.join(others)} or {last}" if others else last
+        ending = f"the ending {given.suffix!r}" if given.suffix else "no ending"
+        raise InputError(f"{given} has {ending}; the name of this file must end in {known}.")
+    try:
+        target = given.resolve()
+        if target.is_dir():
+            raise InputError(f"{given} is a directory; give the name of a file.")
+        if target.exists():
+            if not target.is_file():
+                raise InputError(f"{given} is not an ordinary file; choose another name.")
+            if not force:
+                raise InputError(
+                    f"{given} exists already and is kept; add --force (in Python force=True) to replace it, "
+                    "or choose another name."
+                )
+            if not os.access(target, os.W_OK):
+                raise InputError(f"{given} is protected against writing; choose another name.")
+        if not target.parent.is_dir():
+            raise InputError(f"{given} cannot be written, as there is no folder {given.parent}; make it first.")
+        probe = _beside(target)
+        probe.touch(exist_ok=False)
+        probe.unlink()
+    except (OSError, RuntimeError, ValueError) as problem:
+        if isinstance(problem, InputError):
+            raise
+        raise InputError(f"{given} cannot be written ({_reason(problem)}); choose another place.") from None
+    return target
+
+
+@contextmanager
+def replacing(path: PathLike, suffixes: Collection[str], *, force: bool = False) -> Iterator[Path]:
+    """Give a temporary name beside ``path`` to write to, and move it there after success.
+
+    Whatever ends the writing, ``path`` then holds its new content whole, or what it held before.
+
+    Parameters
+    ----------
+    path : str or path-like
+        Name of the file.
+    suffixes : collection of str
+        As in :func:`check_output`.
+    force : bool
+        Whether an existing file may be replaced.
+
+    Yields
+    ------
+    pathlib.Path
+        The temporary name, with the same ending.
+
+    Raises
+    ------
+    InputError
+        As in :func:`check_output`, or if the writing failed, as on a full disk.
+    """
+    target = check_output(path, suffixes, force=force)
+    temporary = _beside(target)
+    try:
+        yield temporary
+        with temporary.open("rb+") as file:
+            os.fsync(file.fileno())
+        check_output(path, suffixes, force=force)  # the file may have come to exist meanwhile
+        os.replace(temporary, target)
+    except OSError as problem:
+        raise InputError(f"{path} could not be written ({_reason(problem)}); it is as it was before.") from None
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _beside(target: Path) -> Path:
+    """Return a new hidden name in the folder of ``target``, with its ending."""
+    return target.with_name(f".stribeck-{secrets.token_hex(6)}{target.suffix}")
+
+
+def _reason(problem: BaseException) -> str:
+    return getattr(problem, "strerror", None) or str(problem)

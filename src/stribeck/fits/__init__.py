@@ -1,0 +1,1 @@
+"""Fits: parameters of the model from measured friction curves, with their intervals."""

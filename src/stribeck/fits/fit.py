@@ -1,0 +1,414 @@
+"""Inputs of a contact from measured friction curves: values, intervals, and what the data do not say.
+
+Least squares on the logarithms of the inputs with analytic derivatives.  With the exponential law they run on
+:mod:`stribeck.atlas`, whose friction is within 2.4e-5 of the solver's, and are then finished on solved states; with
+other laws all states are solved.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stribeck._types import Array, is_exponential
+from stribeck.cases.case import Case
+from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings, free_names
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.line import LineContact
+from stribeck.fits.case_file import load_fit_case
+from stribeck.fits.friction_parts import PartsOf, atlas_or_solved_parts, atlas_parts, solved_parts
+from stribeck.fits.identifiability import Undetermined, undetermined
+from stribeck.fits.measurements import Measurements, read_measurements
+from stribeck.fits.model import FreeInput, FrictionModel, free_inputs
+from stribeck.fits.objective import Minimum, Objective, effective_parameters, minimise, objective, settle
+from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_ends
+from stribeck.fits.residuals import judge_residuals
+from stribeck.fits.result import Fit, FitOutcome, FittedInput, unit_of
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["fit"]
+
+LEVELS = (0.682689492137086, 0.95)
+"""Probabilities of the two intervals."""
+
+STARTS, BEST_STARTS, START_FACTOR = 64, 4, 10.0
+"""Places tried before the least squares, those followed, and how far from the case they lie."""
+
+FIRST_NOISE = 0.1
+"""Noise with which the search begins where it is not known."""
+
+RESTARTS = 4
+"""Better minima on profiles that are followed before the fit counts as lost."""
+
+NOTHING = 1e-13
+"""Eigenvalue of the information, over the largest, below which it is rounding."""
+
+FLAT = 1e-5
+"""Singular value of the derivatives, over the largest, below which nothing changes along a direction."""
+
+SAME = 1e-3
+"""Rise of q up to which two fits are the same."""
+
+WIDEST = 600.0
+"""Half-width of an interval of a logarithm from which it is open."""
+
+TIED = 0.95
+"""Correlation from which a pair of inputs is named."""
+
+Step = Callable[[str, int], object]
+
+
+@one_blas_thread
+def fit(
+    data: str | os.PathLike[str] | Measurements,
+    case: str | os.PathLike[str] | Case | LineContact,
+    *,
+    free: Sequence[str] | None = None,
+    robust: bool | None = None,
+    intervals: bool = True,
+    on_step: Step | None = None,
+) -> Fit:
+    r"""Fit inputs of a contact to measured friction.
+
+    .. math:: \min_\theta \sum_i \rho\!\left(\frac{\mu(U_i; e^\theta) - \mu_i}{\sigma_i}\right)
+        + \sum_k \left(\frac{\theta_k - m_k}{\tau_k}\right)^2
+
+    over the logarithms of the free inputs, within bounds; where no errors are given the residuals are
+    :math:`\ln(\mu/\mu_i)`, all with the same error, whose size comes from them.
+
+    Parameters
+    ----------
+    data : str or path-like or Measurements
+        Measured friction, or the file that holds it, see :func:`read_measurements`.
+    case : str or path-like or Case or LineContact
+        What is known of the contact, where the fit begins, and in the table ``[fit]`` of a file what is asked.
+    free : sequence of str, optional
+        Inputs to fit; those of the case, else friction coefficient and roughness.
+    robust : bool, optional
+        Whether outliers are kept from steering the fit; as the case says by default.
+    intervals : bool
+        Whether intervals by profile likelihood are found; else they are those of the covariance.
+    on_step : callable, optional
+        ``on_step(what, count)`` is called as the work goes on.
+
+    Returns
+    -------
+    Fit
+        Values and intervals, outcome, tests and notes.
+
+    Raises
+    ------
+    InputError
+        If a value cannot be used, or there are too few rows.
+    SolveError
+        If the contact cannot be solved as the case has it.
+
+    Notes
+    -----
+    The fitted friction is solved, each row to the tolerance of the case. In 200 synthetic experiments the intervals held the
+    truth as often as they should (``test_fit_coverage.py``).
+    """
+    problem = _problem(data, case)
+    contact, settings, definition = problem.contact, problem.settings, problem.definition
+    if not isinstance(data, Measurements):
+        data = read_measurements(data, settings)
+    names = free_names(free) if free is not None else settings.free or DEFAULT_FREE
+    if not names:
+        raise InputError("free is empty; name at least one input to fit, such as friction_coefficient.")
+    if robust is not None:
+        settings = replace(settings, robust=robust)
+    settings = replace(settings, per_curve=tuple(name for name in settings.per_curve if name in names))
+    wanted = free_inputs(contact, data, names, settings)
+    model = FrictionModel(contact, data, wanted)
+    _check_enough(data, wanted)
+    report = on_step or (lambda what, count: None)
+    solved = solved_parts(definition, problem.rtol, contact.law)
+    exponential = is_exponential(contact.law)
+    quick = atlas_or_solved_parts(definition, problem.rtol) if exponential else solved
+    goal = objective(model, quick, settings, settings.robust)
+
+    found = _search(goal, atlas_parts(definition) if exponential else None, report)
+    fine = (
+        found
+        if quick is solved
+        else _brought_back(settle(replace(found.objective, parts_of=solved), found.theta, lambda n: report("solving", n)))
+    )
+    covariance, quantiles, inflation = _covariance(fine)
+    ends, found = _intervals(found, covariance, quantiles, inflation, intervals, report)
+    if quick is not solved and fine.value > found.value + 0.1:  # a profile led to a better fit
+        fine = _brought_back(settle(replace(found.objective, parts_of=solved), found.theta, lambda n: report("solving", n)))
+        covariance, quantiles, inflation = _covariance(fine)
+    shift = fine.theta - found.theta
+    ends = [[Ends(e.low + d, e.high + d) for e in each] for each, d in zip(ends, shift.tolist(), strict=True)]
+    return _result(fine, ends, covariance, quantiles, problem, shift if exponential else None)
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """What a case says to a fit."""
+
+    contact: LineContact
+    settings: FitSettings
+    definition: Definition
+    rtol: float
+
+
+def _problem(data: object, case: str | os.PathLike[str] | Case | LineContact) -> _Problem:
+    if isinstance(case, LineContact):
+        return _Problem(case, FitSettings(), "paper", Case.rtol)
+    if not isinstance(case, Case):
+        if not isinstance(case, str | os.PathLike):
+            raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case or a LineContact.")
+        case = load_fit_case(data, case)
+    return _Problem(case.contact, case.fit, case.definition, case.rtol)
+
+
+def _check_enough(data: Measurements, wanted: Sequence[FreeInput]) -> None:
+    if len(data) <= max(2, len(wanted)):
+        raise InputError(
+            f"{data.path or 'the data'}: {len(data)} rows with speed and friction are too few to fit {len(wanted)} "
+            f"input{'s' * (len(wanted) != 1)} ({', '.join(each.name for each in wanted)}); at least {max(3, len(wanted) + 1)} "
+            "are needed, and ten times as many rows as inputs are wise."
+        )
+
+
+def _search(goal: Objective, atlas: PartsOf | None, report: Step) -> Minimum:
+    """Return the best minimum found from the case, and with the atlas from places around it, with the noise settled."""
+    first = replace(goal, scale=FIRST_NOISE if goal.sigma is None else 1.0)
+    starts = [np.zeros(len(goal.model.free))]
+    if atlas is not None:
+        starts += _best(replace(first, parts_of=atlas), _places(goal))
+    best: Minimum | None = None
+    for start in starts:
+        found = minimise(first, start, on_step=lambda n: report("searching", n))
+        if best is None or found.value < best.value:
+            best = found
+    assert best is not None
+    return _brought_back(settle(best.objective, best.theta, lambda n: report("fitting", n)))
+
+
+def _brought_back(found: Minimum) -> Minimum:
+    """Return the minimum at the inputs nearest to the case of those that the data cannot tell from it."""
+    near = _nearest(found)
+    if np.allclose(near, found.theta, rtol=0, atol=1e-9):
+        return found
+    moved = minimise(found.objective, near)
+    return moved if moved.value < found.value + SAME else found
+
+
+def _best(goal: Objective, places: list[Array]) -> list[Array]:
+    """Return the places where the residuals are smallest, of those inside the atlas."""
+    values = []
+    for place in places:
+        try:
+            values.append((goal.value(place, goal.residuals(place)[0]), place))
+        except InputError:
+            continue
+    return [place for _, place in sorted(values, key=lambda pair: pair[0])[:BEST_STARTS]]
+
+
+def _places(goal: Objective) -> list[Array]:
+    """Return places within a factor of ten of the case, spread evenly, the same each time."""
+    from scipy.stats import qmc
+
+    low, high = goal.bounds
+    reach = math.log(START_FACTOR)
+    low, high = np.maximum(low, -reach), np.minimum(high, reach)
+    unit = qmc.Sobol(len(low), seed=20_261_121).random(STARTS)
+    return list(low + (high - low) * unit)
+
+
+def _nearest(at: Minimum) -> Array:
+    """Return the inputs nearest to the case of those that change no residual to first order.
+
+    Along what changes nothing the data say nothing, and a value far from the case would be an accident of the iteration.
+    """
+    rows, _ = at.objective.priors
+    _, S, V = np.linalg.svd(np.concatenate([at.jacobian, rows]), full_matrices=True)
+    tied = V[np.append(S, np.zeros(len(V)))[: len(V)] <= FLAT * S[0]]
+    low, high = at.objective.bounds
+    return np.asarray(np.clip(at.theta - tied.T @ (tied @ at.theta), low, high))
+
+
+def _covariance(at: Minimum) -> tuple[Array, list[float], float]:
+    """Return the covariance of the logarithms, the squared quantiles of the two levels, and how much the loss inflates them.
+
+    Inputs at a bound have nan, and inputs that nothing determines infinity on the diagonal and nan beside it.
+    """
+    from scipy.stats import norm, t
+
+    free = np.nonzero(np.logical_not(at.at_bound))[0]
+    rows, _ = at.objective.priors
+    psi, slope = at.objective.influence(at.residuals)
+    n, p = at.jacobian.shape
+    J, P = at.jacobian[:, free], rows[:, free]
+    freedom = max(n - effective_parameters(at), 1.0)
+    # Huber's sandwich for the robust loss, with averages over the rows so that no weight is negative.
+    weight = max(float(slope.mean()), 0.1) if at.objective.robust else 1.0
+    inflation = float((psi @ psi) / freedom / weight) if at.objective.robust else 1.0
+    values, vectors = np.linalg.eigh(weight * (J.T @ J) + P.T @ P)
+    known = values > NOTHING * max(float(values.max(initial=0.0)), 1e-300)
+    inner = (vectors[:, known] / values[known]) @ vectors[:, known].T * inflation
+    lost = (np.abs(vectors[:, ~known]) > 1e-6).any(axis=1)
+    inner[lost], inner[:, lost] = np.nan, np.nan
+    inner[lost, lost] = np.inf
+    covariance = np.full((p, p), np.nan)
+    covariance[np.ix_(free, free)] = inner
+    given = at.objective.sigma is not None
+    quantiles = [float((norm.ppf(0.5 + level / 2) if given else t.ppf(0.5 + level / 2, freedom)) ** 2) for level in LEVELS]
+    return covariance, quantiles, inflation
+
+
+def _intervals(
+    found: Minimum, covariance: Array, quantiles: list[float], inflation: float, profile: bool, report: Step
+) -> tuple[list[list[Ends]], Minimum]:
+    """Return the intervals of each free input, and the minimum that they belong to."""
+    p = len(found.theta)
+    if not profile:
+        return [[_normal(float(found.theta[i]), float(covariance[i, i]) * q) for q in quantiles] for i in range(p)], found
+    thresholds = [q * inflation for q in quantiles]
+    for _ in range(RESTARTS):
+        count = 0
+
+        def point() -> None:
+            nonlocal count
+            count += 1
+            report("intervals", count)
+
+        try:
+            finite = np.where(np.isfinite(covariance), covariance, 0.0)
+            nothing = [Ends(-math.inf, math.inf)] * len(thresholds)
+            lost = np.isinf(np.diag(covariance))
+            return [nothing if lost[i] else profile_ends(found, i, finite, thresholds, point) for i in range(p)], found
+        except BetterMinimumError as better:
+            found = settle(found.objective, better.theta, lambda n: report("fitting", n))
+            covariance, _, _ = _covariance(found)
+    return _intervals(replace(found, ended=False), covariance, quantiles, inflation, False, report)
+
+
+def _normal(theta: float, squared: float) -> Ends:
+    """Return the interval of half-width sqrt(squared), open where that is no number or no factor in double precision."""
+    half = math.sqrt(squared) if squared < WIDEST**2 else math.inf
+    return Ends(theta - half, theta + half)
+
+
+def _result(
+    at: Minimum,
+    ends: list[list[Ends]],
+    covariance: Array,
+    quantiles: list[float],
+    problem: _Problem,
+    shift: Array | None,
+) -> Fit:
+    contact = problem.contact
+    model, data = at.objective.model, at.objective.model.data
+    bound = at.at_bound
+    width = np.sqrt(np.diag(covariance))
+    inputs = tuple(
+        FittedInput(
+            name=free.name,
+            curve=None if free.curve is None else data.curves[free.curve],
+            value=free.value(float(at.theta[i])),
+            unit=unit_of(free.name, free.is_factor),
+            start=free.start,
+            is_factor=free.is_factor,
+            standard_error=float(width[i]),
+            interval_68=_interval(free, ends[i][0]),
+            interval_95=_interval(free, ends[i][1]),
+            at_bound=bool(bound[i]),
+        )
+        for i, free in enumerate(model.free)
+    )
+    outcome = FitOutcome.CONVERGED if at.converged else FitOutcome.NOT_AT_OPTIMUM if at.ended else FitOutcome.STEP_LIMIT
+    freedom = max(len(data) - effective_parameters(at), 1.0)
+    labels = [each.label for each in inputs]
+    weak = undetermined(model.free, labels, at.jacobian, at.prediction)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        correlation = covariance / np.outer(width, width)
+        moved = np.abs(shift) / width if shift is not None else np.array([math.nan])
+    contacts = tuple(model.contact_of(k, at.theta) for k in range(len(data.curves)))
+    shared = {each.name: each.value for each in inputs if not each.is_factor and each.curve is None}
+    shared |= {each.name: getattr(contact, each.name) * each.value for each in inputs if each.is_factor}
+    shared |= {each.name: getattr(contacts[0], each.name) for each in inputs if each.curve is not None}
+    errors = at.prediction.error / at.prediction.friction
+    return Fit(
+        inputs=inputs,
+        outcome=outcome,
+        contact=contact.replace(**shared),
+        contacts=contacts,
+        data=data,
+        definition=problem.definition,
+        law="exponential" if contact.law is None else contact.law.name,
+        friction=at.prediction.friction,
+        residuals=at.residuals,
+        covariance=covariance,
+        correlation=correlation,
+        noise=at.objective.scale if at.objective.sigma is None else math.nan,
+        logarithmic=at.objective.logarithmic,
+        robust=at.objective.robust,
+        quality=judge_residuals(at, data.curve, freedom),
+        undetermined=weak,
+        notes=(*data.notes, *_notes(at, inputs, correlation, covariance, weak, contacts)),
+        solver_shift=float(np.nanmax(moved)) if np.isfinite(moved).any() else math.nan,
+        model_error=float(errors.max()),
+        evaluations=at.evaluations,
+        _minimum=at,
+        _threshold=quantiles[1],
+    )
+
+
+def _interval(free: FreeInput, ends: Ends) -> tuple[float, float]:
+    low = 0.0 if math.isinf(ends.low) else free.value(ends.low)
+    return low, math.inf if math.isinf(ends.high) else free.value(ends.high)
+
+
+def _notes(
+    at: Minimum,
+    inputs: Sequence[FittedInput],
+    correlation: Array,
+    covariance: Array,
+    weak: Sequence[Undetermined],
+    contacts: Sequence[LineContact],
+) -> list[str]:
+    notes = []
+    for each in inputs:
+        if each.at_bound:
+            notes.append(f"{each.label} ended at its bound: its value is that bound's, and it has no standard error.")
+    named = {name for each in weak for name in each.names}
+    for i in range(len(inputs)):
+        for j in range(i):
+            pair = inputs[j].label, inputs[i].label
+            if abs(correlation[i, j]) > TIED and not named & set(pair):
+                notes.append(_combination(pair, correlation[i, j], covariance[np.ix_([j, i], [j, i])]))
+    for name, contact in zip(at.objective.model.data.curves, contacts, strict=True):
+        load = float(contact.groups.load)
+        if load >= 1 and is_exponential(contact.law):
+            where = f" of curve {name}" if len(contacts) > 1 else ""
+            notes.append(
+                f"The fitted load group{where} is {load:.3g}, not below 1: the exponential contact law is outside its range."
+            )
+    if at.objective.robust:
+        far = np.abs(at.residuals) > 4
+        if far.any():
+            rows = ", ".join(map(str, sorted(at.objective.model.data.rows[far].tolist())[:10]))
+            notes.append(f"Rows beyond four standard errors, which hardly steer the fit: {rows}.")
+    return notes
+
+
+def _combination(pair: tuple[str, str], correlation: float, covariance: Array) -> str:
+    """Return the sentence that names the combination of two inputs that the data know best."""
+    values, vectors = np.linalg.eigh(covariance)
+    a, b = vectors[:, 0]
+    first, second = pair if abs(a) >= abs(b) else pair[::-1]
+    power = float(min(a, b, key=abs) / max(a, b, key=abs))
+    size = float(math.sqrt(max(values[0], 0.0)) / max(abs(a), abs(b)))
+    shown = "" if abs(abs(power) - 1) < 0.02 else f"^{abs(power):.2g}"
+    return (
+        f"{pair[0]} and {pair[1]} are correlated by {correlation:.3f}: best known is {first} {'x' if power > 0 else '/'} "
+        f"{second}{shown}, within {100 * size:.2g} %."
+    )

@@ -1,0 +1,268 @@
+r"""The predicted friction of all rows of measured curves as a function of the free inputs, with exact derivatives.
+
+A free input is the common factor :math:`e^\theta` on what the case or the curve has for it.  Every row then has
+
+.. math::
+
+    \ln (\lambda, \bar F_N, \bar h_\mathrm{rms}, \mu_0, \beta)_i = L_i + A_{c(i)}^T \theta, \qquad
+    \frac{\partial \mu_i}{\partial \theta} = A_{c(i)} \frac{\partial \mu_i}
+    {\partial \ln (\lambda, \bar F_N, \bar h_\mathrm{rms}, \mu_0, \beta)}
+
+with a constant matrix A of exponents for each curve c, :data:`stribeck.curves.elasticities.EXPONENTS`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array, Indices
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.contacts.line import Groups, LineContact
+from stribeck.curves.elasticities import EXPONENTS
+from stribeck.fits.friction_parts import Parts, PartsOf
+from stribeck.fits.measurements import Measurements
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import InputError, format_si
+
+__all__ = ["FreeInput", "FrictionModel", "Prediction", "free_inputs"]
+
+DEFAULT_FACTOR = 1e3
+"""Bounds of a free input without any of its own: this factor below and above its first value."""
+
+
+@dataclass(frozen=True)
+class FreeInput:
+    """An input that is fitted, as the logarithm of a factor on what it starts from.
+
+    Parameters
+    ----------
+    name : str
+        Name of the input of the contact.
+    curve : int or None
+        The curve that has it for itself; None where all share it.
+    start : float
+        Value of factor one, in SI units; 1 where curves that share it have different values.
+    low, high : float
+        Bounds of the logarithm of the factor.
+    prior : tuple of float, or None
+        Mean and standard deviation of that logarithm before the data.
+    is_factor : bool
+        Whether what is fitted is a common factor on values that differ.
+    """
+
+    name: str
+    curve: int | None
+    start: float
+    low: float
+    high: float
+    prior: tuple[float, float] | None = None
+    is_factor: bool = False
+
+    def value(self, theta: float) -> float:
+        """Return the input in SI units, or the factor, at a logarithm of the factor."""
+        return self.start * math.exp(theta)
+
+
+def free_inputs(
+    contact: LineContact, data: Measurements, names: Sequence[str], settings: FitSettings
+) -> tuple[FreeInput, ...]:
+    """Return the inputs to fit, one for each name, or one for each curve where the settings say so.
+
+    Parameters
+    ----------
+    contact : LineContact
+        What the fit starts from.
+    data : Measurements
+        The curves.
+    names : sequence of str
+        Inputs to fit.
+    settings : FitSettings
+        Bounds, priors, and which inputs each curve has for itself.
+
+    Returns
+    -------
+    tuple of FreeInput
+        In the order of ``names`` and of the curves.
+
+    Raises
+    ------
+    InputError
+        If one cannot be told from these data at all, starts at zero, or starts outside its bounds.
+    """
+    found = []
+    for name in names:
+        _check_matters(name, data)
+        values = [inputs.get(name, getattr(contact, name)) for inputs in data.inputs]
+        alone = name in settings.per_curve and len(values) > 1
+        differ = max(values) > min(values)
+        for curve in range(len(values)) if alone else (None,):
+            start = values[curve] if curve is not None else 1.0 if differ else values[0]
+            if start == 0:
+                raise InputError(f"{name} is 0 in the case; a fit looks for factors on it, so give it a first value.")
+            found.append(_free_input(name, curve, start, differ and not alone, settings))
+    return tuple(found)
+
+
+def _free_input(name: str, curve: int | None, start: float, is_factor: bool, settings: FitSettings) -> FreeInput:
+    low, high = -math.log(DEFAULT_FACTOR), math.log(DEFAULT_FACTOR)
+    prior = settings.priors.get(name)
+    if is_factor and (name in settings.bounds or prior):
+        raise InputError(
+            f"{name} has bounds or a prior in [fit], but its values differ between the curves and share one factor; "
+            f"list {name} under per_curve, or leave bounds and prior out."
+        )
+    if name in settings.bounds:
+        ends = settings.bounds[name]
+        if not ends[0] <= start <= ends[1]:
+            limits = " to ".join(_text(name, end) for end in ends)
+            raise InputError(f"{name} starts at {_text(name, start)}, outside its bounds {limits}.")
+        low, high = math.log(ends[0] / start), math.log(ends[1] / start)
+    mean_and_width = (math.log(prior.value / start), math.log(prior.factor)) if prior else None
+    return FreeInput(name, curve, start, low, high, mean_and_width, is_factor)
+
+
+def _text(name: str, value: float) -> str:
+    return format_si(value, QUANTITIES[name].dimension)
+
+
+def _check_matters(name: str, data: Measurements) -> None:
+    """Refuse an input on which the predicted friction does not depend, given what friction was measured against."""
+    if name == "viscosity" and data.abscissa != "speed":
+        against = data.abscissa.replace("_", " times ") if data.abscissa == "speed_viscosity" else "Hersey number"
+        raise InputError(
+            f"viscosity is free, but friction was measured against {against}, which holds it already: "
+            "no value of it changes the prediction. Take it out of free, or give the speeds."
+        )
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """The friction coefficients of all rows at one set of free inputs.
+
+    Parameters
+    ----------
+    friction : ndarray, shape (n,)
+        Friction coefficient [-].
+    jacobian : ndarray, shape (n, p)
+        Derivatives by the logarithms of the free inputs [-].
+    contact_share, fluid_share : ndarray, shape (n,)
+        Parts of the friction coefficient that asperities and fluid cause [-].
+    load_share : ndarray, shape (n,)
+        Part of the load on asperities [-].
+    error : ndarray, shape (n,)
+        Estimated absolute error of the friction coefficient [-].
+    """
+
+    friction: Array
+    jacobian: Array
+    contact_share: Array
+    fluid_share: Array
+    load_share: Array
+    error: Array
+
+
+class FrictionModel:
+    """Friction of the rows of measured curves, by free inputs.
+
+    Parameters
+    ----------
+    contact : LineContact
+        What all curves have in common.
+    data : Measurements
+        The curves.
+    free : sequence of FreeInput
+        What is fitted.
+    """
+
+    def __init__(self, contact: LineContact, data: Measurements, free: Sequence[FreeInput]) -> None:
+        self.contact, self.data, self.free = contact, data, tuple(free)
+        self.contacts = tuple(contact.replace(speed=1.0, **inputs) for inputs in data.inputs)
+        exponents = [self._exponents(curve) for curve in range(len(data.curves))]
+        self.exponents = np.array(exponents).reshape(len(data.curves), len(self.free), 5)
+        self.logs = self.logs_at(data.curve, data.values)
+
+    def _exponents(self, curve: int) -> list[list[float]]:
+        """Return the exponents with which each free input enters the groups, mu0 and beta of a curve."""
+        rows = []
+        for free in self.free:
+            speed, load, roughness = EXPONENTS[free.name]
+            if self.data.abscissa == "hersey_number" and free.name == "load":
+                speed += 1  # U = H F_N/eta
+            row = [speed, load, roughness, free.name == "friction_coefficient", free.name == "beta"]
+            rows.append([float(x) * (free.curve in (None, curve)) for x in row])
+        return rows
+
+    def logs_at(self, curve: Indices, values: Array) -> Array:
+        """Return the logarithms of groups, mu0 and beta at any places of the abscissa, all factors being one.
+
+        Parameters
+        ----------
+        curve : ndarray of int, shape (n,)
+            Curve of each place.
+        values : ndarray, shape (n,)
+            Speed, viscosity times speed or Hersey number [SI].
+
+        Returns
+        -------
+        ndarray, shape (n, 5)
+            ln of speed group, load group, roughness group, mu0 and beta; minus infinity where one is zero.
+        """
+        rows = np.empty((len(self.contacts), 5))
+        for i, contact in enumerate(self.contacts):
+            g = contact.groups
+            eta, F_N = contact.viscosity, contact.load
+            per_value = {"speed": 1.0, "speed_viscosity": 1 / eta, "hersey_number": F_N / eta}
+            speed = float(g.speed) * per_value[self.data.abscissa]
+            rows[i] = speed, float(g.load), float(g.roughness), contact.friction_coefficient, contact.beta
+        with np.errstate(divide="ignore"):
+            found = np.log(rows)[curve]
+        found[:, 0] += np.log(values)
+        return np.asarray(found)
+
+    def contact_of(self, curve: int, theta: Array) -> LineContact:
+        """Return the contact of a curve at a set of free inputs, at the speed of the case."""
+        factors: dict[str, float] = {}
+        for free, t in zip(self.free, theta.tolist(), strict=True):
+            if free.curve in (None, curve):
+                factors[free.name] = math.exp(t)
+        contact = self.contacts[curve]
+        return contact.replace(
+            speed=self.contact.speed, **{name: getattr(contact, name) * factor for name, factor in factors.items()}
+        )
+
+    def predict(self, theta: Array, parts_of: PartsOf, at: tuple[Indices, Array] | None = None) -> Prediction:
+        """Return the friction at logarithms of factors.
+
+        Parameters
+        ----------
+        theta : ndarray, shape (p,)
+            Logarithms of the factors on the free inputs.
+        parts_of : callable
+            What gives the states, one of :mod:`stribeck.fits.friction_parts`.
+        at : tuple of ndarray, optional
+            Curve and abscissa of other places than the measured rows.
+
+        Returns
+        -------
+        Prediction
+            Friction and derivatives.
+        """
+        curve, logs = (self.data.curve, self.logs) if at is None else (at[0], self.logs_at(*at))
+        A = self.exponents[curve]
+        x = np.exp(logs + np.einsum("p,npk->nk", theta, A))
+        found: Parts = parts_of(Groups(x[:, 0], x[:, 1], x[:, 2]))
+        contact, viscous = x[:, 3] * found.values[0], x[:, 4] * found.values[1]
+        by_groups = x[:, 3] * found.slopes[0] + x[:, 4] * found.slopes[1]
+        by_logs = np.concatenate([by_groups, contact[None], viscous[None]])
+        return Prediction(
+            friction=contact + viscous,
+            jacobian=np.einsum("kn,npk->np", by_logs, A),
+            contact_share=contact / (contact + viscous),
+            fluid_share=viscous / (contact + viscous),
+            load_share=found.values[0],
+            error=x[:, 3] * found.errors[0] + viscous * found.errors[1],
+        )

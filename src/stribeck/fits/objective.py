@@ -1,0 +1,388 @@
+r"""Residuals of measured friction in units of their error, and the least squares that make them small.
+
+With :math:`r_i` the residual of a row over its standard error and priors normal in the logarithms,
+
+.. math:: q(\theta) = \sum_i \rho(r_i) + \sum_k \left(\frac{\theta_k - m_k}{\tau_k}\right)^2
+
+where :math:`\rho(r) = r^2`, or for outliers :math:`c^2 \ln(1 + r^2/c^2)` with c = 2.385, which loses 5 % of the information
+where errors are normal (Holland and Welsch, Commun. Stat. A 6 (1977) 813).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.fits.friction_parts import PartsOf
+from stribeck.fits.model import FrictionModel, Prediction
+from stribeck.quantities.units import InputError
+from stribeck.solver.solve import SolveError
+
+__all__ = ["Minimum", "Objective", "minimise", "settle"]
+
+CAUCHY = 2.385
+"""Constant c of the robust loss, in standard errors."""
+
+MAD = 1.482602218505602
+"""Standard deviation over median absolute deviation of a normal distribution."""
+
+VALUE_TOLERANCE, PLACE_TOLERANCE = 1e-8, 1e-7
+"""Relative change of q and absolute change of a logarithm at which the least squares end; solved states are good to 1e-6."""
+
+MOST_EVALUATIONS = 200
+
+SETTLED = 1e-4
+"""Relative change of the scale of the noise below which it is settled."""
+
+MOST_ROUNDS = 30
+
+NEAR = 1e-2
+"""Distance to the optimum, in standard errors, below which a fit counts as converged."""
+
+AT_BOUND = 1e-4
+"""Distance of the logarithm of a factor from its bound below which it is at it."""
+
+
+@dataclass(frozen=True)
+class Objective:
+    """What a fit makes small, for one way to get states and one scale of the noise.
+
+    Parameters
+    ----------
+    model : FrictionModel
+        Predicts the friction of the rows.
+    parts_of : callable
+        What gives the states.
+    sigma : ndarray, shape (n,), or None
+        Known standard errors: absolute, or relative where ``logarithmic``; None where only their ratio is known.
+    logarithmic : bool
+        Whether residuals are of the logarithm of friction.
+    robust : bool
+        Whether the loss is the robust one.
+    scale : float
+        What the residuals are divided by: the noise where its size comes from the residuals, else 1.
+    """
+
+    model: FrictionModel
+    parts_of: PartsOf
+    sigma: Array | None
+    logarithmic: bool
+    robust: bool
+    scale: float = 1.0
+
+    def residuals(self, theta: Array) -> tuple[Array, Array, Prediction]:
+        """Return the residuals of the data, their derivatives, and the prediction they come from."""
+        predicted = self.model.predict(theta, self.parts_of)
+        r, J = predicted.friction - self.model.data.friction, predicted.jacobian
+        if self.logarithmic:
+            r, J = np.log(predicted.friction / self.model.data.friction), J / predicted.friction[:, None]
+        size = self.scale if self.sigma is None else self.scale * self.sigma
+        return r / size, J / (size if np.ndim(size) == 0 else np.asarray(size)[:, None]), predicted
+
+    @property
+    def priors(self) -> tuple[Array, Array]:
+        """Rows of the priors: their derivatives, shape (k, p), and means over widths, shape (k,)."""
+        free = self.model.free
+        rows, means = [], []
+        for i, each in enumerate(free):
+            if each.prior is not None:
+                mean, width = each.prior
+                rows.append(np.eye(len(free))[i] / width)
+                means.append(mean / width)
+        return np.array(rows).reshape(-1, len(free)), np.array(means)
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Lowest and highest logarithms of the factors."""
+        return np.array([f.low for f in self.model.free]), np.array([f.high for f in self.model.free])
+
+    def loss(self, r: Array) -> Array:
+        """Return rho(r) of every residual."""
+        return np.asarray(CAUCHY**2 * np.log1p((r / CAUCHY) ** 2) if self.robust else r * r)
+
+    def influence(self, r: Array) -> tuple[Array, Array]:
+        """Return half the first and second derivative of rho(r)."""
+        if not self.robust:
+            return r, np.ones_like(r)
+        w = 1 / (1 + (r / CAUCHY) ** 2)
+        return r * w, (1 - (r / CAUCHY) ** 2) * w * w
+
+    def value(self, theta: Array, r: Array) -> float:
+        """Return q, given the residuals of the data."""
+        rows, means = self.priors
+        return float(self.loss(r).sum() + ((rows @ theta - means) ** 2).sum())
+
+
+def objective(model: FrictionModel, parts_of: PartsOf, settings: FitSettings, robust: bool) -> Objective:
+    """Return the objective that the data and the settings ask for.
+
+    Parameters
+    ----------
+    model : FrictionModel
+        Predicts the rows.
+    parts_of : callable
+        What gives the states.
+    settings : FitSettings
+        What is known of the noise.
+    robust : bool
+        Whether the loss is the robust one.
+
+    Returns
+    -------
+    Objective
+        With scale 1.
+    """
+    data = model.data
+    if data.error is not None:
+        return Objective(model, parts_of, data.error, False, robust)
+    relative, absolute = settings.relative_error, settings.absolute_error
+    if absolute is not None:
+        return Objective(model, parts_of, np.hypot((relative or 0.0) * data.friction, absolute), False, robust)
+    if relative is not None:
+        return Objective(model, parts_of, np.full(len(data), relative), True, robust)
+    return Objective(model, parts_of, None, settings.noise == "relative", robust)
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Where the least squares ended.
+
+    Parameters
+    ----------
+    theta : ndarray, shape (p,)
+        Logarithms of the factors.
+    value : float
+        q there.
+    residuals : ndarray, shape (n,)
+        Residuals of the data over their errors.
+    jacobian : ndarray, shape (n, p)
+        Their derivatives.
+    prediction : Prediction
+        Friction there.
+    distance : float
+        Estimated distance to the optimum, in standard errors.
+    ended : bool
+        Whether the iteration and the scale of the noise came to rest.
+    evaluations : int
+        Predictions that were made.
+    objective : Objective
+        What was minimised, with its final scale.
+    """
+
+    theta: Array
+    value: float
+    residuals: Array
+    jacobian: Array
+    prediction: Prediction
+    distance: float
+    ended: bool
+    evaluations: int
+    objective: Objective
+
+    @property
+    def converged(self) -> bool:
+        """Whether this is the optimum, within a hundredth of a standard error."""
+        return self.ended and self.distance < NEAR
+
+    @property
+    def at_bound(self) -> Array:
+        """Which logarithms of factors are at one of their bounds."""
+        low, high = self.objective.bounds
+        return np.asarray((self.theta - low < AT_BOUND) | (high - self.theta < AT_BOUND))
+
+
+def minimise(
+    goal: Objective,
+    start: Array,
+    fixed: dict[int, float] | None = None,
+    most: int = MOST_EVALUATIONS,
+    on_step: Callable[[int], object] | None = None,
+    tolerance: float = VALUE_TOLERANCE,
+) -> Minimum:
+    """Return the minimum of q near a start, at a given scale of the noise.
+
+    Parameters
+    ----------
+    goal : Objective
+        What is minimised.
+    start : ndarray, shape (p,)
+        Where to begin.
+    fixed : dict of int to float, optional
+        Free inputs that are held, and where.
+    most : int
+        Predictions allowed.
+    on_step : callable, optional
+        Called with the number of predictions after each.
+    tolerance : float
+        Relative change of q at which the least squares end.
+
+    Returns
+    -------
+    Minimum
+        What was reached; ``converged`` says whether it is the optimum.
+    """
+    # Imported here because it takes longer than the rest of the package.
+    from scipy.optimize import least_squares
+
+    fixed = fixed or {}
+    moving = np.array([i for i in range(len(start)) if i not in fixed], dtype=int)
+    low, high = goal.bounds
+    rows, means = goal.priors
+    n = len(goal.model.data)
+    kept: dict[bytes, tuple[Array, Array, Prediction]] = {}
+    count = 0
+
+    def whole(x: Array) -> Array:
+        theta = np.asarray(start, dtype=float).copy()
+        theta[list(fixed)] = list(fixed.values())
+        theta[moving] = x
+        return theta
+
+    def evaluate(theta: Array) -> tuple[Array, Array, Prediction]:
+        nonlocal count
+        key = theta.tobytes()
+        if key not in kept:
+            count += 1
+            kept.clear()
+            kept[key] = goal.residuals(theta)
+            if on_step is not None:
+                on_step(count)
+        return kept[key]
+
+    def function(x: Array) -> Array:
+        theta = whole(x)
+        try:
+            return np.concatenate([evaluate(theta)[0], rows @ theta - means])
+        except (SolveError, InputError):
+            return np.full(n + len(means), np.inf)  # the step is then made shorter
+
+    def derivative(x: Array) -> Array:
+        return np.concatenate([evaluate(whole(x))[1], rows])[:, moving]
+
+    def loss(z: Array) -> Array:
+        found = np.stack([z, np.ones_like(z), np.zeros_like(z)])
+        data, c = z[:n], CAUCHY**2
+        found[:, :n] = c * np.log1p(data / c), 1 / (1 + data / c), -1 / c / (1 + data / c) ** 2
+        return found
+
+    ended = True
+    chosen: Any = loss if goal.robust else "linear"
+    x = np.clip(np.asarray(start, dtype=float)[moving], low[moving] + 1e-9, high[moving] - 1e-9)
+    evaluate(whole(x))  # a start that cannot be solved is an error of its own
+    if len(moving):
+        found = least_squares(
+            function,
+            x,
+            jac=derivative,
+            bounds=(low[moving], high[moving]),
+            loss=chosen,
+            ftol=tolerance,
+            xtol=PLACE_TOLERANCE,
+            gtol=VALUE_TOLERANCE,
+            max_nfev=most,
+        )
+        ended, x = found.status > 0, found.x
+    theta = whole(x)
+    r, J, prediction = evaluate(theta)
+    part = Minimum(theta, goal.value(theta, r), r, J, prediction, 0.0, ended, count, goal)
+    free = moving[~part.at_bound[moving]]
+    return replace(part, distance=_distance(part, free))
+
+
+def _distance(at: Minimum, free: Array) -> float:
+    """Return the length of the Gauss-Newton step that is left, in standard errors of the noise."""
+    rows, means = at.objective.priors
+    influence, _ = at.objective.influence(at.residuals)
+    weights = np.where(at.residuals == 0, 1.0, influence / np.where(at.residuals == 0, 1.0, at.residuals))
+    J = np.concatenate([np.sqrt(weights)[:, None] * at.jacobian, rows])[:, free]
+    gradient = at.jacobian[:, free].T @ influence + rows[:, free].T @ (rows @ at.theta - means)
+    step = np.linalg.lstsq(J.T @ J, gradient, rcond=1e-12)[0]
+    noise = _noise(at) if at.objective.sigma is None else 1.0
+    return float(math.sqrt(max(0.0, float(gradient @ step))) / max(noise, 1e-300))
+
+
+def _scaled(at: Minimum) -> Minimum:
+    """Return the same minimum with its residuals in units of their own standard deviation."""
+    noise = _noise(at)
+    if noise == 0:
+        return at
+    return replace(
+        at,
+        value=at.value / noise**2,
+        residuals=at.residuals / noise,
+        jacobian=at.jacobian / noise,
+        objective=replace(at.objective, scale=at.objective.scale * noise),
+    )
+
+
+def _noise(at: Minimum) -> float:
+    """Return the standard deviation of the residuals, by their median where the loss is robust."""
+    n, p = at.jacobian.shape
+    effective = effective_parameters(at)
+    if at.objective.robust:
+        return float(MAD * np.median(np.abs(at.residuals)) * math.sqrt(n / max(n - effective, 1.0)))
+    return float(math.sqrt((at.residuals @ at.residuals) / max(n - effective, 1.0)))
+
+
+def effective_parameters(at: Minimum) -> float:
+    """Return how many free inputs the data determine beside the priors: trace of (J'J + P)^-1 J'J.
+
+    Parameters
+    ----------
+    at : Minimum
+        The fit.
+
+    Returns
+    -------
+    float
+        The number of free inputs without priors, less with them.
+    """
+    rows, _ = at.objective.priors
+    if not len(rows):
+        return float(at.jacobian.shape[1])
+    H = at.jacobian.T @ at.jacobian
+    return float(np.trace(np.linalg.pinv(H + rows.T @ rows, rcond=1e-14) @ H))
+
+
+def settle(goal: Objective, start: Array, on_step: Callable[[int], object] | None = None) -> Minimum:
+    """Return the minimum of q, with the scale of the noise found from its own residuals where it is not known.
+
+    Parameters
+    ----------
+    goal : Objective
+        What is minimised; its scale is where that of the noise begins.
+    start : ndarray, shape (p,)
+        Where to begin.
+    on_step : callable, optional
+        Called with the number of predictions after each.
+
+    Returns
+    -------
+    Minimum
+        With residuals in units of the noise.
+    """
+    found = minimise(goal, start, on_step=on_step)
+    count = found.evaluations
+    if goal.sigma is not None:
+        return found
+    if not goal.robust and not len(goal.priors[0]):
+        return _scaled(found)  # a common factor on all residuals moves nothing
+    for _ in range(MOST_ROUNDS):
+        noise = _noise(found)
+        if noise == 0 or not math.isfinite(noise):
+            break
+        settled = abs(math.log(noise)) < SETTLED
+        if settled:
+            break
+        goal = replace(goal, scale=goal.scale * noise)
+        found = minimise(goal, found.theta, on_step=on_step)
+        count += found.evaluations
+    else:
+        return replace(found, ended=False, evaluations=count)
+    return replace(found, evaluations=count)

@@ -1,0 +1,111 @@
+"""Picture of a fit: measured friction with the fitted curves and their 95 % bands, and the residuals below.
+
+matplotlib comes with the extra ``plot`` and is imported on first use.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stribeck.files.pictures import (
+    CONTACT,
+    FLUID,
+    GREY,
+    INK,
+    MARK,
+    add_legend,
+    finish_figure,
+    footer_lines,
+    make_logarithmic,
+    new_figure,
+)
+from stribeck.files.writing import PathLike
+from stribeck.fits.case_file import format_interval, format_value
+from stribeck.fits.result import Fit
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["plot_fit"]
+
+POINTS = 121
+
+COLOURS = (INK, CONTACT, FLUID, MARK, "#009e73", "#e69f00")
+MARKERS = ("o", "s", "^", "D", "v", "P")
+"""Of the curves, in turn."""
+
+LABELS = {
+    "speed": "sliding speed $U$ (m/s)",
+    "speed_viscosity": r"viscosity times speed $\eta U$ (Pa m)",
+    "hersey_number": r"Hersey number $\eta U/F_N$",
+}
+
+
+def plot_fit(fit: Fit, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
+    """Draw a fit.
+
+    Parameters
+    ----------
+    fit : Fit
+        The fit.
+    path : str or path-like, optional
+        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+    force : bool
+        Whether an existing file is replaced; otherwise it is kept.
+    title : str
+        Headline.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written, or exists and ``force`` is not given.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
+    data = fit.data
+    figure, (above, below) = new_figure((8.5, 6.2), _footer(fit), rows=2, title=title or "Fit to measured friction")
+    make_logarithmic(above, "x", data.values)
+    make_logarithmic(above, "y", data.friction)
+    make_logarithmic(below, "x", data.values)
+    bars: Any = fit._minimum.objective.sigma
+    for k, name in enumerate(data.curves):
+        rows = data.curve == k
+        colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
+        style: dict[str, Any] = {"color": colour, "ls": "none", "marker": marker, "ms": 4.0, "mfc": "white", "mew": 1.1}
+        label = "measured" if len(data.curves) == 1 else f"measured: {name}"
+        error = None if bars is None else (bars[rows] * (data.friction[rows] if fit.logarithmic else 1.0))
+        above.errorbar(data.values[rows], data.friction[rows], error, lw=0.9, zorder=4, label=label, **style)
+        x = np.geomspace(data.values[rows].min(), data.values[rows].max(), POINTS)
+        friction, low, high = fit.band(k, x)
+        above.plot(x, friction, color=colour, lw=1.6, zorder=3, label="fitted" if k == 0 else None)
+        above.fill_between(
+            x, low, high, color=colour, alpha=0.18, lw=0, zorder=2, label="95 % band of the curve" if k == 0 else None
+        )
+        below.plot(data.values[rows], fit.residuals[rows], zorder=3, **style)
+    for level, dashes in ((0.0, "-"), (-2.0, (0, (5, 3))), (2.0, (0, (5, 3)))):
+        below.axhline(level, color=GREY, lw=0.9, ls=dashes, zorder=1)
+    reach = 1.1 * max(3.0, float(np.abs(fit.residuals).max()))
+    below.set_ylim(-reach, reach)
+    below.set_xlim(above.get_xlim())
+    above.tick_params(labelbottom=False, which="both")
+    above.set_ylabel(r"friction coefficient $\mu$")
+    below.set_ylabel("residual (standard errors)")
+    below.set_xlabel(LABELS[data.abscissa])
+    add_legend(figure, (above, below))
+    return finish_figure(figure, path, force)
+
+
+def _footer(fit: Fit) -> list[tuple[str, str]]:
+    parts = [f"{each.label} {format_value(each)} (95 % {format_interval(each, 0.95)})" for each in fit.inputs]
+    noise = "" if math.isnan(fit.noise) else f" Noise {fit.noise:.2g}{', relative' if fit.logarithmic else ''}."
+    ended = f"{fit.outcome.value}{noise} Contact law: {fit.law}; friction: {fit.definition}."
+    warnings = [*fit.quality.messages, *(each.message for each in fit.undetermined)]
+    return footer_lines([[f"Fitted: {parts[0]}", *parts[1:]], [ended]], warnings, 132)

@@ -1,0 +1,155 @@
+"""The posterior of a fit by the ensemble sampler of emcee, for where intervals of single inputs do not say enough.
+
+Flat priors in the logarithms within the bounds, beside those given; where the size of the noise comes from the residuals it is
+integrated over with the prior 1/sigma.  All walkers are evaluated at once on the atlas.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.atlas import reading as atlas
+from stribeck.contacts.line import Groups, InputError
+from stribeck.files.writing import MissingExtraError
+from stribeck.fits.objective import Minimum
+from stribeck.fits.result import Fit
+
+__all__ = ["Posterior", "draw_posterior"]
+
+SEED = 20_261_121
+LEAST_TIMES = 50
+"""Autocorrelation times after which emcee's documentation calls a chain long enough."""
+
+
+@dataclass(frozen=True, eq=False)
+class Posterior:
+    """Draws of the fitted inputs.
+
+    Attributes
+    ----------
+    samples : ndarray, shape (draws, p)
+        Values of the inputs in SI units, or factors.
+    interval_68, interval_95 : tuple of tuple of float
+        Central intervals of each input.
+    acceptance : float
+        Part of the steps that were accepted.
+    autocorrelation_time : float
+        Longest integrated autocorrelation time [steps].
+    converged : bool
+        Whether the chain is longer than 50 of these times.
+    message : str
+        The same in words.
+    """
+
+    samples: Array = field(repr=False)
+    interval_68: tuple[tuple[float, float], ...]
+    interval_95: tuple[tuple[float, float], ...]
+    acceptance: float
+    autocorrelation_time: float
+    converged: bool
+    message: str
+
+
+def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int], object] | None = None) -> Posterior:
+    """Draw from the posterior of a fit with the exponential law, whose states the atlas holds.
+
+    Parameters
+    ----------
+    fit : Fit
+        The fit, converged.
+    steps : int
+        Steps of each walker, of which the first fifth is left out.
+    on_step : callable, optional
+        ``on_step(done, steps)`` is called after each step.
+
+    Returns
+    -------
+    Posterior
+        Draws, intervals, and whether the chain is long enough.
+
+    Raises
+    ------
+    MissingExtraError
+        If emcee is not installed.
+    InputError
+        If the fit did not converge, its loss is robust, its law is not the exponential one, or ``steps`` is below 100.
+    """
+    try:
+        import emcee
+    except ImportError:
+        raise MissingExtraError("a posterior", "fit", "emcee") from None
+    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 100:
+        raise InputError(f"steps = {steps!r}; a chain has at least 100.")
+    if not fit.converged or fit.robust or fit.law != "exponential":
+        why = fit.outcome.value if not fit.converged else "" if not fit.robust else "The robust loss is no likelihood."
+        raise InputError(f"no posterior is drawn. {why or 'The atlas holds the exponential law only.'}")
+    at: Minimum = fit._minimum
+    p = len(at.theta)
+    walkers = max(16, 4 * p)
+    rng = np.random.RandomState(SEED)
+    low, high = at.objective.bounds
+    width = np.sqrt(np.diag(fit.covariance))
+    width = np.where(np.isfinite(width), np.minimum(width, 0.3), 0.3)
+    start = at.theta + 0.5 * width * rng.standard_normal((walkers, p))
+    start = np.clip(start, low + 1e-6, high - 1e-6)
+    sampler = emcee.EnsembleSampler(walkers, p, _log_density(fit), vectorize=True)
+    sampler.random_state = rng.get_state()
+    for done, _ in enumerate(sampler.sample(start, iterations=steps), 1):
+        if on_step is not None:
+            on_step(done, steps)
+    burnt = steps // 5
+    samples = np.exp(sampler.get_chain(discard=burnt, flat=True)) * np.array([free.start for free in at.objective.model.free])
+    time = float(np.max(sampler.get_autocorr_time(tol=0, discard=burnt)))
+    acceptance = float(np.mean(sampler.acceptance_fraction))
+    converged = bool(np.isfinite(time) and steps - burnt >= LEAST_TIMES * time)
+    ends = [np.quantile(samples, [(1 - level) / 2, (1 + level) / 2], axis=0).T for level in (0.6827, 0.95)]
+    how = "converged" if converged else f"did not converge: ask for at least {int(LEAST_TIMES * time / 0.8) + 1} steps"
+    return Posterior(
+        samples=samples,
+        interval_68=tuple((float(a), float(b)) for a, b in ends[0]),
+        interval_95=tuple((float(a), float(b)) for a, b in ends[1]),
+        acceptance=acceptance,
+        autocorrelation_time=time,
+        converged=converged,
+        message=f"The posterior {how} ({walkers} walkers, {steps} steps, autocorrelation time {time:.3g} steps, "
+        f"{100 * acceptance:.2g} % accepted).",
+    )
+
+
+def _log_density(fit: Fit) -> Callable[[Array], Array]:
+    """Return the logarithm of the posterior density of walkers in rows."""
+    at: Minimum = fit._minimum
+    goal, model = at.objective, at.objective.model
+    low, high = goal.bounds
+    rows, means = goal.priors
+    data = model.data
+    A = model.exponents[data.curve]
+
+    def density(theta: Array) -> Array:
+        x = np.exp(model.logs + np.einsum("wp,npk->wnk", theta, A))
+        inside = ((theta > low) & (theta < high)).all(axis=1) & _in_box(x)
+        found = np.full(len(theta), -np.inf)
+        if not inside.any():
+            return found
+        y = x[inside]
+        groups = Groups(y[..., 0], y[..., 1], y[..., 2])
+        contact, viscous = atlas.contact_load_share(groups), atlas.viscous_friction(groups, 1.0, fit.definition)
+        friction = y[..., 3] * contact + y[..., 4] * viscous
+        r = np.log(friction / data.friction) if goal.logarithmic else friction - data.friction
+        squares = ((r / (1.0 if goal.sigma is None else goal.sigma)) ** 2).sum(axis=1)
+        likelihood = -0.5 * len(data) * np.log(squares) if goal.sigma is None else -0.5 * squares
+        found[inside] = likelihood - 0.5 * ((theta[inside] @ rows.T - means) ** 2).sum(axis=1)
+        return found
+
+    return density
+
+
+def _in_box(x: Array) -> Any:
+    ends = atlas.BOX["speed"], atlas.BOX["load"], atlas.BOX["relative_roughness"]
+    values = x[..., 0], x[..., 1], x[..., 2] / x[..., 1]
+    return np.all([((v >= a) & (v <= b)).all(axis=1) for v, (a, b) in zip(values, ends, strict=True)], axis=0)

@@ -1,0 +1,278 @@
+"""What a fit returns: values with intervals, how it ended, and what to know before using it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.cases.fit_settings import FREE
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.line import LineContact
+from stribeck.fits.identifiability import Undetermined
+from stribeck.fits.measurements import Measurements
+from stribeck.fits.residuals import Quality
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import DIMENSIONS
+
+__all__ = ["Fit", "FitOutcome", "FittedInput"]
+
+
+class FitOutcome(Enum):
+    """How a fit ended; the value is a sentence."""
+
+    CONVERGED = "The fit converged."
+    STEP_LIMIT = "The fit did not converge: the least squares ran out of steps; begin nearer, or free fewer inputs."
+    NOT_AT_OPTIMUM = (
+        "The fit did not converge: the least squares stopped short of the optimum; begin nearer, or free fewer inputs."
+    )
+
+    @property
+    def ok(self) -> bool:
+        """Whether the fit converged."""
+        return self is FitOutcome.CONVERGED
+
+
+@dataclass(frozen=True)
+class FittedInput:
+    """One fitted input.
+
+    Attributes
+    ----------
+    name : str
+        Name of the input of the contact.
+    curve : str or None
+        The curve that has it for itself; None where all share it.
+    value : float
+        Fitted value in SI units, or the fitted factor.
+    unit : str
+        SI unit; empty for numbers and factors.
+    start : float
+        Where the fit began.
+    is_factor : bool
+        Whether it is a common factor on values that differ between the curves.
+    standard_error : float
+        Standard error of its logarithm, so about its relative standard error; nan at a bound.
+    interval_68, interval_95 : tuple of float
+        Ends of its intervals by profile likelihood; 0 and infinity where the data leave an end open within the bounds.
+    at_bound : bool
+        Whether it ended at one of its bounds.
+    """
+
+    name: str
+    curve: str | None
+    value: float
+    unit: str
+    start: float
+    is_factor: bool
+    standard_error: float
+    interval_68: tuple[float, float]
+    interval_95: tuple[float, float]
+    at_bound: bool
+
+    @property
+    def label(self) -> str:
+        """Name for tables: the input, whether it is a factor, and its curve."""
+        words = f"{self.name} factor" if self.is_factor else self.name
+        return words if self.curve is None else f"{words} ({self.curve})"
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Inputs of a contact fitted to measured friction.
+
+    Attributes
+    ----------
+    inputs : tuple of FittedInput
+        The fitted inputs.
+    outcome : FitOutcome
+        How the fit ended.
+    contact : LineContact
+        The case with the fitted values that all curves share, else with those of the first curve.
+    contacts : tuple of LineContact
+        The fitted contact of each curve.
+    data : Measurements
+        What was fitted to.
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    law : str
+        Name of the contact law.
+    friction : ndarray, shape (n,)
+        Fitted friction coefficient at each row, solved [-].
+    residuals : ndarray, shape (n,)
+        Fitted less measured friction over the standard error of the row [-].
+    covariance, correlation : ndarray, shape (p, p)
+        Of the logarithms of the inputs.
+    noise : float
+        Standard error of the friction coefficient found from the residuals: relative, or absolute where ``logarithmic`` is not
+        set; nan where errors were given.
+    logarithmic : bool
+        Whether residuals are of the logarithm of friction.
+    robust : bool
+        Whether outliers were kept from steering.
+    quality : Quality
+        What the residuals say.
+    undetermined : tuple of Undetermined
+        Combinations of inputs that the data do not determine.
+    notes : tuple of str
+        What to know before using the values, one sentence each.
+    solver_shift : float
+        Largest change of a fitted logarithm, in standard errors, from the atlas to the solver; nan where only the solver took
+        part.
+    model_error : float
+        Largest estimated relative error of the solved friction.
+    evaluations : int
+        Predictions of all rows that were made.
+    """
+
+    inputs: tuple[FittedInput, ...]
+    outcome: FitOutcome
+    contact: LineContact
+    contacts: tuple[LineContact, ...]
+    data: Measurements
+    definition: Definition
+    law: str
+    friction: Array
+    residuals: Array
+    covariance: Array = field(repr=False)
+    correlation: Array = field(repr=False)
+    noise: float
+    logarithmic: bool
+    robust: bool
+    quality: Quality
+    undetermined: tuple[Undetermined, ...]
+    notes: tuple[str, ...]
+    solver_shift: float
+    model_error: float
+    evaluations: int
+    _minimum: Any = field(repr=False)
+    _threshold: float = field(repr=False)
+
+    @property
+    def converged(self) -> bool:
+        """Whether the values are those of the optimum."""
+        return self.outcome.ok
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Names of the inputs that were not fitted: they count as known exactly, and no interval holds their uncertainty."""
+        fitted = {each.name for each in self.inputs}
+        measured = () if self.data.abscissa == "speed" else ("viscosity",)
+        return tuple(name for name in FREE if name not in fitted and name not in measured)
+
+    def __getitem__(self, name: str) -> FittedInput:
+        """Return a fitted input by its name, or by name and curve as in its label.
+
+        Parameters
+        ----------
+        name : str
+            The name.
+
+        Returns
+        -------
+        FittedInput
+            The input.
+
+        Raises
+        ------
+        KeyError
+            If no or more than one input is called so.
+        """
+        found = [each for each in self.inputs if name in (each.name, each.label)]
+        if len(found) != 1:
+            raise KeyError(f"{name}; fitted are {', '.join(each.label for each in self.inputs)}")
+        return found[0]
+
+    def band(self, curve: int, values: Array) -> tuple[Array, Array, Array]:
+        """Return the fitted friction along a curve with its 95 % band.
+
+        Parameters
+        ----------
+        curve : int
+            Number of the curve.
+        values : ndarray, shape (m,)
+            Places along what friction was measured against [SI].
+
+        Returns
+        -------
+        ndarray, shape (m,)
+            Friction coefficient [-].
+        ndarray, shape (m,)
+            Lower end of its band, by the covariance of the inputs [-].
+        ndarray, shape (m,)
+            Upper end.
+
+        Notes
+        -----
+        The band is of the curve, not of single measurements, and normal in the logarithm.
+        """
+        at = self._minimum
+        values = np.asarray(values, dtype=float)
+        found = at.objective.model.predict(at.theta, at.objective.parts_of, (np.full(len(values), curve), values))
+        slopes = found.jacobian / found.friction[:, None]
+        variance = np.einsum("np,pq,nq->n", slopes, np.nan_to_num(self.covariance), slopes)
+        half = np.sqrt(self._threshold * np.maximum(variance, 0.0))
+        return found.friction, found.friction * np.exp(-half), found.friction * np.exp(half)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return values, intervals, tests, rows and outcome under their names, ready for JSON.
+
+        Returns
+        -------
+        dict
+            Numbers, text, lists and dictionaries of these; infinite where an interval is open.
+        """
+        names = ("name", "curve", "value", "unit", "start", "is_factor", "standard_error", "at_bound")
+        inputs = [
+            {n: getattr(each, n) for n in names}
+            | {"interval_68": list(each.interval_68), "interval_95": list(each.interval_95)}
+            for each in self.inputs
+        ]
+        quality = {name: getattr(self.quality, name) for name in self.quality.__dataclass_fields__}
+        return {
+            "converged": self.converged,
+            "outcome": self.outcome.name,
+            "message": self.outcome.value,
+            "inputs": inputs,
+            "held": [
+                {"name": name, "unit": unit_of(name, False), "values": [getattr(each, name) for each in self.contacts]}
+                for name in self.held
+            ],
+            "covariance": self.covariance.tolist(),
+            "correlation": self.correlation.tolist(),
+            "noise": self.noise,
+            "logarithmic": self.logarithmic,
+            "robust": self.robust,
+            "quality": quality | {"messages": list(self.quality.messages)},
+            "undetermined": [
+                {"names": list(u.names), "exponents": list(u.exponents)}
+                | {"standard_error": u.standard_error, "message": u.message}
+                for u in self.undetermined
+            ],
+            "notes": list(self.notes),
+            "definition": self.definition,
+            "contact_law": self.law,
+            "solver_shift": self.solver_shift,
+            "model_error": self.model_error,
+            "evaluations": self.evaluations,
+            "curves": [
+                {"name": name} | {key: getattr(contact, key) for key in (*FREE, "speed")}
+                for name, contact in zip(self.data.curves, self.contacts, strict=True)
+            ],
+            "rows": {
+                "row": self.data.rows.tolist(),
+                "curve": [self.data.curves[k] for k in self.data.curve],
+                self.data.abscissa: self.data.values.tolist(),
+                "friction": self.data.friction.tolist(),
+                "fitted_friction": self.friction.tolist(),
+                "residual": self.residuals.tolist(),
+            },
+        }
+
+
+def unit_of(name: str, is_factor: bool) -> str:
+    """Return the SI unit of a fitted input."""
+    return "" if is_factor else DIMENSIONS[QUANTITIES[name].dimension].unit

@@ -1,0 +1,1 @@
+"""Fluids: what a film of a given gap carries and drags."""

@@ -1,0 +1,1 @@
+"""Quantities: units, inputs with their bounds, and what an input error says."""

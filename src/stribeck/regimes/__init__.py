@@ -1,0 +1,1 @@
+"""Regimes: where boundary, mixed and hydrodynamic lubrication begin and end."""

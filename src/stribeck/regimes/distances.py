@@ -1,0 +1,348 @@
+"""How far a contact is from the next lubrication regime, in speed, load, roughness and viscosity, on solved states."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import is_exponential
+from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.line import LineContact
+from stribeck.curves.coordinate import Over
+from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE, EXPONENTS, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.numerics.newton import Outcome
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.units import InputError, show
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import SolveError, check_rtol, solve
+
+__all__ = ["Crossing", "Distance", "TransitionDistances", "transition_distances"]
+
+REACH = 1e6
+"""Largest factor by which an input is changed."""
+
+BOX = {"speed": (1e-12, 1e6), "load": (1e-8, 1.0), "relative_roughness": (1e-6, 1e3)}
+"""Groups between which is searched: where the solver is tested, and the load as far as the contact law holds."""
+
+HIGHEST_LOAD = 10.0
+"""Largest load group where another law than the exponential one holds the gap open, or says where it does not."""
+
+DECADE = math.log(10.0)
+"""Length of one step outwards in the logarithm of an input."""
+
+FLUID_MARK = f"fluid carries {BOUNDARY_FLUID_SHARE:.0%} of the load"
+CONTACT_MARK = f"asperities cause {HYDRODYNAMIC_CONTACT_SHARE:.0%} of the friction"
+"""Names that curves give to the passages from regime to regime."""
+
+POINTS = 6
+"""States on a decade."""
+
+FINER = 9
+"""States between the two between which the regime changes."""
+
+THRESHOLD = 5e-3
+"""Logarithm of the factor below which a contact is said to stand at the threshold."""
+
+NEIGHBOURS: dict[Regime, tuple[Regime, ...]] = {
+    "boundary": ("mixed",),
+    "mixed": ("boundary", "hydrodynamic"),
+    "hydrodynamic": ("mixed",),
+}
+
+SCANNED: tuple[Over, ...] = ("speed", "load", "roughness")
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Where another regime begins along one input.
+
+    Attributes
+    ----------
+    regime : str
+        The regime that is entered.
+    value : float
+        Value of the input there [SI].
+    factor : float
+        The same over its present value; infinite where that is zero.
+    """
+
+    regime: Regime
+    value: float
+    factor: float
+
+
+@dataclass(frozen=True)
+class Distance:
+    """The nearest changes of regime along one input, all other inputs kept.
+
+    Attributes
+    ----------
+    name : {"speed", "load", "roughness", "viscosity"}
+        The input.
+    less, more : Crossing or None
+        The first change with less and with more of it; None where there is none within the range searched.
+    searched : tuple of float
+        Values between which was searched [SI]; the search ends at a change.
+    """
+
+    name: str
+    less: Crossing | None
+    more: Crossing | None
+    searched: tuple[float, float]
+
+    def towards(self, regime: str) -> Crossing | None:
+        """Return the nearer crossing into a regime, or None."""
+        found = [mark for mark in (self.less, self.more) if mark is not None and mark.regime == regime]
+        return min(found, key=lambda mark: abs(math.log(mark.factor)) if 0 < mark.factor < math.inf else 0.0, default=None)
+
+
+@dataclass(frozen=True)
+class TransitionDistances:
+    """A contact's regime and the way to its neighbours.
+
+    Attributes
+    ----------
+    regime : str
+        The present regime.
+    distances : tuple of Distance
+        For speed, load, roughness and viscosity.
+    notes : tuple of str
+        What to know: why an input leads nowhere, and whether the contact stands at a threshold.
+    """
+
+    regime: Regime
+    distances: tuple[Distance, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def targets(self) -> tuple[Regime, ...]:
+        """The regimes beside the present one, and those that an input enters without passing through them."""
+        entered = [mark.regime for distance in self.distances for mark in (distance.less, distance.more) if mark is not None]
+        return tuple(dict.fromkeys([*NEIGHBOURS[self.regime], *entered]))
+
+
+@one_blas_thread
+def transition_distances(
+    contact: LineContact,
+    *,
+    rtol: float = 1e-6,
+    definition: Definition = "paper",
+    on_point: Callable[[int, int], object] | None = None,
+) -> TransitionDistances:
+    """Return by which factors of speed, load, roughness and viscosity the lubrication regime of a contact changes.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact; zero speed and zero roughness are ordinary inputs.
+    rtol : float
+        Relative tolerance of the states that are scanned; the changes are located on finer ones.
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    on_point : callable, optional
+        ``on_point(done, scans)`` is called after each state, for progress.
+
+    Returns
+    -------
+    TransitionDistances
+        For each input the nearest change with less and with more of it.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range.
+    SolveError
+        If the contact itself cannot be solved.
+    KeyboardInterrupt
+        After Ctrl-C.
+
+    Notes
+    -----
+    Each input is followed by continuation, decade by decade, until the regime of :func:`regime_of` changes, by at most a
+    factor of 1e6 and as far as the groups lie in speed 1e-12 to 1e6, load 1e-8 to 1, relative roughness 1e-6 to 1e3.  More
+    load lowers the speed group as its square, and the relative roughness.  Speed and viscosity enter as their product: one
+    scan serves both.
+    """
+    check_rtol(rtol)
+    definition = check_definition(definition)
+    if not isinstance(contact, LineContact):
+        raise InputError(f"contact = {show(contact)}; it must be a LineContact, as distances are in SI units.")
+    present = _regime(solve(contact, rtol=rtol), definition)
+    scan = _Scan(contact, present, rtol, definition, on_point)
+    notes = []
+    if contact.speed == 0 and contact.roughness > 0:
+        notes.append("At rest neither load nor roughness nor viscosity changes the regime.")
+    if contact.roughness == 0 and contact.speed > 0:
+        notes.append("Smooth surfaces touch at no speed and no load: there is no boundary and no mixed lubrication.")
+    if contact.friction_coefficient == 0:
+        notes.append("Without dry friction all friction is that of the fluid, and every state counts as hydrodynamic.")
+    if contact.groups.load >= 1 and contact.roughness > 0 and is_exponential(contact.law):
+        notes.append("From load group 1 on the fluid must carry a part at any speed; there may be no boundary lubrication.")
+    found = [scan.along(name) for name in SCANNED]
+    found.append(_of_viscosity(contact, found[0]))
+    close = [mark for distance in found for mark in (distance.less, distance.more) if mark is not None and _at_threshold(mark)]
+    if close:
+        notes.append(f"The contact stands at the threshold to {close[0].regime} lubrication.")
+    return TransitionDistances(present, tuple(found), tuple(notes))
+
+
+def _of_viscosity(contact: LineContact, speed: Distance) -> Distance:
+    """Return the distances in viscosity that those in speed are; a resting contact has none."""
+    eta = contact.viscosity
+    if contact.speed == 0:
+        return Distance("viscosity", None, None, (eta, eta))
+    less, more = (
+        None if mark is None else Crossing(mark.regime, eta * mark.factor, mark.factor) for mark in (speed.less, speed.more)
+    )
+    low, high = (eta * (end / contact.speed) for end in speed.searched)
+    return Distance("viscosity", less, more, (low, high))
+
+
+def _at_threshold(mark: Crossing) -> bool:
+    return 0 < mark.factor < math.inf and abs(math.log(mark.factor)) < THRESHOLD
+
+
+def _regime(solution: Solution, definition: Definition) -> Regime:
+    friction = solution.friction(definition=definition)
+    return regime_of(solution.fluid_load_share, friction.contact / friction.total if friction.total > 0 else 0.0)
+
+
+@dataclass
+class _Scan:
+    """The search for changes of regime along one input after another."""
+
+    contact: LineContact
+    present: Regime
+    rtol: float
+    definition: Definition
+    on_point: Callable[[int, int], object] | None
+    done: int = 0
+
+    def along(self, name: Over) -> Distance:
+        """Return the changes along one input."""
+        value = float(getattr(self.contact, name))
+        found = self._from_zero(name) if value == 0 else self._both_ways(name, value)
+        self.done += 1
+        return found
+
+    def _both_ways(self, name: Over, value: float) -> Distance:
+        # Zero speed, zero roughness and zero dry friction hold the regime, whatever else changes.
+        held = self.contact.speed == 0 or self.contact.friction_coefficient == 0 or self.contact.roughness == 0
+        if held:
+            return Distance(name, None, None, (value, value))
+        low, high = _limits(self.contact, name)
+        less, lowest = self._outwards(self.contact, name, low)
+        more, highest = self._outwards(self.contact, name, high)
+        return Distance(name, less, more, (value * math.exp(lowest), value * math.exp(highest)))
+
+    def _from_zero(self, name: Over) -> Distance:
+        """Return the change with more of an input that is zero."""
+        if self.contact.friction_coefficient == 0 or (name == "roughness" and self.contact.speed == 0):
+            return Distance(name, None, None, (0.0, 0.0))
+        if self.contact.roughness == 0 and name == "speed":
+            return Distance(name, None, Crossing("hydrodynamic", 0.0, math.inf), (0.0, 0.0))
+        start = _with_least(self.contact, name)
+        more, highest = self._outwards(start, name, _limits(start, name)[1], math.inf)
+        least = float(getattr(start, name))
+        if more is not None:
+            # A regime that the least value is in already begins at zero itself.
+            more = Crossing(more.regime, more.value if more.value > least else 0.0, math.inf)
+        return Distance(name, None, more, (0.0, least * math.exp(highest)))
+
+    def _outwards(self, start: LineContact, name: Over, limit: float, reach: float = REACH) -> tuple[Crossing | None, float]:
+        """Return the first change of regime towards ``limit`` and how far was searched, logarithms of factors."""
+        value, outward = float(getattr(start, name)), math.copysign(1.0, limit)
+        size, here = min(abs(limit), math.log(reach)), 0.0
+        while size - here > 1e-9:
+            there = min(here + DECADE, size)
+            near, far = (value * math.exp(outward * s) for s in (here, there))
+            curve = self._curve(start, name, near, far, POINTS)
+            if curve is None:
+                break
+            change = self._first_change(curve, outward)
+            if change is not None:
+                regime, place = self._located(start, name, outward, *change)
+                return Crossing(regime, place, place / value), math.log(place / value)
+            here = there
+        return None, outward * here
+
+    def _curve(self, start: LineContact, name: Over, near: float, far: float, points: int) -> StribeckCurve | None:
+        """Return the states between two values of an input; None where the solver does not reach them all."""
+        ends: Any = {name: (min(near, far), max(near, far))}
+        try:
+            curve = stribeck_curve(
+                start, **ends, points=points, rtol=self.rtol, definition=self.definition, on_point=self._report
+            )
+        except SolveError:
+            return None
+        if curve.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        return curve if curve.outcome.ok else None
+
+    def _report(self, done: int, points: int) -> None:
+        if self.on_point is not None:
+            self.on_point(self.done, len(SCANNED))
+
+    def _first_change(self, curve: StribeckCurve, outward: float) -> tuple[Regime, float, float] | None:
+        """Return the regime entered first on the way out, and the values of the states before and after."""
+        values, regimes = curve.values.tolist(), list(curve.regimes)
+        if outward < 0:
+            values, regimes = values[::-1], regimes[::-1]
+        for i, regime in enumerate(regimes):
+            if regime != self.present:
+                return regime, values[max(i - 1, 0)], values[i]
+        return None
+
+    def _located(
+        self, start: LineContact, name: Over, outward: float, regime: Regime, near: float, far: float
+    ) -> tuple[Regime, float]:
+        """Return the regime entered first between two values, and the value where its share passes the bound."""
+        if near == far:
+            return regime, near
+        curve = self._curve(start, name, near, far, FINER)
+        if curve is None:
+            return regime, math.sqrt(near * far)
+        regime, near, far = self._first_change(curve, outward) or (regime, near, far)
+        wanted = CONTACT_MARK if "hydrodynamic" in (regime, self.present) else FLUID_MARK
+        low, high = sorted((near, far))
+        marks = [mark.value for mark in curve.transitions if mark.name == wanted]
+        found = next((value for value in marks if low <= value <= high), None)
+        # Where the states' own errors hide the passage it lies within them: at the end that is at the threshold itself.
+        return regime, self._nearest_to_bound(curve, wanted, low, high) if found is None else found
+
+    @staticmethod
+    def _nearest_to_bound(curve: StribeckCurve, mark: str, low: float, high: float) -> float:
+        """Return that of two values of a curve where the share that a mark is about is nearer to its bound."""
+        if mark == CONTACT_MARK:
+            share, bound = curve.friction_contact / np.maximum(curve.friction, 1e-300), HYDRODYNAMIC_CONTACT_SHARE
+        else:
+            share, bound = curve.observable("fluid_load_share"), BOUNDARY_FLUID_SHARE
+        return float(min((low, high), key=lambda value: abs(share[np.flatnonzero(curve.values == value)[0]] - bound)))
+
+
+def _limits(contact: LineContact, name: str) -> tuple[float, float]:
+    """Return the logarithms of the factors of an input between which the groups stay in the box."""
+    box = BOX if is_exponential(contact.law) else BOX | {"load": (BOX["load"][0], HIGHEST_LOAD)}
+    n_speed, n_load, n_roughness = EXPONENTS[name]
+    groups = contact.groups
+    low, high = -math.inf, math.inf
+    for group, n in (("speed", n_speed), ("load", n_load), ("relative_roughness", n_roughness - n_load)):
+        value = float(getattr(groups, group))
+        if n == 0 or value == 0:
+            continue
+        ends = sorted(math.log(end / value) / n for end in box[group])
+        low, high = max(low, ends[0]), min(high, ends[1])
+    return min(low, 0.0), max(high, 0.0)
+
+
+def _with_least(contact: LineContact, name: Over) -> LineContact:
+    """Return the contact with the least speed or roughness of the box instead of zero."""
+    groups = contact.replace(**{name: 1.0}).groups
+    group = "speed" if name == "speed" else "relative_roughness"
+    return contact.replace(**{name: BOX[group][0] / float(getattr(groups, group))})

@@ -1,0 +1,233 @@
+"""The phase diagram: regimes and friction over speed, load and roughness, and the transitions between regimes.
+
+Each pair of load and roughness is one curve over the speed, independent of the others.  The transitions are located on states
+solved there, also where they lie outside the speeds of the grid.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from itertools import pairwise, product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stribeck._types import Array, LawShape
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.line import Groups, LineContact
+from stribeck.curves.elasticities import Method, check_method, regime_of
+from stribeck.curves.landmarks import Landmark
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.speed_range import automatic_speeds
+from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.numerics.newton import Outcome
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.regimes import phase_from_atlas as atlas_phase
+from stribeck.regimes.phase_grid import FIELDS, MARKS, REGIMES, Diagram, empty_diagram
+from stribeck.regimes.weakening import merging_roughness, weakening
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import SolveError, check_rtol, solve
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["phase_diagram"]
+
+DENSITY = 4
+"""States per decade that a row has at least, so that its transitions are seen and soon located."""
+
+
+@one_blas_thread
+def phase_diagram(
+    problem: LineContact | Groups | None = None,
+    *,
+    load: Any = None,
+    speed: Any = None,
+    roughness: Any = None,
+    points: int | Mapping[str, int] | None = None,
+    mu0: float | None = None,
+    beta: float | None = None,
+    definition: Definition = "paper",
+    rtol: float = 1e-4,
+    merging: bool = False,
+    on_point: Callable[[int, int], object] | None = None,
+    law: str | LawShape | None = None,
+    method: Method = "solver",
+) -> xarray.Dataset:
+    """Solve a grid of speeds, loads and roughnesses, and locate the transitions between its regimes.
+
+    Parameters
+    ----------
+    problem : LineContact or Groups, optional
+        The contact, of which the three are replaced as far as they are given.  With a LineContact the axes are in SI units.
+    load, speed, roughness : float or str, or (low, high), or array_like, optional
+        Each a number, a range with ``points`` between, evenly in the logarithm, or three and more ascending points.
+        Groups [-], or SI numbers or text with units for a LineContact.  Speed and roughness may be zero.  Without a speed
+        the grid reaches from the boundary plateau to the hydrodynamic branch of all its rows.
+    points : int or dict of str to int, optional
+        Points of the ranges, for all or by name; 2 loads, 25 roughnesses and 61 speeds where not given.
+    mu0, beta : float, optional
+        Friction coefficient of the dry contact and coefficient of the contact law [-]; those of the contact, or 1.
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    rtol : float
+        Relative tolerance of the states of the grid; transitions are located on finer ones.
+    merging : bool
+        Whether to look, at each load, for the roughness at which the minimum disappears, see
+        :func:`stribeck.merging.merging_roughness`; about a second each.
+    on_point : callable, optional
+        ``on_point(done, points)`` is called as points are finished, for progress.
+    law : str or LawShape, optional
+        Contact law as in :func:`stribeck.solve`; that of the problem if omitted.  What formulas give is nan for another law
+        than the exponential one.
+    method : {"solver", "atlas"}
+        Whether points and transitions are solved, or read off :mod:`stribeck.atlas`, within 1e-4 and a hundred times as fast.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along load, roughness and speed: regime, friction, shares, films, error and outcome of each point; along load and
+        roughness: the speeds of the transitions, solved, by our formulas and by those that the paper prints.  After Ctrl-C
+        what is missing has outcome INTERRUPTED; what could not be solved has its outcome, nan, and the reason in
+        ``message``.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range, or a point outside that of the atlas.
+    MissingExtraError
+        If xarray is not installed.
+
+    Notes
+    -----
+    About 0.4 s for each pair of load and roughness; more above load 1.
+
+    Source: [BP] Fig. 11, which shows the printed formulas alone.
+    """
+    check_rtol(rtol)
+    diagram = empty_diagram(
+        problem, {"load": load, "roughness": roughness, "speed": speed}, points, mu0, beta, definition, rtol, law
+    )
+    from stribeck.regimes.phase_dataset import diagram_dataset, import_xarray
+
+    import_xarray()
+    total = diagram.regime.size
+    columns = len(diagram.axes["speed"])
+    rows = list(product(range(len(diagram.axes["load"])), range(len(diagram.axes["roughness"]))))
+    try:
+        if check_method(method) == "atlas":
+            atlas_phase.fill(diagram)
+            rows = []
+        for number, (i, j) in enumerate(rows):
+
+            def report(part: float, number: int = number) -> None:
+                if on_point is not None:
+                    on_point(number * columns + int(part * columns), total)
+
+            _fill_row(diagram, i, j, report)
+        if merging:
+            diagram.merging = _merging_line(diagram)
+    except KeyboardInterrupt:
+        diagram.outcome = Outcome.INTERRUPTED
+    return diagram_dataset(diagram)
+
+
+def _fill_row(diagram: Diagram, i: int, j: int, report: Callable[[float], None]) -> None:
+    """Solve one load and roughness over the speed, and enter it; raise KeyboardInterrupt where that was interrupted."""
+    problem, groups, unit = diagram.problem(i, j)
+    speeds = diagram.axes["speed"]
+    wanted = {float(value): k for k, value in enumerate(speeds)}
+    if 0.0 in wanted:
+        _fill_rest(diagram, problem, (i, j, wanted.pop(0.0)))
+    values = _filled(np.array(list(wanted)), groups, unit, diagram)
+    settings: dict[str, Any] = {
+        "mu0": diagram.mu0,
+        "beta": diagram.beta,
+        "definition": diagram.definition,
+        "rtol": diagram.rtol,
+        "on_point": lambda done, points: report(done / points),
+    }
+    try:
+        curve = stribeck_curve(problem, speed=values, points=2, **settings)
+    except SolveError as failure:
+        for k in wanted.values():
+            diagram.outcomes[i, j, k] = failure.outcome.name
+        diagram.messages[i, j] = str(failure)
+        return
+    reached = dict(zip(curve.values.tolist(), curve.solutions, strict=True))
+    for value, k in wanted.items():
+        if value in reached:
+            _enter(diagram, (i, j, k), reached[value])
+        else:
+            diagram.outcomes[i, j, k] = curve.outcome.name
+    diagram.messages[i, j] = "" if curve.outcome.ok else curve.outcome.value
+    if curve.outcome is Outcome.INTERRUPTED:
+        raise KeyboardInterrupt
+    try:
+        _enter_lines(diagram, (i, j), curve, groups, unit)
+    except SolveError as failure:
+        diagram.messages[i, j] = str(failure)
+
+
+def _fill_rest(diagram: Diagram, problem: LineContact | Groups, place: tuple[int, int, int]) -> None:
+    resting = problem.replace(speed=0.0) if isinstance(problem, LineContact) else replace(problem, speed=0.0)
+    try:
+        _enter(diagram, place, solve(resting, rtol=diagram.rtol))
+    except SolveError as failure:
+        diagram.outcomes[place] = failure.outcome.name
+
+
+def _enter(diagram: Diagram, place: tuple[int, int, int], solution: Solution) -> None:
+    friction = solution.friction(diagram.mu0, diagram.beta, diagram.definition)
+    contact = friction.contact / friction.total if friction.total > 0 else 0.0
+    shares = solution.fluid_load_share, contact
+    films = solution.central_gap, solution.lambda_ratio
+    for name, value in zip(FIELDS, (friction.total, friction.error, *shares, *films, solution.error_estimate), strict=True):
+        diagram.fields[name][place] = value
+    diagram.regime[place] = REGIMES.index(regime_of(solution.fluid_load_share, contact))
+    diagram.outcomes[place] = solution.outcome.name
+
+
+def _enter_lines(diagram: Diagram, place: tuple[int, int], curve: StribeckCurve, groups: Groups, unit: float) -> None:
+    """Locate the transitions of a row; a minimum above the boundary plateau is not the least friction, yet one."""
+    marks: dict[str, Landmark] = {mark.name: mark for mark in curve.transitions}
+    for variable, name in MARKS.items():
+        if name in marks:
+            diagram.lines[variable][place] = marks[name].value
+    found = math.nan, math.nan
+    if curve.minimum is not None:
+        found = curve.minimum.value, curve.minimum.friction
+    elif groups.roughness > 0 and diagram.mu0 > 0:
+        branch = weakening(groups, diagram.mu0, diagram.beta, diagram.definition)
+        found = branch.minimum_speed / unit, branch.minimum_friction
+    diagram.lines["speed_at_minimum"][place], diagram.lines["friction_at_minimum"][place] = found
+    diagram.velocity_weakening[place] = int(math.isfinite(found[0]))
+
+
+def _filled(speeds: Array, groups: Groups, unit: float, diagram: Diagram) -> Array:
+    """Return the speeds of a row: those of the grid, what lies in wide gaps, and as far out as its transitions may lie."""
+    if len(speeds) > 1 and groups.roughness == 0:  # smooth surfaces have no transitions
+        return speeds
+    low, high = (end / unit for end in automatic_speeds(groups, diagram.mu0, diagram.beta, diagram.definition))
+    ends = sorted({*speeds.tolist(), low, high} if len(speeds) else {low, high})
+    pieces = [np.geomspace(*pair, 1 + max(1, round(DENSITY * math.log10(pair[1] / pair[0]))))[:-1] for pair in pairwise(ends)]
+    return np.concatenate([*pieces, ends[-1:]])
+
+
+def _merging_line(diagram: Diagram) -> Array:
+    """Return the roughness at which each load loses the minimum, on the axis of the diagram."""
+    line = np.full(len(diagram.axes["load"]), np.nan)
+    for i in range(len(line)):
+        _, groups, _ = diagram.problem(i, 0)
+        try:
+            group = merging_roughness(float(groups.load), diagram.mu0, diagram.beta, diagram.definition, law=groups.law)
+        except SolveError:
+            continue
+        line[i] = group if diagram.contact is None else _in_metres(diagram.contact, group)
+    return line
+
+
+def _in_metres(contact: LineContact, roughness_group: float) -> float:
+    return roughness_group / float(contact.replace(roughness=1.0).groups.roughness)

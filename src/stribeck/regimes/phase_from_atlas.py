@@ -1,0 +1,206 @@
+"""A phase diagram read off the atlas: all points at once, transitions located on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.atlas import reading as atlas
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.line import Groups
+from stribeck.curves.atlas_curve import ERROR, AtlasCurve
+from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
+from stribeck.numerics.newton import Outcome
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.regimes.phase_grid import MARKS, REGIMES, Diagram
+
+DENSITY = 20
+"""Points per decade of speed on which the transitions of a row are seen."""
+
+COARSE = 5
+"""The same where many rows are located at once, each passage then narrowed."""
+
+NARROWINGS = 6
+"""Rounds of that, false position and trisection of the logarithm of the speed by turns, with both ends kept."""
+
+
+@dataclass(frozen=True, eq=False)
+class TransitionSpeeds:
+    """Speed groups at which the regimes of many contacts pass into each other.
+
+    Attributes
+    ----------
+    boundary : ndarray, shape (n,)
+        Where the fluid begins to carry more than 5 % of the load; zero or infinite where it does or does not at all speeds.
+    hydrodynamic : ndarray, shape (n,)
+        Where asperities cause no more than 10 % of the friction; zero or infinite likewise.
+    minimum : ndarray, shape (n,)
+        Where friction is least, nan where its minimum is not between the speeds asked for.
+    error : ndarray, shape (3, n)
+        Errors of the logarithms of the three, from the stated error of the shares and of the friction's slope [-].
+    """
+
+    boundary: Array
+    hydrodynamic: Array
+    minimum: Array
+    error: Array
+
+
+@one_blas_thread
+def transition_speeds(
+    load: float,
+    roughness: Array,
+    mu0: float = 1.0,
+    beta: float = 1.0,
+    definition: Definition = "paper",
+    speeds: tuple[float, float] = atlas.BOX["speed"],
+    narrowings: int = NARROWINGS,
+) -> TransitionSpeeds:
+    """Return where the regimes of many contacts of one load pass into each other, all located at once on the atlas.
+
+    Parameters
+    ----------
+    load : float
+        Load group [-].
+    roughness : ndarray, shape (n,)
+        Roughness groups [-].
+    mu0, beta : float
+        Friction coefficient of the dry contact and coefficient of the contact law [-].
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    speeds : tuple of float
+        Least and largest speed group between which to look.
+    narrowings : int
+        Rounds in which a passage is narrowed, two evaluations each; with fewer the stated error is larger.
+
+    Returns
+    -------
+    TransitionSpeeds
+        The first passage of each on the way up in speed, as on curves.
+
+    Raises
+    ------
+    InputError
+        If a state is outside :data:`stribeck.atlas.BOX`.
+    """
+    roughness = np.asarray(roughness, dtype=float)
+    count = 1 + max(2, math.ceil(COARSE * math.log10(speeds[1] / speeds[0])))
+    grid = np.log(np.geomspace(*speeds, count))
+
+    bound = HYDRODYNAMIC_CONTACT_SHARE / (1 - HYDRODYNAMIC_CONTACT_SHARE)
+
+    def signs(s: Array, h: Array) -> Array:
+        """Return what passes from below to above zero at each of the three, shape (3, ...)."""
+        fluid, contact, viscous, slope = atlas.shares_and_friction(Groups(np.exp(s), load, h), mu0, beta, definition)
+        solid = mu0 * contact
+        return np.stack(
+            [
+                np.log(np.maximum(fluid, 1e-300) / BOUNDARY_FLUID_SHARE),
+                np.log(np.maximum(bound * viscous, 1e-300) / np.maximum(solid, 1e-300)),
+                slope / (np.abs(slope) + np.maximum(solid + viscous, 1e-300)),  # between -1 and 1
+            ]
+        )
+
+    found, error = _passages(signs, grid, roughness, narrowings)
+    with np.errstate(over="ignore"):
+        speed = np.exp(found)
+    return TransitionSpeeds(speed[0], speed[1], np.where(np.isfinite(found[2]), speed[2], np.nan), error)
+
+
+def _passages(signs: Callable[[Array, Array], Array], grid: Array, roughness: Array, narrowings: int) -> tuple[Array, Array]:
+    """Return where each function passes from below to above zero in each row, and errors, shape (3, rows).
+
+    Logarithms of the speed; -inf or inf where it is above or below at all speeds.  The printed viscous friction lets friction
+    rise before it falls, so that its minimum is the last passage; the others are the first, from below at the lowest speed.
+    """
+    values = signs(*np.broadcast_arrays(grid, roughness[:, None]))
+    rising = (values[..., :-1] < 0) & (values[..., 1:] >= 0)
+    place = np.argmax(rising, axis=-1)
+    place[2] = rising.shape[-1] - 1 - np.argmax(rising[2, :, ::-1], axis=-1)
+    some = np.asarray(rising.any(axis=-1))
+    some[:2] &= values[:2, :, 0] < 0
+    found = np.where(values[..., 0] >= 0, -np.inf, np.inf)
+    error = np.zeros(found.shape)
+    which, rows = np.nonzero(some)
+    if not len(rows):
+        return found, error
+    first, one = place[which, rows], np.arange(len(rows))
+    low, high = grid[first], grid[first + 1]
+    below, above = values[which, rows, first], values[which, rows, first + 1]
+    for number in range(narrowings):
+        # Two points around the one by false position, so that both ends close in.
+        middle, width = low + (high - low) * below / (below - above), 0.02 * (high - low)
+        if number % 2:  # where false position leaves one end behind
+            middle, width = 0.5 * (low + high), (high - low) / 6
+        pair = np.clip(np.stack([middle - width, middle + width]), low, high)
+        left, right = signs(pair, np.broadcast_to(roughness[rows], pair.shape))[which, :, one].T
+        under, over = left < 0, right < 0
+        ends = (low, below, high, above)
+        low = np.where(over, pair[1], np.where(under, pair[0], ends[0]))
+        below = np.where(over, right, np.where(under, left, ends[1]))
+        high = np.where(~under, pair[0], np.where(~over, pair[1], ends[2]))
+        above = np.where(~under, left, np.where(~over, right, ends[3]))
+    steep = (above - below) / np.maximum(high - low, 1e-300)
+    found[which, rows] = low + (high - low) * below / (below - above)
+    error[which, rows] = ERROR / np.maximum(steep, 1e-300) + (high - low)
+    return found, error
+
+
+def fill(diagram: Diagram) -> None:
+    """Enter all points and lines of a diagram; raise InputError where it reaches out of the box."""
+    speeds = diagram.axes["speed"]
+    for i in range(len(diagram.axes["load"])):
+        for j in range(len(diagram.axes["roughness"])):
+            _, groups, unit = diagram.problem(i, j)
+            _enter(diagram, (i, j), Groups(unit * speeds, groups.load, groups.roughness, law=groups.law))
+            diagram.velocity_weakening[i, j] = 0
+            if float(groups.roughness) > 0:
+                _enter_lines(diagram, (i, j), groups, unit)
+            diagram.messages[i, j] = ""
+
+
+def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups) -> None:
+    mu0, beta, definition = diagram.mu0, diagram.beta, diagram.definition
+    friction = np.asarray(atlas.friction(groups, mu0, beta, definition))
+    fluid, central = np.asarray(atlas.fluid_load_share(groups)), np.asarray(atlas.central_gap(groups))
+    contact = mu0 * np.asarray(atlas.contact_load_share(groups)) / np.where(friction > 0, friction, 1.0)
+    kappa = float(groups.relative_roughness)
+    values = {
+        "friction": friction,
+        "friction_error": ERROR * friction,
+        "fluid_load_share": fluid,
+        "contact_friction_share": contact,
+        "central_gap": central,
+        "lambda_ratio": central / kappa if kappa > 0 else np.full_like(central, np.inf),
+        "error_estimate": np.full_like(central, ERROR),
+    }
+    for name, found in values.items():
+        diagram.fields[name][row] = found
+    hydrodynamic, boundary = contact <= HYDRODYNAMIC_CONTACT_SHARE, fluid <= BOUNDARY_FLUID_SHARE
+    names = np.where(hydrodynamic, REGIMES.index("hydrodynamic"), REGIMES.index("mixed"))
+    diagram.regime[row] = np.where(boundary & ~hydrodynamic, REGIMES.index("boundary"), names)
+    diagram.outcomes[row] = Outcome.CONVERGED.name
+
+
+def _enter_lines(diagram: Diagram, row: tuple[int, int], groups: Groups, unit: float) -> None:
+    """Locate the transitions of a row between the least and the largest speed of the atlas."""
+    low, high = atlas.BOX["speed"]
+
+    def groups_at(speed: Array) -> Groups:
+        return Groups(speed, groups.load, groups.roughness, law=groups.law)
+
+    speeds = np.geomspace(low, high, 1 + DENSITY * round(np.log10(high / low)))
+    curve = AtlasCurve("speed", speeds, groups_at, None, diagram.mu0, diagram.beta, diagram.definition)
+    marks = {mark.name: mark.value for mark in curve.transitions}
+    for variable, name in MARKS.items():
+        if name in marks:
+            diagram.lines[variable][row] = marks[name] / unit
+    minima = sorted(curve.local_minima(), key=lambda mark: mark.friction) if diagram.mu0 > 0 else []
+    if minima:
+        diagram.lines["speed_at_minimum"][row] = minima[0].value / unit
+        diagram.lines["friction_at_minimum"][row] = minima[0].friction
+    diagram.velocity_weakening[row] = int(bool(minima))

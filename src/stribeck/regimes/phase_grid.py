@@ -1,0 +1,185 @@
+"""The grid of a phase diagram: its axes from what the user gives, and the tables that are filled in on it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array, LawShape
+from stribeck.contact_laws.scaled import named_law
+from stribeck.contacts.friction import Definition, check_definition, coefficients
+from stribeck.contacts.line import Groups, LineContact
+from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
+from stribeck.curves.speed_range import automatic_speeds
+from stribeck.numerics.newton import Outcome
+from stribeck.quantities.inputs import QUANTITIES, check_law
+from stribeck.quantities.units import InputError, show, to_si
+from stribeck.solver.solve import as_groups, with_law
+
+__all__ = ["AXES", "FIELDS", "LINES", "MARKS", "REGIMES", "Diagram", "empty_diagram"]
+
+AXES = ("load", "roughness", "speed")
+"""The dimensions of a diagram, in their order."""
+
+REGIMES: tuple[Regime, ...] = ("boundary", "mixed", "hydrodynamic")
+"""Names of the regimes; their places are the codes in a diagram, where -1 stands for a point without a state."""
+
+POINTS = {"load": 2, "roughness": 25, "speed": 61}
+"""Points between the ends of a range, unless asked for otherwise."""
+
+MOST_POINTS = 10_000
+
+FIELDS = (
+    "friction",
+    "friction_error",
+    "fluid_load_share",
+    "contact_friction_share",
+    "central_gap",
+    "lambda_ratio",
+    "error_estimate",
+)
+
+MARKS = {
+    "speed_at_5_percent_fluid": f"fluid carries {BOUNDARY_FLUID_SHARE:.0%} of the load",
+    "speed_at_half_fluid": f"fluid carries {0.5:.0%} of the load",
+    "speed_at_10_percent_contact_friction": f"asperities cause {HYDRODYNAMIC_CONTACT_SHARE:.0%} of the friction",
+}
+"""Variables of a diagram, by the names that curves give to the same transitions."""
+
+LINES = (*MARKS, "speed_at_minimum", "friction_at_minimum")
+
+
+@dataclass(eq=False)
+class Diagram:
+    """What is being filled in: a diagram's axes, settings and results.
+
+    Attributes
+    ----------
+    contact : LineContact or None
+        The contact, where the axes are in SI units.
+    axes : dict of str to ndarray
+        Values of load, roughness and speed, ascending.
+    mu0, beta : float
+        Friction coefficient of the dry contact and coefficient of the contact law [-].
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    rtol : float
+        Relative tolerance of the states.
+    law : LawShape or None
+        Contact law; None is the exponential one.
+    outcome : Outcome
+        CONVERGED, or INTERRUPTED.
+    """
+
+    contact: LineContact | None
+    axes: dict[str, Array]
+    mu0: float
+    beta: float
+    definition: Definition
+    rtol: float
+    law: LawShape | None = None
+    outcome: Outcome = Outcome.CONVERGED
+    fields: dict[str, Array] = field(init=False)
+    regime: Any = field(init=False)
+    outcomes: Any = field(init=False)
+    lines: dict[str, Array] = field(init=False)
+    velocity_weakening: Any = field(init=False)
+    messages: Any = field(init=False)
+    merging: Array | None = None
+
+    def __post_init__(self) -> None:
+        """Make the empty tables: all that is not reached was interrupted."""
+        shape = tuple(len(self.axes[name]) for name in AXES)
+        self.fields = {name: np.full(shape, np.nan) for name in FIELDS}
+        self.regime = np.full(shape, -1, dtype=np.int8)
+        self.outcomes = np.full(shape, Outcome.INTERRUPTED.name, dtype=object)
+        self.lines = {name: np.full(shape[:2], np.nan) for name in LINES}
+        self.velocity_weakening = np.full(shape[:2], -1, dtype=np.int8)
+        self.messages = np.full(shape[:2], Outcome.INTERRUPTED.value, dtype=object)
+
+    def problem(self, i: int, j: int) -> tuple[LineContact | Groups, Groups, float]:
+        """Return contact or groups of a row at speed 1 of its axis, the groups, and the speed group for that speed."""
+        load, roughness = float(self.axes["load"][i]), float(self.axes["roughness"][j])
+        if self.contact is None:
+            groups = Groups(1.0, load, roughness, law=self.law)
+            return groups, groups, 1.0
+        row = self.contact.replace(load=load, roughness=roughness, speed=1.0)
+        return row, row.groups, float(row.groups.speed)
+
+
+def empty_diagram(
+    problem: LineContact | Groups | None,
+    given: dict[str, Any],
+    points: int | Mapping[str, int] | None,
+    mu0: float | None,
+    beta: float | None,
+    definition: Definition,
+    rtol: float,
+    law: str | LawShape | None = None,
+) -> Diagram:
+    """Return the empty diagram that the arguments ask for."""
+    problem = problem if problem is None else with_law(problem, law)
+    contact = problem if isinstance(problem, LineContact) else None
+    mu0, beta = coefficients(contact, mu0, beta)
+    definition = check_definition(definition)
+    if problem is not None:
+        as_groups(problem)
+        given = {name: getattr(problem, name) if value is None and name != "speed" else value for name, value in given.items()}
+    missing = [name for name in ("load", "roughness") if given[name] is None]
+    if missing:
+        raise InputError(f"{' and '.join(missing)} missing; give numbers or ranges, or a LineContact.")
+    counts = _points(points)
+    axes = {name: _axis(name, given[name], contact is not None, counts[name]) for name in ("load", "roughness")}
+    law = named_law(law) if isinstance(law, str) else check_law(law)
+    if law is None and problem is not None:
+        law = problem.law
+    corners = Diagram(contact, axes | {"speed": np.ones(1)}, mu0, beta, definition, rtol, law)
+    if given["speed"] is None:
+        axes["speed"] = _automatic_axis(corners, counts["speed"])
+    else:
+        axes["speed"] = _axis("speed", given["speed"], contact is not None, counts["speed"])
+    return Diagram(contact, axes, mu0, beta, definition, rtol, law)
+
+
+def _points(points: int | Mapping[str, int] | None) -> dict[str, int]:
+    wanted = {} if points is None else points if isinstance(points, Mapping) else dict.fromkeys(AXES, points)
+    unknown = [name for name in wanted if name not in AXES]
+    if unknown:
+        raise InputError(f"points has the unknown name {show(unknown[0])}; it may have load, roughness and speed.")
+    for name, count in wanted.items():
+        if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MOST_POINTS:
+            raise InputError(f"points of {name} = {show(count)}; they must be a whole number from 2 to {MOST_POINTS}.")
+    return POINTS | dict(wanted)
+
+
+def _axis(name: str, value: Any, si: bool, points: int) -> Array:
+    """Return the values of one axis, ascending."""
+    items = [value] if isinstance(value, str) or np.ndim(value) == 0 else list(value)
+    if si:
+        numbers = [to_si(item, QUANTITIES[name].dimension, name) for item in items]
+    else:
+        try:
+            numbers = [float(item) for item in items]
+        except (TypeError, ValueError):
+            raise InputError(f"{name} = {show(value)}; groups are plain numbers, for units give a LineContact.") from None
+    found = np.array(numbers, dtype=float)
+    least = "positive" if name == "load" or len(found) == 2 else "zero or positive"
+    too_low = (found <= 0).any() if least == "positive" else (found < 0).any()
+    if not len(found) or found.ndim != 1 or not np.isfinite(found).all() or too_low or (np.diff(found) <= 0).any():
+        raise InputError(
+            f"{name} = {show(value)}; give one number, a range (low, high), or ascending points, all finite and {least}."
+        )
+    return np.geomspace(found[0], found[1], points) if len(found) == 2 else found
+
+
+def _automatic_axis(diagram: Diagram, points: int) -> Array:
+    """Return speeds that reach from the lowest plateau to the highest branch of the outermost rows."""
+    ends = []
+    for i, j in product((0, -1), repeat=2):
+        _, groups, unit = diagram.problem(i, j)
+        ends += [end / unit for end in automatic_speeds(groups, diagram.mu0, diagram.beta, diagram.definition)]
+    return np.geomspace(min(ends), max(ends), points)

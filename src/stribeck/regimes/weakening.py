@@ -1,0 +1,261 @@
+r"""Where the velocity-weakening branch disappears: the roughness from which friction only grows with speed.
+
+With roughness the minimum of a Stribeck curve rises and meets the maximum before it; beyond, boundary lubrication passes to
+hydrodynamic without weakening, and the two lines of transition have merged.  All of it on solved states.
+
+Source: [BP] Conclusion, which names a minimum that exceeds mu0 and a branch that disappears as one; they are two
+(:data:`CRITERIA`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+import numpy as np
+
+from stribeck._types import LawShape
+from stribeck.contacts.friction import Definition, check_definition, coefficients
+from stribeck.contacts.line import Groups
+from stribeck.curves.speed_range import automatic_speeds
+from stribeck.equations.sensitivity import friction_slopes
+from stribeck.numerics.newton import Outcome
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.units import InputError, show
+from stribeck.solver.corrector import Follower
+from stribeck.solver.refinement import Point
+from stribeck.solver.solve import SolveError, as_groups, check_rtol, describe
+
+__all__ = ["Weakening", "merging_roughness", "weakening"]
+
+Criterion = Literal["slope", "plateau"]
+
+CRITERIA: tuple[Criterion, ...] = get_args(Criterion)
+"""What merging means: the slope of the curve is nowhere negative, or its minimum is as high as the boundary plateau mu0."""
+
+POINTS_PER_DECADE = 3
+"""Points on which the least slope of a curve is looked for, before it is located."""
+
+SPEED_TOLERANCE = 1e-3
+"""Tolerance of ln(speed) at the least slope, on which the slope itself depends in second order."""
+
+MINIMUM_TOLERANCE = 1e-9
+"""Tolerance of ln(speed) at the minimum."""
+
+KAPPA_RANGE = (1e-5, 1e3)
+"""Relative roughness between which the merging is looked for."""
+
+KAPPA_START = 0.3
+KAPPA_STEP = 3.0
+
+
+@dataclass(frozen=True)
+class Weakening:
+    """Whether the friction of a curve over the speed falls somewhere, and how far.
+
+    Attributes
+    ----------
+    speed : float
+        Speed group at which friction falls most steeply, or grows least.
+    slope : float
+        d mu/d ln(speed) over the viscous friction (definition "paper") there [-]: negative where friction weakens with speed,
+        1 far down on the plateau, 0.4 to 0.7 on the hydrodynamic branch.
+    minimum_speed : float
+        Speed group of the minimum behind it; nan where there is no weakening.
+    minimum_friction : float
+        Friction coefficient there [-].
+    """
+
+    speed: float
+    slope: float
+    minimum_speed: float = math.nan
+    minimum_friction: float = math.nan
+
+    @property
+    def present(self) -> bool:
+        """Whether there is a range of speeds in which friction falls."""
+        return self.slope < 0
+
+
+class _Slopes:
+    """The normalised slope of friction along ln(speed), each value from a state solved there."""
+
+    def __init__(self, groups: Groups, mu0: float, beta: float, definition: Definition, rtol: float) -> None:
+        self.groups, self.mu0, self.beta, self.definition = groups, mu0, beta, definition
+        self.follower = Follower(self.at, rtol)
+        self.points: dict[float, Point] = {}
+        self.found: dict[float, float] = {}
+
+    def at(self, s: float) -> Groups:
+        return replace(self.groups, speed=math.exp(s))
+
+    def __call__(self, s: float) -> float:
+        if s not in self.found:
+            nearest = sorted(self.points.items(), key=lambda pair: -abs(pair[0] - s))
+            point = self.follower(s, nearest[-4:])
+            if point is None or point.state is None or point.values is None:
+                raise SolveError(Outcome.PATH_LOST, None, f"{describe(self.at(s))}: {Outcome.PATH_LOST.value}")
+            self.points[s] = point
+            slope = float(friction_slopes(point.state, self.mu0, self.beta, self.definition)[0])
+            self.found[s] = slope / (self.beta * point.values.viscous_paper)
+        return self.found[s]
+
+    def friction(self, s: float) -> float:
+        values = self.points[s].values
+        assert values is not None
+        return self.mu0 * values.contact_load_share + self.beta * float(getattr(values, f"viscous_{self.definition}"))
+
+
+@one_blas_thread
+def weakening(
+    groups: Groups,
+    mu0: float | None = None,
+    beta: float | None = None,
+    definition: Definition = "paper",
+    *,
+    rtol: float = 1e-6,
+) -> Weakening:
+    r"""Tell whether friction falls with speed anywhere on a Stribeck curve, by the least slope on solved states.
+
+    .. math:: \min_\lambda \frac{1}{\mu_f} \frac{d\mu}{d\ln\lambda} < 0
+
+    Parameters
+    ----------
+    groups : Groups
+        One state, of which ``load`` and ``roughness`` count [-]; its speed is replaced.
+    mu0, beta : float, optional
+        Friction coefficient of the dry contact and coefficient of the contact law [-]; 1 if not given.
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    rtol : float
+        Relative tolerance of the states.
+
+    Returns
+    -------
+    Weakening
+        Where the slope is least, and the minimum of friction behind that place, which may lie above the boundary plateau.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range.
+    SolveError
+        If a state on the way cannot be solved.
+
+    Notes
+    -----
+    A curve over speed has at most one branch of weakening in all that we solved.
+    """
+    as_groups(groups)
+    check_rtol(rtol)
+    mu0, beta = coefficients(None, mu0, beta)
+    slope = _Slopes(groups, mu0, beta, check_definition(definition), rtol)
+    low, high = automatic_speeds(groups, mu0, beta, definition)
+    count = max(8, math.ceil(POINTS_PER_DECADE * math.log10(high / low)))
+    coarse = np.linspace(math.log(high), math.log(low), count).tolist()
+    values = [slope(s) for s in coarse]
+    # Imported here because it takes longer than the rest of the package, and few uses get here.
+    from scipy.optimize import brentq, minimize_scalar
+
+    i = min(max(1, int(np.argmin(values))), count - 2)
+    minimize_scalar(slope, bounds=(coarse[i + 1], coarse[i - 1]), method="bounded", options={"xatol": SPEED_TOLERANCE})
+    least = min(slope.found, key=lambda s: slope.found[s])
+    above = [s for s in sorted(slope.found) if s > least and slope.found[s] > 0]
+    if slope.found[least] >= 0 or not above:
+        return Weakening(math.exp(least), slope.found[least])
+    s = float(brentq(slope, least, above[0], xtol=MINIMUM_TOLERANCE))
+    slope(s)
+    return Weakening(math.exp(least), slope.found[least], math.exp(s), slope.friction(s))
+
+
+def merging_roughness(
+    load: float,
+    mu0: float | None = None,
+    beta: float | None = None,
+    definition: Definition = "paper",
+    *,
+    criterion: Criterion = "slope",
+    rtol: float = 1e-6,
+    law: LawShape | None = None,
+) -> float:
+    r"""Return the roughness at which the solved Stribeck curve loses its minimum, and the lines of transition merge.
+
+    Parameters
+    ----------
+    load : float
+        Load group [-].
+    mu0, beta : float, optional
+        Friction coefficient of the dry contact and coefficient of the contact law [-]; 1 if not given.  Their quotient counts.
+    definition : {"paper", "balanced"}
+        Definition of the viscous friction.
+    criterion : {"slope", "plateau"}
+        ``"slope"``: from here on friction nowhere falls with speed.  ``"plateau"``: from here on the minimum of friction,
+        where there still is one, lies above mu0 (the words of [BP]); always the smaller.
+    rtol : float
+        Relative tolerance of the states, and of the result.
+    law : LawShape, optional
+        Contact law; the exponential one if omitted.
+
+    Returns
+    -------
+    float
+        Roughness group [-]; 0 where there is no dry friction that could fall, nan where it lies outside the relative roughness
+        1e-5 to 1e3.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range.
+    SolveError
+        If a state on the way cannot be solved.
+
+    Notes
+    -----
+    Found by bracketing in ln(roughness); each trial is one curve over the speed, about 0.1 s.  For mu0 = beta it is 0.0160 at
+    load 0.1 and 0.00343 at load 0.01, relative roughness 0.16 and 0.34, where the film is no longer that of large deformation:
+    the condition k < 0.4968 of [BP]'s friction would allow 1.40 and 4.44.  From load 1 on asperities are saturated, and the
+    weakening that disappears may be as small as 1e-4 of the friction.
+
+    Source: [BP] Conclusion, in words.
+    """
+    if criterion not in CRITERIA:
+        raise InputError(f"criterion = {show(criterion)}; it must be 'slope' or 'plateau'.")
+    check_rtol(rtol)
+    mu0, beta = coefficients(None, mu0, beta)
+    F = float(as_groups(Groups(1.0, load, 1.0))[0].load)
+    if mu0 == 0:
+        return 0.0
+
+    def excess(log_kappa: float) -> float:
+        found = weakening(Groups(1.0, F, F * math.exp(log_kappa), law=law), mu0, beta, definition, rtol=rtol)
+        if criterion == "slope" or not found.present:
+            return found.slope
+        return found.minimum_friction / mu0 - 1
+
+    return _root(excess, F, rtol)
+
+
+def _root(excess: Callable[[float], float], load: float, rtol: float) -> float:
+    """Return the roughness group at which ``excess``, growing with ln(kappa), vanishes; nan where that is not found."""
+    from scipy.optimize import brentq
+
+    known = {math.log(KAPPA_START): excess(math.log(KAPPA_START))}
+    (start,) = known
+    step = -math.log(KAPPA_STEP) if known[start] >= 0 else math.log(KAPPA_STEP)
+    low, high = map(math.log, KAPPA_RANGE)
+    here = start
+    while True:
+        there = here + step
+        if not low <= there <= high:
+            return math.nan
+        known[there] = excess(there)
+        if (known[there] >= 0) != (known[here] >= 0):
+            break
+        here = there
+
+    def remembered(s: float) -> float:
+        return known[s] if s in known else excess(s)
+
+    return load * math.exp(float(brentq(remembered, min(here, there), max(here, there), xtol=max(rtol, 1e-9))))

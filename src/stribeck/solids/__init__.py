@@ -1,0 +1,1 @@
+"""Solids: the deflection of a surface under a pressure."""

@@ -1,0 +1,262 @@
+r"""Plane-strain deflection of the half-space under a pressure on the line.
+
+.. math:: w(x) = -\frac1\pi \int_{-\infty}^{\infty} p(y) \ln|x - y| \, dy
+
+The kernel is integrated exactly against the polynomial through the nodal pressures of each panel (product
+integration), with
+
+.. math:: \int_{-1}^{1} P_n(t) \ln|s - t| \, dt = \frac{2 \, [Q_{n+1}(s) - Q_{n-1}(s)]}{2n + 1},
+
+:math:`Q_n` the Legendre functions of the second kind.  On the panel through infinity, with :math:`t = 1/x` and
+:math:`s = 1/y`,  :math:`\ln|x - y| = \ln|s - t| - \ln|s| - \ln|t|`, so that the same integrals serve there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from stribeck._types import Array, Flags, Indices
+from stribeck.numerics.panels import Mesh, reference
+
+FAR_ACCURACY = 4e-13
+"""Error of a panel's own Gauss rule for the logarithm from which a target counts as far: rho**(-2 order) for a distance of
+(rho + 1/rho)/2 half-widths."""
+
+LOST_DIGITS = 1e5
+"""Amplification of rounding that the upward recurrence of Q_n may have outside a panel: it falls on the highest degrees, whose
+coefficients are small.  Beyond, the downward recurrence takes over."""
+
+
+MOST_BLOCKS = 20_000
+"""Blocks of integrals that are kept, of 1 to 2 kB each."""
+
+
+def log_moments(points: Array, order: int) -> Array:
+    r"""Return :math:`\int_{-1}^{1} P_n(t) \ln|s - t| dt` for ``n < order`` at ``points`` s, shape (len(points), order)."""
+    s = np.asarray(points, dtype=float)
+    # At the ends the singularities of the Q_n cancel; one unit in the last place away they do so in floating point.
+    s = np.where(np.abs(s) == 1.0, s * (1 - 2.0**-53), s)
+    q = np.empty((order + 1, len(s)))
+    q[0] = 0.5 * np.log(np.abs((s + 1) / (s - 1)))
+    q[1] = s * q[0] - 1
+    nearest = float(np.cosh(np.log(LOST_DIGITS) / (2 * order)))
+    near = np.abs(s) <= nearest
+    for n in range(1, order):
+        q[n + 1] = ((2 * n + 1) * s * q[n] - n * q[n - 1]) / (n + 1)
+    if not near.all():
+        q[:, ~near] = _second_kind_outside(s[~near], nearest, order)
+    moments = np.empty((len(s), order))
+    moments[:, 0] = (s + 1) * np.log(np.abs(s + 1)) - (s - 1) * np.log(np.abs(s - 1)) - 2
+    degree = np.arange(1, order)
+    moments[:, 1:] = (2 * (q[2:] - q[:-2]) / (2 * degree + 1)[:, None]).T
+    return moments
+
+
+def _second_kind_outside(s: Array, nearest: float, order: int) -> Array:
+    """Legendre functions of the second kind up to ``order``, ``nearest`` or farther, by downward recurrence (Miller)."""
+    decay = np.log(nearest + np.sqrt(nearest**2 - 1))
+    top = order + int(np.ceil(19.0 / decay))
+    q = np.empty((order + 1, len(s)))
+    above, here = np.zeros_like(s), np.full_like(s, 1e-280)
+    for n in range(top, -1, -1):
+        if n <= order:
+            q[n] = here
+        above, here = here, ((2 * n + 1) * s * here - (n + 1) * above) / max(n, 1)
+    return np.asarray(q * (0.5 * np.log(np.abs((s + 1) / (s - 1))) / q[0]))
+
+
+@lru_cache(maxsize=32)
+def _from_moments(order: int) -> Array:
+    """Matrix from the log moments to the integrals of the nodal (Lagrange) basis."""
+    rule = reference(order)
+    degrees = np.arange(order)
+    return np.asarray((degrees[:, None] + 0.5) * legendre.legvander(rule.nodes, order - 1).T * rule.weights)
+
+
+def _log_integrals(s: Array, order: int) -> Array:
+    """Log integrals of the nodal basis at ``s``; to the bit, each whatever the others are, which BLAS does not promise."""
+    return np.asarray(np.einsum("sn,nj->sj", log_moments(s, order), _from_moments(order)))
+
+
+def near_distance(order: int) -> float:
+    """Return the distance from its centre, in half-widths, within which a panel is integrated exactly."""
+    rho = float(FAR_ACCURACY ** (-0.5 / order))
+    return 0.5 * (rho + 1 / rho)
+
+
+Pair = tuple[float, float]
+"""Place of a panel seen from another, in half-widths of that one: its centre and its half-width."""
+
+
+class Blocks:
+    """What panels do at the nodes of others, for each relative place computed once.
+
+    Panels are dyadic: the same few places come again on every mesh.
+
+    Parameters
+    ----------
+    targets : callable
+        ``targets(centres, half_widths, nodes)`` returns where the nodes are, in half-widths of the panel that acts.
+    compute : callable
+        ``compute(s, order)`` with targets s, shape (n,), returns what is done there, shape (n, columns).
+    """
+
+    def __init__(self, targets: Callable[[Array, Array, Array], Array], compute: Callable[[Array, int], Array]) -> None:
+        self.targets = targets
+        self.compute = compute
+        self.known: dict[tuple[Pair, int], Array] = {}
+
+    def at(self, pairs: Sequence[Pair], order: int) -> Array:
+        """Return the blocks of panels with ``order`` nodes, shape (pairs, order, columns)."""
+        missing = list({pair for pair in pairs if (pair, order) not in self.known})
+        if missing:
+            if len(self.known) > MOST_BLOCKS:
+                self.known.clear()
+                missing = list(set(pairs))
+            centres, half_widths = np.array(missing).T[:, :, None]
+            found = self.compute(self.targets(centres, half_widths, reference(order).nodes).ravel(), order)
+            for pair, block in zip(missing, found.reshape(len(missing), order, -1), strict=True):
+                self.known[pair, order] = block
+        return np.stack([self.known[pair, order] for pair in pairs])
+
+
+def near_panels(mesh: Mesh) -> tuple[Indices, Indices, list[Pair]]:
+    """Return targets and sources of all pairs of panels in ``x`` of which the source acts on a near node, and their places."""
+    c, d = mesh.centres[:-1], mesh.half_widths[:-1]
+    offset, ratio = (c[:, None] - c) / d, d[:, None] / d
+    target, source = np.nonzero(np.abs(offset) - ratio < near_distance(mesh.order))
+    return target, source, list(zip(offset[target, source].tolist(), ratio[target, source].tolist(), strict=True))
+
+
+def near_infinity(mesh: Mesh) -> Flags:
+    """Return which panels in ``x`` act on a near node of the panel through infinity."""
+    outermost = np.abs(mesh.centres[:-1]) + near_distance(mesh.order) * mesh.half_widths[:-1]
+    return np.asarray(outermost > mesh.edges[-1])
+
+
+def panels_from_infinity(mesh: Mesh) -> list[Pair]:
+    """Return the places of the panels in ``x`` in units of the edge of the panel through infinity."""
+    edge = mesh.edges[-1]
+    return list(zip((mesh.centres[:-1] / edge).tolist(), (mesh.half_widths[:-1] / edge).tolist(), strict=True))
+
+
+def _beside_panel(s: Array, order: int) -> Array:
+    """Integrals of ``ln|s - t|`` times the nodal basis of a panel at targets s, exact where these are near."""
+    rule = reference(order)
+    far = np.abs(s) >= near_distance(order)
+    found = np.empty((len(s), order))
+    found[far] = np.log(np.abs(s[far, None] - rule.nodes)) * rule.weights
+    found[~far] = _log_integrals(s[~far], order)
+    return found
+
+
+def _beside_infinity(x: Array, order: int) -> Array:
+    """Integrals of ``ln|1 - x t|`` times the nodal basis of the panel through infinity, ``-1 < t < 1``, at targets x."""
+    rule = reference(order)
+    close = np.abs(x) * near_distance(order) > 1.0
+    ratio = x[:, None] * rule.nodes
+    ratio[close] = 0.0
+    found = np.log1p(-ratio) * rule.weights
+    if close.any():
+        s = 1 / x[close]
+        found[close] = _log_integrals(s, order) - np.log(np.abs(s))[:, None] * rule.weights
+    return found
+
+
+def nodes_on_panel(centre: Array, half_width: Array, nodes: Array) -> Array:
+    """Return the nodes of a panel in ``x``, seen from another."""
+    return centre + half_width * nodes
+
+
+def nodes_at_infinity(centre: Array, half_width: Array, nodes: Array) -> Array:
+    """Return the nodes of the panel through infinity, seen from one in ``x`` whose place is in units of its edge."""
+    return np.asarray((1 / nodes - centre) / half_width)
+
+
+_ON_PANELS = Blocks(nodes_on_panel, _beside_panel)
+_OF_INFINITY = Blocks(nodes_on_panel, _beside_infinity)
+_AT_INFINITY = Blocks(nodes_at_infinity, _beside_panel)
+
+
+def nodal_deflection(mesh: Mesh) -> Array:
+    """Return :func:`deflection_operator` at the nodes of the mesh, shape (size, size), in Fortran order."""
+    order, panels = mesh.order, mesh.panels
+    rule, inner = reference(order), mesh.nodes[:-order]
+    # By columns, so that the operator comes in Fortran order: what panel k does at the nodes of panel l is [k, :, l, :].
+    kernel = np.empty((panels, order, panels, order))
+    columns = kernel.reshape(mesh.size, mesh.size)
+    distance = np.abs(inner[:, None] - mesh.nodes)
+    distance[distance == 0] = 1.0
+    np.multiply(np.log(distance, out=distance), mesh.weights[:-order, None], out=columns[:-order])
+    target, source, places = near_panels(mesh)
+    half = mesh.half_widths[source]
+    near = _ON_PANELS.at(places, order).transpose(0, 2, 1) + (np.log(half)[:, None] * rule.weights)[:, :, None]
+    kernel[source, :, target, :] = half[:, None, None] * near
+    outermost = np.flatnonzero(near_infinity(mesh))
+    places = panels_from_infinity(mesh)
+    half = mesh.half_widths[outermost]
+    near = _AT_INFINITY.at([places[k] for k in outermost], order).transpose(0, 2, 1)
+    kernel[outermost, :, -1, :] = half[:, None, None] * (near + (np.log(half)[:, None] * rule.weights)[:, :, None])
+    tail = _OF_INFINITY.at(places, order).reshape(-1, order)
+    own = _beside_infinity(mesh.nodes[-order:] * mesh.half_widths[-1], order)
+    at_infinity = log_moments(np.zeros(1), order) @ _from_moments(order) + np.log(mesh.half_widths[-1]) * rule.weights
+    factor = mesh.half_widths[-1] * mesh.stretch[-order:]
+    columns[-order:] = (factor * (np.concatenate([tail, own]) - at_infinity)).T
+    columns *= -1 / np.pi
+    return columns.T
+
+
+def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:
+    r"""Return the matrix from nodal pressures to the deflection.
+
+    .. math:: w(x_i) = -\frac1\pi \int p(y) \ln|x_i - y| \, dy = \sum_j D_{ij} p(x_j)
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Panels that carry the pressure.
+    points : ndarray, shape (n,), optional
+        Where the deflection is wanted [Hertz half-width]; the nodes of ``mesh`` by default.  Zero is allowed.
+
+    Returns
+    -------
+    ndarray, shape (n, mesh.size)
+        The operator [u_Hz per p_Hz].
+
+    Notes
+    -----
+    Spectral in the order of the panels; see ``tests/test_elasticity.py``.
+    Source: [BP] Eq. (elasticity_dl), gauge ln(|x - y|/a).
+    """
+    order = mesh.order
+    rule = reference(order)
+    x = mesh.nodes if points is None else np.asarray(points, dtype=float)
+    inner = mesh.nodes[:-order]
+    kernel = np.empty((len(x), mesh.panels, order))
+
+    distance = np.abs(x[:, None] - inner)
+    s = (x[:, None] - mesh.centres[:-1]) / mesh.half_widths[:-1]
+    near_by = near_distance(order)
+    target, source = np.nonzero(np.abs(s) < near_by)
+    distance[distance == 0] = 1.0
+    kernel[:, :-1, :] = (np.log(distance) * mesh.weights[:-order]).reshape(len(x), mesh.panels - 1, order)
+    half = mesh.half_widths[source][:, None]
+    near = log_moments(s[target, source], order) @ _from_moments(order)
+    kernel[target, source, :] = half * (near + np.log(half) * rule.weights)
+
+    half_tail = mesh.half_widths[-1]
+    t_source = mesh.local[-1]
+    close = np.nonzero(np.abs(x) * half_tail * near_by > 1.0)[0]
+    ratio = t_source * x[:, None]
+    ratio[close] = 0.0
+    tail = np.log1p(-ratio) * rule.weights
+    t_target = 1.0 / x[close] if len(close) else np.empty(0)
+    moments = log_moments(t_target / half_tail, order) @ _from_moments(order)
+    tail[close] = moments + np.log(half_tail / np.abs(t_target))[:, None] * rule.weights
+    at_infinity = log_moments(np.zeros(1), order) @ _from_moments(order) + np.log(half_tail) * rule.weights
+    kernel[:, -1, :] = half_tail * (tail - at_infinity) * mesh.stretch[-order:]
+    return np.asarray(kernel.reshape(len(x), mesh.size) / -np.pi)

@@ -1,0 +1,1 @@
+"""The solver: from groups to a solution that holds its tolerance."""

@@ -1,0 +1,160 @@
+r"""Cold start: a first state anywhere, by loading the contact from where the elastic body hardly deforms.
+
+Lifting the load of a sliding cylinder by a factor s multiplies the speed group by :math:`s^2`, divides the load group by s
+and keeps the roughness group.  Far enough up this path the gap is the parabola :math:`h_0 + x^2/2`, with the small
+deflection under the pressure of a rigid film; :math:`h_0` follows from one scalar equation.  From there the path comes down.
+The formulas here only start Newton's iteration: no result depends on them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from stribeck._types import Array
+from stribeck.contact_laws.scaled import BlendedShape, contact_law
+from stribeck.contacts.line import Groups
+from stribeck.equations.line import LOAD, Operators
+from stribeck.equations.state import Guess, State, extrapolate, mesh_for, solve_state
+from stribeck.numerics.continuation import Path, march
+from stribeck.numerics.panels import Mesh, MeshTooLargeError
+
+RIGID_SPEED = 30.0
+"""Speed group above which the rigid film starts Newton's iteration safely."""
+
+RIGID_ROUGHNESS = 30.0
+"""Relative roughness above which the rigid contact does."""
+
+SATURATED_LOAD = 0.5
+"""Load group above which the contact pressure nears its largest value: the path then comes down in speed, as loading
+at low speed would cross the sudden hand-over from asperities to film."""
+
+ORDER = 10
+MESH_TOLERANCE = 1e-3
+NEWTON_TOLERANCE = 1e-5
+
+
+@dataclass(frozen=True)
+class RigidGuess:
+    """The gap of a rigid cylinder at height ``height`` with the deflection under its rigid-film pressure."""
+
+    speed: float
+    height: float
+
+    @property
+    def flux_gap(self) -> float:
+        """Flux gap of the rigid parabola, 4/3 of its height."""
+        return 4 * self.height / 3
+
+    @property
+    def offset(self) -> float:
+        """The height."""
+        return self.height
+
+    @property
+    def least_position(self) -> float:
+        """The middle."""
+        return 0.0
+
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
+        return np.asarray(self.fields(mesh.nodes)[0])
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap at ``x``: the fluid pressure is left to its gradient."""
+        b = math.sqrt(2 * self.height)
+        deflection = -2 * self.speed / 3 * x / b / (x * x + b * b)
+        return np.asarray(np.log(self.height + x * x / 2 + deflection)[None, :])
+
+
+def unloaded(groups: Groups, log_factor: float) -> Groups:
+    """Return the groups at the load divided by ``exp(log_factor)``, all else being held."""
+    factor = math.exp(log_factor)
+    return Groups(groups.speed * factor**2, groups.load / factor, groups.roughness, law=groups.law)
+
+
+def faster(groups: Groups, log_factor: float) -> Groups:
+    """Return the groups at the speed times ``exp(2 log_factor)``, all else being held."""
+    return Groups(groups.speed * math.exp(2 * log_factor), groups.load, groups.roughness, law=groups.law)
+
+
+def rigid_guess(groups: Groups) -> RigidGuess:
+    r"""Return the rigid parabola whose film and contact carry the load.
+
+    .. math:: \frac{\pi}{48} \frac{\lambda^2}{h_0^3}
+              + \int p_c(h_0 + x^2/2) \, dx = \frac{\pi}{2}
+    """
+    speed, law = float(groups.speed), contact_law(groups)
+    x, dx = np.linspace(-6, 6, 241, retstep=True)
+    x, dx = x * math.sqrt(law.decay), dx * math.sqrt(law.decay)
+
+    def excess(log_height: float) -> float:
+        height = math.exp(log_height)
+        with np.errstate(over="ignore"):
+            contact = float(law.pressure(height + x * x / 2).sum() * dx)
+        return min(math.pi / 48 * speed**2 / height**3 + contact, 1e9) - LOAD
+
+    return RigidGuess(speed, math.exp(brentq(excess, -80.0, 80.0, xtol=1e-6)))
+
+
+def cold_start(groups: Groups) -> Path[State]:
+    """Return the path from the rigid contact to ``groups``; its last state is a first, coarse solution.
+
+    Parameters
+    ----------
+    groups : Groups
+        Scalar groups; speed or roughness must be positive.
+
+    Returns
+    -------
+    Path
+        Of states on meshes that resolve them to about 1e-3; its outcome tells whether the end was reached.
+    """
+    kappa = float(groups.relative_roughness)
+    by_speed = groups.speed > 0 and groups.load > SATURATED_LOAD and kappa < RIGID_ROUGHNESS
+    along = faster if by_speed else unloaded
+    factors = []
+    if groups.speed > 0:
+        factors.append(0.5 * math.log(RIGID_SPEED / groups.speed))
+    if kappa > 0 and not by_speed:
+        factors.append(math.log(RIGID_ROUGHNESS / kappa))
+    top = max(0.0, min(factors))
+
+    def correct(log_factor: float, history: Sequence[tuple[float, State]]) -> State | None:
+        here = along(groups, log_factor)
+        guess: Guess = rigid_guess(here) if top - log_factor < 0.7 and len(history) < 3 else extrapolate(history, log_factor)
+        try:
+            mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
+        except MeshTooLargeError:
+            return None
+        return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
+
+    path = march(correct, top, 0.0, first_step=0.6, max_step=2.5, min_step=1e-3, order=3)
+    return path
+
+
+def start_by_exponential(groups: Groups) -> Path[State]:
+    """Return the path from the state of the exponential law to that of another, which changes the one into the other.
+
+    The way out where :func:`cold_start` fails.
+    """
+    start = cold_start(replace(groups, law=None))
+    if not start.outcome.ok:
+        return start
+    shape = groups.law
+    assert shape is not None
+
+    def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
+        here = replace(groups, law=shape if part == 1.0 else BlendedShape(shape, part))
+        guess: Guess = extrapolate(history, part) if history else start.states[-1]
+        try:
+            mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
+        except MeshTooLargeError:
+            return None
+        return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
+
+    return march(correct, 0.0, 1.0, first_step=0.25, max_step=0.5, min_step=1e-4, order=3)

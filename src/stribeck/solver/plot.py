@@ -1,0 +1,136 @@
+"""The picture of one state: gap and pressures along the contact.
+
+matplotlib comes with the extra ``plot`` and is imported on first use.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.files.pictures import (
+    CONTACT,
+    FLUID,
+    GREY,
+    INK,
+    SYMBOLS,
+    add_legend,
+    finish_figure,
+    footer_lines,
+    input_texts,
+    law_text,
+    make_logarithmic,
+    new_figure,
+)
+from stribeck.files.writing import PathLike
+from stribeck.quantities.units import DIMENSIONS, format_si
+from stribeck.solver.solution import Solution
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["plot_profile"]
+
+
+def plot_profile(solution: Solution, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
+    """Draw gap and pressures along the contact, in SI units where the solution has a contact.
+
+    Parameters
+    ----------
+    solution : Solution
+        The state.
+    path : str or path-like, optional
+        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+    force : bool
+        Whether an existing file is replaced; otherwise it is kept.
+    title : str
+        Headline.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written, or exists and ``force`` is not given.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
+    figure, (above, below) = new_figure((7.5, 6.0), _footer(solution), rows=2, title=title or "Gap and pressure")
+    x = _positions(solution)
+    fields = solution.profile(x)
+    if solution.contact is None:
+        to_x, to_gap, to_pressure = (
+            (1.0, "position $x/a$"),
+            (1.0, r"gap $h/u_\mathrm{Hz}$"),
+            (1.0, r"pressure $p/p_\mathrm{Hz}$"),
+        )
+    else:
+        scales = solution.contact.hertz
+        to_x = _axis(scales.half_width, "length", "position $x$")
+        to_gap = _axis(scales.indentation, "length", "gap $h$", float(np.abs(fields.gap).max()))
+        to_pressure = _axis(scales.pressure, "pressure", "pressure")
+    above.plot(x * to_x[0], fields.gap * to_gap[0], color=INK, lw=1.8, label="gap")
+    drawn = fields.gap
+    alpha = 1.0 if solution.contact is None else solution.contact.alpha
+    rms = alpha * float(solution.groups.relative_roughness)
+    if rms > 0 and rms > 0.03 * fields.gap.min():
+        drawn = np.append(drawn, rms)
+        name = r"$h_\mathrm{rms}/\alpha$" if solution.contact is None else SYMBOLS["roughness"]
+        above.axhline(rms * to_gap[0], color=GREY, lw=1.0, ls=(0, (5, 3)), label=f"roughness {name}")
+    if fields.gap.min() > 0:
+        make_logarithmic(above, "y", drawn * to_gap[0])
+    above.set_ylabel(to_gap[1])
+    above.tick_params(labelbottom=False)
+    hertz = np.sqrt(np.clip(1 - x**2, 0, None))
+    curves: list[tuple[Array, dict[str, Any]]] = [
+        (hertz, {"color": GREY, "lw": 1.0, "ls": (0, (2, 2)), "label": "dry smooth contact (Hertz)"}),
+        (fields.pressure, {"color": INK, "lw": 1.8, "label": "total pressure"}),
+        (
+            fields.contact_pressure,
+            {"color": CONTACT, "lw": 1.6, "ls": (0, (6, 2)), "label": "from asperities"},
+        ),
+        (fields.fluid_pressure, {"color": FLUID, "lw": 1.6, "ls": "-.", "label": "from the fluid"}),
+    ]
+    for values, style in curves:
+        below.plot(x * to_x[0], values * to_pressure[0], **style)
+    below.axhline(0.0, color=GREY, lw=0.6, zorder=1)
+    below.set_xlabel(f"{to_x[1]}; fluid enters from the left")
+    below.set_ylabel(to_pressure[1])
+    for axes in (above, below):
+        axes.set_xlim(x[0] * to_x[0], x[-1] * to_x[0])
+    add_legend(figure, (above, below), columns=3)
+    return finish_figure(figure, path, force)
+
+
+def _footer(solution: Solution) -> list[tuple[str, str]]:
+    groups = [f"{name} group {float(getattr(solution.groups, name)):.4g}" for name in ("speed", "load", "roughness")]
+    second = [
+        law_text(solution),
+        f"rtol {solution.rtol:g}",
+        f"estimated error {solution.error_estimate:.1e}",
+        f"stribeck {version('stribeck')}",
+    ]
+    notes = list(solution.notes) if solution.outcome.ok else [solution.outcome.value, *solution.notes]
+    return footer_lines([[*input_texts(solution.contact), *groups], second], notes, 112)
+
+
+def _positions(solution: Solution) -> Array:
+    """Return positions to draw at [a], denser where the nodes are, as far as the pressure reaches."""
+    pressure = np.abs(solution.contact_pressure) + np.abs(solution.fluid_pressure)
+    reach = 1.25 * float(np.abs(solution.x[pressure > 0.02 * pressure.max()]).max(initial=0.0))
+    reach = max(1.6, reach)
+    nodes = solution.x[np.abs(solution.x) < reach]
+    return np.unique(np.concatenate([np.linspace(-reach, reach, 801), nodes]))
+
+
+def _axis(scale: float, dimension: str, name: str, largest: float = 1.0) -> tuple[float, str]:
+    """Return the factor from Hertz units to a unit with readable numbers, and the label with that unit."""
+    unit = format_si(scale * largest, dimension).rpartition(" ")[2]
+    power = next(power for power, known in DIMENSIONS[dimension].steps.items() if known == unit)
+    return scale / 10.0**power, f"{name} ({unit})"

@@ -1,0 +1,189 @@
+"""Refining a state until its estimated error holds a tolerance, and saying how that ended."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stribeck._types import Array, is_exponential
+from stribeck.contact_laws.scaled import contact_law, lifted
+from stribeck.contacts.line import Groups
+from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimates
+from stribeck.equations.line import Operators
+from stribeck.equations.observables import Observables, observables
+from stribeck.equations.state import Guess, State, mesh_for, solve_state
+from stribeck.fluids import newtonian as reynolds
+from stribeck.numerics.newton import Outcome
+from stribeck.numerics.panels import MeshTooLargeError
+
+QUASISTATIC_LOAD = 0.01
+"""At speed zero the load only shifts the gap: heavier contacts are solved at this load, where all gaps are positive."""
+
+MAX_REFINEMENTS = 12
+
+NODAL_ROUNDING = 16 * 2.0**-52
+"""Rounding of a nodal gap, the difference of terms of order one, as the polynomials between the nodes magnify it."""
+
+LEAST_GAP_TAIL = 0.02
+"""Part of the tolerance below which resolving the gap where it is read off alone does not help."""
+
+CLEARLY_FINER = 1.1
+"""Ratio of mesh sizes from which the difference of two solutions measures the error of the coarser."""
+
+
+def order_for(rtol: float) -> int:
+    """Return the nodes per panel that reach ``rtol`` with the fewest unknowns."""
+    return 12 if rtol >= 1e-7 else 16
+
+
+def mesh_tolerances_for(rtol: float) -> tuple[float, float]:
+    """Return the Legendre tails to start refinement with; most states reach ``rtol`` with them at once."""
+    return min(1e-2, 0.2 * math.sqrt(rtol)), 0.3 * rtol
+
+
+def solvable(groups: Groups) -> Groups:
+    """Return the groups that are solved for: at speed zero the gap is lifted until it is positive everywhere.
+
+    The exponential law does so by a lower load, another by a shifted separation.
+    """
+    if not is_exponential(groups.law):
+        return groups if groups.speed > 0 else lifted(groups)[0]
+    if groups.speed > 0 or groups.load <= QUASISTATIC_LOAD:
+        return groups
+    return Groups(0.0, QUASISTATIC_LOAD, QUASISTATIC_LOAD * groups.relative_roughness, law=groups.law)
+
+
+def quasistatic_shift(groups: Groups) -> float:
+    r"""Return by how much the gap of ``groups`` lies above that of :func:`solvable`.
+
+    .. math:: \Delta h = -\frac{\kappa}{2} \ln \frac{\bar F_N}{\bar F_N'}
+
+    Exact at speed zero, where the solution depends on kappa alone but for this shift of gap and offset.  For other laws than
+    the exponential one it is that of :func:`contact_laws.lifted`.
+    """
+    if not is_exponential(groups.law):
+        return 0.0 if groups.speed > 0 else -lifted(groups)[1]
+    if solvable(groups) is groups:
+        return 0.0
+    return -0.5 * float(groups.relative_roughness) * math.log(float(groups.load / solvable(groups).load))
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A refined state of ``groups``, its observables and their errors, and how the refinement ended.
+
+    ``state`` is that of :func:`solvable` groups; ``estimate`` is None where not even a coarse state was found.
+    """
+
+    groups: Groups
+    state: State | None
+    values: Observables | None
+    estimate: ErrorEstimate | None
+    outcome: Outcome
+    tolerances: tuple[float, float] | None = None
+    fine: FineOperators | None = None
+
+    @property
+    def effort(self) -> float:
+        """What :func:`continuation.march` steers by."""
+        return 4.0 if self.state is None else self.state.effort
+
+
+def converge(
+    guess: Guess,
+    groups: Groups,
+    rtol: float,
+    tolerances: tuple[float, float] | None = None,
+    profile_tolerance: float = math.inf,
+) -> Point:
+    """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
+
+    ``tolerances`` are the Legendre tails to start with, see :func:`states.mesh_for`; the point tells with which it ended.
+    ``profile_tolerance`` is the tail of the gap between the nodes, which no observable needs small.
+    """
+    base = solvable(groups)
+    law = contact_law(base)
+    tail, gap_tail = mesh_tolerances_for(rtol) if tolerances is None else tolerances
+    best = Point(groups, None, None, None, Outcome.REFINEMENT_LIMIT)
+    last: tuple[int, Array] | None = None
+    outcome = Outcome.REFINEMENT_LIMIT
+    for _ in range(MAX_REFINEMENTS):
+        try:
+            mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail, profile_tolerance)
+        except MeshTooLargeError:
+            profile_tolerance *= 10.0
+            tail *= 3.0 if profile_tolerance > 10 * tail else 1.0
+            continue
+        state = solve_state(base, Operators(mesh), guess, newton_tolerance(rtol))
+        if not state.outcome.ok:
+            outcome = state.outcome
+            break
+        if isinstance(guess, State):  # what was predicted is the first state on the way to this one
+            state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
+        fine, values = FineOperators(mesh), values_of(state, groups)
+        [estimate] = error_estimates(state.rows, [values], fine)
+        if last is not None and mesh.size >= CLEARLY_FINER * last[0]:
+            estimate = estimate.at_most(np.abs(values.array() - last[1]))
+        last = mesh.size, values.array()
+        if best.estimate is None or estimate.total < best.estimate.total:
+            best = Point(groups, state, values, estimate, reached(estimate, rtol), (tail, gap_tail), fine)
+        if best.outcome.ok:
+            return best
+        if estimate.total <= 3 * estimate.floor:
+            outcome = Outcome.ROUNDING
+            break
+        tail *= shrink(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
+        between = shrink(rtol / (estimate.between_nodes + 1e-300))
+        if gap_tail * between >= LEAST_GAP_TAIL * rtol:
+            gap_tail *= between
+        else:
+            tail *= between
+        guess = state
+    if best.estimate is not None and max(best.estimate.floor, _noise(best)) > 0.3 * rtol:
+        outcome = Outcome.ROUNDING
+    return replace(best, outcome=outcome)
+
+
+def _noise(point: Point) -> float:
+    """Return about the relative error of the read-off gaps that uneven nodal gaps may cause on small panels."""
+    return 0.0 if point.state is None else NODAL_ROUNDING / float(point.state.gap.min())
+
+
+def shrink(excess: float) -> float:
+    """Return the factor for a mesh tolerance whose error exceeds what is allowed by 1/``excess``."""
+    return 1.0 if excess > 2 else min(0.5, max(0.3, 0.5 * excess))
+
+
+def judge(state: State, groups: Groups, fine: FineOperators, rtol: float) -> Point:
+    """Return the state with its observables and their errors; it counts as converged if these are at most ``rtol``."""
+    values = values_of(state, groups)
+    [estimate] = error_estimates(state.rows, [values], fine)
+    return Point(groups, state, values, estimate, reached(estimate, rtol), fine=fine)
+
+
+def reached(estimate: ErrorEstimate, rtol: float) -> Outcome:
+    """Return whether an estimate holds the tolerance."""
+    return Outcome.CONVERGED if estimate.total <= rtol else Outcome.REFINEMENT_LIMIT
+
+
+def newton_tolerance(rtol: float) -> float:
+    """Return the size of the last Newton step: what is left after it is far below ``rtol``."""
+    return max(1e-11, 1e-2 * rtol)
+
+
+def values_of(state: State, groups: Groups) -> Observables:
+    """Return the observables of ``groups`` from the state solved for it."""
+    values = observables(state.equations, state.y, float(groups.load))
+    shift = quasistatic_shift(groups)
+    if shift == 0.0:
+        return values
+    gap = state.gap + shift
+    return replace(
+        values,
+        central_gap=values.central_gap + shift,
+        minimum_gap=values.minimum_gap + shift,
+        offset=values.offset + shift,
+        flux_gap=reynolds.flux_gap(gap, state.mesh.weights) if gap.min() > 0 else math.nan,
+    )

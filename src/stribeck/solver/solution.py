@@ -1,0 +1,373 @@
+"""What a solve returns: fields and observables of one state, with outcome, error estimate and what to know about them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from stribeck._types import Array, Indices, WithArea
+from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
+from stribeck.contacts.line import Groups, LineContact
+from stribeck.equations.observables import NAMES, Observables, gap_at
+from stribeck.numerics.newton import Outcome
+from stribeck.numerics.panels import Mesh
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["Friction", "Profile", "Solution"]
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Fields along the contact.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n,)
+        Positions [a or m].
+    gap : ndarray, shape (n,)
+        Gap [u_Hz or m].
+    contact_pressure, fluid_pressure : ndarray, shape (n,)
+        The two parts of the pressure [p_Hz or Pa].
+    unit : {"Hertz", "SI"}
+        Which of the two units hold.
+    """
+
+    x: Array
+    gap: Array
+    contact_pressure: Array
+    fluid_pressure: Array
+    unit: Literal["Hertz", "SI"] = "Hertz"
+
+    @property
+    def pressure(self) -> Array:
+        """Total pressure, contact and fluid."""
+        return self.contact_pressure + self.fluid_pressure
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    r"""One state of the contact.
+
+    Lengths along the contact are in Hertz half-widths a, gaps in indentations u_Hz, pressures in p_Hz.
+
+    Attributes
+    ----------
+    groups : Groups
+        The state that was solved.
+    contact : LineContact or None
+        The contact in SI units it came from.
+    outcome : Outcome
+        How the solve ended; its value is a sentence.
+    notes : tuple of str
+        What to know before using the numbers, one sentence each: where the contact law leaves its range, where rounding
+        bounds the error.
+    rtol : float
+        The relative tolerance asked for.
+    law : str
+        Name of the contact law.
+    observables : Observables
+        The observables as one object, in Hertz units and for beta = 1.
+    relative_errors : ndarray
+        Estimated relative errors of the observables, by name in :attr:`errors`.
+    rounding_floor : float
+        The part of the error estimate that double precision causes and no mesh removes.
+    mesh : Mesh
+        The final discretisation.
+    nodal_gap : ndarray, shape (nodes,)
+        The gap in the order of the mesh; :attr:`gap` gives it by position.
+    nodal_pressures : callable
+        Returns contact and fluid pressure in the order of the mesh.
+    gap_shift : float
+        What :attr:`gap` adds to ``nodal_gap``: at speed zero the load only shifts the gap [u_Hz].
+    newton_steps : int
+        Steps of its Newton iteration.
+
+    Notes
+    -----
+    Observables (``contact_load_share`` ... ``offset``) are attributes too, see the table of symbols in theory.md.
+    """
+
+    groups: Groups
+    contact: LineContact | None
+    outcome: Outcome
+    notes: tuple[str, ...]
+    rtol: float
+    law: str
+    observables: Observables
+    relative_errors: Array = field(repr=False)
+    rounding_floor: float
+    mesh: Mesh = field(repr=False)
+    nodal_gap: Array = field(repr=False)
+    gap_shift: float = field(repr=False)
+    nodal_pressures: Callable[[], tuple[Array, Array]] = field(repr=False)
+    newton_steps: int = 0
+
+    @property
+    def nodes(self) -> int:
+        """Unknown gaps in the final discretisation."""
+        return self.mesh.size
+
+    @cached_property
+    def error_estimate(self) -> float:
+        """Largest estimated relative error of the observables; load shares count absolutely."""
+        return float(np.nanmax(self.relative_errors))
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """Estimated relative error of each observable; absolute for the load shares."""
+        return dict(zip(NAMES, map(float, self.relative_errors), strict=True))
+
+    @cached_property
+    def _pressures(self) -> tuple[Array, Array]:
+        return self.nodal_pressures()
+
+    @cached_property
+    def _ordered(self) -> Indices:
+        return np.argsort(self.mesh.nodes)
+
+    @property
+    def x(self) -> Array:
+        """Positions of the nodes, ascending [a]; the outermost lie thousands of half-widths away."""
+        return np.asarray(self.mesh.nodes[self._ordered])
+
+    @property
+    def gap(self) -> Array:
+        """Gap at :attr:`x` [u_Hz]."""
+        return np.asarray(self.nodal_gap[self._ordered]) + self.gap_shift
+
+    @property
+    def contact_pressure(self) -> Array:
+        """Contact pressure at :attr:`x` [p_Hz]."""
+        return np.asarray(self._pressures[0][self._ordered])
+
+    @property
+    def fluid_pressure(self) -> Array:
+        """Fluid pressure at :attr:`x` [p_Hz]; negative behind the contact, as the fluid does not cavitate."""
+        return np.asarray(self._pressures[1][self._ordered])
+
+    @property
+    def pressure(self) -> Array:
+        """Total pressure at :attr:`x` [p_Hz]."""
+        return self.contact_pressure + self.fluid_pressure
+
+    @property
+    def contact_load_share(self) -> float:
+        """Part of the load that asperities carry [-]."""
+        return self.observables.contact_load_share
+
+    @property
+    def fluid_load_share(self) -> float:
+        """Part of the load that the fluid carries [-]."""
+        return self.observables.fluid_load_share
+
+    @property
+    def central_gap(self) -> float:
+        """Gap at x = 0 [u_Hz]."""
+        return self.observables.central_gap
+
+    @property
+    def minimum_gap(self) -> float:
+        """Least gap [u_Hz]."""
+        return self.observables.minimum_gap
+
+    @property
+    def minimum_position(self) -> float:
+        """Where the gap is least [a]."""
+        return self.observables.minimum_position
+
+    @property
+    def flux_gap(self) -> float:
+        """Flux gap h*: the fluid flux over U/2 [u_Hz]; nan where the gap is negative (see :attr:`notes`)."""
+        return self.observables.flux_gap
+
+    @property
+    def offset(self) -> float:
+        """Height z0 of the apex of the undeformed cylinder over the undeformed surface, in the gauge ln(abs(x-y)/a) [u_Hz]."""
+        return self.observables.offset
+
+    @property
+    def lambda_ratio(self) -> float:
+        """Central gap over h_rms/alpha [-], the paper's Lambda; infinite for smooth surfaces."""
+        kappa = float(self.groups.relative_roughness)
+        return self.central_gap / kappa if kappa > 0 else float("inf")
+
+    @property
+    def separation(self) -> Array:
+        """Separation ``s = alpha h/h_rms`` at :attr:`x` [-], in which contact laws are given; infinite for smooth surfaces."""
+        kappa = float(self.groups.relative_roughness)
+        return self.gap / kappa if kappa > 0 else np.full_like(self.x, np.inf)
+
+    @property
+    def area_fraction(self) -> Array | None:
+        """Real area of contact over the apparent one at :attr:`x` [-]; None where the law knows no spectrum of the surface."""
+        if not isinstance(self.groups.law, WithArea) or self.groups.roughness == 0:
+            return None
+        return self.groups.law.area_fraction_at(self.contact_pressure * math.sqrt(float(self.groups.load)))
+
+    @property
+    def central_area_fraction(self) -> float:
+        """Real area of contact over the apparent one at x = 0 [-]; nan where the law knows no spectrum of the surface."""
+        return self._central_area()[0]
+
+    @property
+    def central_area_fraction_error(self) -> float:
+        """Estimated absolute error of :attr:`central_area_fraction` [-], by that of the central gap."""
+        return self._central_area()[1]
+
+    def _central_area(self) -> tuple[float, float]:
+        law = self.groups.law
+        if not isinstance(law, WithArea) or self.groups.roughness == 0:
+            return math.nan, math.nan
+        error = abs(self.central_gap) * self.errors["central_gap"]
+        gaps = np.array([self.central_gap, self.central_gap - error, self.central_gap + error])
+        found = law.area_fraction_at(np.exp(law.log_pressure(gaps / float(self.groups.relative_roughness))))
+        return float(found[0]), float(np.abs(found[1:] - found[0]).max())
+
+    @property
+    def law_parameters(self) -> dict[str, float | str]:
+        """Parameters of the contact law beside alpha, beta and h_rms; none of the exponential one."""
+        return {} if self.groups.law is None else self.groups.law.parameters
+
+    @property
+    def hersey_number(self) -> float:
+        """Hersey number eta U/F_N [-]: of the contact, or for beta = 1 where only groups are known."""
+        return float(self.groups.hersey_number() if self.contact is None else self.contact.hersey_number)
+
+    def friction(self, mu0: float | None = None, beta: float | None = None, definition: Definition = "paper") -> Friction:
+        r"""Return the friction coefficient.
+
+        .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
+
+        Parameters
+        ----------
+        mu0 : float, optional
+            Friction coefficient of the dry contact [-], >= 0; that of the contact, or 1, if omitted.
+        beta : float, optional
+            Coefficient of the contact law [-], > 0; that of the contact, or 1, if omitted.
+        definition : {"paper", "balanced"}
+            Viscous part as the paper prints it, or as the force on the substrate, which balances all forces on the
+            cylinder.  They agree where asperities carry nothing; in boundary lubrication the printed one is larger.
+
+        Returns
+        -------
+        Friction
+            Contact, viscous and total friction [-].
+
+        Raises
+        ------
+        InputError
+            If an argument is outside its range.
+
+        Notes
+        -----
+        Source: [BP] Eq. (friction); theory.md, section 6, for the balanced form.
+        """
+        mu0, beta = coefficients(self.contact, mu0, beta)
+        name = f"viscous_{check_definition(definition)}"
+        contact = mu0 * self.contact_load_share
+        viscous = beta * float(getattr(self.observables, name))
+        share, relative = self.relative_errors[0], self.relative_errors[NAMES.index(name)]
+        return Friction(contact, viscous, contact + viscous, float(mu0 * share + abs(viscous) * relative))
+
+    def profile(self, x: Array) -> Profile:
+        """Return the fields at any positions from the polynomial on each panel.
+
+        Parameters
+        ----------
+        x : array_like, shape (n,)
+            Finite positions along the contact [a].
+
+        Returns
+        -------
+        Profile
+            In Hertz units.
+
+        Raises
+        ------
+        InputError
+            If a position is not finite.
+
+        Notes
+        -----
+        Between the nodes the gap is good to a few ``rtol``, relatively, in what ``solve`` returns
+        (``test_solve.py::test_the_profile_is_the_elastic_gap_of_its_pressure``), and to about 1e-4 on the points of a
+        curve, whose meshes are made for the observables.
+        """
+        points = np.atleast_1d(np.asarray(x, dtype=float))
+        if points.ndim != 1 or not np.isfinite(points).all():
+            raise InputError(f"x = {show(x)}; positions must be finite numbers in one dimension.")
+        pressures = np.stack(self._pressures)
+        contact, fluid = self.mesh.interpolate(pressures, points)
+        return Profile(points, gap_at(self.mesh, self.nodal_gap, points) + self.gap_shift, contact, fluid)
+
+    def to_si(self, x: Array | None = None) -> Profile:
+        """Return the fields in SI units: positions and gaps in m, pressures in Pa.
+
+        Parameters
+        ----------
+        x : array_like, shape (n,), optional
+            Positions along the contact [m]; the nodes by default.
+
+        Returns
+        -------
+        Profile
+            In SI units.
+
+        Raises
+        ------
+        InputError
+            If the solution comes from groups alone, which do not fix the scales.
+        """
+        if self.contact is None:
+            raise InputError("to_si needs the Hertz scales of a contact; solve a LineContact instead of Groups.")
+        scales = self.contact.hertz
+        if x is None:
+            p = Profile(self.x, self.gap, self.contact_pressure, self.fluid_pressure)
+        else:
+            p = self.profile(np.asarray(x, dtype=float) / scales.half_width)
+        return Profile(
+            p.x * scales.half_width,
+            p.gap * scales.indentation,
+            p.contact_pressure * scales.pressure,
+            p.fluid_pressure * scales.pressure,
+            "SI",
+        )
+
+    def to_dict(self, mu0: float | None = None, beta: float | None = None) -> dict[str, object]:
+        """Return inputs, observables, both frictions, errors and outcome under their names, ready for JSON.
+
+        Parameters
+        ----------
+        mu0, beta : float, optional
+            As in :meth:`friction`.
+
+        Returns
+        -------
+        dict
+            Numbers, text, lists and dictionaries of these; nan or infinity where a quantity does not exist.
+        """
+        names = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "minimum_position", "flux_gap")
+        result: dict[str, object] = {
+            "speed": float(self.groups.speed),
+            "load": float(self.groups.load),
+            "roughness": float(self.groups.roughness),
+            "contact_law": self.law,
+            "contact_law_parameters": self.law_parameters,
+        }
+        result |= {name: getattr(self, name) for name in (*names, "offset", "hersey_number", "lambda_ratio")}
+        if isinstance(self.groups.law, WithArea):
+            result["central_area_fraction"] = self.central_area_fraction
+            result["central_area_fraction_error"] = self.central_area_fraction_error
+        for definition in DEFINITIONS:
+            f = self.friction(mu0, beta, definition)
+            parts = {"contact": f.contact, "viscous": f.viscous, "total": f.total, "error": f.error}
+            result[f"friction_{definition}"] = parts
+        result["errors"] = self.errors
+        result |= {"error_estimate": self.error_estimate, "rtol": self.rtol, "nodes": self.nodes}
+        result |= {"outcome": self.outcome.name, "message": self.outcome.value, "notes": list(self.notes)}
+        return result

@@ -1,0 +1,233 @@
+"""From groups to a converged solution: start, refinement until the tolerance holds, and what to say where it does not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+from typing import Literal
+
+import numpy as np
+
+from stribeck._types import Array, LawShape, is_exponential
+from stribeck.contact_laws.scaled import named_law
+from stribeck.contacts.line import Groups, LineContact
+from stribeck.equations.observables import NAMES, Observables
+from stribeck.numerics.newton import Outcome
+from stribeck.numerics.panels import Mesh
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.units import InputError, show
+from stribeck.solids import hertz
+from stribeck.solver.cold_start import cold_start, start_by_exponential
+from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
+from stribeck.solver.refinement import Point, converge, order_for, quasistatic_shift, solvable
+from stribeck.solver.solution import Solution
+
+RTOL_RANGE = (1e-11, 1e-2)
+"""Tolerances that may be asked for; below, double precision reaches no state."""
+
+PROFILE_TAIL = 10.0
+"""Legendre tail left in the logarithm of the gap between the nodes of a single solution, in units of its tolerance."""
+
+LEAST_ESTIMATE = 0.03
+"""Part of the tolerance below which no error is stated, as estimates so small are not sure."""
+
+SURE_ESTIMATE = 1e-10
+"""Error from which estimates are sure also where the tolerance is smaller."""
+
+
+class SolveError(RuntimeError):
+    """A solve that did not reach its tolerance.
+
+    Parameters
+    ----------
+    outcome : Outcome
+        Why.
+    solution : Solution or None
+        What was reached, with its error estimate, if there is a state.
+    message : str
+        The sentence shown: the state, the outcome, what was reached.
+    """
+
+    def __init__(self, outcome: Outcome, solution: Solution | None, message: str) -> None:
+        super().__init__(message)
+        self.outcome = outcome
+        self.solution = solution
+
+
+@one_blas_thread
+def solve(
+    problem: Groups | LineContact,
+    *,
+    rtol: float = 1e-6,
+    law: str | LawShape | None = None,
+    on_failure: Literal["raise", "return"] = "raise",
+) -> Solution:
+    r"""Solve one state of the lubricated rough contact, from cold.
+
+    The coupled equations are [BP] Appendix A: contact pressure by the contact law, Reynolds' equation, plane-strain
+    elasticity, fixed load.
+
+    Parameters
+    ----------
+    problem : Groups or LineContact
+        The state.  Speed zero (quasistatic), roughness zero (smooth) and both (Hertz, closed form) are ordinary inputs.
+    rtol : float
+        Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2.
+    law : str or LawShape, optional
+        Contact law: an object such as :class:`stribeck.GreenwoodWilliamson`, or the name of one that needs no parameters; that
+        of the problem if omitted, which is the exponential one unless it says otherwise.
+    on_failure : {"raise", "return"}
+        What to do where the tolerance was not reached: raise :class:`SolveError` or return what there is, with its outcome.
+
+    Returns
+    -------
+    Solution
+        Fields, observables, outcome and error estimate.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range.
+    SolveError
+        If the solve failed, unless ``on_failure="return"`` and there is a state to return.
+
+    Notes
+    -----
+    Tested cold over speed 1e-12 to 1e6 and 0, load 1e-8 to 10, relative roughness 1e-6 to 1e3 and 0
+    (``tests/test_solve_random.py``).  The error estimate covers the true error in at least 95 % of random states.
+
+    Source: [BP] Appendix A; theory.md Eqs. (1)-(5); numerics.md for the scheme.
+    """
+    groups, contact = as_groups(with_law(problem, law))
+    check_rtol(rtol)
+    if on_failure not in ("raise", "return"):
+        raise InputError(f"on_failure = {show(on_failure)}; it must be 'raise' or 'return'.")
+    if groups.speed == 0 and groups.roughness == 0:
+        return hertz_solution(groups, contact, rtol)
+    return finish(solved_point(groups, rtol), groups, contact, rtol, on_failure)
+
+
+def solved_point(groups: Groups, rtol: float) -> Point:
+    """Return the refined state of ``groups`` from cold; raise where no path leads there."""
+    path = cold_start(solvable(groups))
+    if not path.outcome.ok and not is_exponential(groups.law):
+        path = start_by_exponential(solvable(groups))
+    if not path.outcome.ok:
+        raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
+    return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+
+
+def with_law(problem: Groups | LineContact, law: str | LawShape | None) -> Groups | LineContact:
+    """Return the problem with another contact law, unless none is given."""
+    if law is None or not isinstance(problem, Groups | LineContact):
+        return problem
+    shape = named_law(law) if isinstance(law, str) else law
+    return replace(problem, law=shape) if isinstance(problem, Groups) else problem.replace(law=shape)
+
+
+def as_groups(problem: Groups | LineContact) -> tuple[Groups, LineContact | None]:
+    """Return the scalar groups of a problem and its contact, if it has one."""
+    if isinstance(problem, LineContact):
+        return problem.groups, problem
+    if not isinstance(problem, Groups):
+        raise InputError(f"problem = {show(problem)}; it must be a LineContact or Groups(speed, load, roughness).")
+    if problem.shape != ():
+        raise InputError(f"groups have shape {problem.shape}; solve takes one state, use stribeck_curve for many.")
+    return problem, None
+
+
+def check_rtol(rtol: float) -> None:
+    """Refuse a tolerance that is no number or out of range."""
+    low, high = RTOL_RANGE
+    if isinstance(rtol, bool) or not isinstance(rtol, int | float) or not low <= rtol <= high:
+        raise InputError(
+            f"rtol = {show(rtol)}; it must be a number from {low:g}, what double precision can give, to {high:g}."
+        )
+
+
+def describe(groups: Groups) -> str:
+    """Return the groups in words, for messages."""
+    return f"speed {float(groups.speed):.6g}, load {float(groups.load):.6g}, roughness {float(groups.roughness):.6g}"
+
+
+def finish(point: Point, groups: Groups, contact: LineContact | None, rtol: float, on_failure: str = "raise") -> Solution:
+    """Return the solution that a refined state is, or raise what its outcome asks for."""
+    solution = solution_of(point, contact, rtol)
+    if solution is not None and (point.outcome.ok or on_failure == "return"):
+        return solution
+    reached = "" if solution is None else f" Reached: {solution.error_estimate:.1e}, asked: {rtol:.1e}."
+    raise SolveError(point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}")
+
+
+def least_estimate(rtol: float) -> float:
+    """Return the smallest error that is stated for a tolerance."""
+    return max(LEAST_ESTIMATE * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
+
+
+def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solution | None:
+    """Return the solution that a refined state is, or None where there is no state."""
+    state, values, estimate = point.state, point.values, point.estimate
+    if state is None or values is None or estimate is None:
+        return None
+    notes = [*shape_notes(contact), *law_notes(point.groups, contact, values)]
+    if contact is not None and point.groups.speed > 0:
+        notes += cavitation_notes(contact, state.equations.pressures(state.y)[1])
+    if math.isnan(values.flux_gap):
+        notes.append("The gap is negative, so that no fluid passes: there is no flux gap.")
+    if estimate.floor > 0.1 * rtol:
+        notes.append(f"Rounding in double precision bounds the relative error of this state at {estimate.floor:.1e}.")
+    return Solution(
+        groups=point.groups,
+        contact=contact,
+        outcome=point.outcome,
+        notes=tuple(notes),
+        rtol=rtol,
+        law=state.equations.law.name,
+        observables=values,
+        relative_errors=np.maximum(estimate.relative, least_estimate(rtol)),
+        rounding_floor=estimate.floor,
+        mesh=state.mesh,
+        nodal_gap=state.gap,
+        gap_shift=quasistatic_shift(point.groups),
+        nodal_pressures=partial(state.equations.pressures, state.y),
+        newton_steps=state.root.steps,
+    )
+
+
+def hertz_solution(groups: Groups, contact: LineContact | None, rtol: float) -> Solution:
+    """Return the closed form of the dry, smooth contact on a mesh graded towards its edges."""
+    towards_edge = 1 - 0.5 ** np.arange(1, 45)
+    beyond_edge = 1 + 0.5 ** np.arange(1, 45)
+    positive = np.concatenate([towards_edge, [1.0], beyond_edge[::-1], [2.0, 4.0, 8.0, 16.0]])
+    mesh = Mesh(np.concatenate([-positive[::-1], [0.0], positive]), order_for(rtol))
+    values = Observables(
+        contact_load_share=1.0,
+        fluid_load_share=0.0,
+        central_gap=0.0,
+        minimum_gap=0.0,
+        minimum_position=0.0,
+        flux_gap=0.0,
+        offset=hertz.OFFSET,
+        viscous_paper=0.0,
+        viscous_balanced=0.0,
+    )
+    return Solution(
+        groups=groups,
+        contact=contact,
+        outcome=Outcome.CONVERGED,
+        notes=("Speed and roughness are zero: the dry contact of Hertz, in closed form.",),
+        rtol=rtol,
+        law="dry contact",
+        observables=values,
+        relative_errors=np.full(len(NAMES), float(np.finfo(float).eps)),
+        rounding_floor=0.0,
+        mesh=mesh,
+        nodal_gap=hertz.gap(mesh.nodes),
+        gap_shift=0.0,
+        nodal_pressures=partial(_dry_pressures, mesh),
+    )
+
+
+def _dry_pressures(mesh: Mesh) -> tuple[Array, Array]:
+    return hertz.pressure(mesh.nodes), np.zeros(mesh.size)

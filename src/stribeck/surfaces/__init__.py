@@ -1,0 +1,1 @@
+"""Surfaces: from measured heights to a spectrum and a contact law."""

@@ -1,0 +1,204 @@
+"""Heights from the files of instruments: plain text by ourselves, some forty formats through SurfaceTopography."""
+
+from __future__ import annotations
+
+import math
+import os
+import warnings
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.files.writing import MissingExtraError
+from stribeck.quantities.units import InputError, show, to_si
+from stribeck.surfaces.text import TEXT, read_text
+from stribeck.surfaces.topography import Topography
+
+__all__ = ["read_topography"]
+
+UNSIGNED = {"asc", "hgt", "xyz"}
+"""Formats of SurfaceTopography that begin with no mark of their own, so that it takes much for them that is something else."""
+
+
+def read_topography(
+    path: str | os.PathLike[str],
+    *,
+    unit: str | None = None,
+    height_unit: str | None = None,
+    spacing: str | float | None = None,
+    channel: str | None = None,
+) -> Topography:
+    """Read the heights of a measured surface.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file: plain text (.csv, .tsv, .txt, .dat, .xyz), or a format that SurfaceTopography knows, such as .x3p, .sur,
+        .opd, .sdf, .plux, .al3d, .spm or .nc (extra ``surface``).
+    unit : str, optional
+        Unit of lengths, such as ``"um"``, where the file does not declare it.
+    height_unit : str, optional
+        Unit of heights, where it is another one.
+    spacing : str or float, optional
+        Distance between points with its unit, or in m, where the file does not hold it.
+    channel : str, optional
+        Name of the channel, where the file has several; the default is the first with heights.
+
+    Returns
+    -------
+    Topography
+        The heights in m, NaN where points are missing.
+
+    Raises
+    ------
+    InputError
+        Where the file cannot be read, declares no unit, or contradicts what is given.
+    MissingExtraError
+        Where the format needs SurfaceTopography and it is not installed.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(f"{path} is no file; check the name.")
+    for name, value in (("unit", unit), ("height_unit", height_unit)):
+        if value is not None:
+            to_si(f"1 {value}", "length", name)
+    if path.suffix.lower() in TEXT:
+        if channel is not None:
+            raise InputError(f"{path} is plain text without channels; leave out channel = {show(channel)}.")
+        return read_text(path, unit=unit, height_unit=height_unit, spacing=spacing)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # it warns of MPI that is not there
+            import SurfaceTopography
+            from SurfaceTopography.Exceptions import ReadFileError
+    except ImportError:
+        raise MissingExtraError(f"reading {path.name}", "surface", "SurfaceTopography") from None
+    try:
+        _check_whole(path)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # its readers warn of metadata that we do not use
+            # A stream of our own, as some readers leave theirs open.
+            with path.open("rb") as stream, SurfaceTopography.open_topography(stream) as reader:
+                _check_format(path, reader)
+                return _from_channel(path, reader, _channel(path, reader, channel), unit, height_unit, spacing)
+    except InputError:
+        raise
+    except ReadFileError as problem:
+        detail = "" if "tried " in str(problem) else f" ({_first(problem)})"
+        raise InputError(
+            f"{path} is in no format that SurfaceTopography knows, or damaged{detail}; export it as X3P or as text with units."
+        ) from None
+    except Exception as problem:  # its forty readers leak errors of many kinds, and each means the same to the user
+        raise InputError(
+            f"{path} could not be read by SurfaceTopography ({type(problem).__name__}: {_first(problem)}); "
+            "export it as X3P or as text with units."
+        ) from None
+
+
+def _check_whole(path: Path) -> None:
+    """Refuse a file that is empty, and a zip archive, as .x3p and .plux are, that is cut off or spoilt."""
+    if path.stat().st_size == 0:
+        raise InputError(f"{path} is empty; copy it from the instrument again.")
+    with path.open("rb") as stream:
+        if stream.read(4) != b"PK\x03\x04":
+            return
+    try:
+        with zipfile.ZipFile(path) as archive:
+            spoilt = archive.testzip()
+    except (zipfile.BadZipFile, OSError, ValueError):
+        raise InputError(
+            f"{path} is cut off or damaged: it begins as a zip archive and has no list of its parts at the end; "
+            "copy it from the instrument again."
+        ) from None
+    except (RuntimeError, NotImplementedError) as problem:
+        raise InputError(f"{path} is a zip archive that cannot be opened ({_first(problem)}); export it again.") from None
+    if spoilt is not None:
+        raise InputError(f"{path} is damaged: {spoilt} in it is not what was written; copy it from the instrument again.")
+
+
+def _check_format(path: Path, reader: Any) -> None:
+    """Refuse what was taken for text or bare numbers, although its ending is that of a format with a mark of its own."""
+    from SurfaceTopography.IO import readers
+
+    ending = path.suffix.lower().lstrip(".")
+    if reader.format() in UNSIGNED and any(ending in _endings(known) and known.format() not in UNSIGNED for known in readers):
+        raise InputError(
+            f"{path} does not begin as .{ending} files do: it is damaged, or something else under that name; "
+            "copy it from the instrument again, or name it .txt if it is text."
+        )
+
+
+def _endings(reader: Any) -> list[str]:
+    try:
+        return list(reader.file_extensions())
+    except RuntimeError:  # it has none
+        return []
+
+
+def _channel(path: Path, reader: Any, name: str | None) -> Any:
+    heights = [channel for channel in reader.channels if channel.is_height_channel]
+    if not heights:
+        raise InputError(f"{path} has no channel of heights.")
+    if name is None:
+        return heights[0]
+    for channel in heights:
+        if channel.name == name:
+            return channel
+    known = ", ".join(repr(channel.name) for channel in heights)
+    raise InputError(f"{path} has no channel of heights called {show(name)}; it has {known}.")
+
+
+def _from_channel(
+    path: Path, reader: Any, channel: Any, unit: str | None, height_unit: str | None, spacing: str | float | None
+) -> Topography:
+    format_name = reader.format()
+    shape, declared, sizes = tuple(channel.nb_grid_pts), channel.unit, channel.physical_sizes
+    if declared is None and unit is None:
+        raise InputError(
+            f"{path} does not say its unit; add --unit um, and --height-unit nm where heights have another one "
+            "(in Python unit='um', height_unit='nm')."
+        )
+    length = to_si(f"1 {declared or unit}", "length", "unit")
+    if declared is not None:
+        for name, given in (("unit", unit), ("height_unit", height_unit)):
+            if given is not None:
+                raise InputError(f"{path} declares its unit, {declared}; leave out {name} = {show(given)}.")
+    if sizes is not None and any(size is None for size in sizes):
+        sizes = None
+    arguments: dict[str, Any] = {}
+    if sizes is None:
+        if spacing is None:
+            raise InputError(
+                f"{path} does not say the distance between points; add --spacing '0.5 um' (in Python spacing='0.5 um')."
+            )
+        step = to_si(spacing, "length", "spacing")
+        arguments["physical_sizes"] = tuple(n * step / length for n in shape)
+    elif spacing is not None:
+        raise InputError(f"{path} says the distance between its points; leave out spacing = {show(spacing)}.")
+    if declared is None:
+        arguments["unit"] = unit
+    topography = channel.topography(**arguments)
+    heights: Array = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
+    factor = to_si(f"1 {height_unit}", "length", "height_unit") if height_unit else length
+    steps = tuple(float(size) * length / n for size, n in zip(topography.physical_sizes, heights.shape, strict=True))
+    if not topography.is_uniform:
+        raise InputError(f"{path} holds a line with uneven steps; export it as text with two columns.")
+    resolution = topography.short_reliability_cutoff()
+    source = (
+        f"{path.name} ({format_name}, channel {channel.name!r})"
+        if len(reader.channels) > 1
+        else f"{path.name} ({format_name})"
+    )
+    if resolution is not None and not (math.isfinite(resolution) and resolution > 0):
+        resolution = None
+    return Topography(
+        heights * factor, steps, source=source, resolution=None if resolution is None else float(resolution) * length
+    )
+
+
+def _first(problem: BaseException) -> str:
+    text = " ".join(str(problem).split())
+    return text if len(text) <= 120 else text[:117] + "..."

@@ -1,0 +1,232 @@
+r"""The isotropic power spectrum of measured heights, from a map or from a line.
+
+.. math::
+
+    C(q) = \frac{(\Delta x\, \Delta y)^2}{(2\pi)^2 A \langle w^2 \rangle} \left|\sum w\, h\, e^{-i q \cdot x}\right|^2,
+    \qquad h_\mathrm{rms}^2 = \sum_k C(q_k)\, \Delta q_x \Delta q_y
+
+averaged over rings of wave vectors, no wider than a tenth of their wave number where there are enough of them.  A line
+gives the spectrum along it,
+
+.. math:: C_1(q) = \int_{-\infty}^{\infty} C\left((q^2 + k^2)^{1/2}\right) \mathrm{d}k
+
+Source: [Persson05]; [Jacobs17] on windows and reliability.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.quantities.units import InputError, show
+from stribeck.surfaces.topography import Topography
+
+__all__ = ["MeasuredSpectrum", "Window", "line_density", "power_spectrum"]
+
+Window = Literal["hann", "none"]
+
+LONGEST = 2.5
+"""Least number of waves in the scan that is used: detrending and window take power from longer ones."""
+
+PIXELS = 4.0
+"""Least number of points in a wave that is used: power beyond the grid folds onto shorter ones."""
+
+RINGS = 24
+"""Rings in a decade of wave numbers, at most."""
+
+INNER = 8
+"""Wave numbers that stand for those within a ring of a map when a model is averaged over it; along a line 2 do."""
+
+ENDLESS = 14.0
+"""Upper end of the integral along a line; the rest is below exp(-14 (1 + 2 H)) of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredSpectrum:
+    r"""Power spectrum of a scan, averaged over rings of wave numbers.
+
+    Attributes
+    ----------
+    wavenumber : ndarray
+        Wave number of each ring, the geometric mean of those in it [1/m].
+    density : ndarray
+        Mean of the periodogram: C of a map [m^4], C_1 of a line [m^3].
+    modes : ndarray
+        Effective number of independent modes in each ring; the relative standard error is one over its root.
+    inner : ndarray
+        Wave numbers over which a model is averaged to be compared with each ring, a row for each ring [1/m].
+    is_line : bool
+        Whether it is that of a line.
+    lowest, highest : float
+        Between these wave numbers the spectrum is reliable [1/m].
+    lowest_reason, highest_reason : str
+        What sets these limits.
+    mean_square : float
+        Mean square of the heights under the window [m^2].
+    """
+
+    wavenumber: Array
+    density: Array
+    modes: Array
+    inner: Array
+    is_line: bool
+    lowest: float
+    highest: float
+    lowest_reason: str
+    highest_reason: str
+    mean_square: float
+
+    @property
+    def reliable(self) -> Flags:
+        """Flags of the rings that lie within the reliable wave numbers."""
+        return np.asarray((self.wavenumber >= self.lowest) & (self.wavenumber <= self.highest))
+
+
+def power_spectrum(
+    topography: Topography,
+    window: Window = "hann",
+    *,
+    resolution: float | None = None,
+) -> MeasuredSpectrum:
+    """Return the isotropic power spectrum of a scan.
+
+    Parameters
+    ----------
+    topography : Topography
+        Heights without trend and without missing points.
+    window : {"hann", "none"}
+        Weight of the heights; ``"none"`` is for periodic ones.
+    resolution : float, optional
+        Shortest wavelength that the instrument resolves [m]; that of the topography by default.
+
+    Returns
+    -------
+    MeasuredSpectrum
+        The spectrum with its reliable range.
+
+    Raises
+    ------
+    InputError
+        Where points are missing, the window is unknown, or nothing of the spectrum is reliable.
+
+    Notes
+    -----
+    Reliable are wavelengths of at most 1/2.5 of the scan's shorter side, and at least 4 points and the resolution.
+    The sum of all modes is the mean square of the windowed heights to rounding (``test_surface_spectrum.py``).
+    """
+    if topography.missing:
+        raise InputError(f"{topography.source}: {topography.missing} points are missing; fill them first with repaired().")
+    z = topography.heights
+    weight = _window(window, z.shape)
+    square = float(np.mean(weight**2))
+    # The window turns a mean into power at long wavelengths, so its own mean goes first.
+    z = (z - np.sum(weight * z) / np.sum(weight)) * weight
+    area = math.prod(topography.size)
+    axes = [2 * math.pi * np.fft.fftfreq(n, step) for n, step in zip(z.shape, topography.spacing, strict=True)]
+    power = np.abs(np.fft.fftn(z)) ** 2 * (math.prod(topography.spacing) ** 2 / ((2 * math.pi) ** z.ndim * area * square))
+    q = np.sqrt(sum(component**2 for component in np.meshgrid(*axes, indexing="ij")))
+    fundamental = 2 * math.pi / min(topography.size)
+    largest = math.pi / max(topography.spacing)
+    edges = _edges(fundamental, largest)
+    keep = (q >= edges[0]) & (q < edges[-1])
+    radius, power = q[keep], power[keep]
+    order = np.argsort(radius, kind="stable")
+    radius, power = radius[order], power[order]
+    starts = np.unique(np.searchsorted(radius, edges[:-1]))
+    counts = np.diff(np.append(starts, radius.size))
+    density = np.add.reduceat(power, starts) / counts
+    wavenumber = np.exp(np.add.reduceat(np.log(radius), starts) / counts)
+    inner = INNER if not topography.is_line else 2
+    places = starts[:, None] + np.floor((np.arange(inner) + 0.5) / inner * counts[:, None]).astype(int)
+    # Heights are real: half of the modes repeat the other half.  The window binds neighbours together.
+    independent = float(square**2 / np.mean(weight**4))
+    highest, highest_reason = 2 * math.pi / (PIXELS * max(topography.spacing)), f"{PIXELS:g} points in a wave"
+    instrument = resolution if resolution is not None else topography.resolution
+    if instrument is not None and 2 * math.pi / instrument < highest:
+        highest, highest_reason = 2 * math.pi / instrument, "resolution of the instrument"
+    lowest = LONGEST * fundamental
+    spectrum = MeasuredSpectrum(
+        wavenumber=wavenumber,
+        density=density,
+        modes=counts / 2 * independent,
+        inner=radius[places],
+        is_line=topography.is_line,
+        lowest=lowest,
+        highest=highest,
+        lowest_reason=f"{LONGEST:g} waves in the scan",
+        highest_reason=highest_reason,
+        mean_square=float(np.mean(z**2) / square),
+    )
+    if spectrum.reliable.sum() < 6:
+        raise InputError(
+            f"{topography.source}: only wavelengths from {2 * math.pi / highest:.3g} m ({highest_reason}) to "
+            f"{2 * math.pi / lowest:.3g} m ({spectrum.lowest_reason}) are reliable, too few for a spectrum; "
+            "measure a larger area or with finer steps."
+        )
+    return spectrum
+
+
+def line_density(wavenumber: Array, roughness: SelfAffine) -> Array:
+    r"""Return the spectrum along a line of a self-affine surface without a short cut-off.
+
+    .. math:: C_1(q) = 2 \int_0^\infty C(q \cosh v)\, q \cosh v\, \mathrm{d}v
+
+    Parameters
+    ----------
+    wavenumber : ndarray
+        Wave numbers along the line, of any shape [1/m].
+    roughness : SelfAffine
+        The surface; its spectrum goes on beyond ``q1``, and is flat below the roll-off to ``q0`` and zero below that.
+
+    Returns
+    -------
+    ndarray
+        C_1 [m^3].
+    """
+    k = np.asarray(wavenumber, dtype=float)
+    q_r, q0, H = roughness.roll_off or roughness.q0, roughness.q0, roughness.hurst
+    level = float(roughness.spectrum.density[0])
+    # Beyond the roll-off the integral of a power law is a closed form.
+    falling = level * (np.maximum(k, q_r) / q_r) ** (-2 * (1 + H)) * k
+    result = falling * math.sqrt(math.pi) * math.gamma(H + 0.5) / math.gamma(H + 1)
+    flat = k < q_r
+    if not flat.any():
+        return np.asarray(result)
+    t, w = np.polynomial.legendre.leggauss(16)
+    q = k[flat][:, None]
+    corner = np.arccosh(q_r / q)
+    # The plateau from q_0 to q_r, and the power law from there on.
+    total = q_r * np.tanh(corner) - q0 * np.tanh(np.arccosh(np.maximum(q0 / q, 1.0)))
+    for low, high in ((0.0, 1.0), (1.0, 3.0), (3.0, ENDLESS)):
+        v = corner + low + 0.5 * (high - low) * (t + 1)
+        inner = q * np.cosh(v)
+        total = total + 0.5 * (high - low) * np.sum(w * (inner / q_r) ** (-2 * (1 + H)) * inner, axis=-1, keepdims=True)
+    result = np.asarray(result)
+    result[flat] = 2 * level * total[:, 0]
+    return result
+
+
+def _window(window: str, shape: tuple[int, ...]) -> Array:
+    if window not in ("hann", "none"):
+        raise InputError(f"window = {show(window)} is not known; choose hann, or none for periodic heights.")
+    weight = np.ones(shape)
+    if window == "hann":
+        for axis, n in enumerate(shape):
+            line = np.sin(math.pi * (np.arange(n) + 0.5) / n) ** 2
+            weight = weight * np.expand_dims(line, tuple(i for i in range(len(shape)) if i != axis))
+    return weight
+
+
+def _edges(fundamental: float, largest: float) -> Array:
+    """Return edges of rings: a fundamental wide at first, then even on a logarithmic axis."""
+    ratio = 10 ** (1 / RINGS)
+    edges = [0.5 * fundamental]
+    while edges[-1] < largest:
+        edges.append(max(edges[-1] + fundamental, edges[-1] * ratio))
+    edges[-1] = largest * (1 + 1e-12)
+    return np.array(edges)

@@ -1,0 +1,193 @@
+"""Picture of a surface: its heights, its spectrum with the fit, and the contact law that follows.
+
+matplotlib comes with the extra ``plot`` and is imported on first use, without pyplot.
+"""
+
+from __future__ import annotations
+
+import math
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stribeck.cli.reports.surface import error_text
+from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, PICTURES
+from stribeck.files.writing import MissingExtraError, PathLike, replacing
+from stribeck.quantities.units import DIMENSIONS, format_si
+from stribeck.surfaces.analysis import Surface
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["plot_surface"]
+
+MOST_PIXELS = 1024
+"""Largest number of points along a side of the map that is drawn."""
+
+
+def plot_surface(surface: Surface, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
+    """Draw the heights of a surface, its spectrum with the fit, and its contact law.
+
+    Parameters
+    ----------
+    surface : Surface
+        The surface.
+    path : str or path-like, optional
+        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+    force : bool
+        Whether an existing file is replaced; otherwise it is kept.
+    title : str
+        Headline; the name of the file by default.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written, or exists and ``force`` is not given.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingExtraError("a picture", "plot", "matplotlib") from None
+    figure = Figure(figsize=(14.0, 5.2), dpi=130, facecolor="white")
+    heights, spectrum, law = figure.subplots(1, 3)
+    figure.subplots_adjust(left=0.055, right=0.95, top=0.86, bottom=0.27, wspace=0.42)
+    figure.suptitle(title or surface.topography.source or "Surface", x=0.055, ha="left", size=13, color=INK)
+    _draw_heights(figure, heights, surface)
+    _draw_spectrum(spectrum, surface)
+    _draw_law(law, surface)
+    for axes in (spectrum, law):
+        axes.legend(fontsize=8, frameon=False, loc="lower left")
+    _footer(figure, surface)
+    if path is not None:
+        with replacing(path, PICTURES, force=force) as temporary:
+            figure.savefig(temporary)
+    return figure
+
+
+def _draw_heights(figure: Figure, axes: Axes, surface: Surface) -> None:
+    z = surface.topography.heights
+    factor, unit = _scale(max(surface.topography.size))
+    height, height_unit = _scale(float(np.abs(z).max()))
+    axes.set_xlabel(f"$x$ ({unit})")
+    if surface.topography.is_line:
+        x = np.arange(z.size) * surface.topography.spacing[0]
+        axes.plot(x * factor, z * height, color=INK, lw=0.7)
+        axes.set_ylabel(f"height without trend ({height_unit})")
+        axes.set_xlim(0, x[-1] * factor)
+        axes.set_title("Profile", size=10, color=GREY, loc="left")
+        return
+    coarse = [math.ceil(n / MOST_PIXELS) for n in z.shape]
+    limit = 3 * surface.rms_height * height
+    image = axes.imshow(
+        z[:: coarse[0], :: coarse[1]].T * height,
+        extent=(0, surface.topography.size[0] * factor, 0, surface.topography.size[1] * factor),
+        origin="lower",
+        cmap="cividis",
+        vmin=-limit,
+        vmax=limit,
+        interpolation="nearest",
+    )
+    axes.set_ylabel(f"$y$ ({unit})")
+    axes.set_title(f"Height without trend ({height_unit})", size=10, color=GREY, loc="left")
+    figure.colorbar(image, ax=axes, fraction=0.046, pad=0.03)
+
+
+def _draw_spectrum(axes: Axes, surface: Surface) -> None:
+    measured, fit = surface.measured, surface.fit
+    q, density = measured.wavenumber, measured.density
+    good = measured.reliable
+    error = 1 / np.sqrt(measured.modes)
+    shown = density > 0
+    axes.plot(q[shown & ~good], density[shown & ~good], "o", ms=3, mfc="white", mec=GREY, label="not reliable")
+    axes.errorbar(
+        q[good],
+        density[good],
+        yerr=density[good] * np.minimum(np.stack((error, error))[:, good], [[0.95], [np.inf]]),
+        fmt="o",
+        ms=3,
+        color=INK,
+        elinewidth=0.7,
+        label="measured, standard error",
+    )
+    smooth = np.geomspace(surface.roughness.q0 * 1.0001, surface.roughness.q1 * 0.9999, 200)
+    axes.plot(
+        smooth,
+        fit.at(smooth, is_line=measured.is_line),
+        color=CONTACT,
+        lw=1.8,
+        label=f"fit, $H$ = {surface.roughness.hurst:.2f}",
+    )
+    if "roll_off" in fit.found and surface.roughness.roll_off is not None:
+        axes.axvline(surface.roughness.roll_off, color=MARK, lw=1.0, ls=(0, (4, 3)), label="roll-off $q_r$")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    peak = float(density[good].max())
+    axes.set_ylim(max(float(density[shown].min()), float(density[good].min()) * 1e-3) * 0.3, peak * 10)
+    axes.set_xlabel("wave number $q$ (1/m)")
+    axes.set_ylabel("spectrum along the line $C_1$ (m$^3$)" if measured.is_line else "spectrum $C$ (m$^4$)")
+    axes.set_title("Power spectrum", size=10, color=GREY, loc="left")
+
+
+def _draw_law(axes: Axes, surface: Surface) -> None:
+    law = surface.law
+    height = np.linspace(0.005, 4.0, 500)
+    s = law.alpha * height
+    axes.plot(height, law.beta * np.exp(law.log_pressure(s)), color=CONTACT, lw=2.0, label="Persson, fitted spectrum")
+    axes.plot(
+        height,
+        law.beta * np.exp(-s),
+        color=FLUID,
+        lw=1.3,
+        ls=(0, (5, 3)),
+        label=rf"exponential, $\alpha$ = {law.alpha:.2f}, $\beta$ = {law.beta:.3g}",
+    )
+    axes.set_yscale("log")
+    axes.set_xlabel(r"mean separation $u/h_\mathrm{rms}$")
+    axes.set_ylabel(r"contact pressure $p/E^*$")
+    axes.set_xlim(0, 4)
+    top = float(law.beta * np.exp(law.log_pressure(np.array([s[0]])))[0])
+    axes.set_ylim(law.beta * math.exp(-4 * law.alpha) * 0.02, 4 * top)
+    area = axes.twinx()
+    area.plot(height, law.area_fraction(s), color=GREY, lw=1.2, ls=":", label="contact area")
+    area.set_ylim(0, 1.02)
+    area.set_ylabel("real over apparent contact area (dotted)", color=GREY, size=8)
+    area.tick_params(colors=GREY, labelsize=8)
+    axes.set_title("Contact law", size=10, color=GREY, loc="left")
+
+
+def _footer(figure: Figure, surface: Surface) -> None:
+    import textwrap
+
+    found = surface.to_dict()
+    parts = [
+        rf"$h_\mathrm{{rms}}$ = {format_si(found['h_rms'], 'length')} $\pm$ {error_text(found['h_rms_error'])}",
+        rf"$H$ = {found['hurst']:.3f} $\pm$ {found['hurst_error']:.2g}",
+        rf"$\alpha$ = {found['alpha']:.3f} $\pm$ {found['alpha_error']:.2g}",
+        rf"$\beta$ = {found['beta']:.3g} $\pm$ {found['beta_error']:.2g}",
+        f"rms slope {found['rms_slope']:.3g}",
+        f"window {surface.window}",
+        f"trend {surface.shape.trend}",
+        f"stribeck {version('stribeck')}",
+    ]
+    if found["body_radius"] is not None:
+        parts.insert(4, f"radius of the body {format_si(found['body_radius'], 'length')}")
+    lines: list[tuple[str, Any]] = [(", ".join(parts), GREY)]
+    lines += [(line, CONTACT) for note in surface.notes for line in textwrap.wrap(note, 190)]
+    for i, (line, color) in enumerate(lines[:6]):
+        figure.text(0.055, 0.125 - 0.026 * i, line, size=8, color=color)
+
+
+def _scale(length: float) -> tuple[float, str]:
+    """Return the factor from m to a unit in which a length is a readable number, and that unit."""
+    unit = format_si(length, "length").rpartition(" ")[2]
+    power = next(power for power, known in DIMENSIONS["length"].steps.items() if known == unit)
+    return 10.0**-power, unit

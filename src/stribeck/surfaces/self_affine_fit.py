@@ -1,0 +1,377 @@
+r"""Fit of a self-affine spectrum to a measured one, with its uncertainty.
+
+Each ring of the periodogram is a mean of ``n`` exponentially distributed numbers about the spectrum ``M``, so the
+likelihood is Whittle's, and twice its distance from the best possible one is the deviance
+
+.. math:: D = 2 \sum_b n_b \left[\frac{P_b}{M_b} - 1 - \ln\frac{P_b}{M_b}\right]
+
+The model is a power law with or without a roll-off, with or without a sharp long or short cut-off inside the scan, and with
+or without white noise of the instrument; the least deviance plus ``k ln(sum n)`` for its ``k`` parameters decides.
+
+Source: [Whittle53]; [Schwarz78] for the penalty.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.contact_laws.persson import GAMMA, exponential_limit
+from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.quantities.units import InputError
+from stribeck.surfaces.measured_spectrum import LONGEST, MeasuredSpectrum, line_density
+
+__all__ = ["SelfAffineFit", "fit_self_affine"]
+
+STEP = 0.3
+"""Share of the neighbouring spectrum below which the level beyond a cut-off must lie, for it to be one."""
+
+UNSEEN = 0.7
+"""Standard error of the logarithm of a long cut-off beyond the scan: about a factor of two."""
+
+MISFIT = 2.0
+"""Deviance over its expectation from which the spectrum is said not to be self-affine."""
+
+
+@dataclass(frozen=True, eq=False)
+class SelfAffineFit:
+    r"""Self-affine spectrum that fits a measured one.
+
+    Attributes
+    ----------
+    roughness : SelfAffine
+        The spectrum; its ends are cut-offs of the surface where they were found, else those of the scan.
+    errors : dict of str to float
+        Standard errors of ``h_rms`` [m], ``q0``, ``roll_off``, ``q1`` [1/m] and ``hurst`` [-]; only of what was found.
+    found : tuple of str
+        Which of ``roll_off``, ``q0``, ``q1`` and ``noise`` the spectrum shows.
+    noise : float
+        Spectrum of the white noise, as that of the measurement; 0 where none was found.
+    deviance : float
+        Deviance over its expectation: near one where the model holds.
+    band : tuple of float
+        Wave numbers that were fitted [1/m].
+    """
+
+    roughness: SelfAffine
+    errors: dict[str, float]
+    found: tuple[str, ...]
+    noise: float
+    deviance: float
+    band: tuple[float, float]
+    _values: Array = field(repr=False)
+    _covariance: Array = field(repr=False)
+
+    def exponential_limit(self, gamma: float = GAMMA) -> tuple[float, float, float, float]:
+        """Return alpha and beta of the contact law, each followed by its standard error.
+
+        Parameters
+        ----------
+        gamma : float
+            Reduction of the elastic energy [-].
+
+        Returns
+        -------
+        tuple of float
+            alpha, its error, beta, its error [-].
+        """
+
+        def limit(values: Array) -> Array:
+            return np.log(exponential_limit(_surface(values), gamma))
+
+        alpha, beta = np.exp(limit(self._values))
+        errors = _spread(limit, self._values, self._covariance)
+        return float(alpha), float(alpha * errors[0]), float(beta), float(beta * errors[1])
+
+    def at(self, wavenumber: Array, *, is_line: bool = False, noise: bool = True) -> Array:
+        """Return the fitted spectrum, as a map or a line shows it.
+
+        Parameters
+        ----------
+        wavenumber : ndarray
+            Wave numbers [1/m].
+        is_line : bool
+            Whether the spectrum along a line is wanted.
+        noise : bool
+            Whether the noise is part of it.
+
+        Returns
+        -------
+        ndarray
+            Spectrum [m^4; m^3 along a line].
+        """
+        q = np.asarray(wavenumber, dtype=float)
+        clean = line_density(q, self.roughness) if is_line else self.roughness.spectrum.at(q)
+        return clean + (self.noise if noise else 0.0)
+
+
+def fit_self_affine(measured: MeasuredSpectrum) -> SelfAffineFit:
+    """Fit a self-affine spectrum to the reliable part of a measured one.
+
+    Parameters
+    ----------
+    measured : MeasuredSpectrum
+        Spectrum of a map or a line.
+
+    Returns
+    -------
+    SelfAffineFit
+        The spectrum with standard errors.
+
+    Raises
+    ------
+    InputError
+        Where no fit converged, or there is nothing but white noise.
+
+    Notes
+    -----
+    Standard errors come from the Fisher information of the rings, larger by the root of the deviance where that is above
+    one; how often they cover is in docs/surfaces.md, from ``benchmarks/surface_errors.py``.  Sharp cut-offs, looked for in
+    maps only, are found to the width of a ring.
+    """
+    rings = measured.reliable
+    data = _Data(measured.density[rings], measured.modes[rings], measured.inner[rings], measured.is_line)
+    q = measured.wavenumber[rings]
+    chosen = min(_candidates(data, q), key=lambda trial: trial.score, default=None)
+    if chosen is None:
+        raise InputError("no self-affine spectrum fits the measured one; look at it with --plot.")
+    fit = _result(chosen, data, measured, q)
+    if fit.noise > 0 and fit.noise > fit.at(q[:1] * (1 + 1e-9), is_line=data.is_line, noise=False)[0]:
+        raise InputError(
+            f"the scan shows nothing but white noise at wavelengths from {2 * math.pi / q[-1]:.3g} m to "
+            f"{2 * math.pi / q[0]:.3g} m; check that the channel holds heights, or measure a larger area."
+        )
+    return fit
+
+
+# --- the model ---
+
+
+@dataclass(frozen=True, eq=False)
+class _Data:
+    density: Array
+    modes: Array
+    inner: Array
+    is_line: bool
+
+    def part(self, flags: Flags) -> _Data:
+        return replace(self, density=self.density[flags], modes=self.modes[flags], inner=self.inner[flags])
+
+
+@dataclass(frozen=True, eq=False)
+class _Trial:
+    """A fit: logarithm of the level at the middle, Hurst exponent, and what else was asked for."""
+
+    values: Array
+    roll_off: bool
+    noise: bool
+    low: int
+    high: int
+    deviance: float
+    parameters: int
+    weight: float
+
+    @property
+    def score(self) -> float:
+        # Roll-off and noise are the rule, and cost no more than what chance gives once in twenty; a roll-off beside a
+        # cut-off is not.
+        cheap = (self.roll_off and self.low == 0) + self.noise
+        return self.deviance + (self.parameters - cheap) * math.log(self.weight) + 3.84 * cheap
+
+
+def _candidates(data: _Data, q: Array) -> Iterator[_Trial]:
+    n = q.size
+    plain = [_fitted(data, q, roll_off, False, 0, n) for roll_off in (False, True)]
+    best = min((trial for trial in plain if trial), key=lambda trial: trial.score, default=None)
+    if best is None:
+        return
+    # Sharp cut-offs: all places with six rings left between them, one end after the other.  The spectrum along a line
+    # does not vanish beyond them, so they are looked for in maps only.
+    if data.is_line:
+        yield from (trial for trial in plain if trial)
+        yield from (trial for trial in (_fitted(data, q, roll_off, True, 0, n) for roll_off in (False, True)) if trial)
+        return
+    trials = list(plain)
+    for first in ("low", "high"):
+        # One end after the other, and the first once more when the other is known.
+        ends, end = (0, n), first
+        for _ in range(3):
+            places = (
+                [(i, ends[1]) for i in range(1, ends[1] - 5)]
+                if end == "low"
+                else [(ends[0], j) for j in range(ends[0] + 6, n)]
+            )
+            found = _cut(data, q, places)
+            trials.append(found)
+            ends = (found.low, found.high) if found else ends
+            end = "high" if end == "low" else "low"
+    noisy = min((trial for trial in trials if trial), key=lambda trial: trial.score)
+    if noisy.high == n:
+        trials.append(_fitted(data, q, noisy.roll_off, True, noisy.low, n))
+        trials.append(_fitted(data, q, not noisy.roll_off, True, noisy.low, n))
+    yield from (trial for trial in trials if trial)
+
+
+def _cut(data: _Data, q: Array, places: list[tuple[int, int]]) -> _Trial | None:
+    trials = [_fitted(data, q, False, False, low, high) for low, high in places]
+    best = min((trial for trial in trials if trial), key=lambda trial: trial.score, default=None)
+    if best is None:
+        return None
+    rolled = _fitted(data, q, True, False, best.low, best.high)
+    return min((trial for trial in (best, rolled) if trial), key=lambda trial: trial.score)
+
+
+def _fitted(data: _Data, q: Array, roll_off: bool, noise: bool, low: int, high: int) -> _Trial | None:
+    """Return the fit with cut-offs before ring ``low`` and after ring ``high`` - 1."""
+    n = q.size
+    inside = np.zeros(n, dtype=bool)
+    inside[low:high] = True
+    part, centre = data.part(inside), math.log(q[low] * q[high - 1]) / 2
+    from scipy.optimize import least_squares  # here, as it takes a fifth of a second to import
+
+    # Beyond a cut-off only what the window leaks is left: a level of its own for each ring.
+    for outside, edge in ((data.density[:low], low), (data.density[high:], high - 1)):
+        if outside.size and not outside.min() < STEP * data.density[edge]:
+            return None
+    levels = n - (high - low)
+    slope, height = np.polyfit(np.log(q[inside]) - centre, np.log(part.density), 1, w=np.sqrt(part.modes))
+    steep = 1.0 if data.is_line else 2.0
+    values = [height, min(max((-slope - steep) / 2, 0.1), 0.95)]
+    lower, upper = [-np.inf, 0.01], [np.inf, 0.9999]
+    if roll_off:
+        values.append(math.log(q[low]) + 0.3 * math.log(q[high - 1] / q[low]))
+        lower.append(math.log(part.inner[0, 0]))
+        upper.append(math.log(q[high - 1]) - 0.5)
+        if lower[-1] >= upper[-1]:
+            return None
+    if noise:
+        floor = math.log(part.density[-1])
+        values.append(floor - 1.0)
+        lower.append(floor - 12.0)
+        upper.append(floor + 2.0)
+
+    def residual(theta: Array) -> Array:
+        ratio = part.density / _model(theta, part, centre, roll_off, noise)
+        excess = np.maximum(ratio - 1 - np.log(ratio), 0.0)
+        return np.asarray(np.sign(ratio - 1) * np.sqrt(2 * part.modes * excess))
+
+    starts = [values]
+    if roll_off:
+        starts += [[height, values[1], lower[2] + share * (upper[2] - lower[2]), *values[3:]] for share in (0.1, 0.6)]
+    best: Any = None
+    for start in starts:
+        first = np.clip(start, np.array(lower) + 1e-9, np.array(upper) - 1e-9)
+        fit = least_squares(residual, first, bounds=(lower, upper), x_scale=0.1)
+        if fit.success and (best is None or fit.cost < best.cost):
+            best = fit
+    if best is None:
+        return None
+    weight = float(data.modes.sum())
+    return _Trial(best.x, roll_off, noise, low, high, 2 * best.cost, len(values) + levels, weight)
+
+
+def _model(theta: Array, data: _Data, centre: float, roll_off: bool, noise: bool) -> Array:
+    """Return the model averaged over each ring, C at its own level exp(theta_0) where ln q = centre."""
+    H = float(theta[1])
+    if data.is_line:
+        q_r = math.exp(theta[2]) if roll_off else float(data.inner.min())
+        q0 = float(data.inner.min())
+        unit = SelfAffine(1.0, q0, 1e9 * q0, H, max(q_r, q0))
+        shape = line_density(data.inner, unit) / float(line_density(np.array(math.exp(centre)), unit))
+    else:
+        corner = theta[2] if roll_off else -np.inf
+        x = np.maximum(np.log(data.inner), corner)
+        shape = np.exp(-2 * (1 + H) * (x - max(centre, corner)))
+    mean = math.exp(theta[0]) * shape.mean(axis=-1)
+    return np.asarray(mean + math.exp(theta[-1]) if noise else mean)
+
+
+# --- from the parameters of the fit to those of the surface ---
+
+
+def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) -> SelfAffineFit:
+    inside = slice(trial.low, trial.high)
+    part = replace(data, density=data.density[inside], modes=data.modes[inside], inner=data.inner[inside])
+    centre = math.log(q[trial.low] * q[trial.high - 1]) / 2
+    fundamental = measured.lowest / LONGEST
+    cuts = {"q0": trial.low > 0, "q1": trial.high < q.size}
+    if cuts["q0"]:
+        q0 = float(q[trial.low])
+    else:
+        # A roll-off goes on to the whole scan at least; a power law must not be prolonged to where it was not seen.
+        q0 = fundamental if trial.roll_off else float(measured.lowest)
+    q1 = math.sqrt(q[trial.high - 1] * q[trial.high]) if cuts["q1"] else float(measured.highest)
+
+    def model(theta: Array) -> Array:
+        return np.asarray(np.log(_model(theta, part, centre, trial.roll_off, trial.noise)))
+
+    slopes = _jacobian(model, trial.values)
+    information = slopes.T @ (part.modes[:, None] * slopes)
+    freedom = max(q.size - trial.parameters, 1)
+    excess = trial.deviance / freedom
+    covariance = np.zeros((trial.values.size + 2, trial.values.size + 2))
+    covariance[:-2, :-2] = np.linalg.pinv(information) * max(1.0, excess)
+    # A sharp cut-off is known to the distance between rings, which the window blurs by a fundamental.
+    for place, name, ring in ((-2, "q0", trial.low), (-1, "q1", trial.high)):
+        if cuts[name]:
+            covariance[place, place] = (max(q[ring] - q[ring - 1], fundamental) / q[ring]) ** 2 / 3
+    if trial.roll_off and not cuts["q0"]:
+        covariance[-2, -2] = UNSEEN**2
+    theta = np.concatenate((trial.values, [math.log(q0), math.log(q1)]))
+
+    def physical(theta: Array) -> Array:
+        lowest, H = theta[-2], float(theta[1])
+        corner = max(theta[2], lowest) if trial.roll_off else lowest
+        shape = SelfAffine(1.0, math.exp(lowest), math.exp(theta[-1]), H, math.exp(corner))
+        if measured.is_line:
+            level = float(line_density(np.array(math.exp(centre)), shape))
+        else:
+            level = float(shape.spectrum.density[0]) * math.exp(-2 * (1 + H) * max(centre - corner, 0.0))
+        return np.array([0.5 * (theta[0] - math.log(level)), H, corner, lowest, theta[-1]])
+
+    values = physical(theta)
+    turn = _jacobian(physical, theta)
+    covariance = turn @ covariance @ turn.T
+    sigma = np.sqrt(np.diag(covariance))
+    surface = _surface(values)
+    errors = {"h_rms": surface.h_rms * float(sigma[0]), "hurst": float(sigma[1])}
+    if trial.roll_off:
+        errors["roll_off"] = math.exp(values[2]) * float(sigma[2])
+    errors |= {name: math.exp(values[i]) * float(sigma[i]) for i, name in ((3, "q0"), (4, "q1")) if cuts[name]}
+    flags = {"roll_off": trial.roll_off, **cuts, "noise": trial.noise}
+    return SelfAffineFit(
+        roughness=surface,
+        errors=errors,
+        found=tuple(name for name, flag in flags.items() if flag),
+        noise=math.exp(trial.values[-1]) if trial.noise else 0.0,
+        deviance=float(excess),
+        band=(float(q[trial.low]), float(q[trial.high - 1])),
+        _values=values,
+        _covariance=covariance,
+    )
+
+
+def _surface(values: Array) -> SelfAffine:
+    log_h, H, corner, lowest, highest = map(float, values)
+    return SelfAffine(math.exp(log_h), math.exp(lowest), math.exp(highest), H, math.exp(max(corner, lowest)))
+
+
+def _jacobian(function: Callable[[Array], Array], x: Array) -> Array:
+    """Return central differences of a smooth function of parameters of order one."""
+    columns = []
+    for i in range(x.size):
+        step = np.zeros(x.size)
+        step[i] = 1e-5
+        columns.append((function(x + step) - function(x - step)) / 2e-5)
+    return np.stack(columns, axis=1)
+
+
+def _spread(function: Callable[[Array], Array], x: Array, covariance: Array) -> Array:
+    """Return standard errors of the values of a function of parameters with this covariance."""
+    turn = _jacobian(function, x)
+    return np.asarray(np.sqrt(np.diag(turn @ covariance @ turn.T)))

@@ -1,0 +1,251 @@
+r"""Measured heights of a surface: what a map or a line is, dead pixels and spikes, and surfaces made with a known spectrum.
+
+Reading files is in ``topography_text`` and ``topography_files``, their evaluation in ``surfaces``.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
+from stribeck.quantities.units import InputError
+
+__all__ = ["Topography", "synthetic_topography"]
+
+FEWEST = {1: 64, 2: 32}
+"""Least points along a line and along each side of a map, for a spectrum of a decade."""
+
+MOST_MISSING = 0.1
+"""Largest share of missing points that is filled."""
+
+SPIKE = 12.0
+"""Deviation from the neighbours, over its robust standard deviation, from which a point is dead."""
+
+
+@dataclass(frozen=True, eq=False)
+class Topography:
+    """Heights on an even grid, along a line or over a rectangle.
+
+    Parameters
+    ----------
+    heights : ndarray
+        Heights, of shape (n,) or (nx, ny); NaN where nothing was measured [m].
+    spacing : tuple of float
+        Distance between neighbouring points, along each axis [m].
+    source : str
+        Where it comes from: file, format and channel.
+    resolution : float, optional
+        Shortest wavelength that the instrument resolves [m]; None where it is not known.
+    notes : tuple of str
+        What was done to the data or must be known about them, a sentence each.
+
+    Raises
+    ------
+    InputError
+        Where the array has another shape, is too small, has too few measured points or no roughness at all.
+    """
+
+    heights: Array
+    spacing: tuple[float, ...]
+    source: str = ""
+    resolution: float | None = None
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check the heights and keep a read-only copy."""
+        z = np.array(self.heights, dtype=float)
+        where = f"{self.source}: " if self.source else ""
+        if z.ndim not in (1, 2) or len(self.spacing) != z.ndim:
+            raise InputError(f"{where}heights of shape {z.shape} with {len(self.spacing)} spacings are no line and no map.")
+        if min(z.shape) < FEWEST[z.ndim]:
+            kind = "a line" if z.ndim == 1 else "a map"
+            raise InputError(
+                f"{where}{' x '.join(map(str, z.shape))} points are too few for a spectrum; "
+                f"{kind} needs {FEWEST[z.ndim]} or more along each side."
+            )
+        if not all(math.isfinite(step) and step > 0 for step in self.spacing):
+            raise InputError(f"{where}the spacing {self.spacing} m is not positive; say it with its unit.")
+        z[~np.isfinite(z)] = np.nan
+        share = float(np.isnan(z).mean())
+        if share > MOST_MISSING:
+            raise InputError(
+                f"{where}{100 * share:.0f} % of the points are missing, more than {100 * MOST_MISSING:.0f} %; "
+                "cut out a part of the scan that was measured."
+            )
+        if not np.nanmax(z) > np.nanmin(z):
+            raise InputError(f"{where}all heights are the same; there is no roughness to evaluate.")
+        z.setflags(write=False)
+        object.__setattr__(self, "heights", z)
+        object.__setattr__(self, "spacing", tuple(float(step) for step in self.spacing))
+
+    @property
+    def is_line(self) -> bool:
+        """Whether the heights lie along a line."""
+        return self.heights.ndim == 1
+
+    @property
+    def size(self) -> tuple[float, ...]:
+        """Length of the scan along each axis [m]."""
+        return tuple(n * step for n, step in zip(self.heights.shape, self.spacing, strict=True))
+
+    @property
+    def missing(self) -> int:
+        """Number of points without a height."""
+        return int(np.isnan(self.heights).sum())
+
+    def repaired(self, *, keep_spikes: bool = False) -> Topography:
+        """Return the topography with dead points filled smoothly from their neighbours.
+
+        Parameters
+        ----------
+        keep_spikes : bool
+            Whether points far off all their neighbours are kept as roughness.
+
+        Returns
+        -------
+        Topography
+            Heights without NaN; the notes say how many points were filled.
+
+        Raises
+        ------
+        InputError
+            Where too many points are dead.
+
+        Notes
+        -----
+        A spike is further than 12 robust standard deviations from the median of its 24 neighbours in a map, and from the
+        straight lines through its neighbours in a profile.  Filled heights solve Laplace's equation with the heights around
+        as boundary values; they are smoother than the surface, which lowers short waves by about their share.
+        """
+        dead, spikes = np.isnan(self.heights), np.zeros(self.heights.shape, dtype=bool)
+        if not keep_spikes:
+            spikes = _spikes(self.heights)
+        notes = list(self.notes)
+        if dead.any():
+            notes.append(f"{_count(dead)} without a height, filled from the neighbours.")
+        if spikes.any():
+            notes.append(f"{_count(spikes)} taken for dead, as far off all neighbours, and filled from them.")
+        holes = dead | spikes
+        if holes.mean() > MOST_MISSING:
+            raise InputError(f"{self.source}: {100 * holes.mean():.0f} % of the points are dead or missing; measure again.")
+        return replace(self, heights=_filled(self.heights, holes), notes=tuple(notes))
+
+
+def synthetic_topography(
+    roughness: Spectrum | SelfAffine,
+    points: tuple[int, ...],
+    spacing: float,
+    seed: int,
+    *,
+    oversize: int = 2,
+) -> Topography:
+    r"""Return a Gaussian random surface with a known power spectrum.
+
+    .. math:: h(x) = \sum_k \left[C(q_k)\, \Delta q_x \Delta q_y\right]^{1/2} \xi_k \, e^{i q_k \cdot x}
+
+    Parameters
+    ----------
+    roughness : Spectrum or SelfAffine
+        Power spectrum of the surface.
+    points : tuple of int
+        Points along each axis of the map, or one number for a line.
+    spacing : float
+        Distance between points, the same along both axes [m].
+    seed : int
+        Seed of the random numbers xi, complex and normal with unit mean square.
+    oversize : int
+        How much larger than wanted the periodic surface is made, so that the part cut out is not periodic itself.
+
+    Returns
+    -------
+    Topography
+        The surface; its own rms height scatters about that of the spectrum.
+
+    Raises
+    ------
+    InputError
+        Where the numbers of points are too small.
+
+    Notes
+    -----
+    Wave numbers beyond those of the grid, pi/spacing, are left out.  A line is cut from a map of that length.
+    """
+    table = roughness.spectrum if isinstance(roughness, SelfAffine) else roughness
+    shape = points if len(points) == 2 else (points[0], max(64, points[0] // 4))
+    n = tuple(oversize * count for count in shape)
+    random = np.random.default_rng(seed)
+    q = [2 * math.pi * np.fft.fftfreq(count, spacing) for count in n]
+    amplitude = np.sqrt(table.at(np.hypot(*np.meshgrid(*q, indexing="ij"))) * (2 * math.pi / spacing) ** 2 / (n[0] * n[1]))
+    white = np.fft.fft2(random.standard_normal(n)) / math.sqrt(n[0] * n[1])
+    heights = np.fft.ifft2(white * amplitude).real * (n[0] * n[1])
+    cut = heights[: shape[0], : shape[1]]
+    if len(points) == 1:
+        return Topography(cut[:, 0], (spacing,), source="synthetic")
+    return Topography(cut, (spacing, spacing), source="synthetic")
+
+
+def _count(flags: Flags) -> str:
+    number = int(flags.sum())
+    return f"{number} of {flags.size} points {'is' if number == 1 else 'are'}"
+
+
+def _spikes(heights: Array) -> Flags:
+    from scipy import ndimage
+
+    dead = np.isnan(heights)
+    z = np.where(dead, np.nanmedian(heights), heights)
+    if z.ndim == 1:
+        # Off the straight lines through the next and the next but one: beside a spike only one of them is spoilt.
+        line = np.pad(z, 2, mode="reflect", reflect_type="odd")
+        next_one, next_but_one = (
+            np.abs(z - 0.5 * (line[2 - i : z.size + 2 - i] + line[2 + i : z.size + 2 + i])) for i in (1, 2)
+        )
+        deviation, usual = np.minimum(next_one, next_but_one), next_one
+    else:
+        around = np.ones((5, 5), dtype=bool)
+        around[2, 2] = False
+        deviation = usual = np.abs(z - ndimage.median_filter(z, footprint=around, mode="nearest"))
+    spread = 1.4826 * float(np.median(usual[~dead]))
+    # Heights in a few steps may have no spread at all; then nothing can be told.
+    return np.asarray(~dead & (deviation > SPIKE * spread)) if spread > 0 else np.zeros(z.shape, dtype=bool)
+
+
+def _filled(heights: Array, holes: Flags) -> Array:
+    """Return the heights with the holes filled by the solution of Laplace's equation on the grid."""
+    if not holes.any():
+        return heights
+    from scipy import sparse
+    from scipy.sparse.linalg import spsolve
+
+    number = np.full(heights.shape, -1)
+    number[holes] = np.arange(holes.sum())
+    rows, columns, entries = [], [], []
+    known = np.zeros(int(holes.sum()))
+    degree = np.zeros(known.size)
+    for axis in range(heights.ndim):
+        for step in (-1, 1):
+            neighbour = np.roll(number, step, axis)
+            value = np.roll(heights, step, axis)
+            inside = np.ones(heights.shape, dtype=bool)
+            edge = [slice(None)] * heights.ndim
+            edge[axis] = slice(0, 1) if step == 1 else slice(-1, None)
+            inside[tuple(edge)] = False
+            here = holes & inside
+            to_hole, to_known = here & (neighbour >= 0), here & (neighbour < 0)
+            np.add.at(degree, number[here], 1.0)
+            np.add.at(known, number[to_known], value[to_known])
+            rows.append(number[to_hole])
+            columns.append(neighbour[to_hole])
+            entries.append(np.full(int(to_hole.sum()), -1.0))
+    size = known.size
+    rows.append(np.arange(size))
+    columns.append(np.arange(size))
+    entries.append(degree)
+    matrix = sparse.csc_matrix((np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns))), shape=(size, size))
+    filled = heights.copy()
+    filled[holes] = spsolve(matrix, known)
+    return filled

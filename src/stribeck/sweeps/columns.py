@@ -1,0 +1,109 @@
+"""What a sweep keeps of each state: the names, units and meanings of its numbers, and how a solution becomes a row of them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stribeck._types import Array, LawShape, WithArea
+from stribeck.contacts.friction import DEFINITIONS
+from stribeck.contacts.line import LineContact
+from stribeck.equations.observables import NAMES
+from stribeck.files.datasets import AREA, OBSERVABLES, si_films, unit_of
+from stribeck.numerics.newton import Outcome
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.solver.solution import Solution
+
+__all__ = ["OUTCOMES", "columns_of", "failed_row", "input_columns", "row_of"]
+
+ERROR = "ERROR"
+"""Outcome of a state whose solve ended in an error of the program instead of an :class:`Outcome`."""
+
+OUTCOMES = (*(outcome.name for outcome in Outcome), ERROR)
+"""The outcomes; a row holds the place of its own in here."""
+
+ABSOLUTE = ("contact_load_share", "fluid_load_share")
+
+FILMS = {
+    "central_film_thickness": ("m", "gap at the centre"),
+    "minimum_film_thickness": ("m", "least gap"),
+    "minimum_film_position": ("m", "position of the least gap"),
+    "flux_film_thickness": ("m", "fluid flux over half the speed"),
+    "hertz_half_width": ("m", "half-width a of the dry smooth contact"),
+    "hertz_indentation": ("m", "indentation u_Hz of the dry smooth contact"),
+    "hertz_pressure": ("Pa", "largest pressure p_Hz of the dry smooth contact"),
+}
+
+
+def columns_of(si: bool, law: LawShape | None = None) -> dict[str, tuple[str, str]]:
+    """Return unit and meaning of each number of a row, in their order.
+
+    Parameters
+    ----------
+    si : bool
+        Whether the states are contacts in SI units, so that films have lengths.
+    law : LawShape or None
+        Contact law of the states; one that knows its spectrum has the real area of contact.
+
+    Returns
+    -------
+    dict of str to tuple
+        By name; the last is the outcome, as a place in :data:`OUTCOMES`.
+    """
+    found = dict(OBSERVABLES)
+    for name in NAMES:
+        if name in OBSERVABLES:
+            kind = "absolute" if name in ABSOLUTE else "relative"
+            found[f"{name}_error"] = ("1", f"estimated {kind} error of {name}")
+    found["friction_contact"] = ("1", "part of the friction coefficient from asperities")
+    for definition in DEFINITIONS:
+        label = f"friction coefficient, definition {definition}"
+        found[f"friction_{definition}"] = ("1", label)
+        found[f"friction_{definition}_viscous"] = ("1", f"{label}: part from the fluid")
+        found[f"friction_{definition}_error"] = ("1", f"{label}: estimated absolute error")
+    found["hersey_number"] = ("1", "Hersey number, viscosity times speed over load")
+    if si:
+        found |= FILMS
+    if isinstance(law, WithArea):
+        found |= AREA
+    found["nodes"] = ("1", "unknown gaps in the discretisation")
+    found["newton_steps"] = ("1", "steps of the Newton iteration")
+    found["outcome"] = ("1", "how the solve of the state ended")
+    return found
+
+
+def input_columns(names: tuple[str, ...]) -> dict[str, tuple[str, str]]:
+    """Return unit and meaning of the inputs and groups of a state."""
+    found = {}
+    for name in names:
+        if name in ("speed_group", "load_group", "roughness_group"):
+            found[name] = ("1", name.replace("_", " "))
+        else:
+            unit = unit_of(name) if name in QUANTITIES else "1"
+            found[name] = (unit, "friction coefficient of the dry contact" if name == "mu0" else name.replace("_", " "))
+    return found
+
+
+def row_of(solution: Solution, mu0: float, beta: float) -> tuple[Array, str]:
+    """Return the numbers of a state, in the order of :func:`columns_of`, and what there is to say about it."""
+    values = [float(getattr(solution, name)) for name in OBSERVABLES]
+    values += [solution.errors[name] for name in NAMES if name in OBSERVABLES]
+    frictions = [solution.friction(mu0, beta, definition) for definition in DEFINITIONS]
+    values.append(frictions[0].contact)
+    for friction in frictions:
+        values += [friction.total, friction.viscous, friction.error]
+    values.append(float(solution.groups.hersey_number(beta)))
+    values += [value for value, _, _ in si_films(solution).values()]
+    if isinstance(solution.groups.law, WithArea):
+        values += [getattr(solution, name) for name in AREA]
+    values += [solution.nodes, solution.newton_steps, OUTCOMES.index(solution.outcome.name)]
+    said = solution.notes if solution.outcome.ok else (solution.outcome.value, *solution.notes)
+    return np.array(values), "\n".join(said)
+
+
+def failed_row(contact: LineContact | None, law: LawShape | None, outcome: str, message: str) -> tuple[Array, str]:
+    """Return the row of a state of which nothing is known but how its solve ended."""
+    values = np.full(len(columns_of(contact is not None, law)), math.nan)
+    values[-1] = OUTCOMES.index(outcome)
+    return values, message

@@ -1,0 +1,384 @@
+"""Sweep files: a TOML file that says what varies becomes a checked :class:`SweepDesign`, all states of which are possible.
+
+As with case files, everything that is wrong is told in one go, a sentence for each problem that names the key.
+"""
+
+import functools
+import hashlib
+import json
+import math
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, get_args
+
+import numpy as np
+
+from stribeck._types import Array, LawShape
+from stribeck.cases.case import Case, contact_inputs, error_sentence, example_of, group_inputs, read_toml, surface_table
+from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
+from stribeck.contacts.line import Groups, LineContact
+from stribeck.quantities.inputs import INPUTS, QUANTITIES, check_modulus_choice, quantity
+from stribeck.quantities.units import InputError, show
+from stribeck.sweeps.points import KINDS, RANDOM, Axis, Kind, points_of
+
+__all__ = ["SweepDesign", "load_sweep"]
+
+MOST_STATES = 1_000_000
+
+GROUPS = ("speed", "load", "roughness")
+COEFFICIENTS = {"mu0": "friction_coefficient", "beta": "beta"}
+"""What friction needs beside groups, and the quantities that these are."""
+
+ELASTICITY = ("modulus", "youngs_modulus", "poisson_ratio")
+
+
+@dataclass(frozen=True, eq=False)
+class SweepDesign:
+    """Many states to solve, each checked.
+
+    Attributes
+    ----------
+    path : pathlib.Path
+        The file that says so.
+    text : str
+        What stands in it.
+    title : str
+        Headline for outputs; empty where the file has none.
+    kind : {"grid", "list", "random", "latin-hypercube", "sobol"}
+        How the states were chosen.
+    shape : tuple of int
+        Points along each axis of a grid; otherwise the number of states.
+    varied : tuple of str
+        The inputs that vary, in the order of the file.
+    inputs : dict of str to ndarray
+        Every input at every state: in SI units, or ``mu0`` and ``beta`` beside the groups.
+    groups : ndarray, shape (n, 3)
+        Speed, load and roughness group of each state.
+    si : bool
+        Whether the states are contacts in SI units.
+    rtol : float
+        Relative tolerance of each state.
+    law : {"exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"}
+        Name of the contact law.
+    contact_law : LawShape or None
+        The law itself; None is the exponential one.
+    """
+
+    path: Path
+    text: str = field(repr=False)
+    title: str
+    kind: Kind
+    shape: tuple[int, ...]
+    varied: tuple[str, ...]
+    inputs: dict[str, Array] = field(repr=False)
+    groups: Array = field(repr=False)
+    si: bool
+    rtol: float
+    law: Law
+    contact_law: LawShape | None = None
+
+    def __len__(self) -> int:
+        """Return the number of states."""
+        return len(self.groups)
+
+    @functools.cached_property
+    def fingerprint(self) -> str:
+        """What tells this design from another: of its states and settings, not of comments in its file."""
+        settings: list[Any] = [sorted(self.inputs), self.si, self.rtol, self.law, self.kind, self.shape]
+        if self.contact_law is not None:
+            settings += [repr(self.contact_law), self.contact_law.parameters]
+        parts = [json.dumps(settings).encode(), self.groups.tobytes()]
+        parts += [self.inputs[name].tobytes() for name in sorted(self.inputs)]
+        return hashlib.sha256(b"".join(parts)).hexdigest()
+
+
+def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
+    """Read and check a sweep file.
+
+    Parameters
+    ----------
+    path : str or path-like
+        A TOML file: a table ``[contact]`` (as in a case file) or ``[groups]`` (``speed``, ``load``, ``roughness``, ``mu0``,
+        ``beta``) with what stays fixed, a table ``[vary]`` with what does not, and where wanted ``[design]`` (``kind``,
+        ``points``, ``seed``), ``[solver]`` (``rtol``), ``title`` and ``notes``.
+
+    Returns
+    -------
+    SweepDesign
+        The checked design.
+
+    Raises
+    ------
+    InputError
+        Where the file cannot be read, is no TOML, or has unknown, missing or impossible entries: a sentence
+        on each line, for all of its problems.
+    """
+    path = Path(path)
+    table = read_toml(path, "sweep file", "[vary]")
+    problems: list[str] = []
+    design = _checked(path, table, problems)
+    if design is None:
+        raise InputError("\n".join(f"{path}: {problem}" for problem in problems))
+    return design
+
+
+def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDesign | None:
+    """Return the design of a file, or None and all its problems."""
+    import pydantic
+
+    model = _model()
+    raw_vary = table.get("vary")
+    if "contact" in table and "groups" in table:
+        problems.append("the tables [contact] and [groups] are both given; give SI inputs or groups.")
+    si = "groups" not in table
+    axes: list[Axis] = []
+    try:
+        checked = model(**table).model_dump()
+    except pydantic.ValidationError as failure:
+        problems += [error_sentence(model, error) for error in failure.errors(include_url=False)]
+        checked = None
+    kind = _kind(table)
+    if isinstance(raw_vary, dict) and kind is not None:
+        for name, entry in raw_vary.items():
+            try:
+                axes.append(_axis(name, entry, kind, si))
+            except InputError as problem:
+                problems.append(f"[vary] {problem}")
+        if not raw_vary:
+            problems.append("[vary] is empty; say what varies, for example: load = ['10 N/m', '30 N/m'].")
+        base = table.get("contact" if si else "groups", {})
+        given = FROM_TABLES if si and ("surface" in table or "asperities" in table) else ()
+        problems += _missing(base if isinstance(base, dict) else {}, raw_vary, si, given)
+    if checked is None or problems:
+        return None
+    problems += _design_problems(checked["design"], axes)
+    if problems:
+        return None
+    law = checked["contact" if si else "groups"]["law"]
+    try:
+        for axis in axes:  # what varies is not also said by a table of the surface
+            source = TABLES_OF.get(law)
+            if si and axis.name in FROM_TABLES and source not in (None, "table") and checked[source] is not None:
+                raise InputError(f"[vary] {axis.name} follows from the table [{source}]; remove one of them.")
+        fixed = contact_inputs(checked, path.parent) if si else group_inputs(checked, path.parent)
+        shape: LawShape | None = fixed.pop("law")
+    except InputError as problem:
+        problems += str(problem).splitlines()
+        return None
+    varying = points_of(checked["design"]["kind"], axes, checked["design"]["points"] or 0, checked["design"]["seed"] or 0)
+    try:
+        inputs, groups = (_contacts if si else _groups)(fixed, varying)
+    except InputError as problem:
+        problems.append(str(problem))
+        return None
+    return SweepDesign(
+        path=path,
+        text=path.read_text(encoding="utf-8-sig"),
+        title=checked["title"],
+        kind=checked["design"]["kind"],
+        shape=tuple(map(len, axes)) if kind == "grid" else (len(groups),),
+        varied=tuple(varying),
+        inputs=inputs,
+        groups=groups,
+        si=si,
+        rtol=checked["solver"]["rtol"],
+        law=law,
+        contact_law=shape,
+    )
+
+
+@functools.cache
+def _model() -> Any:
+    """Return the pydantic model of a sweep file, made on first use because pydantic is slow to import."""
+    from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
+
+    def check_input(value: Any, info: ValidationInfo) -> float:
+        return quantity(str(info.field_name), value)
+
+    def check_group(value: Any, info: ValidationInfo) -> float:
+        return _group(str(info.field_name), value)
+
+    si = Annotated[float, BeforeValidator(check_input)]
+    number = Annotated[float, BeforeValidator(check_group)]
+    text = Annotated[str, Field(strict=True, description="text in quotes")]
+
+    class Table(BaseModel):
+        model_config = ConfigDict(extra="forbid")
+
+    class Contact(Table):
+        radius: si | None = None
+        load: si | None = None
+        viscosity: si | None = None
+        speed: si | None = None
+        roughness: si | None = None
+        alpha: si | None = None
+        beta: si | None = None
+        friction_coefficient: si | None = None
+        modulus: si | None = None
+        youngs_modulus: si | None = None
+        poisson_ratio: si | None = None
+        law: Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")] = Case.law
+
+    class GroupTable(Table):
+        speed: number | None = None
+        load: number | None = None
+        roughness: number | None = None
+        mu0: number | None = None
+        beta: number | None = None
+        law: Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")] = Case.law
+
+    class Design(Table):
+        kind: Annotated[Kind, Field(description=f"one of {', '.join(map(repr, KINDS))}")] = "grid"
+        points: Annotated[
+            int | None, Field(strict=True, ge=1, le=MOST_STATES, description=f"a whole number from 1 to {MOST_STATES}")
+        ] = None
+        seed: Annotated[int | None, Field(strict=True, ge=0, le=2**63 - 1, description="a whole number, zero or positive")] = (
+            None
+        )
+
+    class Solver(Table):
+        rtol: Annotated[
+            float,
+            Field(strict=True, ge=1e-11, le=1e-2, description="a number from 1e-11 to 1e-2, without quotes"),
+        ] = Case.rtol
+
+    class File(Table):
+        contact: Annotated[Contact, Field(description="a table, [contact]", default_factory=Contact)]
+        groups: Annotated[GroupTable, Field(description="a table, [groups]", default_factory=GroupTable)]
+        vary: Annotated[dict[str, Any], Field(description="a table, [vary]")]
+        design: Annotated[Design, Field(description="a table, [design]", default_factory=Design)]
+        solver: Annotated[Solver, Field(description="a table, [solver]", default_factory=Solver)]
+        surface: Annotated[surface_table(SURFACE), Field(description="a table, [surface]")] = None  # type: ignore[valid-type]
+        asperities: Annotated[surface_table(ASPERITIES), Field(description="a table, [asperities]")] = None  # type: ignore[valid-type]
+        table: Annotated[surface_table(TABLE), Field(description="a table, [table]")] = None  # type: ignore[valid-type]
+        title: text = Case.title
+        notes: text = Case.notes
+
+    return File
+
+
+# --- what varies ---
+
+
+def _kind(table: dict[str, Any]) -> Kind | None:
+    design = table.get("design", {})
+    kind = design.get("kind", "grid") if isinstance(design, dict) else None
+    return next((known for known in get_args(Kind) if known == kind), None)
+
+
+def _axis(name: str, entry: Any, kind: Kind, si: bool) -> Axis:
+    """Return what one entry of ``[vary]`` says."""
+    known = tuple(QUANTITIES) if si else (*GROUPS, *COEFFICIENTS)
+    if name not in known:
+        raise InputError(f"{show(name)} cannot vary; known are {', '.join(known)}.")
+    check: Callable[[str, Any], float] = quantity if si else _group
+    if isinstance(entry, list):
+        if not entry:
+            raise InputError(f"{name} = [] is empty; list its values.")
+        return Axis(name, values=tuple(check(name, value) for value in entry))
+    if kind == "list" or not isinstance(entry, dict):
+        ranges = "" if kind == "list" else ", or a range as in { range = [1, 10], points = 11 }"
+        raise InputError(f"{name} = {show(entry)} must be a list of values{ranges}.")
+    extra = [key for key in entry if key not in ("range", "points", "spacing")]
+    if extra:
+        raise InputError(f"{name} has the unknown key {show(extra[0])}; known are range, points and spacing.")
+    ends, spacing, points = entry.get("range"), entry.get("spacing", "log"), entry.get("points")
+    if not isinstance(ends, list) or len(ends) != 2:
+        raise InputError(f"{name}: range = {show(ends)} must be a list of two values, the lowest and the highest.")
+    low, high = (check(name, end) for end in ends)
+    if not low < high:
+        raise InputError(f"{name}: range = {show(ends)} must increase; write the lowest value first.")
+    if spacing not in ("log", "linear"):
+        raise InputError(f"{name}: spacing = {show(spacing)} must be 'log' or 'linear'.")
+    if spacing == "log" and low == 0:
+        raise InputError(f"{name}: range = {show(ends)} begins at zero; add spacing = 'linear', or list the values.")
+    if kind in RANDOM:
+        if points is not None:
+            raise InputError(f"{name}: points = {show(points)} is for grids; with kind = '{kind}' it belongs in [design].")
+        return Axis(name, low=low, high=high, spacing=spacing)
+    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= MOST_STATES:
+        raise InputError(f"{name}: points = {show(points)} must be a whole number from 2 to {MOST_STATES}.")
+    return Axis(name, low=low, high=high, points=points, spacing=spacing)
+
+
+def _design_problems(design: dict[str, Any], axes: list[Axis]) -> list[str]:
+    """Return what in ``[design]`` does not go with its kind or with the axes."""
+    kind, points = design["kind"], design["points"]
+    problems = []
+    if kind in RANDOM:
+        if points is None:
+            problems.append(f"[design] points is missing; say how many states kind = '{kind}' draws, as in points = 256.")
+        elif kind == "sobol" and points & (points - 1):
+            near = 2 ** round(math.log2(points))
+            problems.append(f"[design] points = {points} must be a power of two for kind = 'sobol', such as {near}.")
+        return problems
+    for key in ("points", "seed"):
+        if design[key] is not None:
+            problems.append(f"[design] {key} = {design[key]} is for {', '.join(RANDOM)}; kind = '{kind}' does not use it.")
+    sizes = {axis.name: len(axis) for axis in axes}
+    if kind == "list" and len(set(sizes.values())) > 1:
+        counts = ", ".join(f"{name} has {size}" for name, size in sizes.items())
+        problems.append(f"[vary] the lists must be equally long with kind = 'list': {counts}.")
+    states = math.prod(sizes.values()) if kind == "grid" else max(sizes.values())
+    if states > MOST_STATES:
+        problems.append(f"[vary] makes {states} states; at most {MOST_STATES} are possible in one sweep.")
+    return problems
+
+
+def _missing(fixed: dict[str, Any], varied: dict[str, Any], si: bool, by_tables: tuple[str, ...]) -> list[str]:
+    """Return what is given twice or not at all; ``by_tables`` are the inputs that the surface gives."""
+    table = "contact" if si else "groups"
+    problems = []
+    for name in varied:
+        if name in fixed:
+            problems.append(f"[{table}] {name} = {show(fixed[name])} also stands in [vary]; keep one of them.")
+    given = {**fixed, **varied}
+    if not si:
+        return problems + [f"[groups] {name} is missing; add it there or to [vary]." for name in GROUPS if name not in given]
+    for name in INPUTS:
+        if name not in given and name not in ELASTICITY and name not in by_tables:
+            problems.append(f"[contact] {name} is missing; {example_of(name)}, or let it vary in [vary].")
+    try:
+        check_modulus_choice(*(given.get(name) for name in ELASTICITY))
+    except InputError as problem:
+        problems.append(f"[contact] {problem}")
+    return problems
+
+
+# --- the states ---
+
+
+def _group(name: str, value: Any) -> float:
+    """Return a group or a coefficient, checked."""
+    if name in COEFFICIENTS:
+        try:
+            return quantity(COEFFICIENTS[name], value)
+        except InputError as problem:
+            raise InputError(str(problem).replace(COEFFICIENTS[name], name)) from None
+    if isinstance(value, str):
+        raise InputError(f"{name} = {show(value)} is text; groups are bare numbers, for values with units use [contact].")
+    return float(getattr(Groups(**{**dict.fromkeys(GROUPS, 1.0), name: value}), name))
+
+
+def _contacts(fixed: dict[str, Any], varying: dict[str, Array]) -> tuple[dict[str, Array], Array]:
+    """Return inputs and groups of contacts, each of which is checked."""
+    contacts = []
+    for i, values in enumerate(zip(*(column.tolist() for column in varying.values()), strict=True)):
+        try:
+            contacts.append(LineContact(**fixed, **dict(zip(varying, values, strict=True))))
+        except InputError as problem:
+            raise InputError(f"state {i}: {problem}") from None
+    inputs = {name: np.array([getattr(contact, name) for contact in contacts]) for name in INPUTS}
+    for name in ELASTICITY[1:]:
+        if name in varying or name in fixed:
+            inputs[name] = varying.get(name, np.full(len(contacts), fixed.get(name, math.nan)))
+    return inputs, np.array([[getattr(contact.groups, name) for name in GROUPS] for contact in contacts])
+
+
+def _groups(fixed: dict[str, float], varying: dict[str, Array]) -> tuple[dict[str, Array], Array]:
+    """Return coefficients and groups."""
+    number = len(next(iter(varying.values())))
+    every = {name: varying.get(name, np.full(number, fixed.get(name, 1.0))) for name in (*GROUPS, *COEFFICIENTS)}
+    return {name: every[name] for name in COEFFICIENTS}, np.stack([every[name] for name in GROUPS], axis=1)

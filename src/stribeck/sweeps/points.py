@@ -1,0 +1,107 @@
+"""The states of a design: every combination of a grid, the rows of a list, or points spread at random over ranges.
+
+Which inputs these are, and what they mean, is not known here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from stribeck._types import Array
+
+__all__ = ["KINDS", "RANDOM", "Axis", "Kind", "points_of"]
+
+Kind = Literal["grid", "list", "random", "latin-hypercube", "sobol"]
+
+KINDS: tuple[Kind, ...] = get_args(Kind)
+RANDOM: tuple[Kind, ...] = KINDS[2:]
+"""The kinds of design whose number of points is asked for."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What one input takes in a design: values that are listed, or a range.
+
+    Attributes
+    ----------
+    name : str
+        The input.
+    values : tuple of float
+        What is listed; empty for a range.
+    low, high : float
+        Ends of a range.
+    points : int
+        Values on a range in a grid; 0 where the design draws them.
+    spacing : {"log", "linear"}
+        In what a range is even.
+    """
+
+    name: str
+    values: tuple[float, ...] = ()
+    low: float = math.nan
+    high: float = math.nan
+    points: int = 0
+    spacing: Literal["log", "linear"] = "log"
+
+    def __len__(self) -> int:
+        """Return the number of values in a grid or a list."""
+        return len(self.values) or self.points
+
+    def every(self) -> Array:
+        """Return the values that a grid or a list takes."""
+        if self.values:
+            return np.array(self.values)
+        return np.asarray((np.geomspace if self.spacing == "log" else np.linspace)(self.low, self.high, self.points))
+
+    def at(self, parts: Array) -> Array:
+        """Return the values at given parts of the way, 0 to 1: on a range, or one of the listed."""
+        if self.values:
+            places = np.minimum((parts * len(self.values)).astype(int), len(self.values) - 1)
+            return np.asarray(np.array(self.values)[places])
+        if self.spacing == "log":
+            return np.asarray(np.exp(math.log(self.low) + parts * (math.log(self.high) - math.log(self.low))))
+        return np.asarray(self.low + parts * (self.high - self.low))
+
+
+def points_of(kind: Kind, axes: Sequence[Axis], points: int = 0, seed: int = 0) -> dict[str, Array]:
+    """Return the value of each axis at each state of a design.
+
+    Parameters
+    ----------
+    kind : {"grid", "list", "random", "latin-hypercube", "sobol"}
+        The design.  The states of a grid come in the order of the axes, the last one fastest.
+    axes : sequence of Axis
+        What varies.
+    points : int
+        States of a design at random; a power of two for "sobol".
+    seed : int
+        Of a design at random: the same seed gives the same states.
+
+    Returns
+    -------
+    dict of str to ndarray
+        By the name of the axis, all of one length.
+    """
+    if kind == "list":
+        return {axis.name: axis.every() for axis in axes}
+    if kind == "grid":
+        meshes = np.meshgrid(*(axis.every() for axis in axes), indexing="ij")
+        return {axis.name: mesh.ravel() for axis, mesh in zip(axes, meshes, strict=True)}
+    parts = _parts(kind, len(axes), points, seed)
+    return {axis.name: axis.at(parts[:, i]) for i, axis in enumerate(axes)}
+
+
+def _parts(kind: Kind, axes: int, points: int, seed: int) -> Array:
+    """Return points in the unit cube, shape (points, axes)."""
+    if kind == "random":
+        return np.random.default_rng(seed).random((points, axes))
+    from scipy.stats import qmc  # slow to import
+
+    # The seed by its old name, which SciPy before 1.15 knows too.
+    sampler = (qmc.LatinHypercube if kind == "latin-hypercube" else qmc.Sobol)(axes, seed=np.random.default_rng(seed))
+    return np.asarray(sampler.random(points))
