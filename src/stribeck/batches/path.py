@@ -47,7 +47,7 @@ LEAST_ROWS = 3
 
 
 def unloading(groups: Groups) -> Array:
-    """Return how far above their end the loading paths of states in rows begin, see :mod:`stribeck.solver.cold_start`; a column."""
+    """Return how far above their end the loading paths of states begin, as in :mod:`stribeck.solver.cold_start`; a column."""
     by_film = 0.5 * np.log(RIGID_SPEED / np.asarray(groups.speed))
     kappa = np.asarray(groups.relative_roughness)
     by_asperities = np.log(RIGID_ROUGHNESS / np.where(kappa > 0, kappa, 1e-300))

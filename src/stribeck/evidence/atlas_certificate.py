@@ -1,6 +1,6 @@
 """How wrong the atlas is: against states solved from cold that its table was not made from.
 
-``make certificate``, or ``python -m stribeck.evidence.atlas_certificate``, prints the tables of docs/atlas.md and draws its map.
+``make certificate`` (``python -m stribeck.evidence.atlas_certificate``) prints the tables of docs/atlas.md and draws its map.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 r"""Where friction falls with speed at all: the weakening number, and the roughness from which it only grows.
 
 The friction of [BP] near its minimum has one on either side of k = 0.4968 or none, see :func:`weakening_number`; ours is
-:func:`stribeck.asymptotics.rough.mixed.friction`, whose minimum is found numerically.  :mod:`stribeck.asymptotics.rough.transitions` makes
-predictions of both.
+:func:`stribeck.asymptotics.rough.mixed.friction`, whose minimum is found numerically.
+:mod:`stribeck.asymptotics.rough.transitions` makes predictions of both.
 
 Source: [BP] Section "Hydrodynamic-to-mixed lubrication transition" and Conclusion.
 """
@@ -88,7 +88,8 @@ def has_minimum(groups: Groups, mu0: float = 1.0, beta: float = 1.0, form: Form 
     beta : float
         Coefficient of the contact law [-].
     form : {"uniform", "exact", "expansion", "leading"}
-        By which friction: ``"uniform"`` by :func:`stribeck.asymptotics.rough.mixed.friction`, the others by that of [BP], as above.
+        By which friction: ``"uniform"`` by :func:`stribeck.asymptotics.rough.mixed.friction`,
+        the others by that of [BP], as above.
 
     Returns
     -------
@@ -131,8 +132,8 @@ def merging_roughness(load: Value, mu0: float = 1.0, beta: float = 1.0, criterio
     beta : float
         Coefficient of the contact law [-].
     criterion : {"uniform", "plateau", "lines", "weakening"}
-        ``"uniform"``: :func:`stribeck.asymptotics.rough.mixed.friction` no longer falls anywhere.  ``"plateau"``: the minimum of
-        [BP]'s friction reaches mu0, what its Conclusion names.  ``"lines"``: the two transitions of [BP],
+        ``"uniform"``: :func:`stribeck.asymptotics.rough.mixed.friction` no longer falls anywhere.
+        ``"plateau"``: the minimum of [BP]'s friction reaches mu0, what its Conclusion names.  ``"lines"``: the two transitions of [BP],
         ``speed_boundary_to_mixed`` and ``speed_at_minimum`` (exact), meet, what its Conclusion means by merging.
         ``"weakening"``: the minimum of [BP]'s friction disappears, k = 0.4968.
 
