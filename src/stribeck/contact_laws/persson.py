@@ -1,7 +1,8 @@
 r"""Persson's contact law: the pressure that holds two rough surfaces apart, from the power spectrum, to full contact.
 
 :mod:`stribeck.contact_laws.persson_integral` gives the mean separation :math:`u` at each mean pressure :math:`p`.
-At small pressure :math:`p = \beta E^* \exp(-\alpha u/h_\mathrm{rms})`.  The law is tabulated once as :math:`\ln\Phi + s` over :math:`\ln s`,
+At small pressure :math:`p = \beta E^* \exp(-\alpha u/h_\mathrm{rms})`.
+The law is tabulated once as :math:`\ln\Phi + s` over :math:`\ln s`,
 where :math:`s = \alpha u/h_\mathrm{rms}` and :math:`\Phi = p/(\beta E^*)`.
 
 Source: [YP08] for the integral, [Persson07] for the limit of small pressure.

@@ -133,7 +133,8 @@ def merging_roughness(load: Value, mu0: float = 1.0, beta: float = 1.0, criterio
         Coefficient of the contact law [-].
     criterion : {"uniform", "plateau", "lines", "weakening"}
         ``"uniform"``: :func:`stribeck.asymptotics.rough.mixed.friction` no longer falls anywhere.
-        ``"plateau"``: the minimum of [BP]'s friction reaches mu0, what its Conclusion names.  ``"lines"``: the two transitions of [BP],
+        ``"plateau"``: the minimum of [BP]'s friction reaches mu0, what its Conclusion names.
+        ``"lines"``: the two transitions of [BP],
         ``speed_boundary_to_mixed`` and ``speed_at_minimum`` (exact), meet, what its Conclusion means by merging.
         ``"weakening"``: the minimum of [BP]'s friction disappears, k = 0.4968.
 
