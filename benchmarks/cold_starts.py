@@ -22,7 +22,7 @@ from unittest.mock import patch
 import numpy as np
 
 import stribeck as sb
-from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import NAMES, observables
 from stribeck.fluids import newtonian as reynolds

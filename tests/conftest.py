@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.contact_laws.scaled import ShiftedShape, contact_law
+from stribeck.contact_laws.scaled import ShiftedShape
+from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import NAMES, observables
 from stribeck.fluids import newtonian as reynolds

@@ -13,7 +13,7 @@ from stribeck.batches.equations import DeviceEquations, DeviceOperators, newton
 from stribeck.batches.guess import Batch, Combined, column_groups, rigid_rows, spread
 from stribeck.batches.path import ended, judged, refined
 from stribeck.batches.plan import planned
-from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.groups import contact_law
 from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimates
 from stribeck.equations.line import Equations
 from stribeck.equations.observables import NAMES, observables

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stribeck._types import is_exponential
 from stribeck.cases.case import Case, CurveSettings, load_case
+from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.line import InputError, LineContact
 from stribeck.quantities.inputs import QUANTITIES
 

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from stribeck.contact_laws.scaled import ExponentialLaw, NoContact, contact_law
+from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 
 SEED = 52_901

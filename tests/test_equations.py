@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.line import Equations, Operators
 from stribeck.numerics.panels import Mesh

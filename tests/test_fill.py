@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import NAMES, gradients, observables, observables_of_rows
 from stribeck.numerics.panels import Mesh, base_edges

@@ -11,7 +11,9 @@ import pytest
 from scipy.integrate import quad
 
 import stribeck as sb
-from stribeck.contact_laws.scaled import BlendedShape, ExponentialShape, ScaledLaw, ShiftedShape, contact_law, lifted
+from stribeck.contact_laws.exponential import ExponentialShape
+from stribeck.contact_laws.scaled import BlendedShape, ScaledLaw, ShiftedShape
+from stribeck.contacts.groups import contact_law
 from stribeck.curves.elasticities import friction_elasticities
 from stribeck.equations.line import Equations, Operators
 from stribeck.numerics.panels import Mesh
@@ -19,6 +21,7 @@ from stribeck.regimes.distances import transition_distances
 from stribeck.regimes.weakening import merging_roughness, weakening
 from stribeck.solver import infill as fill
 from stribeck.solver import path as follow
+from stribeck.solver.at_rest import lifted
 from stribeck.solver.cold_start import start_by_exponential
 from stribeck.solver.refinement import converge
 

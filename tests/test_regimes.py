@@ -9,7 +9,8 @@ import pytest
 
 import stribeck as sb
 from stribeck import cli
-from stribeck.curves.elasticities import EXPONENTS, friction_elasticities
+from stribeck.contacts.line import EXPONENTS
+from stribeck.curves.elasticities import friction_elasticities
 from stribeck.regimes.distances import BOX, transition_distances
 
 CONTACT = sb.LineContact(

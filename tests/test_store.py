@@ -17,7 +17,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stribeck as sb
-from stribeck.files.datasets import curve_dataset, write_csv, write_data, write_netcdf
+from stribeck.curves.table import curve_dataset
+from stribeck.files.datasets import write_csv, write_data, write_netcdf
 from stribeck.files.writing import MissingExtraError, check_output, replacing
 
 CONTACT = sb.LineContact(

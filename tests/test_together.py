@@ -114,7 +114,7 @@ def test_an_interrupted_path_keeps_the_points_that_were_reported():
 
 def test_fine_panels_hold_the_far_gap_without_its_logarithm():
     # x**2/2 - ln|x|/2 + c is exact there: a change of friction on finer nodes would be an error of the estimate alone.
-    from stribeck.contact_laws.scaled import contact_law
+    from stribeck.contacts.groups import contact_law
     from stribeck.equations.error_estimate import changes
     from stribeck.equations.line import Equations
     from stribeck.equations.observables import observables

@@ -10,8 +10,8 @@ from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.table import TableLaw
 from stribeck.contacts.friction import Friction
 from stribeck.contacts.line import Groups, HertzScales, InputError, LineContact
-from stribeck.curves.elasticities import regime_of
 from stribeck.curves.landmarks import Landmark
+from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fits.fit import fit

@@ -15,8 +15,9 @@ from typing import Concatenate, Generic, Literal, ParamSpec
 
 import numpy as np
 
-from stribeck._types import Array, Flags, is_exponential
+from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import FILM_CONSTANT
+from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.line import Groups, InputError
 
 Value = float | Array

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, is_exponential
+from stribeck._types import Array
 from stribeck.atlas.grid import HEAVY, LEAST_LOAD, LEAST_SPEED, NEARLY_SMOOTH, region_at
 from stribeck.atlas.table import TABULATED, Values, load_table, solver_hash
+from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import Groups, InputError
 from stribeck.numerics.threads import one_blas_thread

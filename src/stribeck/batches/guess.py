@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
-from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.line import LOAD, Equations, Operators
 from stribeck.equations.state import LARGEST_AMPLIFICATION, State, correction, factors_on

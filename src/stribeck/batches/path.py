@@ -14,7 +14,7 @@ from stribeck._types import Array, Flags, Indices
 from stribeck.batches.device import Device
 from stribeck.batches.equations import DeviceEquations, DeviceOperators, newton
 from stribeck.batches.guess import Batch, Guesses, column_groups, predicted, rigid_rows
-from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimates
 from stribeck.equations.line import Equations, Operators

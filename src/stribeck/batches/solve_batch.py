@@ -12,11 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, Flags, Indices, is_exponential
+from stribeck._types import Array, Flags, Indices
 from stribeck.batches.device import Device, device_for, one_torch_thread
 from stribeck.batches.guess import column_groups, spread
 from stribeck.batches.path import Answer, descend, refined
 from stribeck.batches.plan import middle, planned
+from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import Groups
 from stribeck.equations.observables import NAMES, Observables

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
-from stribeck._types import LawShape
 from stribeck.cases.rough_surface import RoughSurface
+from stribeck.contact_laws.exponential import ExponentialShape
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
+from stribeck.contact_laws.law import LawShape
 from stribeck.contact_laws.persson import GAMMA, PerssonLaw, persson_law
-from stribeck.contact_laws.scaled import NAMED, ExponentialShape
+from stribeck.contact_laws.scaled import NAMED
 from stribeck.contact_laws.spectrum import Spectrum
 from stribeck.contact_laws.table import TableLaw
 from stribeck.files.two_columns import read_two_columns

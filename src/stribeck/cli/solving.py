@@ -298,7 +298,8 @@ def _write(
             written.append(str(path))
 
     if outputs:
-        from stribeck.files.datasets import curve_dataset, write_data
+        from stribeck.curves.table import curve_dataset
+        from stribeck.files.datasets import write_data
 
         dataset = curve_dataset(curve, title)
         for path in outputs:

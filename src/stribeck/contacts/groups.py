@@ -12,8 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, LawShape
-from stribeck.quantities.inputs import check_law, quantity
+from stribeck._types import Array
+from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
+from stribeck.contact_laws.law import ContactLaw, LawShape, check_law, is_exponential
+from stribeck.contact_laws.scaled import ScaledLaw
+from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["Groups"]
@@ -172,3 +175,16 @@ def _group(name: str, value: Any, positive: bool) -> float | Array:
         return float(array)
     array.setflags(write=False)
     return array
+
+
+def contact_law(groups: Groups) -> ContactLaw:
+    """Return the contact law of a state: that of its shape, exponential without one, none where the roughness is zero.
+
+    Groups that are columns give the law of states in rows; none or all of these are smooth.
+    """
+    if not np.any(groups.roughness):
+        return NoContact()
+    if is_exponential(groups.law):
+        return ExponentialLaw(groups.load, groups.relative_roughness)
+    assert groups.law is not None
+    return ScaledLaw(groups.law, groups.load, groups.relative_roughness)

@@ -12,12 +12,26 @@ import math
 from dataclasses import dataclass
 from typing import Any, Self
 
-from stribeck._types import LawShape
+from stribeck.contact_laws.law import LawShape, check_law
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.inputs import INPUTS, check_law, check_modulus_choice, quantity
+from stribeck.quantities.inputs import INPUTS, SYMBOLS, check_modulus_choice, quantity, si_text
 from stribeck.quantities.units import InputError
 
 __all__ = ["Groups", "HertzScales", "InputError", "LineContact"]
+
+
+EXPONENTS = {
+    "speed": (1, 0, 0),
+    "load": (-2, 1, 0),
+    "viscosity": (1, 0, 0),
+    "modulus": (1, -1, 0),
+    "radius": (1, -1, -1),
+    "roughness": (0, 0, 1),
+    "alpha": (0, 0, -1),
+    "beta": (0, -2, -2),
+    "friction_coefficient": (0, 0, 0),
+}
+"""Exponents with which each input enters the groups of speed, load and roughness."""
 
 
 @dataclass(frozen=True)
@@ -273,3 +287,12 @@ class LineContact:
             raise InputError(
                 f"the dimensionless groups of this contact leave the range of double precision; check {values} (all in SI)."
             ) from None
+
+
+def input_texts(contact: LineContact | None, *without: str | None) -> list[str]:
+    """Return the inputs of a contact in words, but for those that vary."""
+    if contact is None:
+        return []
+    return [
+        f"{symbol} = {si_text(getattr(contact, name), name, 4)}" for name, symbol in SYMBOLS.items() if name not in without
+    ]

@@ -12,7 +12,7 @@ from stribeck._types import Array
 from stribeck.atlas import reading as atlas
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups, InputError, LineContact
-from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
 from stribeck.quantities.units import show
 
 ERROR = 1e-4

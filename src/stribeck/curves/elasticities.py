@@ -1,4 +1,4 @@
-"""The lubrication regime of a state, read off its solved fields, and what would move its friction."""
+"""What would move the friction of a state: its logarithmic derivatives with respect to the inputs."""
 
 from __future__ import annotations
 
@@ -10,60 +10,12 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.atlas import reading as atlas
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.line import LineContact
+from stribeck.contacts.line import EXPONENTS, LineContact
+from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.units import InputError, show
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
-
-Regime = Literal["boundary", "mixed", "hydrodynamic"]
-Method = Literal["solver", "atlas"]
-
-METHODS: tuple[Method, ...] = ("solver", "atlas")
-"""Where states come from: solved, or read off :mod:`stribeck.atlas`."""
-
-BOUNDARY_FLUID_SHARE = 0.05
-"""Part of the load on the fluid up to which lubrication is called boundary: friction is within 5 % of the plateau."""
-
-HYDRODYNAMIC_CONTACT_SHARE = 0.1
-"""Part of the friction from asperities up to which lubrication is called hydrodynamic; at the friction minimum of smooth
-contacts it is about 2/(2 + 3 Lambda), 6 to 18 % for Lambda from 10 to 3."""
-
-
-def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:
-    """Return the regime from the part of the load on the fluid and the part of the friction from asperities.
-
-    Parameters
-    ----------
-    fluid_load_share : float
-        Part of the load that the fluid carries [-].
-    contact_friction_share : float
-        Contact part of the friction over all of it [-].
-
-    Returns
-    -------
-    str
-        ``"hydrodynamic"`` where asperities cause at most 10 % of the friction, else ``"boundary"`` where the fluid carries
-        at most 5 % of the load, else ``"mixed"``.
-    """
-    if contact_friction_share <= HYDRODYNAMIC_CONTACT_SHARE:
-        return "hydrodynamic"
-    return "boundary" if fluid_load_share <= BOUNDARY_FLUID_SHARE else "mixed"
-
-
-EXPONENTS = {
-    "speed": (1, 0, 0),
-    "load": (-2, 1, 0),
-    "viscosity": (1, 0, 0),
-    "modulus": (1, -1, 0),
-    "radius": (1, -1, -1),
-    "roughness": (0, 0, 1),
-    "alpha": (0, 0, -1),
-    "beta": (0, -2, -2),
-    "friction_coefficient": (0, 0, 0),
-}
-"""Exponents with which each input enters the groups of speed, load and roughness."""
 
 
 @overload
@@ -94,8 +46,8 @@ def friction_elasticities(
         = \frac{1}{\mu} \left[ \sum_G n_{GX} \frac{\partial \mu}{\partial \ln G}
         + \left.\frac{\partial \mu}{\partial \ln X}\right|_G \right]
 
-    with G the three groups and n their exponents, :data:`EXPONENTS`. The last term is the contact part of the
-    friction for the friction coefficient and the viscous part for beta.
+    with G the three groups and n their exponents, :data:`stribeck.contacts.line.EXPONENTS`. The last term is the contact
+    part of the friction for the friction coefficient and the viscous part for beta.
 
     Parameters
     ----------
@@ -140,14 +92,6 @@ def friction_elasticities(
         slopes = friction_slopes(point.state, contact.friction_coefficient, contact.beta, definition)
     friction = solution.friction(definition=definition)
     return solution, _elasticities(slopes, friction.contact, friction.viscous)
-
-
-def check_method(method: str) -> Method:
-    """Return ``method`` if it is one of the two."""
-    for known in METHODS:
-        if method == known:
-            return known
-    raise InputError(f"method = {show(method)}; it must be {' or '.join(map(repr, METHODS))}.")
 
 
 def _from_atlas(contact: LineContact, definition: Definition) -> dict[str, float]:

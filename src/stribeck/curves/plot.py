@@ -12,27 +12,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.contacts.line import input_texts
 from stribeck.files.pictures import (
     CONTACT,
     FLUID,
     GREY,
     INK,
     MARK,
-    SYMBOLS,
     TINTS,
     add_legend,
     finish_figure,
     footer_lines,
-    input_texts,
-    law_text,
     make_logarithmic,
     new_figure,
-    si_text,
 )
 from stribeck.files.writing import PathLike
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import QUANTITIES, SYMBOLS, si_text
 from stribeck.quantities.units import DIMENSIONS
-from stribeck.solver.plot import plot_profile
+from stribeck.solver.plot import law_text, plot_profile
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck._types import Array, LawShape
+from stribeck._types import Array
 from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.coordinate import Coordinate, Over
-from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
 from stribeck.curves.landmarks import Landmark, locate
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
 from stribeck.equations.sensitivity import GROUPS, friction_slopes
 from stribeck.numerics.newton import Outcome
 from stribeck.quantities.inputs import QUANTITIES
@@ -242,7 +243,7 @@ class StribeckCurve:
             Observables, friction, regimes and inputs of each point, with units and long names as attributes;
             needs the extra ``data``.
         """
-        from stribeck.files.datasets import curve_dataset
+        from stribeck.curves.table import curve_dataset
 
         return curve_dataset(self)
 

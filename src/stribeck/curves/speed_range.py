@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import observables

@@ -8,13 +8,14 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stribeck._types import Array, LawShape
+from stribeck._types import Array
+from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_problem
-from stribeck.curves.elasticities import Method, check_method
 from stribeck.curves.landmarks import Landmark
+from stribeck.curves.regime import Method, check_method
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.speed_range import automatic_speeds
 from stribeck.numerics.newton import Outcome

@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.contact_laws.scaled import ContactLaw
+from stribeck.contact_laws.law import ContactLaw
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import Mesh
 from stribeck.solids.half_plane import nodal_deflection

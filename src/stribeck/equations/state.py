@@ -16,7 +16,8 @@ import numpy as np
 from scipy.linalg import lapack
 
 from stribeck._types import Array, Numbers
-from stribeck.contact_laws.scaled import ContactLaw, contact_law
+from stribeck.contact_laws.law import ContactLaw
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.line import Equations, Operators
 from stribeck.numerics.continuation import extrapolation_weights

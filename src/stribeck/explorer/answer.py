@@ -18,7 +18,7 @@ from stribeck._types import Array
 from stribeck.asymptotics import FORMULAS
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import LineContact
-from stribeck.curves.elasticities import Regime, regime_of
+from stribeck.curves.regime import Regime, regime_of
 from stribeck.explorer.curves import (
     Curve,
     Diagram,

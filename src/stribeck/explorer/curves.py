@@ -16,7 +16,7 @@ from stribeck.atlas import reading as atlas
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.atlas_curve import ERROR
-from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.regimes.phase_from_atlas import transition_speeds
 from stribeck.solver.solve import SolveError

@@ -1,4 +1,4 @@
-"""The style of all pictures: colours, symbols, the empty figure with headline and footer, legend and file.
+"""The style of all pictures: colours, the empty figure with headline and footer, legend and file.
 
 matplotlib comes with the extra ``plot`` and is imported on first use. Figures are made without pyplot, so
 that they need no display and change no settings of the caller.
@@ -12,11 +12,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from stribeck._types import Array
-from stribeck.contacts.line import LineContact
 from stribeck.files.writing import MissingExtraError, PathLike, replacing
-from stribeck.quantities.inputs import QUANTITIES
-from stribeck.quantities.units import format_si
-from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,17 +29,6 @@ FLUID = "#0072b2"
 MARK = "#cc79a7"
 TINTS = {"boundary": "#fbe9dd", "mixed": "#f6f3e3", "hydrodynamic": "#e2eff8"}
 
-SYMBOLS = {
-    "radius": "$R$",
-    "modulus": "$E^*$",
-    "load": "$F_N$",
-    "viscosity": r"$\eta$",
-    "speed": "$U$",
-    "roughness": r"$h_\mathrm{rms}$",
-    "alpha": r"$\alpha$",
-    "beta": r"$\beta$",
-    "friction_coefficient": r"$\mu_0$",
-}
 
 LINE = 0.19
 LEGEND = 0.55
@@ -134,31 +119,6 @@ def finish_figure(figure: Figure, path: PathLike | None, force: bool) -> Figure:
         with replacing(path, PICTURES, force=force) as temporary:
             figure.savefig(temporary)
     return figure
-
-
-def si_text(value: float, name: str, digits: int) -> str:
-    """Return an input of a contact with its unit."""
-    return format_si(value, QUANTITIES[name].dimension, digits).replace("*", "·")
-
-
-def input_texts(contact: LineContact | None, *without: str | None) -> list[str]:
-    """Return the inputs of a contact in words, but for those that vary."""
-    if contact is None:
-        return []
-    return [
-        f"{symbol} = {si_text(getattr(contact, name), name, 4)}" for name, symbol in SYMBOLS.items() if name not in without
-    ]
-
-
-def law_text(solution: Solution) -> str:
-    """Return name and parameters of the contact law."""
-    if solution.law in ("dry contact", "smooth"):
-        return solution.law
-    numbers = ", ".join(
-        f"{name.replace('_', ' ')} {value if isinstance(value, str) else f'{value:.4g}'}"
-        for name, value in solution.law_parameters.items()
-    )
-    return f"{solution.law} contact law" + (f" ({numbers})" if numbers else "")
 
 
 def footer_lines(parts: Sequence[Sequence[str]], notes: Sequence[str], width: int) -> list[tuple[str, str]]:

@@ -14,9 +14,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stribeck._types import Array, is_exponential
+from stribeck._types import Array
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings, free_names
+from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import LineContact
 from stribeck.fits.case_file import load_fit_case

@@ -8,7 +8,7 @@ A free input is the common factor :math:`e^\theta` on what the case or the curve
     \frac{\partial \mu_i}{\partial \theta} = A_{c(i)} \frac{\partial \mu_i}
     {\partial \ln (\lambda, \bar F_N, \bar h_\mathrm{rms}, \mu_0, \beta)}
 
-with a constant matrix A of exponents for each curve c, :data:`stribeck.curves.elasticities.EXPONENTS`.
+with a constant matrix A of exponents for each curve c, :data:`stribeck.contacts.line.EXPONENTS`.
 """
 
 from __future__ import annotations
@@ -21,8 +21,7 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.contacts.line import Groups, LineContact
-from stribeck.curves.elasticities import EXPONENTS
+from stribeck.contacts.line import EXPONENTS, Groups, LineContact
 from stribeck.fits.friction_parts import Parts, PartsOf
 from stribeck.fits.measurements import Measurements
 from stribeck.quantities.inputs import QUANTITIES

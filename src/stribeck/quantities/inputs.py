@@ -9,10 +9,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from stribeck._types import LawShape
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import DIMENSIONS, InputError, format_si, show, to_si
 
-__all__ = ["INPUTS", "QUANTITIES", "Quantity", "check_law", "check_modulus_choice", "quantity"]
+__all__ = ["INPUTS", "QUANTITIES", "Quantity", "SYMBOLS", "check_modulus_choice", "quantity", "si_text", "unit_of"]
 
 
 @dataclass(frozen=True)
@@ -40,6 +39,20 @@ QUANTITIES = {
 
 INPUTS = ("radius", "load", "viscosity", "speed", "roughness", "alpha", "beta", "friction_coefficient", "modulus")
 """The quantities of :class:`stribeck.LineContact`, in its order."""
+
+
+SYMBOLS = {
+    "radius": "$R$",
+    "modulus": "$E^*$",
+    "load": "$F_N$",
+    "viscosity": r"$\eta$",
+    "speed": "$U$",
+    "roughness": r"$h_\mathrm{rms}$",
+    "alpha": r"$\alpha$",
+    "beta": r"$\beta$",
+    "friction_coefficient": r"$\mu_0$",
+}
+"""Symbols for pictures."""
 
 
 def quantity(name: str, value: Any) -> float:
@@ -72,14 +85,6 @@ def quantity(name: str, value: Any) -> float:
     return result
 
 
-def check_law(law: Any) -> LawShape | None:
-    """Return a contact law, or None for the exponential one; refuse what has not the methods of one."""
-    if law is None or (isinstance(law, LawShape) and not isinstance(law, type)):
-        return law
-    advice = f"write {law.__name__}()" if isinstance(law, type) else "give an object such as GreenwoodWilliamson(), or None"
-    raise InputError(f"law = {show(law)} is no contact law; {advice}.")
-
-
 def check_modulus_choice(modulus: Any, youngs_modulus: Any, poisson_ratio: Any) -> None:
     """Check that the elasticity is given once: E* alone, or E and nu together.
 
@@ -106,3 +111,13 @@ def check_modulus_choice(modulus: Any, youngs_modulus: Any, poisson_ratio: Any) 
     if modulus is None and missing:
         typical = " The Poisson ratio of rubber and gels is close to 0.5." if missing == ["poisson_ratio"] else ""
         raise InputError(f"{missing[0]} is missing beside {given[0]}; give both, or modulus (which is E*) alone.{typical}")
+
+
+def unit_of(name: str) -> str:
+    """Return the SI unit of an input in the spelling of UDUNITS, which files use."""
+    return DIMENSIONS[QUANTITIES[name].dimension].unit.replace("*", " ") or "1"
+
+
+def si_text(value: float, name: str, digits: int) -> str:
+    """Return an input of a contact with its unit."""
+    return format_si(value, QUANTITIES[name].dimension, digits).replace("*", "·")

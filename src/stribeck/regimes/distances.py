@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import is_exponential
+from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.line import LineContact
+from stribeck.contacts.line import EXPONENTS, LineContact
 from stribeck.curves.coordinate import Over
-from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE, EXPONENTS, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.newton import Outcome

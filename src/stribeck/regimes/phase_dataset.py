@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck._types import Array, is_exponential
+from stribeck._types import Array
+from stribeck.contact_laws.law import is_exponential, law_attributes
 from stribeck.contacts.line import Groups
-from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE
-from stribeck.files.datasets import GROUPS, INPUTS, OBSERVABLES, law_attributes, unit_of
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE
 from stribeck.files.writing import MissingExtraError
+from stribeck.quantities.inputs import unit_of
+from stribeck.quantities.outputs import GROUPS, INPUTS, OBSERVABLES
 from stribeck.regimes.phase_grid import AXES, MARKS, REGIMES, Diagram
 
 if TYPE_CHECKING:

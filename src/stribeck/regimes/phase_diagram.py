@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck._types import Array, LawShape
+from stribeck._types import Array
+from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups, LineContact
-from stribeck.curves.elasticities import Method, check_method, regime_of
 from stribeck.curves.landmarks import Landmark
+from stribeck.curves.regime import Method, check_method, regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.speed_range import automatic_speeds
 from stribeck.curves.stribeck_curve import stribeck_curve

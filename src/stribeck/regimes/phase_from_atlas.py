@@ -13,7 +13,7 @@ from stribeck.atlas import reading as atlas
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups
 from stribeck.curves.atlas_curve import ERROR, AtlasCurve
-from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.numerics.newton import Outcome
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.regimes.phase_grid import MARKS, REGIMES, Diagram

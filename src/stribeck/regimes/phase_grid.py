@@ -9,14 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, LawShape
+from stribeck._types import Array
+from stribeck.contact_laws.law import LawShape, check_law
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.line import Groups, LineContact
-from stribeck.curves.elasticities import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
 from stribeck.curves.speed_range import automatic_speeds
 from stribeck.numerics.newton import Outcome
-from stribeck.quantities.inputs import QUANTITIES, check_law
+from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups, with_law
 

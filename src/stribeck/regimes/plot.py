@@ -21,7 +21,6 @@ from stribeck.files.pictures import (
     LEGEND,
     LINE,
     MARK,
-    SYMBOLS,
     TINTS,
     add_legend,
     finish_figure,
@@ -29,7 +28,7 @@ from stribeck.files.pictures import (
     new_figure,
 )
 from stribeck.files.writing import PathLike
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import QUANTITIES, SYMBOLS
 from stribeck.quantities.units import InputError, format_si
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from stribeck._types import LawShape
+from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.line import Groups
 from stribeck.curves.speed_range import automatic_speeds

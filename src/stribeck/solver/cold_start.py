@@ -16,7 +16,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stribeck._types import Array
-from stribeck.contact_laws.scaled import BlendedShape, contact_law
+from stribeck.contact_laws.scaled import BlendedShape
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.state import Guess, State, extrapolate, mesh_for, solve_state

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import FineOperators, reads_off
 from stribeck.equations.line import Operators

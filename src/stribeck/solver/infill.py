@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import FineOperators
 from stribeck.equations.line import Equations, Operators

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.scaled import contact_law
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import FineOperators, error_estimates
 from stribeck.equations.line import Equations, Operators

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from stribeck._types import Array, is_exponential
+from stribeck._types import Array
+from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import Observables
 

@@ -11,21 +11,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.contacts.line import input_texts
 from stribeck.files.pictures import (
     CONTACT,
     FLUID,
     GREY,
     INK,
-    SYMBOLS,
     add_legend,
     finish_figure,
     footer_lines,
-    input_texts,
-    law_text,
     make_logarithmic,
     new_figure,
 )
 from stribeck.files.writing import PathLike
+from stribeck.quantities.inputs import SYMBOLS
 from stribeck.quantities.units import DIMENSIONS, format_si
 from stribeck.solver.solution import Solution
 
@@ -134,3 +133,14 @@ def _axis(scale: float, dimension: str, name: str, largest: float = 1.0) -> tupl
     unit = format_si(scale * largest, dimension).rpartition(" ")[2]
     power = next(power for power, known in DIMENSIONS[dimension].steps.items() if known == unit)
     return scale / 10.0**power, f"{name} ({unit})"
+
+
+def law_text(solution: Solution) -> str:
+    """Return name and parameters of the contact law."""
+    if solution.law in ("dry contact", "smooth"):
+        return solution.law
+    numbers = ", ".join(
+        f"{name.replace('_', ' ')} {value if isinstance(value, str) else f'{value:.4g}'}"
+        for name, value in solution.law_parameters.items()
+    )
+    return f"{solution.law} contact law" + (f" ({numbers})" if numbers else "")

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stribeck._types import Array, is_exponential
-from stribeck.contact_laws.scaled import contact_law, lifted
+from stribeck._types import Array
+from stribeck.contact_laws.law import is_exponential
+from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimates
 from stribeck.equations.line import Operators
@@ -17,6 +18,7 @@ from stribeck.equations.state import Guess, State, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.newton import Outcome
 from stribeck.numerics.panels import MeshTooLargeError
+from stribeck.solver.at_rest import lifted
 
 QUASISTATIC_LOAD = 0.01
 """At speed zero the load only shifts the gap: heavier contacts are solved at this load, where all gaps are positive."""
@@ -61,7 +63,7 @@ def quasistatic_shift(groups: Groups) -> float:
     .. math:: \Delta h = -\frac{\kappa}{2} \ln \frac{\bar F_N}{\bar F_N'}
 
     Exact at speed zero, where the solution depends on kappa alone but for this shift of gap and offset.  For other laws than
-    the exponential one it is that of :func:`contact_laws.lifted`.
+    the exponential one it is that of :func:`stribeck.solver.at_rest.lifted`.
     """
     if not is_exponential(groups.law):
         return 0.0 if groups.speed > 0 else -lifted(groups)[1]

@@ -10,7 +10,8 @@ from typing import Literal
 
 import numpy as np
 
-from stribeck._types import Array, Indices, WithArea
+from stribeck._types import Array, Indices
+from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import NAMES, Observables, gap_at
@@ -371,3 +372,31 @@ class Solution:
         result |= {"error_estimate": self.error_estimate, "rtol": self.rtol, "nodes": self.nodes}
         result |= {"outcome": self.outcome.name, "message": self.outcome.value, "notes": list(self.notes)}
         return result
+
+
+def si_films(solution: Solution) -> dict[str, tuple[float, str, str]]:
+    """Return films and Hertz scales of a solution in SI units: value, unit and long name of each.
+
+    Parameters
+    ----------
+    solution : Solution
+        A state; one that comes from groups alone has no scales.
+
+    Returns
+    -------
+    dict
+        By name; empty where there is no contact.
+    """
+    if solution.contact is None:
+        return {}
+    scales = solution.contact.hertz
+    a, u = scales.half_width, scales.indentation
+    return {
+        "central_film_thickness": (solution.central_gap * u, "m", "gap at the centre"),
+        "minimum_film_thickness": (solution.minimum_gap * u, "m", "least gap"),
+        "minimum_film_position": (solution.minimum_position * a, "m", "position of the least gap"),
+        "flux_film_thickness": (solution.flux_gap * u, "m", "fluid flux over half the speed"),
+        "hertz_half_width": (a, "m", "half-width a of the dry smooth contact"),
+        "hertz_indentation": (u, "m", "indentation u_Hz of the dry smooth contact"),
+        "hertz_pressure": (scales.pressure, "Pa", "largest pressure p_Hz of the dry smooth contact"),
+    }

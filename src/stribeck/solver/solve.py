@@ -9,7 +9,8 @@ from typing import Literal
 
 import numpy as np
 
-from stribeck._types import Array, LawShape, is_exponential
+from stribeck._types import Array
+from stribeck.contact_laws.law import LawShape, is_exponential
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import NAMES, Observables

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck.cli.reports.surface import error_text
 from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, PICTURES
 from stribeck.files.writing import MissingExtraError, PathLike, replacing
 from stribeck.quantities.units import DIMENSIONS, format_si
@@ -191,3 +190,9 @@ def _scale(length: float) -> tuple[float, str]:
     unit = format_si(length, "length").rpartition(" ")[2]
     power = next(power for power, known in DIMENSIONS["length"].steps.items() if known == unit)
     return 10.0**-power, unit
+
+
+def error_text(error: float) -> str:
+    """Return a length with two digits and no power of ten."""
+    number, _, unit = format_si(error, "length", 2).partition(" ")
+    return f"{float(number):g} {unit}"

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stribeck._types import Array, LawShape
+from stribeck._types import Array
+from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.numerics.continuation import march
 from stribeck.numerics.newton import Outcome

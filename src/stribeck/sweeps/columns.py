@@ -6,14 +6,15 @@ import math
 
 import numpy as np
 
-from stribeck._types import Array, LawShape, WithArea
+from stribeck._types import Array
+from stribeck.contact_laws.law import LawShape, WithArea
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.line import LineContact
 from stribeck.equations.observables import NAMES
-from stribeck.files.datasets import AREA, OBSERVABLES, si_films, unit_of
 from stribeck.numerics.newton import Outcome
-from stribeck.quantities.inputs import QUANTITIES
-from stribeck.solver.solution import Solution
+from stribeck.quantities.inputs import QUANTITIES, unit_of
+from stribeck.quantities.outputs import AREA, OBSERVABLES
+from stribeck.solver.solution import Solution, si_films
 
 __all__ = ["OUTCOMES", "columns_of", "failed_row", "input_columns", "row_of"]
 

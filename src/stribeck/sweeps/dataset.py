@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.curves.elasticities import regime_of
+from stribeck.curves.regime import regime_of
 from stribeck.files.datasets import write_netcdf
 from stribeck.files.writing import MissingExtraError, PathLike
 from stribeck.numerics.newton import Outcome

@@ -15,9 +15,10 @@ from typing import Annotated, Any, get_args
 
 import numpy as np
 
-from stribeck._types import Array, LawShape
+from stribeck._types import Array
 from stribeck.cases.case import Case, contact_inputs, error_sentence, example_of, group_inputs, read_toml, surface_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
+from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.quantities.inputs import INPUTS, QUANTITIES, check_modulus_choice, quantity
 from stribeck.quantities.units import InputError, show

@@ -9,14 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import LawShape
 from stribeck.cli.reports.words import Elasticities, contact_part, hersey_of, part_error, regime_now, strongest
+from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.line import LineContact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
-from stribeck.files.datasets import GROUPS, INPUTS, si_films, unit_of
+from stribeck.quantities.inputs import unit_of
+from stribeck.quantities.outputs import GROUPS, INPUTS
 from stribeck.regimes.distances import Crossing, Distance, TransitionDistances
-from stribeck.solver.solution import Solution
+from stribeck.solver.solution import Solution, si_films
 
 __all__ = ["curve_json", "dump", "law_json", "regimes_json", "solution_json"]
 

@@ -20,7 +20,7 @@ from stribeck.cli.reports.words import (
     table_of,
 )
 from stribeck.contacts.friction import DEFINITIONS
-from stribeck.curves.elasticities import regime_of
+from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.solver.solution import Solution
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from stribeck.quantities.units import format_si
 from stribeck.surfaces.analysis import Surface
+from stribeck.surfaces.plot import error_text
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -85,12 +86,6 @@ def surface_lines(surface: Surface) -> list[str]:
 
 def _row(label: str, value: str, remark: str) -> str:
     return f"  {label:<30}{value:<14}{remark}".rstrip()
-
-
-def error_text(error: float) -> str:
-    """Return a length with two digits and no power of ten."""
-    number, _, unit = format_si(error, "length", 2).partition(" ")
-    return f"{float(number):g} {unit}"
 
 
 def _length(label: str, value: float, error: float | None, remark: str) -> str:

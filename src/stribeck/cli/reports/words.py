@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck._types import LawShape
+from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.friction import Definition, Friction
 from stribeck.contacts.line import Groups, LineContact
-from stribeck.curves.elasticities import regime_of
+from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
-from stribeck.files.datasets import GROUPS, INPUTS
 from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.outputs import GROUPS, INPUTS
 from stribeck.quantities.units import format_bound, format_si
 from stribeck.solver.solution import Solution
 

@@ -12,9 +12,8 @@ import numpy as np
 from stribeck.explorer.charts.charts import all_charts
 from stribeck.explorer.charts.palette import LIGHT
 from stribeck.explorer.inputs import FIELDS
-from stribeck.files.pictures import SYMBOLS
 from stribeck.files.writing import MissingExtraError
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import QUANTITIES, SYMBOLS
 from stribeck.quantities.units import format_si
 
 if TYPE_CHECKING:

@@ -1,0 +1,129 @@
+r"""The exponential contact law of the paper, written out for speed, and the law of smooth surfaces, which have none.
+
+Everything is in Hertz units: gap in u_Hz, pressure in p_Hz.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import erf
+
+from stribeck._types import Array, Numbers
+
+
+@dataclass(frozen=True)
+class NoContact:
+    """The contact pressure of smooth surfaces: none."""
+
+    name: str = "smooth"
+    decay: Numbers = 0.0
+    uniform: bool = True
+
+    def local_decay(self, gap: Array) -> Numbers:
+        """Return zero."""
+        return self.decay
+
+    def pressure(self, gap: Array) -> Array:
+        """Return zeros."""
+        return np.zeros_like(gap)
+
+    def log_pressure(self, gap: Array) -> Array:
+        """Return minus infinity."""
+        return np.full_like(gap, -np.inf)
+
+    def slope(self, gap: Array, pressure: Array) -> Array:
+        """Return zeros."""
+        return np.zeros_like(gap)
+
+    load_derivative = slope
+    roughness_derivative = slope
+
+
+@dataclass(frozen=True)
+class ExponentialLaw:
+    r"""Contact pressure that falls exponentially with the gap.
+
+    .. math:: p_c = \bar F_N^{-1/2} \exp(-h/\kappa), \qquad \kappa = \bar h_\mathrm{rms}/\bar F_N
+
+    Parameters
+    ----------
+    load : float or ndarray
+        Load group [-]; for states in rows a column of them.
+    decay : float or ndarray
+        Relative roughness kappa, the length of the decay [u_Hz], likewise.
+
+    Notes
+    -----
+    The small-pressure limit of Persson's contact mechanics: good for gaps above about 0.4 h_rms; it lets the gap become
+    negative instead of stiffening towards full contact.
+    Source: [BP] Eq. (contact_pressure_dl).
+    """
+
+    load: Numbers
+    decay: Numbers
+    name: str = "exponential"
+    uniform: bool = True
+
+    def local_decay(self, gap: Array) -> Numbers:
+        """Return kappa."""
+        return self.decay
+
+    def pressure(self, gap: Array) -> Array:
+        """Return the contact pressure [p_Hz]."""
+        return np.asarray(np.exp(self.log_pressure(gap)))
+
+    def log_pressure(self, gap: Array) -> Array:
+        """Return ``-h/kappa - ln(F)/2``."""
+        return np.asarray(gap / -self.decay - 0.5 * np.log(self.load))
+
+    def slope(self, gap: Array, pressure: Array) -> Array:
+        """Return ``dp_c/dh`` = -p_c/kappa."""
+        return pressure / -self.decay
+
+    def load_derivative(self, gap: Array, pressure: Array) -> Array:
+        """Return ``dp_c/dlnF`` = p_c (-1/2 - h/kappa), the roughness group held."""
+        return -pressure * (0.5 + gap / self.decay)
+
+    def roughness_derivative(self, gap: Array, pressure: Array) -> Array:
+        """Return ``dp_c/dln h_rms`` = p_c h/kappa."""
+        return pressure * (gap / self.decay)
+
+
+@dataclass(frozen=True)
+class ExponentialShape:
+    r"""The exponential law of a surface of which the spectrum is known, so that the real area of contact is too.
+
+    .. math:: \Phi(s) = e^{-s}, \qquad A/A_0 = \operatorname{erf}(k \Phi)
+
+    Parameters
+    ----------
+    area_slope : float
+        k: beta times the square root of 2 over the rms slope of the surface [-].
+    """
+
+    area_slope: float
+    name: str = "exponential"
+    lowest: float = -np.inf
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """The slope of the area."""
+        return {"area_slope": self.area_slope}
+
+    def log_pressure(self, separation: Array) -> Array:
+        """Return ``-s``."""
+        return -np.asarray(separation)
+
+    def log_slope(self, separation: Array) -> Array:
+        """Return -1."""
+        return np.full_like(separation, -1.0)
+
+    def area_fraction_at(self, pressure: Array) -> Array:
+        """Return ``erf(k Phi)``, the real area of contact over the apparent one."""
+        return np.asarray(erf(self.area_slope * pressure))
+
+    def notes(self, separation: float) -> tuple[str, ...]:
+        """Return none: those of the exponential law are those of the groups."""
+        return ()

@@ -1,0 +1,112 @@
+r"""What a contact law is: its shape without dimensions, and what the equations ask of it at a load and a roughness."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol, runtime_checkable
+
+from stribeck._types import Array, Numbers
+from stribeck.quantities.units import InputError, show
+
+
+@runtime_checkable
+class LawShape(Protocol):
+    r"""A contact law without dimensions: a small frozen object that can be hashed.
+
+    .. math:: p_c = \beta E^* \Phi(s), \qquad s = \alpha h/h_\mathrm{rms}
+    """
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print."""
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """What tells this law from others of its name, for outputs."""
+
+    @property
+    def lowest(self) -> float:
+        """Separation s below which the law has no value: 0 where it diverges towards full contact, else minus infinity."""
+
+    def log_pressure(self, separation: Array) -> Array:
+        """Return ln(Phi) at the separation s, finite where Phi itself underflows."""
+
+    def log_slope(self, separation: Array) -> Array:
+        """Return d ln(Phi)/ds at the separation s, negative."""
+
+    def notes(self, separation: float) -> tuple[str, ...]:
+        """Return what to know about a state of which this is the least separation, one sentence each."""
+
+
+@runtime_checkable
+class WithArea(LawShape, Protocol):
+    """What a law has besides that knows the spectrum of its surface."""
+
+    def area_fraction_at(self, pressure: Array) -> Array:
+        """Return the real area of contact over the apparent one at the pressure Phi."""
+
+
+class ContactLaw(Protocol):
+    """What the equations ask of a contact law."""
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print."""
+
+    @property
+    def decay(self) -> Numbers:
+        """The unit of separations, kappa [u_Hz]; 0 where there is no contact."""
+
+    def local_decay(self, gap: Array) -> Numbers:
+        """Return the length over which the pressure falls by a factor e, by its slope at the gap [u_Hz]."""
+
+    @property
+    def uniform(self) -> bool:
+        """Whether that length is the same at all gaps."""
+
+    def pressure(self, gap: Array) -> Array:
+        """Return the contact pressure [p_Hz] at the gap [u_Hz]."""
+
+    def log_pressure(self, gap: Array) -> Array:
+        """Return the logarithm of the contact pressure over p_Hz, finite where the pressure itself underflows."""
+
+    def slope(self, gap: Array, pressure: Array) -> Array:
+        """Return the derivative of the contact pressure with respect to the gap, given that pressure [p_Hz/u_Hz]."""
+
+    def load_derivative(self, gap: Array, pressure: Array) -> Array:
+        """Return the derivative of the contact pressure with respect to the logarithm of the load group [p_Hz]."""
+
+    def roughness_derivative(self, gap: Array, pressure: Array) -> Array:
+        """Return the derivative of the contact pressure with respect to the logarithm of the roughness group [p_Hz]."""
+
+
+def is_exponential(law: LawShape | None) -> bool:
+    """Tell whether a law is that of the paper, for which formulas and atlas hold."""
+    return law is None or law.name == "exponential"
+
+
+def check_law(law: Any) -> LawShape | None:
+    """Return a contact law, or None for the exponential one; refuse what has not the methods of one."""
+    if law is None or (isinstance(law, LawShape) and not isinstance(law, type)):
+        return law
+    advice = f"write {law.__name__}()" if isinstance(law, type) else "give an object such as GreenwoodWilliamson(), or None"
+    raise InputError(f"law = {show(law)} is no contact law; {advice}.")
+
+
+def law_attributes(law: LawShape | None, smooth: bool = False) -> dict[str, Any]:
+    """Return name and parameters of a contact law as attributes of a dataset.
+
+    Parameters
+    ----------
+    law : LawShape or None
+        The law; None is the exponential one.
+    smooth : bool
+        Whether the surfaces are smooth and have none.
+
+    Returns
+    -------
+    dict
+        ``contact_law``, and its parameters by their names after ``contact_law_``.
+    """
+    if smooth or law is None:
+        return {"contact_law": "smooth" if smooth else "exponential"}
+    return {"contact_law": law.name} | {f"contact_law_{name}": value for name, value in law.parameters.items()}

@@ -1,0 +1,154 @@
+"""A Stribeck curve as an xarray dataset, with units, names and provenance."""
+
+from __future__ import annotations
+
+import math
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stribeck.contact_laws.law import WithArea, law_attributes
+from stribeck.contacts.friction import DEFINITIONS
+from stribeck.files.writing import MissingExtraError
+from stribeck.quantities.inputs import unit_of
+from stribeck.quantities.outputs import AREA, GROUPS, INPUTS, OBSERVABLES
+from stribeck.solver.solution import si_films
+
+if TYPE_CHECKING:
+    import xarray
+
+    from stribeck.curves.result import StribeckCurve
+
+__all__ = ["curve_dataset"]
+
+
+def curve_dataset(curve: StribeckCurve, title: str = "") -> xarray.Dataset:
+    """Return a Stribeck curve as an xarray Dataset.
+
+    Parameters
+    ----------
+    curve : StribeckCurve
+        The curve.
+    title : str
+        Headline, kept as an attribute.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along one coordinate, which has the name of what varies: the groups, the observables, friction by both
+        definitions with its parts and errors, the regime and the outcome of each point; films and Hertz
+        scales in SI units where the curve has a contact. Each variable has the attributes ``units`` and
+        ``long_name``; those of the dataset hold the inputs, settings, landmarks, notes and the outcome.
+
+    Raises
+    ------
+    MissingExtraError
+        If xarray is not installed.
+    """
+    try:
+        import xarray
+    except ImportError:
+        raise MissingExtraError("a dataset", "data", "xarray") from None
+
+    over = curve.over
+    columns = _columns(curve)
+    dataset = xarray.Dataset(
+        {name: (over, values, {"units": unit, "long_name": label}) for name, (values, unit, label) in columns.items()},
+        coords={over: (over, curve.values, {"units": _unit_over(curve), "long_name": f"{over}, what varies"})},
+        attrs=_attributes(curve, title),
+    )
+    if curve.contact is None:
+        dataset[over].attrs["long_name"] = f"{over} group, what varies"
+    return dataset
+
+
+def _unit_over(curve: StribeckCurve) -> str:
+    return "1" if curve.contact is None else unit_of(curve.over)
+
+
+def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
+    """Return values, unit and long name of each variable."""
+    columns: dict[str, tuple[Any, str, str]] = {
+        "friction": (curve.friction, "1", f"friction coefficient, definition {curve.definition}"),
+        "friction_contact": (curve.friction_contact, "1", "part of the friction coefficient from asperities"),
+        "friction_viscous": (curve.friction_viscous, "1", "part of the friction coefficient from the fluid"),
+        "friction_error": (curve.friction_error, "1", "estimated absolute error of the friction coefficient"),
+        "regime": (np.array(curve.regimes, dtype=object), "1", "lubrication regime"),
+        "hersey_number": (curve.hersey_number, "1", "Hersey number, viscosity times speed over load"),
+        "hydrodynamic_friction": (
+            curve.hydrodynamic_friction,
+            "1",
+            "friction coefficient of smooth surfaces by the law of the hydrodynamic branch",
+        ),
+    }
+    for name, (unit, label) in OBSERVABLES.items():
+        columns[name] = (curve.observable(name), unit, label)
+    for name in GROUPS:
+        columns[f"{name}_group"] = (np.asarray(getattr(curve.groups, name)), "1", f"{name} group")
+    for definition in DEFINITIONS:
+        found = [s.friction(curve.mu0, curve.beta, definition) for s in curve.solutions]
+        name, label = f"friction_{definition}", f"friction coefficient, definition {definition}"
+        columns[name] = (np.array([f.total for f in found]), "1", label)
+        columns[f"{name}_viscous"] = (
+            np.array([f.viscous for f in found]),
+            "1",
+            f"{label}: part from the fluid",
+        )
+        columns[f"{name}_error"] = (
+            np.array([f.error for f in found]),
+            "1",
+            f"{label}: estimated absolute error",
+        )
+    if isinstance(curve.law, WithArea):
+        for name, (unit, label) in AREA.items():
+            columns[name] = (curve.observable(name), unit, label)
+    films = [si_films(solution) for solution in curve.solutions]
+    for name, (_, unit, label) in (films[0] if films else {}).items():
+        columns[name] = (np.array([film[name][0] for film in films]), unit, label)
+    outcomes = np.array([s.outcome.name for s in curve.solutions], dtype=object)
+    columns["outcome"] = (outcomes, "1", "how the solve of the point ended")
+    return columns
+
+
+def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
+    """Return what belongs to the whole curve: provenance, inputs, settings, landmarks, outcome."""
+    finished = curve.outcome.ok and len(curve) == curve.requested
+    found: dict[str, Any] = {
+        "title": title or "Stribeck curve of a lubricated rough line contact",
+        "source": f"stribeck {version('stribeck')}",
+        "outcome": curve.outcome.value,
+        "complete": int(finished),
+        "points": len(curve),
+        "requested_points": curve.requested,
+        "over": curve.over,
+        "definition": curve.definition,
+        **law_attributes(curve.law, bool(len(curve)) and curve.solutions[0].law == "smooth"),
+        "rtol": curve.rtol,
+        "error_estimate": curve.error_estimate,
+        "mu0": curve.mu0,
+        "beta": curve.beta,
+    }
+    if curve.contact is not None:
+        names = [name for name in INPUTS if name != curve.over]
+        found |= {f"input_{name}": getattr(curve.contact, name) for name in names}
+        found["input_units"] = ", ".join(f"{name} {unit_of(name)}" for name in names)
+    for name in GROUPS:
+        values = np.asarray(getattr(curve.groups, name))
+        if len(values) and np.ptp(values) <= 1e-12 * values[0]:
+            found[f"{name}_group"] = float(values[0])
+    found |= _landmark_attributes(curve)
+    found["notes"] = "\n".join(curve.notes)
+    return found
+
+
+def _landmark_attributes(curve: StribeckCurve) -> dict[str, Any]:
+    """Return where minimum and transitions lie, nan where the curve holds no minimum."""
+    minimum, marks = curve.minimum, curve.transitions
+    return {
+        f"minimum_{curve.over}": minimum.value if minimum else math.nan,
+        "minimum_friction": minimum.friction if minimum else math.nan,
+        "transition_names": "; ".join(mark.name for mark in marks),
+        f"transition_{curve.over}": np.array([mark.value for mark in marks]),
+        "transition_friction": np.array([mark.friction for mark in marks]),
+    }
