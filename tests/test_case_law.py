@@ -243,3 +243,53 @@ def test_what_varies_in_a_sweep_is_not_also_said_by_its_surface(tmp_path):
     text = sweep_text().replace("[vary]", '[vary]\nroughness = ["1 um", "2 um"]')
     with pytest.raises(sb.InputError, match=r"\[vary\] roughness follows from the table \[surface\]"):
         sb.load_sweep(write(tmp_path, text))
+
+
+# --- one file that needs no other ---
+
+
+def test_lists_of_numbers_stand_for_the_file_of_a_law(case):
+    in_file = sb.load_case(case("table", table={"file": '"law.csv"'})).contact
+    lists = {"separation": "[0, 1, 2, 4, 8]", "pressure": "[1, 0.4, 0.15, 0.02, 0.0003]"}
+    in_case = sb.load_case(case("table", table=lists)).contact
+    assert (in_case.law.separation, in_case.law.pressure) == (in_file.law.separation, in_file.law.pressure)
+
+
+def test_lists_of_numbers_stand_for_the_file_of_a_spectrum(case):
+    spectrum = sb.surfaces.SelfAffine(h_rms=1e-6, q0=2e4, q1=2e7, hurst=0.8).spectrum
+    lists = {"wavenumber": str(spectrum.wavenumber.tolist()), "density": str(spectrum.density.tolist())}
+    found = sb.load_case(case("persson", surface=lists)).contact.law
+    expected = sb.surfaces.persson_law(spectrum)
+    assert (found.alpha, found.beta, found.rms_slope) == (expected.alpha, expected.beta, expected.rms_slope)
+
+
+def test_a_surface_may_give_the_shape_of_its_law_alone(case):
+    own = {"alpha": "1.5", "beta": "0.02", "roughness": '"2 um"'}
+    found = sb.load_case(case("persson", own, surface=SURFACE | {"shape_only": "true"})).contact
+    whole = sb.load_case(case("persson", surface=SURFACE)).contact
+    assert (found.alpha, found.beta, found.roughness) == (1.5, 0.02, 2e-6)
+    s = np.geomspace(0.1, 10, 7)
+    assert (found.law.log_pressure(s) == whole.law.log_pressure(s)).all()
+
+
+@pytest.mark.parametrize(
+    ("law", "tables", "sentence"),
+    [
+        ("table", {"table": {"file": '"law.csv"', "pressure": "[1]"}}, "[table] file = 'law.csv' and pressure are both given"),
+        ("table", {"table": {"separation": "[0, 1, 2, 4]"}}, "[table] pressure is missing; add as many numbers"),
+        ("table", {"table": {"separation": "[0, 1]", "pressure": "[1]"}}, "separation has 2 numbers and pressure 1"),
+        (
+            "table",
+            {"table": {"separation": "[0, true]", "pressure": "[1, 2]"}},
+            "separation = [0, True] must be a list of numbers",
+        ),
+        ("persson", {"surface": {"wavenumber": "[1.0]"}}, "[surface] density is missing"),
+        ("persson", {"surface": SURFACE | {"density": "[1.0]"}}, "follows from the spectrum; remove one of them"),
+        ("persson", {"surface": SURFACE | {"shape_only": '"yes"'}}, "[surface] shape_only = 'yes' must be true or false"),
+        ("persson", {"surface": SURFACE | {"shape_only": "true"}}, "[contact] alpha is missing"),
+    ],
+)
+def test_wrong_lists_are_refused_in_a_sentence(case, law, tables, sentence):
+    with pytest.raises(sb.InputError) as problem:
+        sb.load_case(case(law, **tables))
+    assert sentence in str(problem.value)

@@ -18,7 +18,17 @@ from stribeck.contacts.line import InputError, LineContact
 from stribeck.quantities.inputs import QUANTITIES, check_modulus_choice, quantity
 from stribeck.quantities.units import DIMENSIONS, FROM_HARDNESS, show
 
-__all__ = ["Case", "CurveSettings", "curve_range", "error_sentence", "example_of", "load_case", "read_toml"]
+__all__ = [
+    "Case",
+    "CurveSettings",
+    "check_case",
+    "curve_range",
+    "error_sentence",
+    "example_of",
+    "load_case",
+    "parse_toml",
+    "read_toml",
+]
 
 Axis = Literal["speed", "load", "roughness"]
 Definition = Literal["paper", "balanced"]
@@ -93,6 +103,8 @@ class Case:
         Free text; empty where the file has none.
     fit : FitSettings
         The ``[fit]`` table, for :func:`stribeck.fit`.
+    tables : dict
+        All tables and keys of the file as they stand there.
     """
 
     path: Path
@@ -104,6 +116,7 @@ class Case:
     title: str = ""
     notes: str = ""
     fit: FitSettings = field(default_factory=FitSettings)
+    tables: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
 
 def load_case(path: str | os.PathLike[str]) -> Case:
@@ -128,11 +141,34 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         Where the file cannot be read, is no TOML, or has unknown, missing or impossible entries: a sentence
         on each line, for all of its problems.
     """
+    path = Path(path)
+    return check_case(read_toml(path), path)
+
+
+def check_case(tables: dict[str, Any], path: Path) -> Case:
+    """Return the case of tables that were read.
+
+    Parameters
+    ----------
+    tables : dict
+        The tables of a case file, as TOML gives them.
+    path : pathlib.Path
+        Where they come from, for sentences; files that they name lie beside it.
+
+    Returns
+    -------
+    Case
+        The checked case.
+
+    Raises
+    ------
+    InputError
+        As in :func:`load_case`.
+    """
     import pydantic
 
-    path = Path(path)
-    table = read_toml(path)
     model = _model()
+    table = dict(tables)
     problems = []
     fit = FitSettings()
     if "fit" in table:
@@ -162,6 +198,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         title=checked["title"],
         notes=checked["notes"],
         fit=fit,
+        tables=tables,
         **checked["solver"],
     )
 
@@ -256,6 +293,31 @@ def read_toml(path: Path, kind: str = "case file", needed: str = "[contact]") ->
         reason = getattr(problem, "strerror", problem)
         received = f"{path} is a directory" if path.is_dir() else f"{path} cannot be read ({reason})"
         raise InputError(f"{received}; give the path of a TOML {kind}.") from None
+    return parse_toml(content, path, kind, needed)
+
+
+def parse_toml(content: bytes, path: Path, kind: str = "case file", needed: str = "[contact]") -> dict[str, Any]:
+    """Return the tables of the content of a TOML file.
+
+    Parameters
+    ----------
+    content : bytes
+        The content.
+    path : pathlib.Path
+        Where it comes from, for sentences.
+    kind, needed : str
+        As in :func:`read_toml`.
+
+    Returns
+    -------
+    dict
+        What the file says, at least one entry.
+
+    Raises
+    ------
+    InputError
+        If it is too large, empty or no TOML.
+    """
     if len(content) > _LARGEST_FILE:
         raise InputError(f"{path} has more than {_LARGEST_FILE} bytes; a {kind} is a page of TOML.")
     try:
@@ -382,7 +444,11 @@ def _elasticity_problem(contact: Any) -> list[str]:
 def _missing_from_surface(table: dict[str, Any]) -> list[str]:
     """Return sentences for inputs that neither ``[contact]`` nor a table of the surface gives."""
     contact = table.get("contact")
-    if not isinstance(contact, dict) or "surface" in table or "asperities" in table or contact.get("law") == "persson":
+    if not isinstance(contact, dict):
+        return []
+    surface = table.get("surface")
+    shape_only = isinstance(surface, dict) and surface.get("shape_only") is True
+    if not shape_only and ("surface" in table or "asperities" in table or contact.get("law") == "persson"):
         return []
     return [f"[contact] {key} is missing; {example_of(key)}." for key in FROM_TABLES if key not in contact]
 

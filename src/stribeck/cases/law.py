@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
+from stribeck._types import Array
 from stribeck.cases.rough_surface import RoughSurface
 from stribeck.contact_laws.exponential import ExponentialShape
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
@@ -17,7 +18,18 @@ from stribeck.contact_laws.table import TableLaw
 from stribeck.files.two_columns import read_two_columns
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["ASPERITIES", "FROM_TABLES", "LAWS", "SURFACE", "TABLE", "TABLES_OF", "Law", "LawOfFile", "law_of_file"]
+__all__ = [
+    "ASPERITIES",
+    "FROM_TABLES",
+    "LAWS",
+    "SURFACE",
+    "TABLE",
+    "TABLES_OF",
+    "Law",
+    "LawOfFile",
+    "law_of_file",
+    "self_contained",
+]
 
 Law = Literal["exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"]
 
@@ -34,14 +46,20 @@ SURFACE = (
     "roll_off_wavelength",
     "gamma",
     "spectrum",
+    "wavenumber",
+    "density",
+    "shape_only",
 )
 """Keys of the table ``[surface]``."""
+
+ROWS = {"surface": ("spectrum", ("wavenumber", "density")), "table": ("file", ("separation", "pressure"))}
+"""The key that names a file in a table, and the two lists of numbers that may stand in its place."""
 
 ASPERITIES = ("density", "radius", "deviation")
 """Keys of the table ``[asperities]``."""
 
-TABLE = ("file",)
-"""Key of the table ``[table]``."""
+TABLE = ("file", "separation", "pressure")
+"""Keys of the table ``[table]``."""
 
 FROM_TABLES = ("alpha", "beta", "roughness")
 """Inputs of a contact that follow from a table of its surface."""
@@ -108,19 +126,59 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
     if not given:
         return LawOfFile(NAMED[law], {})
     (name,) = given
-    doubled = [key for key in FROM_TABLES if contact.get(key) is not None]
+    shape_only = given[name].pop("shape_only", False)
+    if not isinstance(shape_only, bool):
+        raise InputError(f"[{name}] shape_only = {show(shape_only)} must be true or false, without quotes.")
+    doubled = [] if shape_only else [key for key in FROM_TABLES if contact.get(key) is not None]
     if doubled:
         raise InputError(
             f"[contact] {doubled[0]} = {contact[doubled[0]]:g} follows from the table [{name}]; remove one of them."
         )
     try:
-        return _of_asperities(law, given[name]) if name == "asperities" else _of_surface(law, given[name], folder)
+        found = _of_asperities(law, given[name]) if name == "asperities" else _of_surface(law, given[name], folder)
     except InputError as problem:
         raise InputError(f"[{name}] {problem}") from None
+    return LawOfFile(found.shape, {}) if shape_only else found
+
+
+def self_contained(law: Law, tables: dict[str, Any], folder: Path, shape: LawShape | None) -> dict[str, Any]:
+    """Return the table of a contact law with the numbers of the file that it names in the place of the name.
+
+    Parameters
+    ----------
+    law : str
+        Its name.
+    tables : dict
+        The tables of the file, by name.
+    folder : pathlib.Path
+        Where files that they name lie.
+    shape : LawShape or None
+        The law that :func:`law_of_file` made of them.
+
+    Returns
+    -------
+    dict
+        The table by its name; empty where the law needs none beside alpha, beta and roughness.
+
+    Raises
+    ------
+    InputError
+        If the file of a spectrum cannot be read.
+    """
+    if law == "table":
+        assert isinstance(shape, TableLaw)
+        return {"table": {"separation": list(shape.separation), "pressure": list(shape.pressure)}}
+    if tables.get("surface") is None:
+        return {}
+    entries = {key: value for key, value in tables["surface"].items() if key != "shape_only"}
+    if "spectrum" in entries:
+        rows, units = _rows_of_spectrum(folder / entries.pop("spectrum"))
+        entries |= {"wavenumber": (rows[:, 0] * units[0]).tolist(), "density": (rows[:, 1] * units[1]).tolist()}
+    return {"surface": entries}
 
 
 def _of_surface(law: Law, entries: dict[str, Any], folder: Path) -> LawOfFile:
-    if "spectrum" in entries:
+    if any(key in entries for key in ("spectrum", "wavenumber", "density")):
         full = _of_spectrum(entries, folder)
     else:
         for name in ("h_rms", "hurst"):
@@ -133,19 +191,56 @@ def _of_surface(law: Law, entries: dict[str, Any], folder: Path) -> LawOfFile:
 
 
 def _of_spectrum(entries: dict[str, Any], folder: Path) -> PerssonLaw:
-    extra = [name for name in entries if name not in ("spectrum", "gamma")]
+    extra = [name for name in entries if name not in ("spectrum", "wavenumber", "density", "gamma")]
     if extra:
-        raise InputError(f"{extra[0]} = {show(entries[extra[0]])} follows from the file of the spectrum; remove one of them.")
-    if not isinstance(entries["spectrum"], str):
-        raise InputError(f"spectrum = {show(entries['spectrum'])} must be text in quotes, the name of a CSV file.")
-    path = folder / entries["spectrum"]
-    rows, units = read_two_columns(path, None, {"wavenumber": "wavenumber", "density": "spectral density"})
-    assert units is not None
+        source = "the file of the spectrum" if "spectrum" in entries else "the spectrum"
+        raise InputError(f"{extra[0]} = {show(entries[extra[0]])} follows from {source}; remove one of them.")
+    gamma = entries.get("gamma", GAMMA)
+    if "spectrum" not in entries:
+        return persson_law(Spectrum(*_lists("surface", entries)), gamma)
+    path = _file_of("surface", entries, folder)
+    rows, units = _rows_of_spectrum(path)
     try:
-        spectrum = Spectrum(rows[:, 0] * units[0], rows[:, 1] * units[1])
-        return persson_law(spectrum, entries.get("gamma", GAMMA))
+        return persson_law(Spectrum(rows[:, 0] * units[0], rows[:, 1] * units[1]), gamma)
     except InputError as problem:
         raise InputError(f"{path}: {problem}") from None
+
+
+def _rows_of_spectrum(path: Path) -> tuple[Array, tuple[float, float]]:
+    """Return the rows of the file of a spectrum and the SI values of their units."""
+    rows, units = read_two_columns(path, None, {"wavenumber": "wavenumber", "density": "spectral density"})
+    assert units is not None
+    return rows, units
+
+
+def _file_of(table: str, entries: dict[str, Any], folder: Path) -> Path:
+    """Return the path of the file that a table names; refuse lists of numbers beside it."""
+    key, lists = ROWS[table]
+    doubled = [name for name in lists if name in entries]
+    if doubled:
+        raise InputError(f"{key} = {show(entries[key])} and {doubled[0]} are both given; remove one of them.")
+    if not isinstance(entries[key], str):
+        raise InputError(f"{key} = {show(entries[key])} must be text in quotes, the name of a CSV file.")
+    return folder / entries[key]
+
+
+def _lists(table: str, entries: dict[str, Any]) -> list[list[float]]:
+    """Return the two lists of numbers of a table."""
+    found = []
+    for name in ROWS[table][1]:
+        values = entries.get(name)
+        if values is None:
+            raise InputError(f"{name} is missing; add as many numbers as the other list has.")
+        numbers = isinstance(values, list) and all(
+            isinstance(each, int | float) and not isinstance(each, bool) for each in values
+        )
+        if not numbers:
+            raise InputError(f"{name} = {show(values)} must be a list of numbers, without quotes.")
+        found.append([float(each) for each in values])
+    if len(found[0]) != len(found[1]):
+        first, second = ROWS[table][1]
+        raise InputError(f"{first} has {len(found[0])} numbers and {second} {len(found[1])}; they must be equally many.")
+    return found
 
 
 def _of_asperities(law: Law, entries: dict[str, Any]) -> LawOfFile:
@@ -158,7 +253,7 @@ def _of_asperities(law: Law, entries: dict[str, Any]) -> LawOfFile:
 
 
 def _table(entries: dict[str, Any], contact: dict[str, Any], folder: Path) -> TableLaw:
-    if "file" not in entries:
+    if not entries:
         raise InputError(
             "[table] file is missing; add the name of a CSV file with a column of separations and one of pressures."
         )
@@ -166,6 +261,10 @@ def _table(entries: dict[str, Any], contact: dict[str, Any], folder: Path) -> Ta
     E, nu = contact.get("youngs_modulus"), contact.get("poisson_ratio")
     if needed["modulus"] is None and E is not None and nu is not None:
         needed["modulus"] = E / (1 - nu * nu)
-    if not isinstance(entries["file"], str):
-        raise InputError(f"[table] file = {show(entries['file'])} must be text in quotes, the name of a CSV file.")
-    return TableLaw.read(folder / entries["file"], **needed)
+    try:
+        if "file" not in entries:
+            return TableLaw(*_lists("table", entries))
+        path = _file_of("table", entries, folder)
+    except InputError as problem:
+        raise InputError(f"[table] {problem}") from None
+    return TableLaw.read(path, **needed)
