@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
+import numpy as np
+
 from stribeck._types import Array
 from stribeck.cases.rough_surface import RoughSurface
 from stribeck.contact_laws.exponential import ExponentialShape
@@ -197,7 +199,8 @@ def _of_spectrum(entries: dict[str, Any], folder: Path) -> PerssonLaw:
         raise InputError(f"{extra[0]} = {show(entries[extra[0]])} follows from {source}; remove one of them.")
     gamma = entries.get("gamma", GAMMA)
     if "spectrum" not in entries:
-        return persson_law(Spectrum(*_lists("surface", entries)), gamma)
+        wavenumber, density = _lists("surface", entries)
+        return persson_law(Spectrum(wavenumber, density), gamma)
     path = _file_of("surface", entries, folder)
     rows, units = _rows_of_spectrum(path)
     try:
@@ -221,10 +224,10 @@ def _file_of(table: str, entries: dict[str, Any], folder: Path) -> Path:
         raise InputError(f"{key} = {show(entries[key])} and {doubled[0]} are both given; remove one of them.")
     if not isinstance(entries[key], str):
         raise InputError(f"{key} = {show(entries[key])} must be text in quotes, the name of a CSV file.")
-    return folder / entries[key]
+    return folder / str(entries[key])
 
 
-def _lists(table: str, entries: dict[str, Any]) -> list[list[float]]:
+def _lists(table: str, entries: dict[str, Any]) -> list[Array]:
     """Return the two lists of numbers of a table."""
     found = []
     for name in ROWS[table][1]:
@@ -236,7 +239,7 @@ def _lists(table: str, entries: dict[str, Any]) -> list[list[float]]:
         )
         if not numbers:
             raise InputError(f"{name} = {show(values)} must be a list of numbers, without quotes.")
-        found.append([float(each) for each in values])
+        found.append(np.array(values, dtype=float))
     if len(found[0]) != len(found[1]):
         first, second = ROWS[table][1]
         raise InputError(f"{first} has {len(found[0])} numbers and {second} {len(found[1])}; they must be equally many.")
@@ -263,7 +266,8 @@ def _table(entries: dict[str, Any], contact: dict[str, Any], folder: Path) -> Ta
         needed["modulus"] = E / (1 - nu * nu)
     try:
         if "file" not in entries:
-            return TableLaw(*_lists("table", entries))
+            separation, pressure = _lists("table", entries)
+            return TableLaw(separation, pressure)
         path = _file_of("table", entries, folder)
     except InputError as problem:
         raise InputError(f"[table] {problem}") from None
