@@ -14,6 +14,7 @@ To them comes what the polynomials on the panels miss between the nodes.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
@@ -23,6 +24,7 @@ from numpy.polynomial import legendre
 from stribeck._types import Array, Indices
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.observables import NAMES, Observables, far_gap, friction_integrals, friction_scale, gradients
+from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import Rows
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
@@ -137,12 +139,15 @@ class ErrorEstimate:
         Absolute errors left by mesh and iteration at the nodes, by the polynomials between them, and by rounding.
     scales : ndarray
         What each is relative to: one for the load shares, the observable itself for the others.
+    minimum_position : float
+        Absolute error of the position of the minimum gap [a].
     """
 
     discretisation: Array = field(repr=False)
     interpolation: Array = field(repr=False)
     rounding: Array = field(repr=False)
     scales: Array = field(repr=False)
+    minimum_position: float = math.nan
 
     def at_most(self, difference: Array) -> ErrorEstimate:
         """Return the estimate with no discretisation error above twice the ``difference`` from a clearly coarser mesh.
@@ -272,5 +277,9 @@ def error_estimates(states: Rows, observed: list[Observables], fine: FineOperato
         scales[:, 2:4] = np.maximum(scales[:, 2:4], GAP_FLOOR * states.equations.law.decay)
     scales[scales == 0] = 1.0
     rounding = DEVIATIONS * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
-    parts = (DEFECT_SAFETY * effects[:, :, 0], interpolation, rounding, scales)
+    positions, gap = np.array([one.minimum_position for one in observed]), states.y[:, :-2]
+    least = NAMES.index("minimum_gap")
+    depth = (effects[:, least, 0] + interpolation[:, least] + rounding[:, least]) / gap.min(axis=1)
+    places = position_errors(states.equations.operators.mesh, gap, changed.unknowns[:, :, :-2], positions, depth).tolist()
+    parts = (DEFECT_SAFETY * effects[:, :, 0], interpolation, rounding, scales, places)
     return [ErrorEstimate(*row) for row in zip(*parts, strict=True)]

@@ -23,6 +23,7 @@ OBSERVABLES = {
     "central_gap": ("1", "gap at the centre, in Hertz indentations"),
     "minimum_gap": ("1", "least gap, in Hertz indentations"),
     "minimum_position": ("1", "position of the least gap, in Hertz half-widths"),
+    "minimum_position_error": ("1", "estimated absolute error of minimum_position, in Hertz half-widths"),
     "flux_gap": ("1", "flux gap: fluid flux over half the speed, in Hertz indentations"),
     "offset": (
         "1",

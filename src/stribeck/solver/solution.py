@@ -75,6 +75,9 @@ class Solution:
         The observables as one object, in Hertz units and for beta = 1.
     relative_errors : ndarray
         Estimated relative errors of the observables, by name in :attr:`errors`.
+    minimum_position_error : float
+        Estimated absolute error of :attr:`minimum_position` [a], not covered by :attr:`error_estimate`; 1 for the dry smooth
+        contact, where the gap is zero on all of the contact.
     rounding_floor : float
         The part of the error estimate that double precision causes and no mesh removes.
     mesh : Mesh
@@ -101,6 +104,7 @@ class Solution:
     law: str
     observables: Observables
     relative_errors: Array = field(repr=False)
+    minimum_position_error: float
     rounding_floor: float
     mesh: Mesh = field(repr=False)
     nodal_gap: Array = field(repr=False)
@@ -115,7 +119,10 @@ class Solution:
 
     @cached_property
     def error_estimate(self) -> float:
-        """Largest estimated relative error of the observables; load shares count absolutely."""
+        """Largest estimated relative error of the observables; load shares count absolutely.
+
+        It says nothing about :attr:`minimum_position`, which has :attr:`minimum_position_error`.
+        """
         return float(np.nanmax(self.relative_errors))
 
     @property
@@ -178,7 +185,7 @@ class Solution:
 
     @property
     def minimum_position(self) -> float:
-        """Where the gap is least [a]."""
+        """Position of the minimum gap [a], to :attr:`minimum_position_error`."""
         return self.observables.minimum_position
 
     @property
@@ -369,6 +376,7 @@ class Solution:
             parts = {"contact": f.contact, "viscous": f.viscous, "total": f.total, "error": f.error}
             result[f"friction_{definition}"] = parts
         result["errors"] = self.errors
+        result["minimum_position_error"] = self.minimum_position_error
         result |= {"error_estimate": self.error_estimate, "rtol": self.rtol, "nodes": self.nodes}
         result |= {"outcome": self.outcome.name, "message": self.outcome.value, "notes": list(self.notes)}
         return result
@@ -395,6 +403,11 @@ def si_films(solution: Solution) -> dict[str, tuple[float, str, str]]:
         "central_film_thickness": (solution.central_gap * u, "m", "gap at the centre"),
         "minimum_film_thickness": (solution.minimum_gap * u, "m", "least gap"),
         "minimum_film_position": (solution.minimum_position * a, "m", "position of the least gap"),
+        "minimum_film_position_error": (
+            solution.minimum_position_error * a,
+            "m",
+            "estimated absolute error of minimum_film_position",
+        ),
         "flux_film_thickness": (solution.flux_gap * u, "m", "fluid flux over half the speed"),
         "hertz_half_width": (a, "m", "half-width a of the dry smooth contact"),
         "hertz_indentation": (u, "m", "indentation u_Hz of the dry smooth contact"),

@@ -30,6 +30,7 @@ FILMS = {
     "central_film_thickness": ("m", "gap at the centre"),
     "minimum_film_thickness": ("m", "least gap"),
     "minimum_film_position": ("m", "position of the least gap"),
+    "minimum_film_position_error": ("m", "estimated absolute error of minimum_film_position"),
     "flux_film_thickness": ("m", "fluid flux over half the speed"),
     "hertz_half_width": ("m", "half-width a of the dry smooth contact"),
     "hertz_indentation": ("m", "indentation u_Hz of the dry smooth contact"),

@@ -79,8 +79,10 @@ def _solution_rows(solution: Solution, mu0: float | None, beta: float | None) ->
         si = "" if scales is None else length(value * scales.indentation, errors[name])
         unit = " u_Hz" if math.isfinite(value) else ""
         yield label, f"{digits(value, errors[name])}{unit}", si, error_text(errors[name])
-    si = "" if scales is None else length(solution.minimum_position * scales.half_width, 1e-4)
-    yield "place of the least film", f"{solution.minimum_position:.4g} a", si, ""
+    place, wrong = solution.minimum_position, solution.minimum_position_error
+    relative = wrong / abs(place) if place != 0 else 0.0
+    si = "" if scales is None else length(place * scales.half_width, max(relative, 1e-4))
+    yield "position of minimum film", f"{digits(place, max(relative, 1e-4))} a", si, f"{wrong:.0e} a"
     yield "Lambda (film over h_rms/alpha)", digits(solution.lambda_ratio, 1e-4), "", ""
     if not math.isnan(solution.central_area_fraction):
         area, error = solution.central_area_fraction, solution.central_area_fraction_error

@@ -1,0 +1,87 @@
+r"""How far the stated position of the minimum gap may be from the true one.
+
+At the minimum the slope of the gap vanishes, so that a wrong slope moves it by
+
+.. math:: \delta x = -\frac{\delta h'}{h''}
+
+The slope is wrong by what defect and rounding change at the nodes, by what the search for the minimum leaves, and by what
+the polynomial misses between its m nodes.  The last is taken for the first Legendre polynomial that is left out, whose slope
+is about :math:`\sqrt{2m/\pi}\,(1-s^2)^{-3/4}` inside a panel and :math:`m(m+1)/2` at its ends.  If the gap has a second
+minimum of nearly the same depth, the distance between the two is the error.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stribeck._types import Array, Indices
+from stribeck.numerics.panels import Mesh, interpolation_error, reference
+
+SAFETY = 2.0
+"""Factor from the estimated to the stated error; checked against finer meshes."""
+
+NODAL_ROUNDING = 16 * 2.0**-52
+"""Rounding of a nodal gap, the difference of terms of order one; it differs from node to node and so makes a slope."""
+
+
+def position_errors(mesh: Mesh, gap: Array, changes: Array, positions: Array, depth: Array) -> Array:
+    """Return the absolute errors of the positions of the minimum gap [a], shape (rows,).
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The discretisation.
+    gap : ndarray, shape (rows, nodes)
+        Nodal gaps [u_Hz].
+    changes : ndarray, shape (n, rows, nodes)
+        What may be wrong with the nodal gaps [u_Hz], the defect first and patterns of rounding after it.
+    positions : ndarray, shape (rows,)
+        Positions of the minimum gap [a].
+    depth : ndarray, shape (rows,)
+        Relative errors of the minimum gap [-].
+
+    Returns
+    -------
+    ndarray, shape (rows,)
+        Absolute errors [a].
+    """
+    rule, order = reference(mesh.order), mesh.order
+    panel = np.clip(np.searchsorted(mesh.edges, positions) - 1, 0, mesh.panels - 2)
+    width = mesh.half_widths[panel]
+    s = (positions - mesh.centres[panel]) / width
+    nodes = panel[:, None] * order + np.arange(order)
+    own, far = np.take_along_axis(gap, nodes, axis=1), mesh.far[nodes]
+    logarithm = np.log(own / far)
+    first = rule.derivative @ rule.to_legendre
+    basis = np.polynomial.legendre.legvander(s, order - 1)
+    slope_of, curvature_of = basis @ first, basis @ rule.derivative @ first
+    growth = mesh.scale**2 + positions**2
+    slope = (slope_of * logarithm).sum(axis=1) + 2 * width * positions / growth
+    curvature = (curvature_of * logarithm).sum(axis=1) + 2 * width**2 * (mesh.scale**2 - positions**2) / growth**2
+
+    at_nodes = np.stack([np.take_along_axis(change, nodes, axis=1) for change in changes]) / own
+    moved = np.abs((slope_of * at_nodes).sum(axis=2))
+    inside = np.maximum(1 - s**2, 1e-300)
+    steepest = np.minimum(order * (order + 1) / 2, np.sqrt(2 * order / np.pi) / inside**0.75)
+    missed = steepest * (interpolation_error(logarithm) + NODAL_ROUNDING / own.min(axis=1))
+    wrong = np.abs(slope) + moved[0] + 2 * np.sqrt((moved[1:] ** 2).mean(axis=0)) + missed
+    found = SAFETY * width * wrong / np.maximum(np.abs(curvature), 1e-300)
+
+    return np.asarray(np.maximum(found, _farthest_rival(mesh, gap, positions, panel, depth)))
+
+
+def _farthest_rival(mesh: Mesh, gap: Array, positions: Array, panel: Indices, depth: Array) -> Array:
+    """Return the distance of the farthest other minimum that may be the deeper one, zero if there is none."""
+    x, gap = mesh.nodes[: -mesh.order], gap[:, : -mesh.order]  # without the panel through infinity
+    left, middle, right = gap[:, :-2], gap[:, 1:-1], gap[:, 2:]
+    rising = (middle - left) / (x[1:-1] - x[:-2])
+    falling = (right - middle) / (x[2:] - x[1:-1])
+    apart = np.abs(np.arange(1, len(x) - 1) // mesh.order - panel[:, None]) > 1
+    rows, at = np.nonzero((rising <= 0) & (falling >= 0) & apart)
+    found = np.zeros(len(gap))
+    bend = (falling - rising)[rows, at] / (x[at + 2] - x[at])  # of the parabola through the three nodes
+    slope = rising[rows, at] + bend * (x[at + 1] - x[at])
+    bottom = middle[rows, at] - 1.5 * slope**2 / (4 * np.maximum(bend, 1e-300))  # with half of the drop for what it misses
+    deep = bottom <= gap.min(axis=1)[rows] * (1 + 2 * depth[rows])
+    np.maximum.at(found, rows[deep], np.abs(x[at[deep] + 1] - positions[rows[deep]]))
+    return found
