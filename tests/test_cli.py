@@ -82,6 +82,7 @@ def test_the_json_of_a_state_has_exactly_these_keys(capsys):
         "friction_paper",
         "friction_balanced",
         "errors",
+        "minimum_position_error",
         "error_estimate",
         "rtol",
         "nodes",
