@@ -17,8 +17,8 @@ def test_friction_is_boundary_friction_times_load_share_and_beta_times_the_visco
 
 
 def test_the_definitions_agree_where_asperities_carry_nothing_and_not_in_the_boundary_regime(solved):
-    smooth, rough = solved(1e-4, 0.1, 0.0), solved(1e-8, 0.1, 1e-2)
+    smooth, rough = solved(1e-4, 0.1, 0.0), solved(1e-8, 0.1, 1e-4)
     published, balanced = (smooth.friction(definition=d) for d in DEFINITIONS)
     assert published.viscous == pytest.approx(balanced.viscous, rel=1e-6)
     published, balanced = (rough.friction(definition=d) for d in DEFINITIONS)
-    assert published.viscous > 2 * balanced.viscous > 0
+    assert published.viscous == pytest.approx(70.55 * balanced.viscous, rel=1e-4)
