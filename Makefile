@@ -21,13 +21,12 @@ define install
 	@touch $@
 endef
 
-.PHONY: help demo test slow torch browser screenshots lint format types benchmark validity atlas certificate docs site notebooks
+.PHONY: help demo test slow browser screenshots lint format types benchmark validity atlas certificate docs site notebooks
 .PHONY: clean
 
 help:
 	@echo "make demo       the Stribeck curve of a PDMS cylinder: curve.png, curve.nc"
 	@echo "make test       the tests      make slow   those that take minutes"
-	@echo "make torch      those of batches on PyTorch, which it installs"
 	@echo "make browser    the tests of the explorer, in Chromium      make screenshots  docs/images/explorer*.png"
 	@echo "make lint       style          make format apply it"
 	@echo "make types      static types   make benchmark  the tables of the documentation"
@@ -58,9 +57,6 @@ test: $(READY)
 slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n auto -m slow
 
-torch: $(READY)
-	@$(BIN)/python -c 'import array_api_compat, torch' 2>/dev/null || $(BIN)/python -m pip install --quiet --editable '.[gpu]'
-	$(ONE_THREAD) $(BIN)/python -m pytest -m torch
 # Debian's chromium, or CHROMIUM=/path/to/it.
 browser: $(BROWSER)
 	$(ONE_THREAD) $(BIN)/python -m pytest -m browser tests/test_browser.py tests/test_benchmarks.py

@@ -2,7 +2,7 @@
 
 Three sets of random states at rtol 1e-6: one contact whose inputs scatter by a tenth, a study over six decades of speed,
 1.7 of load and two of roughness, and the whole box.  Processor time is counted, of one thread: other work on the machine
-changes it less than the time on the clock.  PyTorch takes part where it is installed, on the processor.
+changes it less than the time on the clock.
 
     python benchmarks/batch_rate.py --number 4000
 """
@@ -10,7 +10,6 @@ changes it less than the time on the clock.  PyTorch takes part where it is inst
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import os
 import platform
 import tempfile
@@ -55,36 +54,29 @@ def sweep_of(groups: sb.Groups) -> sb.Sweep:
 
 def main() -> None:
     """Print the table."""
-    arguments = argparse.ArgumentParser(description="States per second of batches.")
+    arguments = argparse.ArgumentParser(description="States per second of arrays of states.")
     arguments.add_argument("--number", type=int, default=1000, help="states (default 1000; of the box a quarter)")
     number = arguments.parse_args().number
-    has_torch = all(importlib.util.find_spec(name) for name in ("torch", "array_api_compat"))
-    backends = ["numpy", "torch"] if has_torch else ["numpy"]
     print(f"Python {platform.python_version()}, NumPy {np.__version__}, {platform.machine()}, ", end="")
     print(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; one thread, processor time\n")
-    print("| states | how | in a batch | not converged | ms a state | states per second | over single solves |")
-    print("|---|---|---|---|---|---|---|")
+    print("| states | how | not converged | ms a state | states per second | over single solves |")
+    print("|---|---|---|---|---|---|")
     for name, groups in sets(number).items():
-        rows = range(0, groups.shape[0], max(1, groups.shape[0] // SINGLE))
+        total = groups.shape[0]
+        rows = range(0, total, max(1, total // SINGLE))
         states = [sb.Groups(*(float(getattr(groups, part)[i]) for part in ("speed", "load", "roughness"))) for i in rows]
         single, _ = timed(lambda states=states: [sb.solve(state) for state in states])
         single /= len(states)
-        line(name, groups, f"`solve`, {len(states)} of them", "", 0, single, single)
+        line(f"{name}, {total}", f"`solve`, {len(states)} of them", 0, single, single)
         used, swept = timed(lambda groups=groups: sweep_of(groups))
-        line(name, groups, "`sweep`, one process", "", swept.failed, used / groups.shape[0], single)
-        for backend in backends:
-            used, found = timed(lambda groups=groups, backend=backend: sb.solve_batch(groups, backend=backend))
-            together = f"{found.batched.mean():.1%}"
-            line(name, groups, f"`solve_batch`, {backend}", together, int((~found.ok).sum()), used / groups.shape[0], single)
+        line(f"{name}, {total}", "`sweep`, one process", swept.failed, used / total, single)
+        used, found = timed(lambda groups=groups: sb.solve_batch(groups))
+        line(f"{name}, {total}", "`solve_batch`", int((~found.ok).sum()), used / total, single)
 
 
-def line(name: str, groups: sb.Groups, how: str, together: str, failed: int, used: float, single: float) -> None:
+def line(states: str, how: str, failed: int, used: float, single: float) -> None:
     """Print one line of the table."""
-    rate, ratio = 1 / used, single / used
-    print(
-        f"| {name}, {groups.shape[0]} | {how} | {together} | {failed} | {1e3 * used:.1f} | {rate:.0f} | {ratio:.1f} |",
-        flush=True,
-    )
+    print(f"| {states} | {how} | {failed} | {1e3 * used:.1f} | {1 / used:.0f} | {single / used:.1f} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -282,7 +282,7 @@ def test_a_phase_diagram_is_made_with_a_law():
     assert state.fluid_load_share == pytest.approx(0.5, abs=1e-5)
 
 
-def test_atlas_formulas_and_batches_refuse_another_law_in_one_sentence():
+def test_atlas_and_formulas_refuse_another_law_in_one_sentence():
     groups = sb.Groups(1e-5, 0.1, 1e-4, law=sb.GreenwoodWilliamson())
     with pytest.raises(sb.InputError, match="exponential contact law, not of greenwood-williamson; use the solver"):
         sb.atlas.friction(groups)
@@ -290,8 +290,6 @@ def test_atlas_formulas_and_batches_refuse_another_law_in_one_sentence():
         sb.stribeck_curve(groups, speed=(1e-5, 1e-3), points=3, method="atlas")
     with pytest.raises(sb.InputError, match="exponential contact law, not for greenwood-williamson; use solve"):
         sb.asymptotics.boundary.gap(groups, 0.0)
-    with pytest.raises(sb.InputError, match="exponential contact law, not greenwood-williamson; use solve, or a sweep"):
-        sb.solve_batch(groups)
     smooth = sb.asymptotics.hydrodynamic.friction
     assert smooth(groups) == smooth(replace(groups, law=None))
 

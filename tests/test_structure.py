@@ -45,8 +45,6 @@ NEVER = {("equations", "asymptotics"), ("solver", "asymptotics")}
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts)
 HEAVY = {
     "SurfaceTopography",
-    "array_api_compat",
-    "cupy",
     "cyclopts",
     "dask",
     "distributed",
@@ -58,7 +56,6 @@ HEAVY = {
     "pint",
     "pydantic",
     "rich",
-    "torch",
     "xarray",
     "zarr",
 }

@@ -18,9 +18,9 @@ from command_line import SCRIPT, SWEEP, call, environment
 from sweep_files import CONTACT, GRID, RANDOM, chunks, done_rows, same_rows, write
 
 import stribeck as sb
+from stribeck.batches import chain as sweep_chain
 from stribeck.numerics.newton import Outcome
 from stribeck.quantities.inputs import INPUTS
-from stribeck.sweeps import chain as sweep_chain
 from stribeck.sweeps.lock import LOCK
 
 LONG = RANDOM.format(kind="sobol", points=1024)
@@ -417,7 +417,7 @@ def test_workers_that_die_again_and_again_end_the_sweep_with_a_sentence(tmp_path
     code = """
 import os, sys
 import stribeck as sb
-from stribeck import sweep_chain, sweep_workers
+from stribeck.sweeps import workers as sweep_workers
 def die(path, chains, workers, finished, pause):
     from concurrent.futures.process import BrokenProcessPool
     raise BrokenProcessPool

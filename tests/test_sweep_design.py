@@ -5,8 +5,8 @@ import pytest
 from sweep_files import CONTACT, GRID, RANDOM, write
 
 import stribeck as sb
+from stribeck.batches.order import CHAIN, chains_of, coordinates
 from stribeck.quantities.inputs import INPUTS
-from stribeck.sweeps.order import CHAIN, chains_of, coordinates
 
 VARY = """
 [vary]

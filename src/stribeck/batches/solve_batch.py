@@ -1,8 +1,4 @@
-"""Thousands of states at once: which are solved together, and what comes out.
-
-States that are close are reached from one of them, along its derivatives; scattered ones come down together from the rigid
-contact.  What neither brings to its tolerance is left to :func:`stribeck.solve`, and the result says so.
-"""
+"""Arrays of states in one call."""
 
 from __future__ import annotations
 
@@ -12,28 +8,25 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, Flags, Indices
-from stribeck.batches.device import Device, device_for, one_torch_thread
-from stribeck.batches.guess import column_groups, spread
-from stribeck.batches.path import Answer, descend, refined
-from stribeck.batches.plan import middle, planned
-from stribeck.contact_laws.law import is_exponential
+from stribeck._types import Array, Flags
+from stribeck.batches.chain import Ended, solve_in_order
+from stribeck.batches.order import chains_of
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups
 from stribeck.equations.observables import NAMES, Observables
 from stribeck.numerics.newton import Outcome
-from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.cold_start import cold_start
-from stribeck.solver.solve import SolveError, check_rtol, least_estimate, solve
+from stribeck.solver.solve import check_rtol
+
+__all__ = ["BatchSolution", "solve_batch"]
 
 Progress = Callable[[int, int], object]
 
 
 @dataclass(frozen=True, eq=False)
 class BatchSolution:
-    """Observables of many states, in arrays of the shape of the groups; gaps in u_Hz, nan where the outcome says why.
+    """Observables of many states, in arrays of the shape of the groups; gaps in u_Hz, nan if there is no state.
 
     Attributes
     ----------
@@ -41,12 +34,8 @@ class BatchSolution:
         The states.
     rtol : float
         The relative tolerance asked for.
-    backend : str
-        The array library that did the linear algebra.
     outcome : ndarray of Outcome
         How the solve of each state ended.
-    batched : ndarray of bool
-        Whether a state was solved in a batch; the others by :func:`stribeck.solve`, or not at all.
     contact_load_share, fluid_load_share : ndarray
         Parts of the load on asperities and fluid [-].
     central_gap, minimum_gap, flux_gap : ndarray
@@ -63,9 +52,7 @@ class BatchSolution:
 
     groups: Groups
     rtol: float
-    backend: str
     outcome: np.ndarray[Any, np.dtype[np.object_]]
-    batched: Flags
     contact_load_share: Array = field(repr=False)
     fluid_load_share: Array = field(repr=False)
     central_gap: Array = field(repr=False)
@@ -121,133 +108,64 @@ class BatchSolution:
         return mu0 * self.contact_load_share + beta * viscous
 
 
-@one_blas_thread
-def solve_batch(
-    groups: Groups,
-    *,
-    rtol: float = 1e-6,
-    backend: Any = "numpy",
-    device: Any = None,
-    memory: float | None = None,
-    on_progress: Progress | None = None,
-) -> BatchSolution:
-    r"""Solve many states at once, by batched Newton iterations on meshes that they share.
+def solve_batch(groups: Groups, *, rtol: float = 1e-6, on_progress: Progress | None = None) -> BatchSolution:
+    r"""Solve many states, each from its neighbour.
 
     Parameters
     ----------
     groups : Groups
-        The states; arrays broadcast.
+        The states; arrays broadcast. Their contact law may be any.
     rtol : float
         Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2.
-    backend : {"numpy", "torch", "cupy"} or module
-        Array library for the linear algebra, or any other namespace of the array API standard.
-    device : object, optional
-        Device as the library names it, for example ``"cuda"``; its default if omitted.
-    memory : float, optional
-        Bytes that the Jacobians of a batch may fill, > 0; what is fast on such a device if omitted.
     on_progress : callable, optional
-        ``on_progress(done, total)`` is called after every batch.
+        ``on_progress(done, total)`` is called after every state. It may raise KeyboardInterrupt.
 
     Returns
     -------
     BatchSolution
-        Observables, outcomes and error estimates. A failure, or a state that an interruption left undone, is kept with
-        its outcome.
+        Observables, outcomes and error estimates. A state that failed, or that an interruption left undone, has its outcome.
 
     Raises
     ------
     InputError
-        If an argument is outside its range, or a library or device is missing.
+        If an argument is outside its range.
 
     Notes
     -----
-    Equations, meshes, tolerances and error estimates are those of :func:`stribeck.solve`; results differ by less than the
-    two estimates together, and between array libraries by less than 1e-8 (``test_batch.py``). Made for states that crowd:
-    some ten thousand in a study, not a hundred all over the box. States at rest are solved one by one. No run on a GPU has
-    been measured.
+    Each state meets ``rtol`` by the error estimate of :func:`stribeck.solve`; the two results differ by less than the two
+    estimates together (``test_batch.py``). The states are put in chains of neighbours, as :func:`stribeck.sweep` does; a
+    sweep also keeps them on disk and solves chains in parallel.
 
-    Source: [BP] Appendix A; numerics.md, "Many states at once".
+    Source: [BP] Appendix A; numerics.md, "Many states".
     """
     if not isinstance(groups, Groups):
         raise InputError(f"groups = {show(groups)}; they must be Groups(speed, load, roughness) of arrays.")
-    if groups.law is not None and not is_exponential(groups.law):
-        raise InputError(f"batches hold the exponential contact law, not {groups.law.name}; use solve, or a sweep.")
     check_rtol(rtol)
-    target, name = device_for(backend, device, memory)
     shape = groups.shape
-    columns = Groups(
-        *(np.broadcast_to(getattr(groups, part), shape).reshape(-1, 1) for part in ("speed", "load", "roughness"))
-    )
-    work = _Work(columns, rtol, target, on_progress)
-    with one_torch_thread(target.xp), np.errstate(all="ignore"):
-        work.run()
-    values = dict(
-        zip((f.name for f in fields(Observables)), work.values.T.reshape(len(fields(Observables)), *shape), strict=True)
-    )
-    errors = work.errors.T.reshape(len(NAMES), *shape)
-    outcome, batched = work.outcome.reshape(shape), work.batched.reshape(shape)
-    return BatchSolution(groups, rtol, name, outcome, batched, relative_errors=errors, **values)
+    parts = (groups.speed, groups.load, groups.roughness)
+    states = np.stack([np.broadcast_to(part, shape).ravel() for part in parts], axis=1)
+    total = len(states)
+    is_grid = all(np.size(part) < total for part in parts)
+    values = np.full((len(fields(Observables)), total), np.nan)
+    errors = np.full((len(NAMES), total), np.nan)
+    outcome = np.full(total, Outcome.INTERRUPTED, dtype=object)
+    done = 0
 
+    def keep(row: int, ended: Ended) -> None:
+        nonlocal done
+        if ended.fault is not None:
+            raise ended.fault
+        outcome[row], done = ended.outcome, done + 1
+        if ended.solution is not None:
+            values[:, row] = [getattr(ended.solution.observables, f.name) for f in fields(Observables)]
+            errors[:, row] = ended.solution.relative_errors
+        if on_progress is not None:
+            on_progress(done, total)
 
-class _Work:
-    """The states of a run in rows, and what is known of them so far."""
-
-    def __init__(self, groups: Groups, rtol: float, device: Device, on_progress: Progress | None) -> None:
-        self.groups, self.rtol, self.device, self.on_progress = groups, rtol, device, on_progress
-        total = len(np.asarray(groups.speed))
-        self.values = np.full((total, len(fields(Observables))), np.nan)
-        self.errors = np.full((total, len(NAMES)), np.nan)
-        self.outcome = np.full(total, Outcome.INTERRUPTED, dtype=object)
-        self.batched = np.zeros(total, dtype=bool)
-
-    def run(self) -> None:
-        """Solve batch by batch, then what is left one by one; end early on Ctrl-C."""
-        close, scattered, single = planned(self.groups)
-        try:
-            for attempt, batches in ((self._close, close), (self._scattered, scattered)):
-                for rows in batches:
-                    found = attempt(rows)
-                    for row, answer in found.items():
-                        self._keep(int(rows[row]), answer)
-                    left = np.setdiff1d(np.arange(len(rows)), list(found))
-                    single = np.concatenate([single, rows[left]])
-                    self._tell()
-            for row in single:
-                self._alone(int(row))
-                self._tell()
-        except KeyboardInterrupt:
-            return
-
-    def _close(self, rows: Indices) -> dict[int, Answer]:
-        groups = column_groups(self.groups, rows)
-        pilot = cold_start(_one(groups, middle(groups)))
-        return refined(spread(pilot.states[-1], groups), self.rtol, self.device) if pilot.outcome.ok else {}
-
-    def _scattered(self, rows: Indices) -> dict[int, Answer]:
-        coarse, kept = descend(column_groups(self.groups, rows), self.device)
-        found = {} if coarse is None else refined(coarse, self.rtol, self.device)
-        return {int(kept[row]): answer for row, answer in found.items()}
-
-    def _keep(self, row: int, answer: Answer) -> None:
-        self.values[row] = [getattr(answer.values, f.name) for f in fields(Observables)]
-        self.errors[row] = np.maximum(answer.estimate.relative, least_estimate(self.rtol))
-        self.outcome[row], self.batched[row] = answer.outcome, True
-
-    def _alone(self, row: int) -> None:
-        try:
-            solution = solve(_one(self.groups, row), rtol=self.rtol, on_failure="return")
-        except SolveError as error:
-            self.outcome[row] = error.outcome
-            return
-        self.values[row] = [getattr(solution.observables, f.name) for f in fields(Observables)]
-        self.errors[row], self.outcome[row] = solution.relative_errors, solution.outcome
-
-    def _tell(self) -> None:
-        if self.on_progress is not None:
-            done = sum(one is not Outcome.INTERRUPTED for one in self.outcome)
-            self.on_progress(done, len(self.outcome))
-
-
-def _one(groups: Groups, row: int) -> Groups:
-    """Return one state of groups that are columns."""
-    return Groups(*(float(np.asarray(getattr(groups, name))[row, 0]) for name in ("speed", "load", "roughness")))
+    try:
+        for chain in chains_of(states, shape if is_grid else ()):
+            solve_in_order(states[chain], groups.law, rtol, lambda i, ended, chain=chain: keep(int(chain[i]), ended))
+    except KeyboardInterrupt:
+        pass
+    found = {f.name: value.reshape(shape) for f, value in zip(fields(Observables), values, strict=True)}
+    return BatchSolution(groups, rtol, outcome.reshape(shape), relative_errors=errors.reshape(len(NAMES), *shape), **found)

@@ -22,6 +22,7 @@ from stribeck.contacts.line import Groups
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.state import Guess, State, extrapolate, mesh_for, solve_state
 from stribeck.numerics.continuation import Path, march
+from stribeck.numerics.newton import Outcome
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 
 RIGID_SPEED = 30.0
@@ -136,6 +137,13 @@ def cold_start(groups: Groups) -> Path[State]:
 
     path = march(correct, top, 0.0, first_step=0.6, max_step=2.5, min_step=1e-3, order=3)
     return path
+
+
+def first_path(groups: Groups) -> Path[State]:
+    """Return the path from cold to ``groups``: :func:`cold_start`, or :func:`start_by_exponential` if that fails."""
+    path = cold_start(groups)
+    settled = path.outcome.ok or path.outcome is Outcome.INTERRUPTED or groups.law is None
+    return path if settled else start_by_exponential(groups)
 
 
 def start_by_exponential(groups: Groups) -> Path[State]:

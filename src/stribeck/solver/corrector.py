@@ -16,7 +16,7 @@ from stribeck.equations.line import Operators
 from stribeck.equations.state import Guess, State, extrapolate, mesh_for, solve_state
 from stribeck.numerics.newton import Factors, Outcome
 from stribeck.numerics.panels import MeshTooLargeError
-from stribeck.solver.cold_start import cold_start
+from stribeck.solver.cold_start import first_path
 from stribeck.solver.judgement import judge_together
 from stribeck.solver.refinement import Point, converge, judge, mesh_tolerances_for, newton_tolerance, order_for, solvable
 
@@ -71,7 +71,9 @@ class Follower:
         """Return the point at ``s`` predicted from ``history``; from cold where that is empty."""
         groups = self.groups_at(s)
         if not history:
-            path = cold_start(solvable(groups))
+            path = first_path(solvable(groups))
+            if path.outcome is Outcome.INTERRUPTED:
+                raise KeyboardInterrupt
             return self._adopt(converge(path.states[-1], groups, self.rtol)) if path.outcome.ok else None
         guess = extrapolate([(c, p.state) for c, p in history if p.state is not None], s)
         point = self._on_present_mesh(guess, groups, self.postpone and bool(groups.speed > 0))

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import LawShape, is_exponential
+from stribeck.contact_laws.law import LawShape
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import NAMES, Observables
@@ -19,7 +19,7 @@ from stribeck.numerics.panels import Mesh
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
-from stribeck.solver.cold_start import cold_start, start_by_exponential
+from stribeck.solver.cold_start import first_path
 from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
 from stribeck.solver.refinement import Point, converge, order_for, quasistatic_shift, solvable
 from stribeck.solver.solution import Solution
@@ -111,9 +111,7 @@ def solve(
 
 def solved_point(groups: Groups, rtol: float) -> Point:
     """Return the refined state of ``groups`` from cold; raise where no path leads there."""
-    path = cold_start(solvable(groups))
-    if not path.outcome.ok and not is_exponential(groups.law):
-        path = start_by_exponential(solvable(groups))
+    path = first_path(solvable(groups))
     if not path.outcome.ok:
         raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
     return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)

@@ -12,13 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
+from stribeck.batches.order import chains_of
 from stribeck.files.writing import PathLike
 from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.chain import Chain
 from stribeck.sweeps.dataset import Sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
 from stribeck.sweeps.lock import locked
-from stribeck.sweeps.order import chains_of
 from stribeck.sweeps.store import SweepError, clean, create_or_open, describe_store, log_run, read_rows
 
 __all__ = ["SweepProgress", "sweep"]

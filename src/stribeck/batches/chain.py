@@ -1,0 +1,226 @@
+"""Solving a chain of states: each starts from the one before it, from cold where that fails, and keeps its outcome."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.batches.order import coordinates
+from stribeck.contact_laws.law import LawShape
+from stribeck.contacts.groups import Groups
+from stribeck.contacts.line import LineContact
+from stribeck.numerics.continuation import march
+from stribeck.numerics.newton import Outcome
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.solver.corrector import Follower
+from stribeck.solver.path import LONGEST_STEP, PREDICTOR_ORDER, SHORTEST_STEP
+from stribeck.solver.refinement import Point
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import describe, hertz_solution, solution_of
+
+__all__ = ["Ended", "solve_in_order"]
+
+LONGEST_JUMP = 5.0
+"""Distance between two states above which a cold start is cheaper than the states between."""
+
+STRAIGHT = 1e-6
+"""Change of direction below which states lie on a line, so that their polynomial predicts the next one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ended:
+    """How the solve of one state ended.
+
+    Attributes
+    ----------
+    outcome : Outcome
+        The outcome; PATH_LOST where the program failed.
+    solution : Solution or None
+        The state, or what was reached of it.
+    message : str
+        What happened, in one sentence that names the groups; empty where the state converged.
+    fault : Exception or None
+        The error of the program that ended the solve.
+    """
+
+    outcome: Outcome
+    solution: Solution | None
+    message: str = ""
+    fault: Exception | None = None
+
+
+def solve_in_order(
+    states: Array,
+    law: LawShape | None,
+    rtol: float,
+    on_state: Callable[[int, Ended], object],
+    contact_of: Callable[[int], LineContact | None] = lambda _: None,
+) -> None:
+    """Solve the states of a chain one after the other.
+
+    Parameters
+    ----------
+    states : ndarray, shape (n, 3)
+        Speed, load and roughness group of each.
+    law : LawShape or None
+        Contact law of all; None is the exponential one.
+    rtol : float
+        Relative tolerance of each state.
+    on_state : callable
+        ``on_state(i, ended)`` is called as soon as the i-th state is finished, in their order.  What it raises ends the chain.
+    contact_of : callable
+        ``contact_of(i)`` returns the contact of the i-th state in SI units, if it has one.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user interrupted it.
+    """
+    _Chain(states, law, rtol, on_state, contact_of).run()
+
+
+class _Chain:
+    """The states of a chain, and whom to tell about them."""
+
+    def __init__(
+        self,
+        states: Array,
+        law: LawShape | None,
+        rtol: float,
+        on_state: Callable[[int, Ended], object],
+        contact_of: Callable[[int], LineContact | None],
+    ) -> None:
+        self.states, self.law, self.rtol, self.on_state, self.contact_of = states, law, rtol, on_state, contact_of
+
+    def groups(self, i: int) -> Groups:
+        """Return the groups of the i-th state."""
+        return Groups(*self.states[i].tolist(), law=self.law)
+
+    @one_blas_thread
+    def run(self) -> None:
+        """Solve all states."""
+        first = 0
+        while first < len(self.states):
+            if self.states[first, 0] == self.states[first, 2] == 0:  # the dry smooth contact
+                solution = hertz_solution(self.groups(first), self.contact_of(first), self.rtol)
+                self.on_state(first, Ended(solution.outcome, solution))
+                first += 1
+                continue
+            finished, failed = self._follow(first, _Polyline(self.states[first : _end(self.states, first)], self.law))
+            first += finished
+            if finished == 0:
+                self.on_state(first, failed)
+                first += 1
+
+    def _follow(self, first: int, path: _Polyline) -> tuple[int, Ended]:
+        """Solve along a path; return how many of its states are finished, and how the solve of the next one ended."""
+        follower = Follower(path.groups_at, self.rtol)
+        finished = 0
+        fault: Exception | None = None
+
+        def correct(s: float, history: Sequence[tuple[float, Point]]) -> Point | None:
+            nonlocal fault
+            begin = path.straight_from(s)
+            straight = [pair for pair in history if pair[0] >= begin]
+            fault = None
+            try:
+                return follower(s, straight if len(straight) > 1 else history[-1:])
+            except MemoryError:
+                raise
+            except Exception as problem:  # a fault of the program must not cost the other states of a long run
+                fault = problem
+                return None
+
+        def report(s: float, point: Point) -> None:
+            nonlocal finished
+            while finished < len(path) and path.knots[finished] == s:
+                i = first + finished
+                self.on_state(i, Ended(point.outcome, solution_of(point, self.contact_of(i), self.rtol)))
+                finished += 1
+
+        found = march(
+            correct,
+            path.knots[0],
+            path.knots[-1],
+            first_step=0.5,
+            max_step=LONGEST_STEP,
+            min_step=SHORTEST_STEP,
+            order=PREDICTOR_ORDER,
+            targets=path.knots,
+            on_point=report,
+        )
+        if found.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        if finished:
+            return finished, Ended(found.outcome, None)
+        return 0, self._failure(first, found.outcome, found.failure, fault)
+
+    def _failure(self, i: int, outcome: Outcome, failure: Point | None, fault: Exception | None) -> Ended:
+        """Return how a state failed from cold, with what was reached."""
+        where = describe(self.groups(i))
+        if fault is not None:
+            return Ended(outcome, None, f"{where}: {type(fault).__name__}: {fault}", fault)
+        solution = None
+        if failure is not None:
+            outcome, solution = failure.outcome, solution_of(failure, self.contact_of(i), self.rtol)
+        return Ended(outcome, solution, f"{where}: {outcome.value}")
+
+
+def _end(groups: Array, first: int) -> int:
+    """Return how far states can be followed: as long as the same groups are zero, and without a long jump."""
+    z = coordinates(groups)
+    for i in range(first + 1, len(groups)):
+        if ((groups[i] == 0) != (groups[first] == 0)).any() or np.abs(z[i] - z[i - 1]).max() > LONGEST_JUMP:
+            return i
+    return len(groups)
+
+
+class _Polyline:
+    """The way from state to state, straight in the logarithms of the groups that are not zero."""
+
+    def __init__(self, groups: Array, law: LawShape | None) -> None:
+        self.groups, self.law = groups, law
+        self.z = np.log(np.where(groups > 0, groups, 1.0))
+        steps = np.diff(self.z, axis=0)
+        lengths = np.abs(steps).max(axis=1) if len(steps) else np.zeros(0)
+        self.knots = np.concatenate([[0.0], np.cumsum(lengths)]).tolist()
+        self.begins = self._straight(steps, lengths)
+
+    def __len__(self) -> int:
+        """Return the number of states."""
+        return len(self.groups)
+
+    def _straight(self, steps: Array, lengths: Array) -> list[float]:
+        """Return, for each step, where the straight line begins on which it lies."""
+        begins: list[float] = []
+        last: Array | None = None
+        for i, (step, length) in enumerate(zip(steps, lengths, strict=True)):
+            direction = step / length if length > 0 else None
+            if direction is None or last is None or np.abs(direction - last).max() > STRAIGHT:
+                begins.append(self.knots[i])
+            else:
+                begins.append(begins[-1])
+            last = direction
+        return begins
+
+    def _step(self, s: float) -> int:
+        """Return the number of the step that ends at ``s`` or holds it."""
+        return min(max(int(np.searchsorted(self.knots, s)) - 1, 0), len(self) - 2)
+
+    def straight_from(self, s: float) -> float:
+        """Return where the straight line begins on which ``s`` lies."""
+        return self.begins[self._step(s)] if self.begins else -math.inf
+
+    def groups_at(self, s: float) -> Groups:
+        """Return the groups at ``s``, exactly those of a state where it is one."""
+        i = int(np.searchsorted(self.knots, s))
+        if i < len(self) and self.knots[i] == s:
+            return Groups(*self.groups[i].tolist(), law=self.law)
+        k = self._step(s)
+        part = (s - self.knots[k]) / (self.knots[k + 1] - self.knots[k])
+        here = np.exp((1 - part) * self.z[k] + part * self.z[k + 1])
+        return Groups(*np.where(self.groups[k] > 0, here, 0.0).tolist(), law=self.law)
