@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, Flags
+from stribeck._types import Array, Flags, Indices
 from stribeck.batches.chain import Ended, solve_in_order
 from stribeck.batches.order import chains_of
 from stribeck.contacts.friction import Definition, check_definition
@@ -151,8 +152,9 @@ def solve_batch(groups: Groups, *, rtol: float = 1e-6, on_progress: Progress | N
     outcome = np.full(total, Outcome.INTERRUPTED, dtype=object)
     done = 0
 
-    def keep(row: int, ended: Ended) -> None:
+    def keep(rows: Indices, i: int, ended: Ended) -> None:
         nonlocal done
+        row = rows[i]
         if ended.fault is not None:
             raise ended.fault
         outcome[row], done = ended.outcome, done + 1
@@ -164,7 +166,7 @@ def solve_batch(groups: Groups, *, rtol: float = 1e-6, on_progress: Progress | N
 
     try:
         for chain in chains_of(states, shape if is_grid else ()):
-            solve_in_order(states[chain], groups.law, rtol, lambda i, ended, chain=chain: keep(int(chain[i]), ended))
+            solve_in_order(states[chain], groups.law, rtol, partial(keep, chain))
     except KeyboardInterrupt:
         pass
     found = {f.name: value.reshape(shape) for f, value in zip(fields(Observables), values, strict=True)}
