@@ -24,10 +24,11 @@ import numpy as np
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import NAMES, observables
+from stribeck.equations.observables import NAMES, ROW, observables
 from stribeck.fluids import newtonian as reynolds
-from stribeck.numerics.newton import root_find
+from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
+from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.solver.cold_start import cold_start
 
 SIDES = {"both infinities": False, "the left infinity": True}
@@ -57,24 +58,19 @@ def true_error(s: sb.Solution) -> float:
     flux = reynolds.flux_gap(gap, mesh.weights)
     equations = Equations(Operators(mesh), base.speed, contact_law(base), flux**2)
     y = np.concatenate([gap, [s.offset - shift, flux]])
-    newton = {
-        "fraction": equations.admissible,
-        "size": equations.size,
-        "tolerance": 1e-12,
-        "singular_below": 0.0,
-    }
-    root = root_find(equations.residual, equations.jacobian, y, **newton)
+    root = root_find(equations, y, StepControl(1e-12))
     found = observables(equations, root.x, light)
-    exact = np.array([getattr(found, name) for name in NAMES])
-    exact[[2, 3, 5]] += shift
+    exact = found.array()
+    gaps = [ROW["central_gap"], ROW["minimum_gap"]]
+    exact[[*gaps, ROW["offset"]]] += shift
     if shift:
-        gap = root.x[:-2] + shift
-        exact[4] = reynolds.flux_gap(gap, mesh.weights) if gap.min() > 0 else np.nan
+        gap = root.x[equations.layout["gap"]] + shift
+        exact[ROW["flux_gap"]] = reynolds.flux_gap(gap, mesh.weights) if gap.min() > 0 else np.nan
     scales = np.abs(exact)
-    scales[:2] = 1.0
-    scales[5] = max(scales[5], 1e-3)
+    scales[[ROW["contact_load_share"], ROW["fluid_load_share"]]] = 1.0
+    scales[ROW["offset"]] = max(scales[ROW["offset"]], 1e-3)
     if g.speed == 0:
-        scales[2:4] = np.maximum(scales[2:4], 1e-3 * g.relative_roughness)
+        scales[gaps] = np.maximum(scales[gaps], 1e-3 * g.relative_roughness)
     scales[scales == 0] = 1.0
     values = np.array([getattr(s.observables, name) for name in NAMES])
     return float(np.nanmax(np.abs(values - exact) / scales))
@@ -102,14 +98,16 @@ def coverage(states: list[sb.Groups], rtol: float) -> str:
 
 def variant(states: list[sb.Groups], one_sided: bool, moving_scale: bool) -> tuple[int, int, int, int]:
     """Return lost paths, points, factorisations and rejected steps of cold starts on changed equations."""
-    integral, after = Mesh.integral_from_infinity, Mesh.after_integral
+    integral, after = RunningIntegral.__call__, RunningIntegral.after
     residual, jacobian = Equations.residual, Equations.jacobian
 
-    def integral_from_left(mesh: Mesh, values: np.ndarray) -> np.ndarray:
-        return integral(mesh, values) + np.where(mesh.nodes > 0, mesh.weights @ values, 0.0)
+    def integral_from_left(running: RunningIntegral, values: np.ndarray) -> np.ndarray:
+        mesh = running.mesh
+        return integral(running, values) + np.where(mesh.nodes > 0, mesh.weights @ values, 0.0)
 
-    def after_integral_from_left(mesh: Mesh, operator: np.ndarray) -> np.ndarray:
-        return after(mesh, operator) + np.outer(operator[:, mesh.nodes > 0].sum(axis=1), mesh.weights)
+    def after_integral_from_left(running: RunningIntegral, operator: np.ndarray) -> np.ndarray:
+        mesh = running.mesh
+        return after(running, operator) + np.outer(operator[:, mesh.nodes > 0].sum(axis=1), mesh.weights)
 
     def scaled_residual(equations: Equations, y: np.ndarray) -> np.ndarray:
         r = residual(equations, y)
@@ -124,11 +122,11 @@ def variant(states: list[sb.Groups], one_sided: bool, moving_scale: bool) -> tup
         matrix[-1, -1] += 2 * y[-1] * (weights @ reynolds.gradient(y[:-2], y[-1])) * unit
         return matrix
 
-    left = {"integral_from_infinity": integral_from_left, "after_integral": after_integral_from_left}
+    left = {"__call__": integral_from_left, "after": after_integral_from_left}
     scaled = {"residual": scaled_residual, "jacobian": scaled_jacobian}
     with ExitStack() as stack:
         if one_sided:
-            stack.enter_context(patch.multiple(Mesh, **left))
+            stack.enter_context(patch.multiple(RunningIntegral, **left))
         if moving_scale:
             stack.enter_context(patch.multiple(Equations, **scaled))
         paths = [cold_start(groups) for groups in states]

@@ -60,12 +60,12 @@ def parts(groups: sb.Groups, rtol: float, runs: int) -> list[str]:
     operators, fine = Operators(mesh), FineOperators(mesh)
     state = solve_state(groups, operators, guess, 1e-2 * rtol)
     equations, y = state.equations, state.y
-    jacobian = equations.relative_jacobian(y)
+    jacobian = equations.jacobian(y, equations.units(y))
     factors = lapack.dgetrf(jacobian)[:2]
     residual = equations.residual(y)
     made = {
         "residual": lambda: equations.residual(y),
-        "Jacobian": lambda: equations.relative_jacobian(y),
+        "Jacobian": lambda: equations.jacobian(y, equations.units(y)),
         "its factorisation": lambda: lapack.dgetrf(jacobian),
         "solve with its factors": lambda: lapack.dgetrs(*factors, residual),
         "observables": lambda: values_of(state, groups),

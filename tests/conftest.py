@@ -16,7 +16,7 @@ from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import NAMES, observables
 from stribeck.fluids import newtonian as reynolds
-from stribeck.numerics.newton import root_find
+from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
@@ -64,20 +64,13 @@ def _refined_values(solution, extra_nodes=6, doublings=5):
     gap = np.maximum(solution.profile(mesh.nodes).gap - shift, 1e-3 * solution.nodal_gap.min())
     flux_gap = reynolds.flux_gap(gap, mesh.weights)
     equations = Equations(Operators(mesh), base.speed, contact_law(base), flux_gap**2)
-    root = root_find(
-        equations.residual,
-        equations.jacobian,
-        np.concatenate([gap, [solution.offset - shift, flux_gap]]),
-        fraction=equations.admissible,
-        size=equations.size,
-        tolerance=1e-12,
-        singular_below=0.0,
-    )
+    start = np.concatenate([gap, [solution.offset - shift, flux_gap]])
+    root = root_find(equations, start, StepControl(1e-12))
     assert root.outcome.name in ("CONVERGED", "ROUNDING")
     values = values_of(equations, root.x, light)
     if shift:
         values[[NAMES.index(name) for name in ("central_gap", "minimum_gap", "offset")]] += shift
-        shifted = root.x[:-2] + shift
+        shifted = root.x[equations.layout["gap"]] + shift
         values[NAMES.index("flux_gap")] = reynolds.flux_gap(shifted, mesh.weights) if shifted.min() > 0 else math.nan
     return values
 

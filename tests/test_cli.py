@@ -32,7 +32,7 @@ import stribeck as sb
 from stribeck.cli import arguments, solving
 from stribeck.cli import progress as progress_module
 from stribeck.cli.reports.words import digits
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 
 GROUPS = ("--groups", "1e-4", "0.1", "1e-3")
 FAST = ("--groups", "0.1", "1e-3", "--range", "0.1", "1", "--points", "3")

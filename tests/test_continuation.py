@@ -1,4 +1,4 @@
-"""Continuation: natural on branches known in closed form, and its engine on states that are bare numbers."""
+"""Continuation: on a branch known in closed form, and on states that are bare numbers."""
 
 import math
 from dataclasses import dataclass
@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from scipy.special import lambertw
 
-from stribeck.numerics.continuation import extrapolation_weights, march, natural
-from stribeck.numerics.newton import Outcome
+from stribeck.numerics.continuation import Steps, extrapolation_weights, march
+from stribeck.numerics.newton import Dense, StepControl, root_find
+from stribeck.quantities.outcome import Outcome
 
 # Semenov's thermal explosion: heat made, p c exp(x), equals heat lost, x. The cold branch x = -W(-p c) ends
 # at p c = 1/e, here for three vessels side by side.
@@ -16,104 +17,42 @@ VESSELS = np.array([0.2, 1.0, 0.5])
 EXPLOSION = math.exp(-1.0)
 
 
-def heated(parameters, start=(0.0, 0.0, 0.0)):
-    return natural(
-        lambda x, p: x - p * VESSELS * np.exp(x),
-        lambda x, p: np.diag(1.0 - p * VESSELS * np.exp(x)),
-        start,
-        parameters,
-    )
-
-
 def temperature(p):
     """The cold branch."""
     return -lambertw(-p * VESSELS).real
 
 
-# Natural continuation
+def heated(stop, **options):
+    """Follow the cold branch from p = 0 by Newton's iteration and extrapolation."""
+
+    def correct(p, history):
+        guess = np.zeros(3)
+        if history:
+            coordinates, roots = zip(*history, strict=True)
+            guess = extrapolation_weights(coordinates, p) @ np.array([root.x for root in roots])
+        problem = Dense(lambda x: x - p * VESSELS * np.exp(x), lambda x: np.diag(1.0 - p * VESSELS * np.exp(x)))
+        return root_find(problem, guess, StepControl(max_steps=12))
+
+    return march(correct, 0.0, stop, Steps(0.05, 0.1, 1e-7), **options)
 
 
-def test_natural_continuation_meets_every_parameter_asked_for():
-    parameters = [0.0, 0.05, 0.2, 0.3, 0.36]
-    path = heated(parameters)
+def test_a_march_follows_a_branch_through_its_targets():
+    path = heated(0.36, targets=[0.05, 0.2, 0.3])
     assert path.outcome.ok
-    assert set(parameters) <= set(path.coordinates)
-    for p in parameters:
+    for p in (0.05, 0.2, 0.3, 0.36):
         np.testing.assert_allclose(path.at(p).x, temperature(p), atol=1e-9)
 
 
-def test_natural_continuation_halts_before_a_fold_and_keeps_the_branch_behind_it():
-    path = heated([0.0, 0.1, 0.2, 0.3, 0.4, 0.5])
+def test_a_march_halts_before_a_fold_and_keeps_the_branch_behind_it():
+    path = heated(0.5, targets=[0.1, 0.2, 0.3])
     assert path.outcome is Outcome.PATH_LOST
     assert "lost" in path.outcome.value
     assert not path.failure.outcome.ok
     assert EXPLOSION - 1e-4 < path.coordinates[-1] < EXPLOSION
-    assert {0.1, 0.2, 0.3} <= set(path.coordinates)
     for p, root in zip(path.coordinates, path.states, strict=True):
         np.testing.assert_allclose(root.x, temperature(p), atol=1e-6)
-    with pytest.raises(ValueError, match=r"no point at 0\.4.*lost"):
-        path.at(0.4)
-
-
-def test_natural_continuation_runs_downward_too():
-    up = heated([0.0, 0.3])
-    down = heated([0.3, 0.15, 0.0], start=up.at(0.3).x)
-    assert down.outcome.ok
-    assert np.abs(down.at(0.0).x).max() < 1e-10
-
-
-def test_a_guess_leaves_the_last_state_no_farther_than_the_fraction_allows():
-    # x = exp(-p): the secant through the first two points meets zero before p = 3, where ln x ends.
-    def decay(fraction):
-        return natural(
-            lambda x, p: np.log(x) + p,
-            lambda x, p: np.diag(1.0 / x),
-            [1.0],
-            [0.0, 2.0, 4.0],
-            fraction=fraction,
-        )
-
-    bare = decay(None)
-    limited = decay(lambda x, dx: min(1.0, 0.7 * x[0] / max(-dx[0], 1e-300)))
-    for path in (bare, limited):
-        assert path.outcome.ok
-        assert path.at(4.0).x[0] == pytest.approx(math.exp(-4.0), rel=1e-9)
-    assert bare.failures > 0
-    assert limited.failures == 0
-    assert len(limited.states) < len(bare.states)
-
-
-def test_a_size_of_the_callers_own_makes_small_unknowns_as_exact_as_large_ones():
-    scale = np.array([1e-9, 1e3])
-
-    def error(**size):
-        path = natural(
-            lambda x, p: (x / scale) ** [5, 1] - math.exp(p),
-            lambda x, p: np.diag([5.0, 1.0] * (x / scale) ** [4, 0] / scale),
-            scale,
-            [0.0, 1.0],
-            **size,
-        )
-        assert path.outcome.ok
-        return np.abs(path.at(1.0).x / (scale * np.exp([0.2, 1.0])) - 1.0)
-
-    assert error(size=lambda x, dx: np.abs(dx / x).max()).max() < 1e-10
-    assert error()[1] < 1e-10 < 1e-3 < error()[0]
-
-
-def test_the_caller_of_natural_continuation_may_vouch_for_an_ill_conditioned_jacobian():
-    matrix = np.array([[1.0, 1.0], [1.0, 1.0 + 2.0**-52]])
-    outcomes = [
-        natural(lambda x, p: matrix @ (x - p), lambda x, p: matrix, [0.0, 0.0], [0.0, 1.0], **vouched).outcome
-        for vouched in ({}, {"singular_below": 0.0})
-    ]
-    assert outcomes == [Outcome.SINGULAR, Outcome.CONVERGED]
-
-
-@pytest.mark.parametrize("parameters", [[1.0], [0.0, 1.0, 1.0], [0.0, 2.0, 1.0]])
-def test_natural_refuses_parameters_that_do_not_rise_or_fall(parameters):
-    with pytest.raises(ValueError, match="parameters"):
-        heated(parameters)
+    with pytest.raises(ValueError, match=r"no point at 0\.5.*lost"):
+        path.at(0.5)
 
 
 # The engine, on states that are nothing but their coordinate
@@ -140,13 +79,18 @@ class Corrector:
         return Plain(s, effort=self.effort)
 
 
-LENGTHS = {"first_step": 0.1, "max_step": 0.5, "min_step": 1e-3}
+LENGTHS = {"first": 0.1, "longest": 0.5, "shortest": 1e-3}
+
+
+def marched(correct, start, stop, *, first, longest, shortest, order=3, skip=None, **options):
+    """March with the lengths of steps as keywords."""
+    return march(correct, start, stop, Steps(first, longest, shortest, order, skip=skip), **options)
 
 
 @pytest.mark.parametrize(("start", "stop"), [(0.0, 3.0), (3.0, -1.0), (-2.0, 0.1)])
 def test_a_march_hits_its_ends_and_every_target_exactly(start, stop):
     targets = list(np.random.default_rng(5).uniform(min(start, stop), max(start, stop), 9))
-    path = march(Corrector(), start, stop, targets=targets, **LENGTHS)
+    path = marched(Corrector(), start, stop, targets=targets, **LENGTHS)
     assert path.outcome.ok
     assert {start, stop, *targets} <= set(path.coordinates)
     assert (path.coordinates[0], path.coordinates[-1]) == (start, stop)
@@ -158,9 +102,9 @@ def test_a_march_hits_its_ends_and_every_target_exactly(start, stop):
 
 
 def test_steps_grow_with_easy_corrections_and_shrink_with_hard_ones():
-    easy = np.diff(march(Corrector(effort=1), 0.0, 100.0, **LENGTHS | {"max_step": 1e3}).coordinates)
-    hard = np.diff(march(Corrector(effort=9), 0.0, 0.5, **LENGTHS).coordinates)
-    even = np.diff(march(Corrector(effort=4), 0.0, 2.0, **LENGTHS).coordinates)
+    easy = np.diff(marched(Corrector(effort=1), 0.0, 100.0, **LENGTHS | {"longest": 1e3}).coordinates)
+    hard = np.diff(marched(Corrector(effort=9), 0.0, 0.5, **LENGTHS).coordinates)
+    even = np.diff(marched(Corrector(effort=4), 0.0, 2.0, **LENGTHS).coordinates)
     np.testing.assert_allclose(easy[1:6] / easy[:5], 2.0)
     np.testing.assert_allclose(hard[1:6] / hard[:5], 0.5)
     assert hard.min() >= 0.5e-3
@@ -168,13 +112,13 @@ def test_steps_grow_with_easy_corrections_and_shrink_with_hard_ones():
 
 
 def test_a_target_close_by_does_not_shorten_the_steps_after_it():
-    path = march(Corrector(effort=4), 0.0, 2.0, targets=[0.01, 0.012], **LENGTHS)
+    path = marched(Corrector(effort=4), 0.0, 2.0, targets=[0.01, 0.012], **LENGTHS)
     np.testing.assert_allclose(np.diff(path.coordinates)[2:10], 0.1)
 
 
 def test_a_failed_step_is_retried_shorter_and_nothing_behind_it_is_lost():
     corrector = Corrector(fails=lambda s, before: s > 1.0 and s - before > 0.03)
-    path = march(corrector, 0.0, 2.0, **LENGTHS)
+    path = marched(corrector, 0.0, 2.0, **LENGTHS)
     assert path.outcome.ok
     assert path.failures > 0
     assert path.failure.outcome is Outcome.STEP_LIMIT
@@ -190,7 +134,7 @@ def test_a_failed_step_is_retried_shorter_and_nothing_behind_it_is_lost():
 
 def test_the_step_after_a_retried_one_does_not_grow():
     corrector = Corrector(fails=lambda s, before: s - before > 0.15, effort=1)
-    march(corrector, 0.0, 5.0, **LENGTHS)
+    marched(corrector, 0.0, 5.0, **LENGTHS)
     steps = [s - history[-1] for s, history in corrector.asked[1:-2]]
     failed = [i for i, step in enumerate(steps[:-2]) if step > 0.15]
     assert len(failed) > 5
@@ -199,14 +143,14 @@ def test_the_step_after_a_retried_one_does_not_grow():
 
 
 def test_a_state_that_is_none_counts_as_a_failure():
-    path = march(lambda s, history: None if s > 1.0 else Plain(s), 0.0, 2.0, **LENGTHS)
+    path = marched(lambda s, history: None if s > 1.0 else Plain(s), 0.0, 2.0, **LENGTHS)
     assert path.outcome is Outcome.PATH_LOST
     assert path.failure is None
     assert path.failures > 0
 
 
 def test_a_path_with_no_way_on_is_lost_next_to_its_end():
-    path = march(Corrector(fails=lambda s, before: s > 1.0), 0.0, 2.0, targets=[0.25], **LENGTHS)
+    path = marched(Corrector(fails=lambda s, before: s > 1.0), 0.0, 2.0, targets=[0.25], **LENGTHS)
     assert path.outcome is Outcome.PATH_LOST
     assert 1.0 - 2e-3 < path.coordinates[-1] <= 1.0
     assert path.at(0.25).s == 0.25
@@ -214,13 +158,13 @@ def test_a_path_with_no_way_on_is_lost_next_to_its_end():
 
 
 def test_a_failed_start_is_named_by_its_own_outcome():
-    path = march(Corrector(fails=lambda s, before: True), 0.0, 2.0, **LENGTHS)
+    path = marched(Corrector(fails=lambda s, before: True), 0.0, 2.0, **LENGTHS)
     assert path.outcome is Outcome.STEP_LIMIT
     assert path.states == ()
 
 
 def test_outcomes_that_the_caller_accepts_count_as_points():
-    path = march(
+    path = marched(
         lambda s, history: Plain(s, Outcome.ROUNDING),
         0.0,
         1.0,
@@ -242,12 +186,12 @@ def test_an_interrupt_keeps_the_points_before_it(where):
             interrupt(s)
         return Plain(s)
 
-    path = march(correct, 0.0, 3.0, on_point=lambda s, _: interrupt(s) if where == "on_point" else None, **LENGTHS)
+    path = marched(correct, 0.0, 3.0, on_point=lambda s, _: interrupt(s) if where == "on_point" else None, **LENGTHS)
     assert path.outcome is Outcome.INTERRUPTED
     assert len(path.states) == len(path.coordinates) >= 4
     assert (path.coordinates[-1] > 1.0) == (where == "on_point")
 
-    resumed = march(
+    resumed = marched(
         Corrector(),
         path.coordinates[-1],
         3.0,
@@ -260,7 +204,7 @@ def test_an_interrupt_keeps_the_points_before_it(where):
 
 def test_the_corrector_sees_the_last_accepted_points_only():
     corrector = Corrector(fails=lambda s, before: s - before > 0.2)
-    path = march(corrector, 0.0, 2.0, order=2, **LENGTHS)
+    path = marched(corrector, 0.0, 2.0, order=2, **LENGTHS)
     accepted = []
     for s, history in corrector.asked:
         assert history == accepted[-3:]
@@ -272,7 +216,7 @@ def test_the_corrector_sees_the_last_accepted_points_only():
 
 def test_progress_is_told_each_accepted_point_once():
     told = []
-    path = march(
+    path = marched(
         Corrector(fails=lambda s, before: s - before > 0.2),
         0.0,
         2.0,
@@ -292,8 +236,8 @@ def test_extrapolation_is_exact_for_polynomials_of_its_order():
 @pytest.mark.parametrize(
     ("name", "arguments"),
     [
-        ("min_step", {"min_step": 0.0}),
-        ("max_step", {"max_step": 0.05}),
+        ("shortest", {"shortest": 0.0}),
+        ("longest", {"longest": 0.05}),
         ("targets", {"targets": [0.5, 2.5]}),
         ("targets", {"targets": [-0.5]}),
         ("stop", {"stop": math.inf}),
@@ -302,15 +246,15 @@ def test_extrapolation_is_exact_for_polynomials_of_its_order():
 )
 def test_march_refuses_impossible_arguments_by_name(name, arguments):
     with pytest.raises(ValueError, match=name):
-        march(Corrector(), **({"start": 0.0, "stop": 2.0} | LENGTHS | arguments))
+        marched(Corrector(), **({"start": 0.0, "stop": 2.0} | LENGTHS | arguments))
 
 
 def test_steps_pass_over_targets_only_where_they_reach_beyond_enough_of_them():
     targets = np.arange(0.1, 10.05, 0.1).tolist()
-    path = march(Corrector(effort=0), 0.0, 10.0, targets=targets, skip=2, **LENGTHS | {"max_step": 2.0})
+    path = marched(Corrector(effort=0), 0.0, 10.0, targets=targets, skip=2, **LENGTHS | {"longest": 2.0})
     steps = np.diff(path.coordinates)
     assert path.outcome is Outcome.CONVERGED
     assert set(path.coordinates[1:]) <= {*targets, 10.0}
     assert 1.5 < steps.max() <= 2.0 + 1e-12
     assert not ((steps > 0.15) & (steps < 0.25)).any()
-    assert len(march(Corrector(effort=0), 0.0, 10.0, targets=targets, **LENGTHS).coordinates) > 100
+    assert len(marched(Corrector(effort=0), 0.0, 10.0, targets=targets, **LENGTHS).coordinates) > 100

@@ -84,10 +84,10 @@ def test_rows_are_what_each_state_is_alone():
         np.testing.assert_allclose(slopes[:, i], gradients(equations, y[i], 0.1), rtol=1e-11, atol=1e-15)
 
 
-def test_the_jacobian_in_units_of_the_unknowns_is_that_of_relative_changes():
+def test_the_jacobian_in_units_of_the_unknowns_has_its_columns_scaled_by_them():
     _, alone, y = rows(12)
-    units = Equations.units(y[0])
-    np.testing.assert_allclose(alone[0].relative_jacobian(y[0]), alone[0].jacobian(y[0]) * units, rtol=1e-13, atol=1e-18)
+    units = alone[0].units(y[0])
+    np.testing.assert_allclose(alone[0].jacobian(y[0], units), alone[0].jacobian(y[0]) * units, rtol=1e-13, atol=1e-18)
 
 
 @pytest.mark.parametrize("order", [10, 12, 16])

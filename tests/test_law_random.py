@@ -9,7 +9,7 @@ import pytest
 import stribeck as sb
 from stribeck.contact_laws.persson import persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 
 SEED = 15_485_863
 

@@ -1,7 +1,5 @@
 """The boundary layers at the edges of the contact: their own solutions, and the collapse of the solver onto them."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -12,7 +10,7 @@ from stribeck.asymptotics import constants
 from stribeck.asymptotics.formula import OutOfRangeWarning
 from stribeck.asymptotics.smooth import edge_layer, film_layers
 from stribeck.evidence.formulas import relative_error
-from stribeck.numerics.newton import root_find
+from stribeck.numerics.newton import StepControl, root_find
 
 LAYERS = {"edge": edge_layer.layer, "inlet": film_layers.inlet, "outlet": film_layers.outlet}
 EVERY_LAYER = pytest.mark.parametrize("name", LAYERS)
@@ -262,7 +260,7 @@ def test_without_roughness_or_speed_a_layer_has_no_value_and_says_so(field, x):
 @EVERY_LAYER
 def test_a_solve_that_fails_says_so(name, monkeypatch):
     for module in (edge_layer, film_layers):
-        monkeypatch.setattr(module, "root_find", partial(root_find, max_steps=1))
+        monkeypatch.setattr(module, "root_find", lambda problem, start, _: root_find(problem, start, StepControl(max_steps=1)))
     with pytest.raises(RuntimeError, match=r"layer with reach = 1234, .*largest number of steps"):
         LAYERS[name](1234.0)
 

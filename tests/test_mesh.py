@@ -5,6 +5,7 @@ import pytest
 from numpy.polynomial import legendre
 
 from stribeck.numerics.panels import MAX_PANELS, Mesh, MeshTooLargeError, adapt, base_edges, legendre_tail, reference
+from stribeck.numerics.running_integral import RunningIntegral
 
 SEED = 70_419
 
@@ -150,21 +151,21 @@ def test_the_integral_converges_at_the_rate_of_the_nearest_pole():
 def test_the_running_integral_vanishes_at_both_ends():
     mesh = Mesh(base_edges(0.5, 16.0), 20)
     x = mesh.nodes
-    values = mesh.integral_from_infinity(-2 * x / (1 + x * x) ** 2)
+    values = RunningIntegral(mesh)(-2 * x / (1 + x * x) ** 2)
     assert np.abs(values * (1 + x * x) - 1).max() < 1e-12
 
 
 def test_the_running_integral_comes_from_the_left_left_of_zero_and_from_the_right_beyond():
     mesh = Mesh(base_edges(0.5, 16.0), 20)
     x = mesh.nodes
-    values = mesh.integral_from_infinity(1 / (1 + x * x))
+    values = RunningIntegral(mesh)(1 / (1 + x * x))
     assert np.abs(values + np.arctan(1 / x)).max() < 1e-14
 
 
 def test_the_running_integral_of_a_lopsided_graded_mesh_is_the_same():
     mesh = graded(order=20)
     x = mesh.nodes
-    values = mesh.integral_from_infinity(1 / (1 + x * x))
+    values = RunningIntegral(mesh)(1 / (1 + x * x))
     assert np.abs(values + np.arctan(1 / x)).max() < 1e-13
 
 
@@ -174,10 +175,10 @@ LOPSIDED = np.array([-5.0, 0.0, 0.25, 1.0, 5.0])
 @pytest.mark.parametrize("edges", [graded().edges, base_edges(1.0, 2.0), LOPSIDED])
 def test_an_operator_after_the_running_integral_is_the_product_of_their_matrices(edges):
     mesh = Mesh(edges, 6)
-    matrix = np.stack([mesh.integral_from_infinity(column) for column in np.eye(mesh.size)], axis=1)
+    matrix = np.stack([RunningIntegral(mesh)(column) for column in np.eye(mesh.size)], axis=1)
     operator = np.random.default_rng(SEED).normal(size=(7, mesh.size))
     product = operator @ matrix
-    assert np.abs(mesh.after_integral(operator) - product).max() < 1e-13 * np.abs(product).max()
+    assert np.abs(RunningIntegral(mesh).after(operator) - product).max() < 1e-13 * np.abs(product).max()
 
 
 # Choice of panels

@@ -10,7 +10,7 @@ import pytest
 import stribeck as sb
 from stribeck.asymptotics.rough import load_sharing, transitions
 from stribeck.files import datasets as store
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.weakening import merging_roughness, weakening
 
 pytest.importorskip("xarray")

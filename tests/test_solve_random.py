@@ -9,7 +9,7 @@ import pytest
 
 import stribeck as sb
 from stribeck.equations.observables import NAMES
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 
 SEED = 27_644_437
 

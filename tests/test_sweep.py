@@ -19,8 +19,8 @@ from sweep_files import CONTACT, GRID, RANDOM, chunks, done_rows, same_rows, wri
 
 import stribeck as sb
 from stribeck.batches import chain as sweep_chain
-from stribeck.numerics.newton import Outcome
 from stribeck.quantities.inputs import INPUTS
+from stribeck.quantities.outcome import Outcome
 from stribeck.sweeps.lock import LOCK
 
 LONG = RANDOM.format(kind="sobol", points=1024)

@@ -28,15 +28,15 @@ def neighbours():
     """States on one mesh: two that share factors, and one with its own."""
     first = converge(cold_start(groups_at(-3.0)).states[-1], groups_at(-3.0), RTOL)
     operators = Operators(first.state.mesh)
-    kept = solve_state(groups_at(-3.1), operators, first.state, 1e-8, factors=first.state.root.factors)
+    kept = solve_state(groups_at(-3.1), operators, first.state, 1e-8, kept=first.state.root.inverse)
     own = solve_state(groups_at(-3.4), operators, kept, 1e-8)
-    assert kept.root.factors is first.state.root.factors
+    assert kept.root.inverse is first.state.root.inverse
     return [first.state, kept, own], FineOperators(operators.mesh)
 
 
 def test_states_are_judged_together_as_each_is_alone(neighbours):
     states, fine = neighbours
-    points = judge_together(states, [state.root.factors for state in states], fine, RTOL)
+    points = judge_together(states, [state.root.inverse for state in states], fine, RTOL)
     for state, point in zip(states, points, strict=True):
         alone = judge(state, state.groups, fine, RTOL)
         assert point.outcome is alone.outcome and point.groups == state.groups

@@ -17,7 +17,7 @@ from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.phase_diagram import phase_diagram
 from stribeck.solver.solution import Profile, Solution
 from stribeck.solver.solve import SolveError, solve

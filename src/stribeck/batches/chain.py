@@ -13,9 +13,9 @@ from stribeck.batches.order import coordinates
 from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.line import LineContact
-from stribeck.numerics.continuation import march
-from stribeck.numerics.newton import Outcome
+from stribeck.numerics.continuation import Steps, march
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.corrector import Follower
 from stribeck.solver.path import LONGEST_STEP, PREDICTOR_ORDER, SHORTEST_STEP
 from stribeck.solver.refinement import Point
@@ -146,10 +146,7 @@ class _Chain:
             correct,
             path.knots[0],
             path.knots[-1],
-            first_step=0.5,
-            max_step=LONGEST_STEP,
-            min_step=SHORTEST_STEP,
-            order=PREDICTOR_ORDER,
+            Steps(0.5, LONGEST_STEP, SHORTEST_STEP, PREDICTOR_ORDER),
             targets=path.knots,
             on_point=report,
         )

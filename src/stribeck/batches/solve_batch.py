@@ -15,8 +15,8 @@ from stribeck.batches.order import chains_of
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.groups import Groups
 from stribeck.equations.observables import NAMES, Observables
-from stribeck.numerics.newton import Outcome
 from stribeck.quantities.inputs import quantity
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solve import check_rtol
 

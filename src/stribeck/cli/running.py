@@ -13,7 +13,7 @@ from cyclopts import App, CycloptsError, MissingArgumentError, UnusedCliTokensEr
 from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain
 from stribeck.cli.solving import curve_command, figures_command, regimes_command, solve_command
 from stribeck.cli.studies import explore_command, fit_command, surface_command, sweep_command
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve import SolveError
 from stribeck.sweeps.store import SweepError

@@ -34,8 +34,8 @@ from stribeck.contacts.line import Groups
 from stribeck.curves.elasticities import friction_elasticities
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
-from stribeck.numerics.newton import Outcome
 from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, format_si
 from stribeck.regimes.distances import transition_distances
 from stribeck.solver.solve import solve

@@ -10,8 +10,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.curves.coordinate import Coordinate
-from stribeck.numerics.newton import Outcome
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.corrector import Follower
 from stribeck.solver.refinement import Point
 from stribeck.solver.solution import Solution

@@ -13,9 +13,9 @@ from stribeck.contacts.line import Groups
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import observables
 from stribeck.equations.state import Guess, State, extrapolate, mesh_for, solve_state
-from stribeck.numerics.continuation import march
-from stribeck.numerics.newton import Outcome
+from stribeck.numerics.continuation import Steps, march
 from stribeck.numerics.panels import MeshTooLargeError
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.cold_start import MESH_TOLERANCE, NEWTON_TOLERANCE, ORDER, rigid_guess
 
 FASTEST = 1e3
@@ -71,9 +71,7 @@ def automatic_speeds(groups: Groups, mu0: float, beta: float, definition: str) -
         correct,
         -top,
         -math.log(LEAST_SPEED),
-        first_step=0.5,
-        max_step=math.log(10),
-        min_step=1e-3,
+        Steps(0.5, math.log(10), 1e-3),
         stop_when=lambda state: plateau,
         on_point=record,
     )

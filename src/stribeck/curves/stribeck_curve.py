@@ -18,8 +18,8 @@ from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.speed_range import automatic_speeds
-from stribeck.numerics.newton import Outcome
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.path import follow
 from stribeck.solver.refinement import Point

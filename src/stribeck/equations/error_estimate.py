@@ -23,11 +23,12 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
 from stribeck.equations.line import LOAD, Operators
-from stribeck.equations.observables import NAMES, Observables, far_gap, friction_integrals, friction_scale, gradients
+from stribeck.equations.observables import ROW, Observables, far_gap, friction_integrals, friction_scale, gradients
 from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import Rows
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
+from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.solids.half_plane import (
     Blocks,
     log_moments,
@@ -67,6 +68,10 @@ OFFSET_FLOOR = 1e-3
 GAP_FLOOR = 1e-3
 """At speed zero the gap crosses zero too: its error is relative to it where it exceeds this part of kappa."""
 
+SHARES = [ROW["contact_load_share"], ROW["fluid_load_share"]]
+GAPS = [ROW["central_gap"], ROW["minimum_gap"]]
+FRICTION = [ROW["viscous_paper"], ROW["viscous_balanced"]]
+
 
 def _by_highest(s: Array, order: int) -> Array:
     """Moments of the logarithm with the degrees that a panel of ``order`` nodes gains, at the near ones of targets s."""
@@ -100,6 +105,11 @@ class FineOperators:
     def mesh(self) -> Mesh:
         """The panels with :data:`EXTRA_NODES` more nodes."""
         return self.coarse.refined(self.coarse.order + EXTRA_NODES)
+
+    @cached_property
+    def integral(self) -> RunningIntegral:
+        """The integral from infinity on that mesh."""
+        return RunningIntegral(self.mesh)
 
     @cached_property
     def _lowered(self) -> Array:
@@ -199,9 +209,10 @@ class Changes:
 
 def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
     """Return what defect, quadrature and rounding may change in states; ``observed`` as in :func:`error_estimates`."""
-    equations, op, y = states.equations, states.equations.operators, states.y
+    equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
     coarse, mesh = fine.coarse, fine.mesh
-    h, z0, h_star = y[:, :-2], y[:, -2:-1], y[:, -1:]
+    h, z0, h_star = y[:, at["gap"]], y[:, at["offset"]], y[:, at["flux_gap"]]
+    balance, net = at.index("offset"), at.index("flux_gap")
     gap = np.exp(coarse.to_order(np.log(h / coarse.far), mesh.order)) * mesh.far
     own, finer = slice(-coarse.order, None), slice(-mesh.order, None)  # through infinity, where the gap holds a logarithm
     smooth = h[:, own] - far_gap(coarse.nodes[own])
@@ -211,21 +222,21 @@ def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
     if flat.any():
         smooth = coarse.to_order(reynolds.gradient(h, h_star), mesh.order)
         slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
-    pressure = equations.law.pressure(gap) + equations.speed * mesh.integral_from_infinity(slopes)
+    pressure = equations.law.pressure(gap) + equations.speed * fine.integral(slopes)
     deflection = fine.deflection(pressure, op)
     residual = np.empty((1 + PATTERNS, *y.shape))
-    residual[0, :, :-2] = h - z0 - op.parabola - deflection
-    residual[0, :, -2] = pressure @ mesh.weights - LOAD
-    residual[0, :, -1] = np.ravel(equations.flux_scale) * (slopes @ mesh.weights)
+    residual[0, :, at["gap"]] = h - z0 - op.parabola - deflection
+    residual[0, :, balance] = pressure @ mesh.weights - LOAD
+    residual[0, :, net] = np.ravel(equations.flux_scale) * (slopes @ mesh.weights)
     size = np.finfo(float).eps * ROUNDING_UNITS
-    residual[1:, :, :-2] = size * (np.abs(z0) + op.parabola + np.abs(deflection))
-    residual[1:, :, -2] = size * LOAD
-    residual[1:, :, -1] = size * np.ravel(equations.flux_scale) * (np.abs(slopes) @ mesh.weights)
+    residual[1:, :, at["gap"]] = size * (np.abs(z0) + op.parabola + np.abs(deflection))
+    residual[1:, :, balance] = size * LOAD
+    residual[1:, :, net] = size * np.ravel(equations.flux_scale) * (np.abs(slopes) @ mesh.weights)
     residual[1:] *= _signs(coarse.panels, coarse.order)[:, None]
     friction = np.zeros((2, len(y)))
-    if equations.moves:
+    if equations.is_sliding:
         scale = np.ravel(friction_scale(states.load, equations.speed))
-        friction = np.abs(scale * friction_integrals(mesh, gap, h_star, slopes) - observed[:, -2:].T)
+        friction = np.abs(scale * friction_integrals(mesh, gap, h_star, slopes) - observed[:, FRICTION].T)
     return Changes(states.correction(residual), friction)
 
 
@@ -235,7 +246,7 @@ def interpolation_errors(states: Rows, minimum_positions: Array) -> Array:
     central = int(np.searchsorted(mesh.edges, 0.0))
     least = np.clip(np.searchsorted(mesh.edges, minimum_positions) - 1, 0, mesh.panels - 1)
     panels = np.stack([np.full_like(least, central), least])
-    gap = states.y[:, :-2].reshape(len(least), mesh.panels, -1)[np.arange(len(least)), panels]
+    gap = states.y[:, states.equations.layout["gap"]].reshape(len(least), mesh.panels, -1)[np.arange(len(least)), panels]
     return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
 
 
@@ -266,20 +277,20 @@ def error_estimates(states: Rows, observed: list[Observables], fine: FineOperato
     changed = changes(states, values, fine)
     rows = gradients(states.equations, states.y, states.load)
     effects = np.abs(np.matmul(rows.transpose(1, 0, 2), changed.unknowns.transpose(1, 2, 0)))
-    effects[:, -2:, 0] += changed.friction.T
+    effects[:, FRICTION, 0] += changed.friction.T
     interpolation = np.zeros_like(values)
-    interpolation[:, 2:4] = interpolation_errors(states, np.array([one.minimum_position for one in observed])).T
+    interpolation[:, GAPS] = interpolation_errors(states, np.array([one.minimum_position for one in observed])).T
     scales = np.abs(values)
-    scales[:, :2] = 1.0
-    offset = NAMES.index("offset")
-    scales[:, offset] = np.maximum(scales[:, offset], OFFSET_FLOOR)
-    if not states.equations.moves:
-        scales[:, 2:4] = np.maximum(scales[:, 2:4], GAP_FLOOR * states.equations.law.decay)
+    scales[:, SHARES] = 1.0
+    scales[:, ROW["offset"]] = np.maximum(scales[:, ROW["offset"]], OFFSET_FLOOR)
+    if not states.equations.is_sliding:
+        scales[:, GAPS] = np.maximum(scales[:, GAPS], GAP_FLOOR * states.equations.law.decay)
     scales[scales == 0] = 1.0
     rounding = DEVIATIONS * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
-    positions, gap = np.array([one.minimum_position for one in observed]), states.y[:, :-2]
-    least = NAMES.index("minimum_gap")
-    depth = (effects[:, least, 0] + interpolation[:, least] + rounding[:, least]) / gap.min(axis=1)
-    places = position_errors(states.equations.operators.mesh, gap, changed.unknowns[:, :, :-2], positions, depth).tolist()
+    positions, gap = np.array([one.minimum_position for one in observed]), states.y[:, states.equations.layout["gap"]]
+    minimum = ROW["minimum_gap"]
+    depth = (effects[:, minimum, 0] + interpolation[:, minimum] + rounding[:, minimum]) / gap.min(axis=1)
+    of_gap = changed.unknowns[:, :, states.equations.layout["gap"]]
+    places = position_errors(states.equations.operators.mesh, gap, of_gap, positions, depth).tolist()
     parts = (DEFECT_SAFETY * effects[:, :, 0], interpolation, rounding, scales, places)
     return [ErrorEstimate(*row) for row in zip(*parts, strict=True)]

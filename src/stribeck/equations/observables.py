@@ -38,6 +38,9 @@ NAMES = (
 )
 """The observables, in the order of every array of them here."""
 
+ROW = {name: row for row, name in enumerate(NAMES)}
+"""Where each is in such an array."""
+
 NEWTON_STEPS = 3
 LARGEST_STEP = 0.2
 """Of the search for the least gap, the step in half-widths of a panel."""
@@ -87,15 +90,16 @@ def observables(equations: Equations, y: Array, load: float) -> Observables:
 
 def observables_of_rows(equations: Equations, y: Array, load: Numbers) -> list[Observables]:
     """Return the observables of many states, the unknowns ``y`` of each in a row and their load groups in a column."""
-    mesh = equations.operators.mesh
-    h, h_star = y[:, :-2], y[:, -1:]
+    mesh, at = equations.operators.mesh, equations.layout
+    h, h_star = y[:, at["gap"]], y[:, at["flux_gap"]]
     contact = equations.law.pressure(h) @ mesh.weights / LOAD
     positions, least = np.array([least_gap(mesh, row) for row in h]).T
     fluid, friction = np.zeros(len(y)), np.zeros((2, len(y)))
-    if equations.moves:
+    if equations.is_sliding:
         fluid = (equations.speed * reynolds.gradient(h, h_star)) @ equations.operators.load_of_gradient / LOAD
         friction = np.ravel(friction_scale(load, equations.speed)) * friction_integrals(mesh, h, h_star)
-    values = np.stack([contact, fluid, central_gap(mesh, h), least, positions, y[:, -1], y[:, -2], *friction])
+    numbers = (y[:, at.index("flux_gap")], y[:, at.index("offset")])
+    values = np.stack([contact, fluid, central_gap(mesh, h), least, positions, *numbers, *friction])
     return [Observables(*row) for row in values.T.tolist()]
 
 
@@ -219,26 +223,28 @@ def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
     ``3 int x**2 g dx = -6 int x A g dx`` without the panel through infinity: the two forms respond alike to true changes of
     the gap, but this one is insensitive to what the quadrature of g leaves.
     """
-    op, mesh, speed = equations.operators, equations.operators.mesh, equations.speed
-    h, h_star = y[..., :-2], y[..., -1:]
-    rows = np.zeros((len(NAMES), *y.shape))
-    rows[0, ..., :-2] = mesh.weights / LOAD * equations.law.slope(h, equations.law.pressure(h))
-    if equations.moves:
+    op, mesh, speed, at = equations.operators, equations.operators.mesh, equations.speed, equations.layout
+    of_gap, flux, offset = at["gap"], at.index("flux_gap"), at.index("offset")
+    h, h_star = y[..., of_gap], y[..., at["flux_gap"]]
+    found = np.zeros((len(NAMES), *y.shape))
+    rows = dict(zip(NAMES, found, strict=True))
+    rows["contact_load_share"][..., of_gap] = mesh.weights / LOAD * equations.law.slope(h, equations.law.pressure(h))
+    if equations.is_sliding:
         u = 1 / h
         g_h, g_flux = reynolds.gap_derivative(h, h_star), reynolds.flux_derivative(h)
         of_load = speed * op.load_of_gradient / LOAD
         scale = friction_scale(load, speed)
         weights, moment = scale * mesh.weights * u * u, -6 * scale * op.moment_of_gradient
-        rows[1, ..., :-2] = of_load * g_h
-        rows[1, ..., -1] = (of_load * g_flux).sum(axis=-1)
-        rows[6, ..., :-2] = weights * (2 - 6 * h_star * u) + moment * g_h
-        rows[6, ..., -1] = 3 * weights.sum(axis=-1) + (moment * g_flux).sum(axis=-1)
-        rows[7, ..., :-2] = weights * (6 * h_star * u - 4)
-        rows[7, ..., -1] = -3 * weights.sum(axis=-1)
+        rows["fluid_load_share"][..., of_gap] = of_load * g_h
+        rows["fluid_load_share"][..., flux] = (of_load * g_flux).sum(axis=-1)
+        rows["viscous_paper"][..., of_gap] = weights * (2 - 6 * h_star * u) + moment * g_h
+        rows["viscous_paper"][..., flux] = 3 * weights.sum(axis=-1) + (moment * g_flux).sum(axis=-1)
+        rows["viscous_balanced"][..., of_gap] = weights * (6 * h_star * u - 4)
+        rows["viscous_balanced"][..., flux] = -3 * weights.sum(axis=-1)
     first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
     middle = slice(first, first + mesh.order)
-    rows[2, ..., middle] = central_gap(mesh, h)[..., None] * reference(mesh.order).left_end / h[..., middle]
-    np.put_along_axis(rows[3], np.argmin(h, axis=-1)[..., None], 1.0, axis=-1)
-    rows[4, ..., -1] = 1.0
-    rows[5, ..., -2] = 1.0
-    return rows
+    rows["central_gap"][..., middle] = central_gap(mesh, h)[..., None] * reference(mesh.order).left_end / h[..., middle]
+    np.put_along_axis(rows["minimum_gap"], np.argmin(h, axis=-1)[..., None], 1.0, axis=-1)
+    rows["flux_gap"][..., flux] = 1.0
+    rows["offset"][..., offset] = 1.0
+    return found

@@ -13,7 +13,6 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg import lapack
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
@@ -21,8 +20,9 @@ from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.line import Equations, Operators
 from stribeck.numerics.continuation import extrapolation_weights
-from stribeck.numerics.newton import Factors, Outcome, Root, root_find
+from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import Mesh, adapt
+from stribeck.quantities.outcome import Outcome
 
 CHORD = 0.25
 """Contraction above which a kept factorisation is given up."""
@@ -100,12 +100,6 @@ class Rows:
     correction: Callable[[Array], Array]
 
 
-def correction(factors: Factors, residuals: Array) -> Array:
-    """Return what removes residuals, shape (..., n), by the factors of a Jacobian, in its units of the unknowns."""
-    columns = residuals.reshape(-1, residuals.shape[-1]).T
-    return np.asarray(-lapack.dgetrs(*factors, columns)[0].T.reshape(residuals.shape))
-
-
 @dataclass(frozen=True, eq=False)
 class State:
     """A solution of the discrete equations, or the last iterate towards one.
@@ -138,17 +132,17 @@ class State:
     @property
     def gap(self) -> Array:
         """Gap at the nodes [u_Hz]."""
-        return self.y[:-2]
+        return self.y[self.equations.layout["gap"]]
 
     @property
     def offset(self) -> float:
         """Offset z0 [u_Hz]."""
-        return float(self.y[-2])
+        return float(self.y[self.equations.layout.index("offset")])
 
     @property
     def flux_gap(self) -> float:
         """Flux gap h* [u_Hz]."""
-        return float(self.y[-1])
+        return float(self.y[self.equations.layout.index("flux_gap")])
 
     @property
     def least_position(self) -> float:
@@ -160,17 +154,17 @@ class State:
         """Outcome of the Newton iteration; one stopped by rounding counts as converged, its error is estimated."""
         return Outcome.CONVERGED if self.root.outcome is Outcome.ROUNDING else self.root.outcome
 
-    def without_factors(self) -> State:
-        """Return the state without Newton's factors, which are as large as an operator and serve only its neighbour."""
-        return replace(self, root=replace(self.root, factors=None))
+    def without_inverse(self) -> State:
+        """Return the state without Newton's last inverse, which is as large as an operator and serves only its neighbour."""
+        return replace(self, root=replace(self.root, inverse=None))
 
     @property
     def rows(self) -> Rows:
         """The state as the only one of its mesh."""
-        factors = self.root.factors
-        assert factors is not None
+        inverse = self.root.inverse
+        assert inverse is not None
         units = self.equations.units(self.y)
-        return Rows(self.equations, self.y[None], float(self.groups.load), lambda r: units * correction(factors, r))
+        return Rows(self.equations, self.y[None], float(self.groups.load), lambda r: units * inverse(r))
 
     @property
     def effort(self) -> float:
@@ -325,13 +319,21 @@ def mesh_for(
     return adapt(fields, scale, reach, order, tolerance, start)
 
 
-def factors_on(operators: Operators, state: State) -> Factors:
-    """Return the factors of the Jacobian at a state, put on the mesh of ``operators``, in units of the unknowns."""
-    flux_gap = state.flux_gap
-    y = np.append(np.exp(state.log_gap(operators.mesh)), [state.offset, flux_gap])
-    equations = Equations(operators, float(state.groups.speed), contact_law(state.groups), flux_gap**2)
-    lu, pivots, _ = lapack.dgetrf(equations.relative_jacobian(y), overwrite_a=True)
-    return lu, pivots
+def unknowns_on(operators: Operators, guess: Guess) -> Array:
+    """Return the unknowns of a guess on the mesh of ``operators``."""
+    mesh, layout = operators.mesh, operators.layout
+    values: dict[str, float | Array] = {
+        "gap": np.exp(guess.log_gap(mesh)),
+        "offset": guess.offset,
+        "flux_gap": guess.flux_gap,
+    }
+    return layout.stacked(**values)
+
+
+def inverse_on(operators: Operators, state: State) -> Inverse:
+    """Return the inverse of the Jacobian at a state, put on the mesh of ``operators``, in units of the unknowns."""
+    equations = Equations(operators, float(state.groups.speed), contact_law(state.groups), state.flux_gap**2)
+    return equations.inverse(unknowns_on(operators, state))
 
 
 def solve_state(
@@ -340,30 +342,15 @@ def solve_state(
     guess: Guess,
     tolerance: float,
     max_steps: int = 40,
-    factors: Factors | None = None,
+    kept: Inverse | None = None,
 ) -> State:
     """Return the state of the discrete equations on the mesh of ``operators`` nearest to ``guess``.
 
-    ``factors`` are those of a neighbour on the same mesh, to be used for as long as its Jacobian makes the steps contract.
+    ``kept`` is the inverse of a neighbour on the same mesh, to be used for as long as it makes the steps contract.
     """
-    flux_gap = guess.flux_gap
-    equations = Equations(operators, float(groups.speed), contact_law(groups), flux_gap**2)
-    y = np.empty(operators.mesh.size + 2)
-    y[:-2] = np.exp(guess.log_gap(operators.mesh))
-    y[-2:] = guess.offset, flux_gap
-    root = root_find(
-        equations.residual,
-        equations.relative_jacobian,
-        y,
-        fraction=equations.admissible,
-        size=equations.size,
-        tolerance=tolerance,
-        max_steps=max_steps,
-        chord=CHORD,
-        factors=factors,
-        units=equations.units,
-        overwrite_jacobian=True,
-        singular_below=0.0,
-    )
-    error = float(np.abs(y[:-2] / root.x[:-2] - 1).max())
+    equations = Equations(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2)
+    start = unknowns_on(operators, guess)
+    root = root_find(equations, start, StepControl(tolerance, max_steps, CHORD), kept)
+    gap = operators.layout["gap"]
+    error = float(np.abs(start[gap] / root.x[gap] - 1).max())
     return State(groups, equations, root.x, root, error)

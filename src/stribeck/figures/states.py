@@ -13,7 +13,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.figures.paper_figure import Report
 from stribeck.files.writing import MissingExtraError
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, solve
 

@@ -123,6 +123,7 @@ def _along(
         assert point.state is not None
         found = solution.observables.array()
         values[:, i] = found[0], found[row]
-        slopes[:, :, i] = log_derivatives(point.state)[[0, row - NAMES.index("viscous_paper") + 1]]
+        derivatives = log_derivatives(point.state)
+        slopes[:, :, i] = derivatives["contact_load_share"], derivatives[f"viscous_{definition}"]
         errors[:, i] = solution.relative_errors[[0, row]]
     return values, slopes, errors

@@ -5,14 +5,17 @@ r"""Reynolds' equation on the line: the pressure gradient of a film that carries
 The gradient is kept divided by ``h**3``: multiplied out, Newton's iteration diverges.  All functions leave the factor
 lambda out, so that the condition on the flux stays well posed at speed zero.
 
-Source: [BP] Eq. (thin-film_dl); isoviscous fluid, no cavitation, no flow factors.
+Source: [BP] Eq. (thin-film_dl); isoviscous fluid, no flow factors.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from stribeck._types import Array, Numbers
+from stribeck.fluids.fluid import Slopes
 
 
 def gradient(gap: Array, flux_gap: Numbers) -> Array:
@@ -30,6 +33,27 @@ def flux_derivative(gap: Array) -> Array:
     return -1.0 / gap**3
 
 
+@dataclass(frozen=True)
+class Newtonian:
+    """The fluid of constant viscosity and density."""
+
+    name: str = "newtonian"
+    uses_pressure: bool = False
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """None."""
+        return {}
+
+    def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
+        """Return :func:`gradient`."""
+        return gradient(gap, flux_gap)
+
+    def slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
+        """Return :func:`gap_derivative` and :func:`flux_derivative`."""
+        return Slopes(gap_derivative(gap, flux_gap), None, flux_derivative(gap))
+
+
 def flux_gap(gap: Array, weights: Array) -> float:
     r"""Return the flux gap of a given film.
 
@@ -45,8 +69,8 @@ def flux_gap(gap: Array, weights: Array) -> float:
     Returns
     -------
     float
-        The gap h* where the pressure gradient vanishes [u_Hz]; follows from p_f(+-inf) = 0.
+        The gap h* at which the pressure gradient vanishes [u_Hz]; follows from p_f(+-inf) = 0.
     """
-    least = gap.min()
-    scaled = least / gap
-    return float(least * (weights @ scaled**2) / (weights @ scaled**3))
+    minimum = gap.min()
+    scaled = minimum / gap
+    return float(minimum * (weights @ scaled**2) / (weights @ scaled**3))

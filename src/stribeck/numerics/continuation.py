@@ -1,10 +1,7 @@
 r"""Continuation: following the solutions of F(x, p) = 0 while a coordinate or a parameter moves.
 
-One engine, :func:`march`, chooses the steps: it knows a scalar coordinate and a function that corrects a
-state there, so that states may live on meshes that change. On it stand :func:`natural`, whose coordinate is
-the parameter p and which ends at a fold, and :mod:`stribeck.numerics.arclength`, which passes folds.
-
-The module knows no physics.
+:func:`march` chooses the steps: it knows a scalar coordinate and a function that corrects a state there, so that states
+may live on meshes that change. The module knows no physics.
 
 Source: [Allgower & Georg 1990] Numerical Continuation Methods, chapter 6 (step length from the effort of the
 corrector).
@@ -20,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stribeck._types import Array
-from stribeck.numerics.newton import Outcome, Root, relative_size, root_find
+from stribeck.quantities.outcome import Outcome
 
 FASTEST_GROWTH = 2.0  # of the step length, per step; also how much a hard step shrinks the next
 
@@ -88,20 +85,48 @@ class Path(Generic[S]):
             raise ValueError(f"the path holds no point at {coordinate!r}; {self.outcome.value}") from None
 
 
+@dataclass(frozen=True)
+class Steps:
+    """How long the steps of a march are.
+
+    Attributes
+    ----------
+    first, longest, shortest : float
+        Lengths of the first, the longest and the shortest step, all > 0.
+    order : int
+        Degree of the prediction: the corrector sees at most ``order + 1`` points.
+    aim : float
+        Effort at which the step length is kept; two less doubles it, two more halves it.
+    skip : int or None
+        Smallest number of targets for a step to pass over: if it reaches beyond so many it ends at the farthest target
+        that it reaches, and those before are left out. None leaves out none.
+    """
+
+    first: float
+    longest: float
+    shortest: float
+    order: int = 3
+    aim: float = 4
+    skip: int | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse lengths that are not in order."""
+        if not 0 < self.shortest <= self.first <= self.longest < math.inf:
+            raise ValueError(
+                f"shortest = {self.shortest!r}, first = {self.first!r}, longest = {self.longest!r}; "
+                "they must be positive and in this order"
+            )
+
+
 def march(
     correct: Callable[[float, Sequence[tuple[float, S]]], S | None],
     start: float,
     stop: float,
+    steps: Steps,
     *,
-    first_step: float,
-    max_step: float,
-    min_step: float,
-    order: int = 3,
     targets: Iterable[float] | None = None,
     history: Sequence[tuple[float, S]] = (),
     accept: Collection[Outcome] = (Outcome.CONVERGED,),
-    aim: int = 4,
-    skip: int | None = None,
     stop_when: Callable[[S], bool] | None = None,
     on_point: Callable[[float, S], object] | None = None,
 ) -> Path[S]:
@@ -115,21 +140,14 @@ def march(
         last, empty at the start (see :func:`extrapolation_weights`).
     start, stop : float
         Ends of the path, in either direction. ``stop`` may be infinite with ``stop_when``.
-    first_step, max_step, min_step : float
-        Lengths of the first, the longest and the shortest step, all > 0.
-    order : int, optional
-        Degree of the prediction: ``history`` holds at most ``order + 1`` pairs.
+    steps : Steps
+        Their lengths.
     targets : iterable of float, optional
         Coordinates between the ends to be met exactly, besides the ends.
     history : sequence of (float, state), optional
         Points already known, the last of them at ``start``, which is then not solved again.
     accept : collection of Outcome, optional
         Outcomes with which a state counts as a point of the path.
-    aim : int, optional
-        Effort at which the step length is kept; two less doubles it, two more halves it.
-    skip : int, optional
-        Least number of targets for a step to pass over: where it reaches beyond so many it ends at the farthest target
-        that it reaches, and those before are left out. None leaves out none.
     stop_when : callable, optional
         ``stop_when(state)`` ends the path after a point for which it is true.
     on_point : callable, optional
@@ -138,24 +156,18 @@ def march(
     Returns
     -------
     Path
-        All accepted points, also where the path was lost or the user interrupted it.
+        All accepted points, also if the path was lost or the user interrupted it.
 
     Raises
     ------
     ValueError
-        If the step lengths, the targets or the history do not fit together.
+        If the ends, the targets or the history do not fit together.
 
     Notes
     -----
-    A step that fails is tried again at half its length, from the same point, until it is shorter than
-    ``min_step``; the next step after a failure does not grow. Before a target the step is halved rather than
-    leave a remnant.
+    A step that fails is tried again at half its length, from the same point, until it is shorter than the shortest; the next
+    step after a failure does not grow. Before a target the step is halved rather than leave a remnant.
     """
-    if not 0 < min_step <= first_step <= max_step < math.inf:
-        raise ValueError(
-            f"min_step = {min_step!r}, first_step = {first_step!r}, max_step = {max_step!r}; "
-            "they must be positive and in this order"
-        )
     if not math.isfinite(start) or math.isnan(stop) or (math.isinf(stop) and stop_when is None):
         raise ValueError(f"start = {start!r}, stop = {stop!r}; both must be finite, or stop_when given")
     if history and history[-1][0] != start:
@@ -167,7 +179,7 @@ def march(
 
     points = list(history)
     failures, failure = 0, None
-    length, may_grow = first_step, True
+    length, may_grow = steps.first, True
 
     def path(outcome: Outcome) -> Path[S]:
         return Path(tuple(s for s, _ in points), tuple(state for _, state in points), outcome, failures, failure)
@@ -183,17 +195,17 @@ def march(
                 on_point(start, state)
         while ahead and not (stop_when is not None and stop_when(points[-1][1])):
             here = points[-1][0]
-            within = 1 if skip is None else bisect.bisect_right(ahead, length, key=lambda s: abs(s - here))
-            passed = within - 1 if skip is not None and within > skip else 0
+            within = 1 if steps.skip is None else bisect.bisect_right(ahead, length, key=lambda s: abs(s - here))
+            passed = within - 1 if steps.skip is not None and within > steps.skip else 0
             target = ahead[passed]
             left = abs(target - here)
             step = left if left <= length else min(length, 0.5 * left)
             s = target if step == left else here + sign * step
-            state = correct(s, points[-order - 1 :]) if s != here else None
+            state = correct(s, points[-steps.order - 1 :]) if s != here else None
             if state is None or state.outcome not in accept:
                 failures, failure = failures + 1, failure if state is None else state
                 length, may_grow = 0.5 * step, False
-                if length < min_step:
+                if length < steps.shortest:
                     return path(Outcome.PATH_LOST)
                 continue
             points.append((s, state))
@@ -201,12 +213,12 @@ def march(
                 del ahead[: passed + 1]
             if on_point is not None:
                 on_point(s, state)
-            fastest = FASTEST_GROWTH if skip is None else FASTEST_BEYOND_TARGETS
-            factor = min(fastest, max(1.0 / FASTEST_GROWTH, 2.0 ** (0.5 * (aim - state.effort))))
+            fastest = FASTEST_GROWTH if steps.skip is None else FASTEST_BEYOND_TARGETS
+            factor = min(fastest, max(1.0 / FASTEST_GROWTH, 2.0 ** (0.5 * (steps.aim - state.effort))))
             if factor < 1.0:
-                length = max(min_step, factor * step)
+                length = max(steps.shortest, factor * step)
             elif may_grow:  # a step cut short by a target does not shorten the next one
-                length = min(max_step, max(length, factor * step))
+                length = min(steps.longest, max(length, factor * step))
             may_grow = True
     except KeyboardInterrupt:
         return path(Outcome.INTERRUPTED)
@@ -236,86 +248,3 @@ def extrapolation_weights(coordinates: npt.ArrayLike, s: float) -> Array:
     bottom = np.where(others, c[:, None] - c[None, :], 1.0)
     weights: Array = np.prod(top / bottom, axis=1)
     return weights
-
-
-def natural(
-    residual: Callable[[Array, float], Array],
-    jacobian: Callable[[Array, float], Array],
-    start: npt.ArrayLike,
-    parameters: Sequence[float],
-    *,
-    min_step: float | None = None,
-    order: int = 1,
-    fraction: Callable[[Array, Array], float] | None = None,
-    size: Callable[[Array, Array], float] = relative_size,
-    tolerance: float = 1e-10,
-    max_steps: int = 12,
-    singular_below: float = 2.0**-52,
-    on_point: Callable[[float, Root], object] | None = None,
-) -> Path[Root]:
-    """Solve F(x, p) = 0 for a row of parameters, each from the extrapolation of those before it.
-
-    Parameters
-    ----------
-    residual, jacobian : callable
-        ``residual(x, p)`` returns F, shape (n,); ``jacobian(x, p)`` returns dF/dx, shape (n, n).
-    start : array_like, shape (n,)
-        Guess of the state at ``parameters[0]``.
-    parameters : sequence of float
-        Rising or falling; between them, further points are taken where the corrector needs them.
-    min_step : float, optional
-        Shortest step of p; 1e-6 of the whole range if None.
-    order : int, optional
-        Degree of the extrapolation; 1 is the secant.
-    fraction, size, tolerance, max_steps, singular_below : optional
-        As in :func:`stribeck.newton.root_find`; ``fraction`` also limits how far the guess may leave the last
-        state.
-    on_point : callable, optional
-        ``on_point(p, root)`` after each accepted point.
-
-    Returns
-    -------
-    Path
-        Its coordinates are parameters, its states :class:`stribeck.numerics.newton.Root`. Before a fold it ends as
-        PATH_LOST.
-
-    Raises
-    ------
-    ValueError
-        If fewer than two parameters are given, or they neither rise nor fall.
-    """
-    p = [float(value) for value in parameters]
-    if len(p) < 2 or p not in (sorted(set(p)), sorted(set(p), reverse=True)):
-        raise ValueError(f"parameters = {parameters!r}; they must be two or more and rise or fall strictly")
-    guess = np.array(start, dtype=np.float64)
-    whole = abs(p[-1] - p[0])
-
-    def correct(s: float, history: Sequence[tuple[float, Root]]) -> Root:
-        x = guess
-        if history:
-            coordinates, roots = zip(*history, strict=True)
-            last = roots[-1].x
-            dx = extrapolation_weights(coordinates, s) @ np.array([root.x for root in roots]) - last
-            x = last + (1.0 if fraction is None else fraction(last, dx)) * dx
-        return root_find(
-            lambda x: residual(x, s),
-            lambda x: jacobian(x, s),
-            x,
-            fraction=fraction,
-            size=size,
-            tolerance=tolerance,
-            max_steps=max_steps,
-            singular_below=singular_below,
-        )
-
-    return march(
-        correct,
-        p[0],
-        p[-1],
-        first_step=abs(p[1] - p[0]),
-        max_step=whole,
-        order=order,
-        targets=p,
-        min_step=min(1e-6 * whole if min_step is None else min_step, abs(p[1] - p[0])),
-        on_point=on_point,
-    )

@@ -1,30 +1,32 @@
-r"""Damped Newton iteration for F(x) = 0 with a dense Jacobian, and the outcomes a solve can have.
+r"""Damped Newton iteration for F(x) = 0.
 
 .. math:: J(x_k) \, \Delta x_k = -F(x_k), \qquad x_{k+1} = x_k + t_k \, \Delta x_k, \quad 0 < t_k \le 1
 
-The module knows no physics. What is special to a problem comes in as functions: ``fraction`` (how much of a
-step is admissible, for example so that a gap stays positive) and ``size`` (what a small step is).
+The module knows no physics. A :class:`Problem` brings its residual, the inverse of its Jacobian, how much of a step is
+admissible (for example so that a gap stays positive) and what a small step is; :class:`Dense` makes one of plain
+functions. How the linear systems are solved is the problem's own affair: an :class:`Inverse` is all that is seen here.
 
-A factorisation costs n^3, a solve with its factors n^2. So each Newton step is followed by the trial of a
-chord step, one with the same factors: its size measures the error left, and where that is below the tolerance
-the last factorisation is spared. With ``chord`` such steps are also taken while they contract well.
+To make an inverse costs much more than to apply it: n^3 against n^2 for a dense Jacobian. So each Newton step is
+followed by the trial of a chord step, one with the same inverse: its size measures the error left, and if that is below
+the tolerance the last factorisation is spared. With ``chord`` such steps are also taken while they contract well.
 
 Source: [Deuflhard 2011] Newton Methods for Nonlinear Problems (affine-covariant Newton: the step, not the
 residual, measures the error; simplified Newton).
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import Enum
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import lapack
 
 from stribeck._types import Array
-
-Factors = tuple[Array, npt.NDArray[np.int32]]
+from stribeck.quantities.outcome import Outcome
 
 SMALLEST_FRACTION = 1e-8  # a step damped below this part of Newton's makes no progress
 HALVINGS = 12  # trials to get back to where the residual is finite
@@ -33,68 +35,98 @@ ROUNDING_SIZE = 1e-5  # steps that stop contracting below this size are rounding
 STALE_STEPS = 3  # so many Newton steps without a halving mean that steps have stopped contracting
 
 
-class Outcome(Enum):
-    """How a solve ended: a sentence for people; :attr:`ok` says whether the result can be trusted."""
-
-    CONVERGED = "Converged."
-    STEP_LIMIT = "Newton reached its largest number of steps; try a nearer guess or smaller parameter steps."
-    SINGULAR = "The Jacobian is singular here; near a fold use pseudo-arclength continuation."
-    NOT_FINITE = "The residual or its Jacobian is not finite here; try a nearer guess."
-    STALLED = "The damped Newton step became too small to make progress; try a nearer guess."
-    REFINEMENT_LIMIT = "Refining the mesh came to its end before the tolerance held; ask for a larger rtol."
-    ROUNDING = (
-        "Double precision bounds the error of this state above the asked rtol; "
-        "ask for a larger rtol or use the value with its error estimate."
-    )
-    PATH_LOST = (
-        "The continuation path to this state was lost; "
-        "the points before it are kept, and smaller steps or another start may pass."
-    )
-    INTERRUPTED = "Interrupted before the end; the points finished until then are kept."
+class Inverse(Protocol):
+    """What removes residuals to first order; made at one state, good near it."""
 
     @property
-    def ok(self) -> bool:
-        """True for :attr:`CONVERGED` only."""
-        return self is Outcome.CONVERGED
+    def failure(self) -> Outcome | None:
+        """Why it cannot be used, or None."""
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether the Jacobian was finite: then steps that are not mean that it is singular."""
+
+    def __call__(self, residuals: Array) -> Array:
+        """Return ``-J^-1 r`` of each residual, shape (..., n), in the units of the unknowns."""
 
 
-@dataclass(frozen=True, eq=False)
-class Root:
-    """What :func:`root_find` returns.
+class Problem(Protocol):
+    """A nonlinear system as :func:`root_find` sees it."""
+
+    def residual(self, x: Array) -> Array:
+        """Return F(x), shape (n,)."""
+
+    def inverse(self, x: Array) -> Inverse:
+        """Return the inverse of the Jacobian at ``x``, its unknowns measured in :meth:`units`."""
+
+    def units(self, x: Array) -> Array:
+        """Return the lengths in which unknowns are measured, shape (n,).
+
+        Steps with a kept inverse take the derivative with respect to unknowns in these units as constant.
+        """
+
+    def admissible(self, x: Array, dx: Array) -> float:
+        """Return the longest admissible fraction of the step, in (0, 1]."""
+
+    def size(self, x: Array, dx: Array) -> float:
+        """Return the size of a step relative to the length over which F bends, >= 0."""
+
+
+@dataclass(frozen=True)
+class StepControl:
+    """When the iteration ends, and when it keeps an inverse.
 
     Attributes
     ----------
-    x : ndarray, shape (n,)
-        The root, or the last iterate with a finite residual where the outcome is a failure.
-    outcome : Outcome
-        How the iteration ended.
-    steps : int
-        Steps taken, Newton and chord steps together.
-    factorisations : int
-        Jacobians factorised: the cost of the root.
-    last_step : float
-        Size of the last undamped step, as ``size`` measures it; nan before the first.
-    contraction : float
-        Size of the last step over that of the one before it; nan with fewer than two.
-    residual_norm : float
-        Largest absolute value of the residual at ``x``.
-    factors : tuple of ndarray or None
-        The last LU factors, as for :func:`scipy.linalg.lu_solve`; None if none could be made.
+    tolerance : float
+        Size of the error at which the iteration ends, > 0.
+    max_steps : int
+        Largest number of steps, >= 1.
+    chord : float or None
+        Take a step with the last inverse if it is at most this fraction of the step before it, in (0, 1);
+        0.1 is a good value. None takes such a step only to end the iteration.
     """
 
-    x: Array
-    outcome: Outcome
-    steps: int
-    factorisations: int
-    last_step: float
-    contraction: float
-    residual_norm: float
-    factors: Factors | None
+    tolerance: float = 1e-10
+    max_steps: int = 50
+    chord: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse values outside their range."""
+        if not self.tolerance > 0:
+            raise ValueError(f"tolerance = {self.tolerance!r}; it must be positive, for example 1e-10")
+        if self.max_steps < 1:
+            raise ValueError(f"max_steps = {self.max_steps!r}; it must be at least 1")
+        if self.chord is not None and not 0 < self.chord < 1:
+            raise ValueError(f"chord = {self.chord!r}; it must lie between 0 and 1, or be None for Newton steps only")
+
+
+@dataclass(frozen=True, eq=False)
+class LU:
+    """The inverse that the LU factors of a dense Jacobian are."""
+
+    factors: tuple[Array, npt.NDArray[np.int32]]
+    failure: Outcome | None = None
+
+    @classmethod
+    def of(cls, matrix: Array, overwrite: bool = False) -> LU:
+        """Return the factors of a matrix; with ``overwrite`` in its own memory if it is in Fortran order."""
+        # A pivot that is exactly zero needs no check here: it shows in the step or among the small pivots.
+        lu, pivots, _ = lapack.dgetrf(matrix, overwrite_a=overwrite)
+        return cls((lu, pivots))
 
     @property
-    def effort(self) -> int:
-        """The factorisations, under the name that :func:`stribeck.numerics.continuation.march` asks for."""
-        return self.factorisations
+    def is_finite(self) -> bool:
+        """Whether all factors are finite."""
+        return bool(np.isfinite(self.factors[0]).all())
+
+    def __call__(self, residuals: Array) -> Array:
+        """Return ``-J^-1 r`` of each residual, shape (..., n)."""
+        if residuals.ndim == 1:
+            dx: Array = lapack.dgetrs(*self.factors, residuals)[0]
+            return np.negative(dx, out=dx)
+        columns = residuals.reshape(-1, residuals.shape[-1]).T
+        return np.asarray(-lapack.dgetrs(*self.factors, columns)[0].T.reshape(residuals.shape))
 
 
 def relative_size(x: Array, dx: Array) -> float:
@@ -113,54 +145,112 @@ def relative_size(x: Array, dx: Array) -> float:
     return float(np.abs(dx).max() / (1.0 + np.abs(x).max()))
 
 
-def root_find(
-    residual: Callable[[Array], Array],
-    jacobian: Callable[[Array], Array],
-    start: npt.ArrayLike,
-    *,
-    fraction: Callable[[Array, Array], float] | None = None,
-    size: Callable[[Array, Array], float] = relative_size,
-    tolerance: float = 1e-10,
-    max_steps: int = 50,
-    chord: float | None = None,
-    factors: Factors | None = None,
-    units: Callable[[Array], Array] | None = None,
-    overwrite_jacobian: bool = False,
-    singular_below: float = 2.0**-52,
-) -> Root:
+@dataclass(frozen=True, eq=False)
+class Dense:
+    """The problem of plain functions, its Jacobian a dense matrix.
+
+    Attributes
+    ----------
+    function : callable
+        ``function(x)`` returns F, shape (n,).
+    jacobian : callable
+        ``jacobian(x)`` returns dF/dx, shape (n, n).
+    fraction : callable, optional
+        ``fraction(x, dx)`` returns the longest admissible fraction of a step; all of it by default.
+    step_size : callable
+        ``step_size(x, dx)`` returns the size of a step.
+    singular_below : float
+        Reciprocal condition number, once rows and columns are scaled to one, at which the Jacobian counts as singular. 0
+        leaves that to steps that are not finite, and spares a second factorisation if the pivots alone look doubtful.
+    """
+
+    function: Callable[[Array], Array]
+    jacobian: Callable[[Array], Array]
+    fraction: Callable[[Array, Array], float] | None = None
+    step_size: Callable[[Array, Array], float] = relative_size
+    singular_below: float = 2.0**-52
+
+    def residual(self, x: Array) -> Array:
+        """Return F(x); refuse one of another shape than x."""
+        r = self.function(x)
+        if r.shape != x.shape:
+            raise ValueError(f"residual returned shape {r.shape}; it must have the shape of x, {x.shape}")
+        return r
+
+    def inverse(self, x: Array) -> LU:
+        """Return the LU factors of the Jacobian, with SINGULAR as their failure if it is."""
+        matrix = self.jacobian(x)
+        if matrix.shape != (x.size, x.size):
+            raise ValueError(f"jacobian returned shape {matrix.shape}; it must be {(x.size, x.size)}")
+        lu = LU.of(matrix)
+        doubtful = self.singular_below > 0.0 and _has_small_pivot(lu.factors[0])
+        return LU(lu.factors, Outcome.SINGULAR) if doubtful and _is_singular(matrix, self.singular_below) else lu
+
+    def units(self, x: Array) -> Array:
+        """Return ones."""
+        return np.ones_like(x)
+
+    def admissible(self, x: Array, dx: Array) -> float:
+        """Return the fraction that the function allows."""
+        return 1.0 if self.fraction is None else self.fraction(x, dx)
+
+    def size(self, x: Array, dx: Array) -> float:
+        """Return the size that the function gives."""
+        return self.step_size(x, dx)
+
+
+@dataclass(frozen=True, eq=False)
+class Root:
+    """What :func:`root_find` returns.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n,)
+        The root, or the last iterate with a finite residual if the outcome is a failure.
+    outcome : Outcome
+        How the iteration ended.
+    steps : int
+        Steps taken, Newton and chord steps together.
+    factorisations : int
+        Inverses made: the cost of the root.
+    last_step : float
+        Size of the last undamped step; nan before the first.
+    contraction : float
+        Size of the last step over that of the one before it; nan with fewer than two.
+    residual_norm : float
+        Largest absolute value of the residual at ``x``.
+    inverse : Inverse or None
+        The last one; None if none could be made.
+    """
+
+    x: Array
+    outcome: Outcome
+    steps: int
+    factorisations: int
+    last_step: float
+    contraction: float
+    residual_norm: float
+    inverse: Inverse | None
+
+    @property
+    def effort(self) -> int:
+        """The factorisations, under the name that :func:`stribeck.numerics.continuation.march` asks for."""
+        return self.factorisations
+
+
+def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | None = None, kept: Inverse | None = None) -> Root:
     r"""Find x with F(x) = 0 by damped Newton steps.
 
     Parameters
     ----------
-    residual : callable
-        ``residual(x)`` returns F, shape (n,).
-    jacobian : callable
-        ``jacobian(x)`` returns dF/dx, dense, shape (n, n); Fortran order saves a copy.
+    problem : Problem
+        Residual, inverse Jacobian, units, admissible fraction and size of steps.
     start : array_like, shape (n,)
         First iterate; not written to.
-    fraction : callable, optional
-        ``fraction(x, dx)`` returns the longest admissible part of the step, in (0, 1].
-    size : callable, optional
-        ``size(x, dx)`` returns the size of a step relative to the length over which F bends, >= 0.
-    tolerance : float, optional
-        Size of the error at which the iteration ends, > 0.
-    max_steps : int, optional
-        Largest number of steps, >= 1.
-    chord : float, optional
-        Take a step with the last factors where it is at most this part of the step before it, in (0, 1);
-        0.1 is a good value. None takes such a step only to end the iteration.
-    factors : tuple of ndarray, optional
-        LU factors of a nearby Jacobian (``Root.factors`` of a neighbour) for the first step; needs ``chord``.
-    units : callable, optional
-        ``units(x)``, shape (n,), are lengths in which unknowns are measured: ``jacobian`` then returns dF/dx times
-        ``diag(units(x))``. That matters to steps with kept factors, of which the derivative in units of the unknowns
-        is taken to be constant.
-    overwrite_jacobian : bool, optional
-        Let LAPACK factorise in the array that ``jacobian`` returns, which must fill it anew at each call.
-    singular_below : float, optional
-        Reciprocal condition number, once rows and columns are scaled to one, at which the Jacobian counts as
-        singular. 0 leaves that to steps that are not finite, and spares a second factorisation where the
-        pivots alone look doubtful.
+    control : StepControl, optional
+        Tolerance, largest number of steps, use of kept inverses.
+    kept : Inverse, optional
+        That of a nearby state (``Root.inverse`` of a neighbour) for the first step; needs ``control.chord``.
 
     Returns
     -------
@@ -170,15 +260,15 @@ def root_find(
     Raises
     ------
     ValueError
-        If an argument lies outside its range, or the shapes of F and J do not fit.
+        If the start is no vector.
 
     Notes
     -----
-    The iteration ends when an undamped step is at most ``tolerance``, that step being taken: a Newton step,
-    or a chord step at most half as long as the step before it. So the error left is below ``tolerance``
+    The iteration ends when an undamped step is at most the tolerance, that step being taken: a Newton step,
+    or a chord step at most half as long as the step before it. So the error left is below the tolerance
     (``test_newton.py::test_the_error_left_is_below_the_tolerance``).
 
-    A trial point where F is not finite is approached by halving the step. Newton steps that are small but no
+    A trial point at which F is not finite is approached by halving the step. Newton steps that are small but no
     longer contract end the iteration as ROUNDING, with the best state that double precision gives.
 
     Floating-point warnings are silenced during the call: a value that is not finite shows in the outcome.
@@ -186,67 +276,53 @@ def root_find(
     x = np.array(start, dtype=np.float64)
     if x.ndim != 1 or x.size == 0:
         raise ValueError(f"start has shape {x.shape}; it must be one-dimensional and not empty")
-    if not tolerance > 0:
-        raise ValueError(f"tolerance = {tolerance!r}; it must be positive, for example 1e-10")
-    if max_steps < 1:
-        raise ValueError(f"max_steps = {max_steps!r}; it must be at least 1")
-    if chord is not None and not 0 < chord < 1:
-        raise ValueError(f"chord = {chord!r}; it must lie between 0 and 1, or be None for Newton steps only")
-    square = (x.size, x.size)
-    if factors is not None and factors[0].shape != square:
-        raise ValueError(f"factors have shape {factors[0].shape}; a state of {x.size} needs {square}")
+    control = StepControl() if control is None else control
+    tolerance, chord = control.tolerance, control.chord
 
+    inverse = kept
     steps = factorisations = stale = 0
     s = before = math.nan  # sizes of this step and of the step before it
     smallest = math.inf
-    reusable = chord is not None and factors is not None
+    reusable = chord is not None and inverse is not None
 
     def root(outcome: Outcome) -> Root:
         norm = float(np.abs(r).max())
-        return Root(x, outcome, steps, factorisations, s, s / before if before else math.nan, norm, factors)
+        return Root(x, outcome, steps, factorisations, s, s / before if before else math.nan, norm, inverse)
 
-    def step(factors: Factors, r: Array) -> Array:
-        dx = _solve(factors, r)
-        return dx if units is None else np.multiply(units(x), dx, out=dx)
+    def step(inverse: Inverse, r: Array) -> Array:
+        dx = inverse(r)
+        return np.multiply(problem.units(x), dx, out=dx)
 
     with np.errstate(all="ignore"):
-        r = residual(x)
-        if r.shape != x.shape:
-            raise ValueError(f"residual returned shape {r.shape}; it must have the shape of x, {x.shape}")
+        r = problem.residual(x)
         if not np.isfinite(r).all():
             return root(Outcome.NOT_FINITE)
 
-        while steps < max_steps:
+        while steps < control.max_steps:
             chord_step = False
-            if reusable and factors is not None:
-                dx, t = step(factors, r), 1.0
-                s_new = size(x, dx)
-                rate = s_new / s if steps else 0.0  # the caller's factors are taken to be good
+            if reusable and inverse is not None:
+                dx, t = step(inverse, r), 1.0
+                s_new = problem.size(x, dx)
+                rate = s_new / s if steps else 0.0  # the caller's inverse is taken to be good
                 contracts = rate <= (chord or 0.0) or (s_new <= tolerance and rate <= LAST_CHORD)
-                chord_step = contracts and (steps > 0 or fraction is None or fraction(x, dx) >= 1.0)
+                chord_step = contracts and (steps > 0 or problem.admissible(x, dx) >= 1.0)
             if not chord_step:
-                factors = None  # frees their memory for the next ones
-                factors = _factorise(jacobian(x), overwrite_jacobian)
+                inverse = None  # frees its memory for the next one
+                inverse = problem.inverse(x)
                 factorisations += 1
-                if factors[0].shape != square:
-                    raise ValueError(f"jacobian returned shape {factors[0].shape}; it must be {square}")
-                dx = step(factors, r)
+                if inverse.failure is not None:
+                    return root(inverse.failure)
+                dx = step(inverse, r)
                 if not np.isfinite(dx).all():
-                    return root(Outcome.SINGULAR if np.isfinite(factors[0]).all() else Outcome.NOT_FINITE)
-                if singular_below > 0.0 and _has_small_pivot(factors[0]):
-                    if _is_singular(jacobian(x), singular_below):
-                        return root(Outcome.SINGULAR)
-                    if overwrite_jacobian:  # that call may have reused their memory
-                        factors = _factorise(jacobian(x), overwrite_jacobian)
-                        factorisations += 1
-                s_new = size(x, dx)
-                t = 1.0 if fraction is None else fraction(x, dx)
+                    return root(Outcome.SINGULAR if inverse.is_finite else Outcome.NOT_FINITE)
+                s_new = problem.size(x, dx)
+                t = problem.admissible(x, dx)
             if not math.isfinite(s_new):
                 return root(Outcome.NOT_FINITE)
 
             if not t >= SMALLEST_FRACTION:
                 return root(Outcome.STALLED)
-            trial = _finite_trial(residual, x, dx, min(t, 1.0))
+            trial = _finite_trial(problem.residual, x, dx, min(t, 1.0))
             if trial is None:
                 return root(Outcome.NOT_FINITE)
             x, r, t = trial
@@ -255,7 +331,7 @@ def root_find(
             reusable = t == 1.0
 
             if t == 1.0:
-                unmeasured = chord_step and steps == 1  # factors that the caller brought may be far off
+                unmeasured = chord_step and steps == 1  # an inverse that the caller brought may be far off
                 if s == 0.0 or (s <= tolerance and not unmeasured):
                     return root(Outcome.CONVERGED)
                 if not chord_step:
@@ -275,17 +351,6 @@ def _finite_trial(residual: Callable[[Array], Array], x: Array, dx: Array, t: fl
             return x_new, r_new, t
         t = 0.5 * t
     return None
-
-
-def _factorise(matrix: Array, overwrite: bool) -> Factors:
-    # A pivot that is exactly zero needs no check here: it shows in the solution or among the small pivots.
-    lu, pivots, _ = lapack.dgetrf(matrix, overwrite_a=overwrite)
-    return lu, pivots
-
-
-def _solve(factors: Factors, r: Array) -> Array:
-    dx: Array = lapack.dgetrs(*factors, r)[0]
-    return np.negative(dx, out=dx)
 
 
 def _has_small_pivot(lu: Array) -> bool:

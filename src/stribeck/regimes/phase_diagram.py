@@ -23,8 +23,8 @@ from stribeck.curves.regime import Method, check_method, regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.speed_range import automatic_speeds
 from stribeck.curves.stribeck_curve import stribeck_curve
-from stribeck.numerics.newton import Outcome
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
 from stribeck.regimes import phase_from_atlas as atlas_phase
 from stribeck.regimes.phase_grid import FIELDS, MARKS, REGIMES, Diagram, empty_diagram
 from stribeck.regimes.weakening import merging_roughness, weakening

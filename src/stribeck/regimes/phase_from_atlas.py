@@ -14,8 +14,8 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups
 from stribeck.curves.atlas_curve import ERROR, AtlasCurve
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
-from stribeck.numerics.newton import Outcome
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.phase_grid import MARKS, REGIMES, Diagram
 
 DENSITY = 20

@@ -16,8 +16,8 @@ from stribeck.contacts.friction import Definition, check_definition, coefficient
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
 from stribeck.curves.speed_range import automatic_speeds
-from stribeck.numerics.newton import Outcome
 from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups, with_law
 

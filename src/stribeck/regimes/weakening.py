@@ -21,8 +21,8 @@ from stribeck.contacts.friction import Definition, check_definition, coefficient
 from stribeck.contacts.line import Groups
 from stribeck.curves.speed_range import automatic_speeds
 from stribeck.equations.sensitivity import friction_slopes
-from stribeck.numerics.newton import Outcome
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.corrector import Follower
 from stribeck.solver.refinement import Point

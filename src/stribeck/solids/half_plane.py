@@ -14,6 +14,7 @@ integration), with
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -260,3 +261,23 @@ def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:
     at_infinity = log_moments(np.zeros(1), order) @ _from_moments(order) + np.log(half_tail) * rule.weights
     kernel[:, -1, :] = half_tail * (tail - at_infinity) * mesh.stretch[-order:]
     return np.asarray(kernel.reshape(len(x), mesh.size) / -np.pi)
+
+
+@dataclass(frozen=True)
+class HalfPlane:
+    """The elastic half-plane, much thicker than the contact is wide."""
+
+    name: str = "half-plane"
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """None."""
+        return {}
+
+    def deflection(self, mesh: Mesh) -> Array:
+        """Return :func:`nodal_deflection`."""
+        return nodal_deflection(mesh)
+
+    def far_gap(self, x: Array) -> Array:
+        """Return ``x**2/2 - ln|x|/2``: a load of pi/2 on the half-plane."""
+        return 0.5 * x**2 - 0.5 * np.log(np.abs(x))

@@ -21,9 +21,9 @@ from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.state import Guess, State, extrapolate, mesh_for, solve_state
-from stribeck.numerics.continuation import Path, march
-from stribeck.numerics.newton import Outcome
+from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
+from stribeck.quantities.outcome import Outcome
 
 RIGID_SPEED = 30.0
 """Speed group above which the rigid film starts Newton's iteration safely."""
@@ -135,8 +135,7 @@ def cold_start(groups: Groups) -> Path[State]:
             return None
         return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
 
-    path = march(correct, top, 0.0, first_step=0.6, max_step=2.5, min_step=1e-3, order=3)
-    return path
+    return march(correct, top, 0.0, Steps(0.6, 2.5, 1e-3))
 
 
 def first_path(groups: Groups) -> Path[State]:
@@ -166,4 +165,4 @@ def start_by_exponential(groups: Groups) -> Path[State]:
             return None
         return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
 
-    return march(correct, 0.0, 1.0, first_step=0.25, max_step=0.5, min_step=1e-4, order=3)
+    return march(correct, 0.0, 1.0, Steps(0.25, 0.5, 1e-4))

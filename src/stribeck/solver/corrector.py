@@ -14,8 +14,9 @@ from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import FineOperators, reads_off
 from stribeck.equations.line import Operators
 from stribeck.equations.state import Guess, State, extrapolate, mesh_for, solve_state
-from stribeck.numerics.newton import Factors, Outcome
+from stribeck.numerics.newton import Inverse
 from stribeck.numerics.panels import MeshTooLargeError
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.judgement import judge_together
 from stribeck.solver.refinement import Point, converge, judge, mesh_tolerances_for, newton_tolerance, order_for, solvable
@@ -59,11 +60,11 @@ class Follower:
         self.groups_at = groups_at
         self.rtol = rtol
         self.postpone = postpone
-        self.waiting: list[tuple[Point, Factors]] = []
+        self.waiting: list[tuple[Point, Inverse]] = []
         self.at_nodes = math.inf  # error there of the last point that was judged, in units of rtol
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
-        self.factors: Factors | None = None
+        self.inverse: Inverse | None = None
         self.since_check = 0
         self.tolerances = mesh_tolerances_for(rtol)
 
@@ -94,9 +95,9 @@ class Follower:
         waiting, self.waiting = self.waiting, []
         found: dict[Point, Point] = {}
         for fine in {point.fine: None for point, _ in waiting}:
-            points, factors = zip(*(pair for pair in waiting if pair[0].fine is fine), strict=True)
+            points, inverses = zip(*(pair for pair in waiting if pair[0].fine is fine), strict=True)
             assert fine is not None
-            judged = judge_together([point.state for point in points], factors, fine, self.rtol)
+            judged = judge_together([point.state for point in points], inverses, fine, self.rtol)
             found |= zip(points, judged, strict=True)
         if waiting:
             self._learn(found[waiting[-1][0]])
@@ -127,7 +128,7 @@ class Follower:
         if self.operators is None or self.fine is None:
             return None
         base, tolerance = solvable(groups), newton_tolerance(self.rtol)
-        state = solve_state(base, self.operators, guess, tolerance, MOST_STEPS, self.factors)
+        state = solve_state(base, self.operators, guess, tolerance, MOST_STEPS, self.inverse)
         if not state.outcome.ok:
             return None
         if postpone:
@@ -142,15 +143,15 @@ class Follower:
         return point
 
     def _kept(self, point: Point) -> Point:
-        """Return the point with its factors kept here, for the next one, instead of there."""
+        """Return the point with its inverse kept here, for the next one, instead of there."""
         if point.state is None:
             return point
         same_mesh = self.operators is not None and point.state.mesh is self.operators.mesh
-        factors = point.state.root.factors
-        self.factors = factors if same_mesh else None
-        kept = replace(point, state=point.state.without_factors())
-        if kept.estimate is None and kept.outcome.ok and factors is not None:
-            self.waiting.append((kept, factors))
+        inverse = point.state.root.inverse
+        self.inverse = inverse if same_mesh else None
+        kept = replace(point, state=point.state.without_inverse())
+        if kept.estimate is None and kept.outcome.ok and inverse is not None:
+            self.waiting.append((kept, inverse))
         return kept
 
     def _coarsen(self, state: State) -> None:
@@ -162,7 +163,7 @@ class Follower:
         except MeshTooLargeError:
             return
         if mesh.size < WORTH_COARSENING * state.mesh.size:
-            self.operators, self.fine, self.factors = Operators(mesh), FineOperators(mesh), None
+            self.operators, self.fine, self.inverse = Operators(mesh), FineOperators(mesh), None
 
     def _relax(self) -> None:
         """Widen the tolerances, up to those that a first mesh has."""

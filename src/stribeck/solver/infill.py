@@ -23,9 +23,10 @@ from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import FineOperators
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.state import Rows, State, correction, factors_on
+from stribeck.equations.state import Rows, State, inverse_on
 from stribeck.numerics.continuation import extrapolation_weights
-from stribeck.numerics.newton import Factors, Outcome, Root
+from stribeck.numerics.newton import Inverse, Root
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.judgement import in_rows, judged
 from stribeck.solver.refinement import Point, newton_tolerance
 
@@ -52,13 +53,13 @@ class Anchor:
         return cls(coordinate, point, point.state, operators, fine)
 
     @cached_property
-    def factors(self) -> Factors:
-        """Those of the Jacobian at the state on the mesh of the operators, in units of the unknowns."""
-        return factors_on(self.operators, self.state)
+    def inverse(self) -> Inverse:
+        """That of the Jacobian at the state on the mesh of the operators, in units of the unknowns."""
+        return inverse_on(self.operators, self.state)
 
-    def on(self, operators: Operators) -> Factors:
-        """Return factors for the mesh of other operators."""
-        return self.factors if operators is self.operators else factors_on(operators, self.state)
+    def on(self, operators: Operators) -> Inverse:
+        """Return the inverse on the mesh of other operators."""
+        return self.inverse if operators is self.operators else inverse_on(operators, self.state)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,12 +67,12 @@ class _Gap:
     """The rows between two anchors on one mesh, and the inverse Jacobian of each."""
 
     equations: Equations
-    factors: tuple[Factors, Factors]
+    inverses: tuple[Inverse, Inverse]
     parts: Array
 
     def correction(self, residuals: Array, units: Array) -> Array:
         """Return what removes residuals, shape (..., rows, N + 2), to first order."""
-        first, second = (correction(factors, residuals) for factors in self.factors)
+        first, second = (inverse(residuals) for inverse in self.inverses)
         return np.asarray(units * (first + self.parts * (second - first)))
 
 
@@ -109,11 +110,13 @@ def between(
     mesh = operators.mesh
     weights = np.stack([extrapolation_weights([a.coordinate for a in through], s) for s in coordinates])
     states = [a.state for a in through]
-    known = np.stack([np.append(s.log_gap(mesh), [s.offset, np.log(s.flux_gap)]) for s in states])
+    at = operators.layout
+    known = np.stack([at.stacked(gap=s.log_gap(mesh), offset=s.offset, flux_gap=float(np.log(s.flux_gap))) for s in states])
     y = weights @ known
-    y[:, :-2] = np.exp(y[:, :-2])
-    y[:, -1] = np.exp(y[:, -1])
-    equations, load = in_rows(groups, operators, y[:, -1:] ** 2)
+    for name in ("gap", "flux_gap"):
+        y[:, at[name]] = np.exp(y[:, at[name]])
+    scales = y[:, at["flux_gap"]] ** 2
+    equations, load = in_rows(groups, operators, scales)
     first, second = ends
     parts = (np.array(coordinates)[:, None] - first.coordinate) / (second.coordinate - first.coordinate)
     gap = _Gap(equations, (first.on(operators), second.on(operators)), parts)
@@ -121,10 +124,10 @@ def between(
     y, sizes, rates, steps = _corrected(gap, y, tolerance)
     if not ((sizes <= tolerance) & (rates <= SLOWEST)).all():
         return []
-    prediction = np.abs(guess[:, :-2] / y[:, :-2] - 1).max(axis=1)
+    prediction = np.abs(guess[:, at["gap"]] / y[:, at["gap"]] - 1).max(axis=1)
     solved = []
     for i in range(len(groups)):
-        own = Equations(operators, float(groups[i].speed), contact_law(groups[i]), float(guess[i, -1]) ** 2)
+        own = Equations(operators, float(groups[i].speed), contact_law(groups[i]), float(scales[i, 0]))
         root = Root(y[i], Outcome.CONVERGED, steps, 0, float(sizes[i]), float(rates[i]), 0.0, None)
         solved.append(State(groups[i], own, y[i], root, float(prediction[i])))
     rows = Rows(equations, y, load, lambda r: gap.correction(r, equations.units(y)))
@@ -140,7 +143,7 @@ def _corrected(gap: _Gap, y: Array, tolerance: float) -> tuple[Array, Array, Arr
             units = equations.units(y)
             dy = gap.correction(equations.residual(y), units)
             relative = np.abs(dy / units)
-            relative[:, -2] = 0.0
+            relative[:, equations.layout["offset"]] = 0.0
             before, sizes = sizes, relative.max(axis=1)
             rates = sizes / before
             y = y + dy

@@ -15,8 +15,8 @@ from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import FineOperators, error_estimates
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import observables_of_rows
-from stribeck.equations.state import Rows, State, correction
-from stribeck.numerics.newton import Factors
+from stribeck.equations.state import Rows, State
+from stribeck.numerics.newton import Inverse
 from stribeck.solver.refinement import Point, reached
 
 
@@ -37,20 +37,20 @@ def judged(rows: Rows, states: Sequence[State], fine: FineOperators, rtol: float
     ]
 
 
-def judge_together(states: Sequence[State], factors: Sequence[Factors], fine: FineOperators, rtol: float) -> list[Point]:
-    """Return the points that states of moving contacts on one mesh are, each with the factors that its iteration left."""
+def judge_together(states: Sequence[State], inverses: Sequence[Inverse], fine: FineOperators, rtol: float) -> list[Point]:
+    """Return the points that states of moving contacts on one mesh are, each with the inverse that its iteration left."""
     y = np.stack([state.y for state in states])
     scales = np.array([[float(state.equations.flux_scale)] for state in states])
     equations, load = in_rows([state.groups for state in states], states[0].equations.operators, scales)
     units = equations.units(y)
     sharing: dict[int, list[int]] = {}
-    for i, own in enumerate(factors):
+    for i, own in enumerate(inverses):
         sharing.setdefault(id(own), []).append(i)
 
     def correct(residuals: Array) -> Array:
         found = np.empty_like(residuals)
         for members in sharing.values():
-            found[:, members] = correction(factors[members[0]], residuals[:, members])
+            found[:, members] = inverses[members[0]](residuals[:, members])
         return np.asarray(units * found)
 
     return judged(Rows(equations, y, load, correct), states, fine, rtol)

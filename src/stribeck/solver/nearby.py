@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from stribeck.contacts.line import Groups, LineContact
-from stribeck.numerics.newton import Outcome
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.corrector import Follower
 from stribeck.solver.refinement import Point
 from stribeck.solver.solution import Solution

@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 
 from stribeck.contacts.line import Groups
-from stribeck.numerics.continuation import Path, march
-from stribeck.numerics.newton import Outcome
+from stribeck.numerics.continuation import Path, Steps, march
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.corrector import Follower
 from stribeck.solver.infill import Anchor, between
 from stribeck.solver.refinement import Point
@@ -54,7 +54,7 @@ class Filling:
             if skipped:
                 found = self._found(skipped, left[0], right) | found
                 last = self.anchors[-1]
-                self.follower.factors = last.factors if last.operators is self.follower.operators else None
+                self.follower.inverse = last.inverse if last.operators is self.follower.operators else None
         for c in [*skipped, s]:
             if c not in found:
                 break
@@ -112,13 +112,12 @@ class Filling:
 
     def _step(self, left: Anchor, s: float) -> Path[Point]:
         """Return the path from an anchor to ``s``, predicted by interpolation."""
+        distance = abs(s - left.coordinate)
         return march(
             lambda c, _: self.follower(c, [(a.coordinate, a.point) for a in self._nearest(c)]),
             left.coordinate,
             s,
-            first_step=abs(s - left.coordinate),
-            max_step=abs(s - left.coordinate),
-            min_step=min(SHORTEST_STEP, abs(s - left.coordinate)),
+            Steps(distance, distance, min(SHORTEST_STEP, distance)),
             history=[(left.coordinate, left.point)],
         )
 
@@ -138,13 +137,8 @@ def follow(
         follower,
         targets[0],
         targets[-1],
-        first_step=0.5,
-        max_step=LONGEST_STEP,
-        min_step=SHORTEST_STEP,
-        order=PREDICTOR_ORDER,
-        aim=AIM if moving else 4,
+        Steps(0.5, LONGEST_STEP, SHORTEST_STEP, PREDICTOR_ORDER, AIM if moving else 4, LEAST_SKIPPED if moving else None),
         targets=targets,
-        skip=LEAST_SKIPPED if moving else None,
         stop_when=lambda _: filling.lost is not None,
         on_point=filling.arrive,
     )

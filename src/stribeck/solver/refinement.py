@@ -16,8 +16,8 @@ from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
 from stribeck.equations.state import Guess, State, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
-from stribeck.numerics.newton import Outcome
 from stribeck.numerics.panels import MeshTooLargeError
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import lifted
 
 QUASISTATIC_LOAD = 0.01

@@ -15,8 +15,8 @@ from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import NAMES, Observables, gap_at
-from stribeck.numerics.newton import Outcome
 from stribeck.numerics.panels import Mesh
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["Friction", "Profile", "Solution"]

@@ -14,9 +14,9 @@ from stribeck.contact_laws.law import LawShape
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import NAMES, Observables
-from stribeck.numerics.newton import Outcome
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
 from stribeck.solver.cold_start import first_path

@@ -11,8 +11,8 @@ from stribeck.contact_laws.law import LawShape, WithArea
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.line import LineContact
 from stribeck.equations.observables import NAMES
-from stribeck.numerics.newton import Outcome
 from stribeck.quantities.inputs import QUANTITIES, unit_of
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import AREA, OBSERVABLES
 from stribeck.solver.solution import Solution, si_films
 

@@ -13,7 +13,7 @@ from stribeck._types import Array
 from stribeck.curves.regime import regime_of
 from stribeck.files.datasets import write_netcdf
 from stribeck.files.writing import MissingExtraError, PathLike
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 from stribeck.sweeps.columns import OUTCOMES
 from stribeck.sweeps.store import Rows, describe_store, read_rows
 

@@ -26,7 +26,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
 from stribeck.sweeps.chain import Chain, solve_chain
 from stribeck.sweeps.columns import OUTCOMES

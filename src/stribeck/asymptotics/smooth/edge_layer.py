@@ -31,7 +31,7 @@ from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.smooth.half_line import HalfLine, Layer
 from stribeck.contacts.line import Groups
-from stribeck.numerics.newton import root_find
+from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.threads import one_blas_thread
 
 LOAD = 0.5 * np.pi
@@ -189,14 +189,13 @@ def layer(reach: float = 1e5, width: float = 0.5, order: int = 12) -> Layer:
         return matrix
 
     start = np.where(line.xi > 0, np.maximum(0.0, base.gap + np.log(base.root)), 0.0) / scale
-    root = root_find(
+    problem = Dense(
         residual,
         jacobian,
-        start,
-        size=lambda y, dy: float(np.abs(dy * scale * base.root * np.exp(-scale * y)).max()),
-        tolerance=1e-11,
+        step_size=lambda y, dy: float(np.abs(dy * scale * base.root * np.exp(-scale * y)).max()),
         singular_below=0.0,
     )
+    root = root_find(problem, start, StepControl(1e-11))
     if not root.outcome.ok:
         raise RuntimeError(f"edge layer with reach = {reach:g}, width = {width:g}, order = {order}: {root.outcome.value}")
     q = excess(root.x)

@@ -29,7 +29,7 @@ from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.smooth.half_line import HalfLine, Layer
 from stribeck.contacts.line import Groups
-from stribeck.numerics.newton import root_find
+from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.threads import one_blas_thread
 
 RANGE = (Limit("speed", 1e-10, 1e-3),)
@@ -289,16 +289,15 @@ def _solve(line: HalfLine, film: float | None) -> Layer:
         H = fields(y)[2]
         return (fields(y + dy)[2] - H) / H
 
-    root = root_find(
+    problem = Dense(
         residual,
         jacobian,
-        np.append(np.zeros(n), 0.5 if film is None else 0.0),
         fraction=lambda y, dy: 0.7 / max(0.7, -float(change(y, dy).min())),
-        size=lambda y, dy: float(np.abs(change(y, dy)).max()),
-        tolerance=1e-11,
-        chord=0.1,
+        step_size=lambda y, dy: float(np.abs(change(y, dy)).max()),
         singular_below=0.0,
     )
+    start = np.append(np.zeros(n), 0.5 if film is None else 0.0)
+    root = root_find(problem, start, StepControl(1e-11, chord=0.1))
     if not root.outcome.ok:
         raise RuntimeError(f"film layer with reach = {line.reach:g}, order = {line.order}: {root.outcome.value}")
     g, c, H = fields(root.x)

@@ -30,6 +30,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
+from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.solids.half_plane import deflection_operator
 
 NEAR = 2.0
@@ -146,11 +147,11 @@ class HalfLine:
     def deflection_of_gradient(self) -> Array:
         """Matrix from nodal pressure gradients, integrated from both ends, to the deflection, shape (n, n)."""
         padded = np.pad(self.deflection, ((0, 0), (0, self.order)))
-        return self.mesh.after_integral(padded)[:, : -self.order]
+        return RunningIntegral(self.mesh).after(padded)[:, : -self.order]
 
     def integral(self, gradient: Array) -> Array:
         """Return the integral of nodal values from either end to the nodes."""
-        return self.mesh.integral_from_infinity(np.append(gradient, np.zeros(self.order)))[: -self.order]
+        return RunningIntegral(self.mesh)(np.append(gradient, np.zeros(self.order)))[: -self.order]
 
 
 @dataclass(frozen=True, eq=False)

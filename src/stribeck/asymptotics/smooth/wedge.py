@@ -25,7 +25,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.contacts.line import Groups
-from stribeck.numerics.newton import root_find
+from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.panels import reference
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError, show
@@ -188,7 +188,7 @@ def _corrected(y: Array, n: float, load: float, p_0: Array, weights: Array, inte
         # A gap may lose 70 % at a step, and the logarithm of the contact pressure change by 2.
         return float(min(1.0, 0.7 / max(0.7, np.max(-dy / y)), 2.0 / max(2.0, np.abs(dy[:-1]).max())))
 
-    root = root_find(residual, jacobian, y, fraction=admissible, tolerance=1e-10, max_steps=100)
+    root = root_find(Dense(residual, jacobian, fraction=admissible), y, StepControl(1e-10, max_steps=100))
     if not root.outcome.ok:
         raise InputError(f"load = {load:g}, fluid number = {n:g}: {root.outcome.value}")
     return root.x

@@ -7,7 +7,7 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TextIO
 
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 from stribeck.sweeps.columns import ERROR
 from stribeck.sweeps.dataset import Sweep
 from stribeck.sweeps.sweep import SweepProgress

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from stribeck.figures import style
 from stribeck.figures.paper_figure import PaperFigure, Report
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.phase_diagram import phase_diagram
 from stribeck.regimes.plot import draw_phase_diagram, draw_phase_space
 from stribeck.solver.solve import SolveError

@@ -15,7 +15,7 @@ from stribeck.figures.article.mixed_panels import LARGEST_FILM, LARGEST_KAPPA, L
 from stribeck.figures.article.stribeck_cases import CASES, LOADS, REPORTED, case_coords, over, report_variables, solved_cases
 from stribeck.figures.paper_figure import PaperFigure, Report
 from stribeck.figures.states import Work, column, dataset
-from stribeck.numerics.newton import Outcome
+from stribeck.quantities.outcome import Outcome
 from stribeck.solver.solve import SolveError
 
 if TYPE_CHECKING:

@@ -1,0 +1,185 @@
+r"""The integral of a nodal function from infinity to each node, and what it makes of an operator that acts on it.
+
+.. math:: F' = v, \qquad F(\pm\infty) = 0
+
+Left of ``x = 0``, which is always an edge, it integrates from minus infinity, right of it from plus infinity; the two meet if
+the whole integral vanishes.  One-sided, it integrates from minus infinity to zero and is zero beyond.
+
+The matrix A of this integral is never formed: inside a panel it is a block of the order of the panel, from panel to panel a
+running sum.  The same holds for the Volterra equation ``q = A (v + f q)`` with a nodal factor f, whose solution is
+``(I - A f)^-1 A v``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.numerics.panels import Mesh, reference
+
+
+@dataclass(frozen=True, eq=False)
+class RunningIntegral:
+    """The integral from infinity on a mesh.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        The panels.
+    one_sided : bool
+        Whether the integral ends at zero, from the left.
+    """
+
+    mesh: Mesh
+    one_sided: bool = False
+
+    @cached_property
+    def middle(self) -> int:
+        """Number of panels left of zero."""
+        return int(np.searchsorted(self.mesh.edges, 0.0))
+
+    @cached_property
+    def blocks(self) -> Array:
+        """Per panel, nodal values -> what the panel itself adds to the integral from infinity at its nodes.
+
+        Panels left of zero integrate from their left edge, panels right of it from their right edge, the last one from
+        infinity in its middle, where ``dx = -dt/t**2``; shape (panels, order, order).
+        """
+        mesh = self.mesh
+        rule = reference(mesh.order)
+        half = mesh.half_widths[:-1, None, None]
+        from_left = half * rule.integral
+        right = (mesh.centres[:-1] > 0)[:, None, None]
+        inner = np.where(right, 0.0 if self.one_sided else from_left - half * rule.weights, from_left)
+        tail = mesh.half_widths[-1] * (rule.left_half - rule.integral) * mesh.stretch[-mesh.order :]
+        if self.one_sided:
+            tail[mesh.local[-1] > 0] = 0.0
+        return np.concatenate([inner, tail[None]])
+
+    @cached_property
+    def _tail_weights(self) -> tuple[Array, Array]:
+        """Weights on the last panel of the integrals over ``x < -X`` and over ``x > X``."""
+        mesh = self.mesh
+        left = mesh.half_widths[-1] * reference(mesh.order).left_half * mesh.stretch[-mesh.order :]
+        return left, mesh.weights[-mesh.order :] - left
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights of the whole integral: over the line, or one-sided up to zero; shape (size,)."""
+        if not self.one_sided:
+            return self.mesh.weights
+        found = np.zeros(self.mesh.size)
+        upstream = slice(0, self.middle * self.mesh.order)
+        found[upstream] = self.mesh.weights[upstream]
+        found[-self.mesh.order :] = self._tail_weights[0]
+        return found
+
+    def __call__(self, values: Array) -> Array:
+        """Return the integral at the nodes, shape (..., size), of nodal ``values``, shape (..., size)."""
+        mesh, middle = self.mesh, self.middle
+        nodal = values.reshape(*values.shape[:-1], mesh.panels, mesh.order)
+        result = np.matmul(self.blocks, nodal[..., None])[..., 0]
+        whole = np.einsum("pn,...pn->...p", mesh.weights.reshape(nodal.shape[-2:])[:-1], nodal[..., :-1, :])
+        left_tail, right_tail = ((nodal[..., -1, :] @ weights)[..., None] for weights in self._tail_weights)
+        before = np.cumsum(np.concatenate([left_tail, whole[..., : middle - 1]], axis=-1), axis=-1)
+        result[..., :middle, :] += before[..., None]
+        if not self.one_sided:
+            after = np.cumsum(np.concatenate([right_tail, whole[..., :middle:-1]], axis=-1), axis=-1)[..., ::-1]
+            result[..., middle:-1, :] -= after[..., None]
+        return np.asarray(result.reshape(values.shape))
+
+    def after(self, operator: Array) -> Array:
+        """Return ``operator @ A``, shape (rows, size), in O(rows size order)."""
+        mesh, middle = self.mesh, self.middle
+        rows = len(operator)
+        nodal = operator.reshape(rows, mesh.panels, mesh.order)
+        result = np.matmul(nodal.transpose(1, 0, 2), self.blocks).transpose(1, 0, 2)
+        sums = nodal.sum(axis=2)
+        whole = mesh.weights.reshape(mesh.panels, mesh.order)[:-1]
+        left_tail, right_tail = self._tail_weights
+        # Panel k left of zero adds its whole integral to the panels between it and zero, and so on the right.
+        later = np.cumsum(sums[:, middle - 1 :: -1], axis=1)[:, ::-1]
+        result[:, : middle - 1] += later[:, 1:, None] * whole[: middle - 1]
+        if self.one_sided:
+            result[:, -1] += np.outer(later[:, 0], left_tail)
+        else:
+            earlier = np.cumsum(sums[:, middle:-1], axis=1)
+            result[:, middle + 1 : -1] -= earlier[:, :-1, None] * whole[middle + 1 :]
+            result[:, -1] += np.outer(later[:, 0], left_tail) - np.outer(earlier[:, -1], right_tail)
+        return np.asarray(result.reshape(rows, mesh.size))
+
+
+@dataclass(frozen=True, eq=False)
+class Volterra:
+    """The solution ``q = (I - A f)^-1 A v`` of ``q = A (v + f q)``, for one nodal factor f.
+
+    Attributes
+    ----------
+    integral : RunningIntegral
+        A.
+    factor : ndarray, shape (size,)
+        f at the nodes.
+    """
+
+    integral: RunningIntegral
+    factor: Array
+
+    @cached_property
+    def _factor(self) -> Array:
+        return self.factor.reshape(self.integral.mesh.panels, -1)
+
+    @cached_property
+    def _resolved(self) -> Array:
+        """``(I - a f)^-1`` of the block a of each panel."""
+        blocks = self.integral.blocks
+        return np.asarray(np.linalg.inv(np.eye(blocks.shape[-1]) - blocks * self._factor[:, None, :]))
+
+    @cached_property
+    def _adjoint(self) -> Array:
+        """``(I - f a)^-1`` of the block a of each panel."""
+        blocks = self.integral.blocks
+        return np.asarray(np.linalg.inv(np.eye(blocks.shape[-1]) - self._factor[:, :, None] * blocks))
+
+    def _chains(self) -> list[tuple[range, Array, float]]:
+        """Return the panels of each side from infinity to zero, the weights of that side of the last panel, and its sign."""
+        left, right = self.integral._tail_weights
+        chains = [(range(self.integral.middle), left, 1.0)]
+        if not self.integral.one_sided:
+            chains.append((range(self.integral.mesh.panels - 2, self.integral.middle - 1, -1), right, -1.0))
+        return chains
+
+    def __call__(self, values: Array) -> Array:
+        """Return q at the nodes, shape (..., size), of nodal ``values`` v, shape (..., size)."""
+        mesh, f, resolved = self.integral.mesh, self._factor, self._resolved
+        whole = mesh.weights.reshape(mesh.panels, mesh.order)
+        v = values.reshape(*values.shape[:-1], mesh.panels, mesh.order)
+        own = np.einsum("pij,pjk,...pk->...pi", resolved, self.integral.blocks, v)  # each panel by itself
+        answer = resolved.sum(axis=2)  # what a panel makes of one that arrives at its edge
+        result = np.zeros(v.shape)
+        result[..., -1, :] = own[..., -1, :]
+        for panels, tail, sign in self._chains():
+            arrived = sign * ((v[..., -1, :] + f[-1] * result[..., -1, :]) @ tail)
+            for k in panels:
+                result[..., k, :] = own[..., k, :] + arrived[..., None] * answer[k]
+                arrived = arrived + sign * ((v[..., k, :] + f[k] * result[..., k, :]) @ whole[k])
+        return np.asarray(result.reshape(values.shape))
+
+    def after(self, operator: Array) -> Array:
+        """Return ``operator @ (I - A f)^-1 A``, shape (rows, size)."""
+        mesh, f = self.integral.mesh, self._factor
+        whole = mesh.weights.reshape(mesh.panels, mesh.order)
+        nodal = operator.reshape(len(operator), mesh.panels, mesh.order)
+        result = np.zeros(nodal.shape)
+        own = np.matmul(nodal.transpose(1, 0, 2), self.integral.blocks)
+        at_tail = own[-1]
+        for panels, tail, sign in self._chains():
+            later = np.zeros(len(operator))
+            for k in reversed(panels):
+                result[:, k] = (own[k] + sign * np.outer(later, whole[k])) @ self._adjoint[k]
+                later = later + (nodal[:, k] + result[:, k] * f[k]).sum(axis=1)
+            at_tail = at_tail + sign * np.outer(later, tail)
+        result[:, -1] = at_tail @ self._adjoint[-1]
+        return np.asarray(result.reshape(operator.shape))

@@ -1,0 +1,133 @@
+r"""Deflection of an elastic layer that is bonded to a rigid base.
+
+.. math::
+
+    \hat w(q) = \frac{2 \hat p(q)}{E^* |q|} \, S(q d), \qquad
+    S(x) = \frac{k \sinh 2x - 2x}{k \cosh 2x + 2x^2 + 5 - 12\nu + 8\nu^2}, \quad k = 3 - 4\nu
+
+In Hertz units the kernel on the line is that of the half-plane and a smooth function of x/d,
+
+.. math::
+
+    K(x) = -\frac1\pi \ln\left|\frac xd\right| + k_s\left(\frac xd\right), \qquad
+    \pi k_s(\xi) = \int_0^\infty \frac{(S(q) - 1) \cos q\xi + e^{-q}}{q} \, dq
+
+K falls exponentially: beyond 24 thicknesses it is zero to rounding.  The layer sticks to its base; its upper surface is free
+of shear stress.  Unlike the half-plane it has no logarithm far away, so that its offset is a height.
+
+Source: the plane-strain solution of a bonded layer, [Johnson 1985] section 5.8; checked against a Fourier integral.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from stribeck._types import Array
+from stribeck.numerics.panels import Mesh
+from stribeck.quantities.units import InputError, show
+from stribeck.solids.half_plane import nodal_deflection
+
+__all__ = ["Layer"]
+
+REACH = 24.0
+"""Distance in thicknesses beyond which the kernel is zero."""
+
+TABLE = 160
+"""Chebyshev coefficients of the smooth part of the kernel: exact to 1e-13."""
+
+WIDEST_PANEL = 3.0
+"""Half-width of a panel in thicknesses from which its pressure acts only at its own nodes."""
+
+
+@dataclass(frozen=True)
+class Layer:
+    """An elastic layer bonded to a rigid base.
+
+    Parameters
+    ----------
+    thickness : float
+        Its thickness [Hertz half-width a of the half-plane], > 0.
+    poisson_ratio : float
+        Poisson's ratio, 0 to 0.5; 0.5 is incompressible.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range.
+    """
+
+    thickness: float
+    poisson_ratio: float = 0.5
+    name: str = "bonded layer"
+
+    def __post_init__(self) -> None:
+        """Refuse values outside their range."""
+        d, nu = self.thickness, self.poisson_ratio
+        if isinstance(d, bool) or not isinstance(d, int | float) or not 0 < d < math.inf:
+            raise InputError(f"thickness = {show(d)}; it must be a positive number, in Hertz half-widths.")
+        if isinstance(nu, bool) or not isinstance(nu, int | float) or not 0 <= nu <= 0.5:
+            raise InputError(f"poisson_ratio = {show(nu)}; it must lie between 0 and 0.5.")
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """Thickness and Poisson's ratio."""
+        return {"thickness": self.thickness, "poisson_ratio": self.poisson_ratio}
+
+    def deflection(self, mesh: Mesh) -> Array:
+        """Return the matrix from nodal pressures to the deflection at the nodes [u_Hz per p_Hz].
+
+        Panels on which pressure acts must not be much wider than the layer is thick: on panels wider than three thicknesses
+        the layer acts as springs side by side, ``d (1 - 2 nu)/(2 (1 - nu)^2)`` [u_Hz per p_Hz].
+        """
+        d, nu, x = self.thickness, self.poisson_ratio, mesh.nodes
+        distance = np.abs(x[:, None] - x) / d
+        near = distance < REACH
+        kernel = nodal_deflection(mesh)
+        kernel += (math.log(d) / math.pi) * mesh.weights
+        smooth = np.zeros_like(kernel)
+        smooth[near] = smooth_kernel(distance[near], nu)
+        kernel += smooth * mesh.weights
+        kernel[~near] = 0.0
+        wide = np.append(mesh.half_widths[:-1] > WIDEST_PANEL * d, True)
+        columns = np.flatnonzero(np.repeat(wide, mesh.order))
+        kernel[:, columns] = 0.0
+        kernel[columns, columns] = d * (1 - 2 * nu) / (2 * (1 - nu) ** 2)
+        return np.asfortranarray(kernel)
+
+    def far_gap(self, x: Array) -> Array:
+        """Return ``x**2/2``."""
+        return 0.5 * x**2
+
+
+def transfer(x: Array, poisson_ratio: float) -> Array:
+    """Return S(x): the deflection of the layer over that of the half-plane, at wave number times thickness x > 0."""
+    nu = poisson_ratio
+    k, constant = 3 - 4 * nu, 5 - 12 * nu + 8 * nu**2
+    small = np.minimum(x, 40.0)
+    sinh, cosh = np.sinh(2 * small), np.cosh(2 * small)
+    # The cubic term by its series, which the difference of the sines loses at small x for nu = 1/2.
+    top = np.where(x < 0.03, (k - 1) * 2 * x + k * (4 / 3 * x**3 + 4 / 15 * x**5 + 8 / 315 * x**7), k * sinh - 2 * small)
+    return np.asarray(top / (k * cosh + 2 * small**2 + constant))
+
+
+@lru_cache(maxsize=16)
+def _table(poisson_ratio: float) -> Array:
+    """Chebyshev coefficients of the smooth kernel over ``0 <= xi <= REACH``."""
+    nodes, weights = np.polynomial.legendre.leggauss(1200)
+    q = 20.0 * (1 + nodes)  # the integrand is zero to rounding beyond 40
+    weights = 20.0 * weights
+    xi = 0.5 * REACH * (1 + np.cos(np.pi * (np.arange(TABLE) + 0.5) / TABLE))
+    excess = transfer(q, poisson_ratio) - 1
+    values = ((excess * np.cos(np.outer(xi, q)) + np.exp(-q)) / q) @ weights / np.pi
+    found = chebyshev.chebfit(2 * xi / REACH - 1, values, TABLE - 1)
+    return np.asarray(found)
+
+
+def smooth_kernel(xi: Array, poisson_ratio: float) -> Array:
+    """Return k_s at distances of xi thicknesses, ``0 <= xi <= 24``."""
+    return np.asarray(chebyshev.chebval(2 * xi / REACH - 1, _table(poisson_ratio)))
