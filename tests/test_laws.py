@@ -12,6 +12,7 @@ from scipy.integrate import quad
 
 import stribeck as sb
 from stribeck.contact_laws.exponential import ExponentialShape
+from stribeck.contact_laws.law import largest_load
 from stribeck.contact_laws.scaled import BlendedShape, ScaledLaw, ShiftedShape
 from stribeck.contacts.groups import contact_law
 from stribeck.curves.elasticities import friction_elasticities
@@ -479,3 +480,12 @@ def test_the_roughness_without_a_minimum_depends_on_the_law():
     assert roughness != pytest.approx(merging_roughness(0.1, rtol=1e-3), rel=0.05)
     below, above = (weakening(sb.Groups(1.0, 0.1, roughness * factor, law=law)).present for factor in (0.95, 1.05))
     assert below and not above
+
+
+def test_formulas_and_atlas_say_for_which_laws_they_hold():
+    other = sb.GreenwoodTripp()
+    for law, holds in ((None, True), (ExponentialShape(0.1), True), (other, False)):
+        assert sb.asymptotics.boundary.gap.holds_for(law) is holds
+        assert sb.atlas.holds_for(law) is holds
+        assert largest_load(law) == (1.0 if holds else math.inf)
+    assert sb.asymptotics.hydrodynamic.friction.holds_for(other)  # smooth contacts have no law

@@ -17,7 +17,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import FILM_CONSTANT
-from stribeck.contact_laws.law import is_exponential
+from stribeck.contact_laws.law import LawShape, is_exponential
 from stribeck.contacts.line import Groups, InputError
 
 Value = float | Array
@@ -185,8 +185,23 @@ class Formula(Generic[Arguments]):
         InputError
             If the law is not the exponential one.
         """
-        if self.plane != "smooth" and groups.law is not None and not is_exponential(groups.law):
+        if groups.law is not None and not self.holds_for(groups.law):
             raise InputError(f"{self.name} holds for the exponential contact law, not for {groups.law.name}; use solve.")
+
+    def holds_for(self, law: LawShape | None) -> bool:
+        """Return whether the formula was derived for a contact law; one of smooth contacts holds for every law.
+
+        Parameters
+        ----------
+        law : LawShape or None
+            The law; None is the exponential one.
+
+        Returns
+        -------
+        bool
+            Whether it holds.
+        """
+        return self.plane == "smooth" or is_exponential(law)
 
     def _warn(self, what: str) -> None:
         # One text for all values, so that Python's default filter shows it once.

@@ -15,7 +15,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.atlas.grid import HEAVY, LEAST_LOAD, LEAST_SPEED, NEARLY_SMOOTH, region_at
 from stribeck.atlas.table import TABULATED, Values, load_table, solver_hash
-from stribeck.contact_laws.law import is_exponential
+from stribeck.contact_laws.law import LawShape, is_exponential
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import Groups, InputError
 from stribeck.numerics.threads import one_blas_thread
@@ -33,6 +33,7 @@ __all__ = [
     "friction",
     "friction_derivatives",
     "friction_parts",
+    "holds_for",
     "minimum_gap",
     "offset",
     "shares_and_friction",
@@ -408,6 +409,22 @@ def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> t
     return (speed, load, kappa), found
 
 
+def holds_for(law: LawShape | None) -> bool:
+    """Return whether the atlas holds the rough states of a contact law.
+
+    Parameters
+    ----------
+    law : LawShape or None
+        The law; None is the exponential one.
+
+    Returns
+    -------
+    bool
+        True for the exponential law.
+    """
+    return is_exponential(law)
+
+
 def check_law(groups: Groups) -> None:
     """Refuse rough states of another law than the exponential one.
 
@@ -421,7 +438,7 @@ def check_law(groups: Groups) -> None:
     InputError
         If the atlas does not hold their law.
     """
-    if groups.law is not None and not is_exponential(groups.law) and np.any(groups.roughness):
+    if groups.law is not None and not holds_for(groups.law) and np.any(groups.roughness):
         raise InputError(f"the atlas holds states of the exponential contact law, not of {groups.law.name}; use the solver.")
 
 

@@ -2,6 +2,7 @@ r"""What a contact law is: its shape without dimensions, and what the equations 
 
 from __future__ import annotations
 
+import math
 from typing import Any, Protocol, runtime_checkable
 
 from stribeck._types import Array, Numbers
@@ -80,8 +81,21 @@ class ContactLaw(Protocol):
 
 
 def is_exponential(law: LawShape | None) -> bool:
-    """Tell whether a law is that of the paper, for which formulas and atlas hold."""
+    """Return whether a law is the exponential one of the paper; ask what follows from that where it is known by a name."""
     return law is None or law.name == "exponential"
+
+
+def has_constant_decay(law: LawShape | None) -> bool:
+    """Return whether the pressure falls by the same factor over the same length at every gap.
+
+    Then a load at rest only shifts the gap.
+    """
+    return is_exponential(law)
+
+
+def largest_load(law: LawShape | None) -> float:
+    """Return the load group from which asperities cannot carry the load at a positive gap; infinite if there is none."""
+    return 1.0 if is_exponential(law) else math.inf
 
 
 def check_law(law: Any) -> LawShape | None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
-from stribeck.contact_laws.law import ContactLaw, LawShape, check_law, is_exponential
+from stribeck.contact_laws.law import ContactLaw, LawShape, check_law, has_constant_decay
 from stribeck.contact_laws.scaled import ScaledLaw
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
@@ -184,7 +184,7 @@ def contact_law(groups: Groups) -> ContactLaw:
     """
     if not np.any(groups.roughness):
         return NoContact()
-    if is_exponential(groups.law):
+    if has_constant_decay(groups.law):
         return ExponentialLaw(groups.load, groups.relative_roughness)
     assert groups.law is not None
     return ScaledLaw(groups.law, groups.load, groups.relative_roughness)

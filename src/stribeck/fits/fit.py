@@ -15,9 +15,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.atlas import reading as atlas
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings, free_names
-from stribeck.contact_laws.law import is_exponential
+from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import LineContact
 from stribeck.fits.case_file import load_fit_case
@@ -129,11 +130,11 @@ def fit(
     _check_enough(data, wanted)
     report = on_step or (lambda what, count: None)
     solved = solved_parts(definition, problem.rtol, contact.law)
-    exponential = is_exponential(contact.law)
-    quick = atlas_or_solved_parts(definition, problem.rtol) if exponential else solved
+    by_atlas = atlas.holds_for(contact.law)
+    quick = atlas_or_solved_parts(definition, problem.rtol) if by_atlas else solved
     goal = objective(model, quick, settings, settings.robust)
 
-    found = _search(goal, atlas_parts(definition) if exponential else None, report)
+    found = _search(goal, atlas_parts(definition) if by_atlas else None, report)
     fine = (
         found
         if quick is solved
@@ -146,7 +147,7 @@ def fit(
         covariance, quantiles, inflation = _covariance(fine)
     shift = fine.theta - found.theta
     ends = [[Ends(e.low + d, e.high + d) for e in each] for each, d in zip(ends, shift.tolist(), strict=True)]
-    return _result(fine, ends, covariance, quantiles, problem, shift if exponential else None)
+    return _result(fine, ends, covariance, quantiles, problem, shift if by_atlas else None)
 
 
 @dataclass(frozen=True)
@@ -388,7 +389,7 @@ def _notes(
                 notes.append(_combination(pair, correlation[i, j], covariance[np.ix_([j, i], [j, i])]))
     for name, contact in zip(at.objective.model.data.curves, contacts, strict=True):
         load = float(contact.groups.load)
-        if load >= 1 and is_exponential(contact.law):
+        if load >= largest_load(contact.law):
             where = f" of curve {name}" if len(contacts) > 1 else ""
             notes.append(
                 f"The fitted load group{where} is {load:.3g}, not below 1: the exponential contact law is outside its range."

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.contact_laws.law import is_exponential
+from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import EXPONENTS, LineContact
 from stribeck.curves.coordinate import Over
@@ -27,11 +27,8 @@ __all__ = ["Crossing", "Distance", "TransitionDistances", "transition_distances"
 REACH = 1e6
 """Largest factor by which an input is changed."""
 
-BOX = {"speed": (1e-12, 1e6), "load": (1e-8, 1.0), "relative_roughness": (1e-6, 1e3)}
-"""Groups between which is searched: where the solver is tested, and the load as far as the contact law holds."""
-
-HIGHEST_LOAD = 10.0
-"""Largest load group where another law than the exponential one holds the gap open, or says where it does not."""
+BOX = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
+"""Groups between which is searched, where the solver is tested; the load also no further than the contact law holds."""
 
 DECADE = math.log(10.0)
 """Length of one step outwards in the logarithm of an input."""
@@ -182,7 +179,7 @@ def transition_distances(
         notes.append("Smooth surfaces touch at no speed and no load: there is no boundary and no mixed lubrication.")
     if contact.friction_coefficient == 0:
         notes.append("Without dry friction all friction is that of the fluid, and every state counts as hydrodynamic.")
-    if contact.groups.load >= 1 and contact.roughness > 0 and is_exponential(contact.law):
+    if contact.groups.load >= largest_load(contact.law) and contact.roughness > 0:
         notes.append("From load group 1 on the fluid must carry a part at any speed; there may be no boundary lubrication.")
     found = [scan.along(name) for name in SCANNED]
     found.append(_of_viscosity(contact, found[0]))
@@ -328,7 +325,7 @@ class _Scan:
 
 def _limits(contact: LineContact, name: str) -> tuple[float, float]:
     """Return the logarithms of the factors of an input between which the groups stay in the box."""
-    box = BOX if is_exponential(contact.law) else BOX | {"load": (BOX["load"][0], HIGHEST_LOAD)}
+    box = BOX | {"load": (BOX["load"][0], min(BOX["load"][1], largest_load(contact.law)))}
     n_speed, n_load, n_roughness = EXPONENTS[name]
     groups = contact.groups
     low, high = -math.inf, math.inf

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import is_exponential, law_attributes
+from stribeck.contact_laws.law import law_attributes
 from stribeck.contacts.line import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE
 from stribeck.files.writing import MissingExtraError
@@ -156,7 +156,7 @@ def _formula_speeds(diagram: Diagram) -> dict[str, Array]:
             "printed_speed_boundary_to_mixed": transitions.speed_boundary_to_mixed.function(groups, printed=True),
             "printed_speed_at_minimum": transitions.speed_at_minimum.function(groups, mu0, beta, printed=True),
         }
-        smooth = (np.asarray(groups.roughness) == 0) | (not is_exponential(groups.law))
+        smooth = (np.asarray(groups.roughness) == 0) | (not transitions.speed_at_minimum.holds_for(groups.law))
         return {name: np.where(smooth, np.nan, np.broadcast_to(values, unit.shape) / unit) for name, values in found.items()}
 
 
@@ -165,7 +165,7 @@ def _formula_merging(diagram: Diagram) -> Array:
 
     groups, _ = _row_groups(diagram)
     loads = np.asarray(groups.load)[:, 0]
-    if not is_exponential(groups.law):
+    if not transitions.speed_at_minimum.holds_for(groups.law):
         return np.full(len(loads), np.nan)
     line = np.asarray(transitions.merging_roughness(loads, diagram.mu0, diagram.beta))
     if diagram.contact is None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from stribeck.contact_laws.law import LawShape, is_exponential
+from stribeck.contact_laws.law import LawShape, has_constant_decay
 from stribeck.contact_laws.scaled import ShiftedShape
 from stribeck.contacts.groups import Groups
 
@@ -34,7 +34,7 @@ def lifted(groups: Groups) -> tuple[Groups, float]:
     Laws that diverge at zero need no shift.
     """
     shape = groups.law
-    if shape is None or is_exponential(shape) or shape.lowest > -np.inf or isinstance(shape, ShiftedShape):
+    if shape is None or has_constant_decay(shape) or shape.lowest > -np.inf or isinstance(shape, ShiftedShape):
         return groups, 0.0
     shift = max(0.0, SAFE_SEPARATION - separation_at(shape, 0.5 * float(np.log(groups.load))))
     if shift == 0.0:

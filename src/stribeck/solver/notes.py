@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import is_exponential
+from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import Observables
 
@@ -43,7 +43,7 @@ def law_notes(groups: Groups, contact: LineContact | None, values: Observables) 
             values.minimum_gap > 0 :
         ]
     notes = []
-    if groups.load >= 1:
+    if groups.load >= largest_load(groups.law):
         notes.append(
             f"The load group is {float(groups.load):.3g}, not below 1: the exponential contact law is outside its range, "
             "as asperities cannot carry this load at a positive gap. "

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import is_exponential
+from stribeck.contact_laws.law import has_constant_decay
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimates
@@ -50,7 +50,7 @@ def solvable(groups: Groups) -> Groups:
 
     The exponential law does so by a lower load, another by a shifted separation.
     """
-    if not is_exponential(groups.law):
+    if not has_constant_decay(groups.law):
         return groups if groups.speed > 0 else lifted(groups)[0]
     if groups.speed > 0 or groups.load <= QUASISTATIC_LOAD:
         return groups
@@ -65,7 +65,7 @@ def quasistatic_shift(groups: Groups) -> float:
     Exact at speed zero, where the solution depends on kappa alone but for this shift of gap and offset.  For other laws than
     the exponential one it is that of :func:`stribeck.solver.at_rest.lifted`.
     """
-    if not is_exponential(groups.law):
+    if not has_constant_decay(groups.law):
         return 0.0 if groups.speed > 0 else -lifted(groups)[1]
     if solvable(groups) is groups:
         return 0.0
