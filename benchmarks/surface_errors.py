@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from stribeck.surfaces.analysis import SelfAffine, detrended, fit_self_affine, power_spectrum, synthetic_topography
+from stribeck.surfaces import SelfAffine, detrended, fit_self_affine, power_spectrum, synthetic_topography
 
 STEP = 1e-6
 NAMES = ("h_rms", "hurst", "roll_off")

@@ -229,6 +229,15 @@ def test_the_public_names_exist_once_and_in_a_list():
     assert all(hasattr(stribeck, name) for name in stribeck.__all__)
 
 
+def test_a_public_name_hides_no_module():
+    for name in stribeck.__all__:
+        found = getattr(stribeck, name)
+        assert isinstance(found, types.ModuleType) == (PACKAGE / name).exists(), name
+        if isinstance(found, types.ModuleType):
+            assert found is importlib.import_module(f"stribeck.{name}")
+            assert all(hasattr(found, public) for public in found.__all__)
+
+
 def test_the_version_is_the_same_wherever_it_is_written():
     citation = (Path(__file__).parents[1] / "CITATION.cff").read_text()
     changelog = (Path(__file__).parents[1] / "CHANGELOG.md").read_text()

@@ -10,7 +10,7 @@ from command_line import call
 from scipy.integrate import quad
 
 import stribeck as sb
-from stribeck.surfaces.analysis import (
+from stribeck.surfaces import (
     RoughSurface,
     SelfAffine,
     Topography,

@@ -7,7 +7,7 @@ import pytest
 from topography_files import write_gwy, write_sdf, write_x3p
 
 import stribeck as sb
-from stribeck.surfaces.analysis import SelfAffine, Topography, read_topography, synthetic_topography
+from stribeck.surfaces import SelfAffine, Topography, read_topography, synthetic_topography
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,6 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
-from stribeck import asymptotics
-from stribeck.atlas import reading as atlas
+from stribeck import asymptotics, atlas, surfaces
 from stribeck.batches.solve_batch import BatchSolution, solve_batch
 from stribeck.cases.case import Case, load_case
 from stribeck.cases.fit_settings import FitSettings
@@ -21,7 +20,6 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.phase_diagram import phase_diagram
 from stribeck.solver.solution import Profile, Solution
 from stribeck.solver.solve import SolveError, solve
-from stribeck.surfaces import analysis as surfaces
 from stribeck.sweeps.dataset import Sweep, open_sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
 from stribeck.sweeps.store import SweepError

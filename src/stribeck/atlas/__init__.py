@@ -1,1 +1,35 @@
 """The atlas: solved states of a box of groups as smooth functions."""
+
+from stribeck.atlas.reading import (
+    BOX,
+    about,
+    central_gap,
+    contact_load_share,
+    fluid_load_share,
+    flux_gap,
+    friction,
+    friction_derivatives,
+    friction_parts,
+    holds_for,
+    minimum_gap,
+    offset,
+    shares_and_friction,
+    viscous_friction,
+)
+
+__all__ = [
+    "BOX",
+    "about",
+    "central_gap",
+    "contact_load_share",
+    "flux_gap",
+    "fluid_load_share",
+    "friction",
+    "friction_derivatives",
+    "friction_parts",
+    "holds_for",
+    "minimum_gap",
+    "offset",
+    "shares_and_friction",
+    "viscous_friction",
+]

@@ -239,8 +239,8 @@ def surface_command(
     force
         Replace existing files.
     """
+    from stribeck import surfaces
     from stribeck.cli.reports import surface as report_surface
-    from stribeck.surfaces import analysis as surfaces
 
     if file is None:
         raise InputError("FILE is missing; give a file of heights, as in: stribeck surface scan.x3p.")

@@ -8,8 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
+from stribeck import atlas
 from stribeck._types import Array
-from stribeck.atlas import reading as atlas
+from stribeck.atlas.reading import check_law
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups, InputError, LineContact
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
@@ -74,7 +75,7 @@ class AtlasCurve:
 
     def __post_init__(self) -> None:
         """Refuse a law that the atlas does not hold."""
-        atlas.check_law(self.groups_at(self.values[:1]))
+        check_law(self.groups_at(self.values[:1]))
 
     def __len__(self) -> int:
         """Return the number of points."""

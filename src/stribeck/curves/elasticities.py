@@ -7,8 +7,8 @@ from typing import Literal, overload
 
 import numpy as np
 
+from stribeck import atlas
 from stribeck._types import Array
-from stribeck.atlas import reading as atlas
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import EXPONENTS, LineContact
 from stribeck.curves.regime import Method, check_method

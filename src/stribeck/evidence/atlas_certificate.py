@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
+from stribeck import atlas
 from stribeck._types import Array
-from stribeck.atlas import reading as atlas
 from stribeck.contacts.line import Groups
 from stribeck.solver.solve import solve
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stribeck import atlas
 from stribeck._types import Array
-from stribeck.atlas import reading as atlas
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.atlas_curve import ERROR

@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from stribeck import atlas
 from stribeck._types import Array
-from stribeck.atlas import reading as atlas
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings, free_names
 from stribeck.contact_laws.law import largest_load

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stribeck import atlas
 from stribeck._types import Array
-from stribeck.atlas import reading as atlas
 from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups, InputError

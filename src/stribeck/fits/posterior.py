@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from stribeck import atlas
 from stribeck._types import Array
-from stribeck.atlas import reading as atlas
 from stribeck.contacts.line import Groups, InputError
 from stribeck.files.writing import MissingExtraError
 from stribeck.fits.objective import Minimum

@@ -1,1 +1,32 @@
 """Surfaces: from measured heights to a spectrum and a contact law."""
+
+from stribeck.cases.rough_surface import RoughSurface
+from stribeck.contact_laws.persson import PerssonLaw, exponential_limit, persson_law
+from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
+from stribeck.surfaces.analysis import Surface, analyse, write_surface_table
+from stribeck.surfaces.detrend import Shape, detrended
+from stribeck.surfaces.files import read_topography
+from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, power_spectrum
+from stribeck.surfaces.self_affine_fit import SelfAffineFit, fit_self_affine
+from stribeck.surfaces.topography import Topography, synthetic_topography
+
+__all__ = [
+    "MeasuredSpectrum",
+    "PerssonLaw",
+    "RoughSurface",
+    "SelfAffine",
+    "SelfAffineFit",
+    "Shape",
+    "Spectrum",
+    "Surface",
+    "Topography",
+    "analyse",
+    "detrended",
+    "exponential_limit",
+    "fit_self_affine",
+    "persson_law",
+    "power_spectrum",
+    "read_topography",
+    "synthetic_topography",
+    "write_surface_table",
+]

@@ -15,37 +15,16 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.cases.rough_surface import RoughSurface
 from stribeck.contact_laws.persson import GAMMA, PerssonLaw, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.files.writing import replacing
 from stribeck.quantities.units import InputError, format_si, show, to_si
 from stribeck.surfaces.detrend import Shape, Trend, detrended
-from stribeck.surfaces.files import read_topography
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, Window, power_spectrum
 from stribeck.surfaces.self_affine_fit import MISFIT, SelfAffineFit, fit_self_affine
-from stribeck.surfaces.topography import Topography, synthetic_topography
+from stribeck.surfaces.topography import Topography
 
-__all__ = [
-    "MeasuredSpectrum",
-    "PerssonLaw",
-    "RoughSurface",
-    "SelfAffine",
-    "SelfAffineFit",
-    "Shape",
-    "Spectrum",
-    "Surface",
-    "Topography",
-    "analyse",
-    "detrended",
-    "exponential_limit",
-    "fit_self_affine",
-    "persson_law",
-    "power_spectrum",
-    "read_topography",
-    "synthetic_topography",
-    "write_surface_table",
-]
+__all__ = ["Surface", "analyse", "write_surface_table"]
 
 APART = 1.3
 """Ratio of the rms heights of scan and fit from which a note says that they differ."""
