@@ -199,7 +199,7 @@ def _brought_back(found: Minimum) -> Minimum:
     near = _nearest(found)
     if np.allclose(near, found.theta, rtol=0, atol=1e-9):
         return found
-    moved = minimise(found.objective, near)
+    moved = minimise(found.objective, near, flat=FLAT)
     return moved if moved.value < found.value + SAME else found
 
 

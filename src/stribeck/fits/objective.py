@@ -37,6 +37,9 @@ VALUE_TOLERANCE, PLACE_TOLERANCE = 1e-8, 1e-7
 
 MOST_EVALUATIONS = 200
 
+NO_INFORMATION = 1e-9
+"""Singular value of the derivatives, over the largest, below which a direction is rounding and no step goes along it."""
+
 SETTLED = 1e-4
 """Relative change of the scale of the noise below which it is settled."""
 
@@ -204,8 +207,11 @@ def minimise(
     most: int = MOST_EVALUATIONS,
     on_step: Callable[[int], object] | None = None,
     tolerance: float = VALUE_TOLERANCE,
+    flat: float = NO_INFORMATION,
 ) -> Minimum:
     """Return the minimum of q near a start, at a given scale of the noise.
+
+    Inputs stay at the start along directions that change no residual.
 
     Parameters
     ----------
@@ -221,6 +227,8 @@ def minimise(
         Called with the number of predictions after each.
     tolerance : float
         Relative change of q at which the least squares end.
+    flat : float
+        Singular value of the derivatives, over the largest, below which nothing changes along a direction.
 
     Returns
     -------
@@ -258,12 +266,13 @@ def minimise(
     def function(x: Array) -> Array:
         theta = whole(x)
         try:
-            return np.concatenate([evaluate(theta)[0], rows @ theta - means])
+            return np.concatenate([evaluate(theta)[0], rows @ theta - means, np.zeros(len(x))])
         except (SolveError, InputError):
-            return np.full(n + len(means), np.inf)  # the step is then made shorter
+            return np.full(n + len(means) + len(x), np.inf)  # the step is then made shorter
 
     def derivative(x: Array) -> Array:
-        return np.concatenate([evaluate(whole(x))[1], rows])[:, moving]
+        J = np.concatenate([evaluate(whole(x))[1], rows])[:, moving]
+        return np.concatenate([J, _held(J, flat)])
 
     def loss(z: Array) -> Array:
         found = np.stack([z, np.ones_like(z), np.zeros_like(z)])
@@ -293,6 +302,17 @@ def minimise(
     part = Minimum(theta, goal.value(theta, r), r, J, prediction, 0.0, ended, count, goal)
     free = moving[~part.at_bound[moving]]
     return replace(part, distance=_distance(part, free))
+
+
+def _held(J: Array, flat: float) -> Array:
+    """Return rows, shape (p, p), that hold a Gauss-Newton step where J has no information and leave it alone elsewhere.
+
+    Their residuals are zero.  Without them rounding over rounding would move inputs that do not matter.
+    """
+    _, S, V = np.linalg.svd(J, full_matrices=True)
+    S = np.append(S, np.zeros(len(V)))[: len(V)]
+    size = float(S[0]) if S[0] > 0 else 1.0
+    return np.asarray(np.where(S <= flat * S[0], size, 0.0)[:, None] * V)
 
 
 def _distance(at: Minimum, free: Array) -> float:
