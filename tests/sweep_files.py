@@ -1,6 +1,7 @@
 """What the tests of sweeps share: sweep files to write, and stores to compare."""
 
 import os
+import re
 
 import numpy as np
 
@@ -66,3 +67,9 @@ def done_rows(store):
 def same_rows(one, other):
     """Tell whether two sweeps hold the same numbers and texts, bit by bit."""
     return np.array_equal(one.rows.values, other.rows.values, equal_nan=True) and one.rows.texts == other.rows.texts
+
+
+def finish(process, seconds):
+    """Wait for a sweep; return what it wrote to stdout, and to stderr but for the lines of progress of a slow machine."""
+    out, err = process.communicate(timeout=seconds)
+    return out, re.sub(r"^stribeck: [0-9]+ of [0-9]+ states, .* states/s.*\n", "", err, flags=re.MULTILINE)

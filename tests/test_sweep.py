@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from command_line import SCRIPT, SWEEP, call, environment
-from sweep_files import CONTACT, GRID, RANDOM, chunks, done_rows, same_rows, write
+from sweep_files import CONTACT, GRID, RANDOM, chunks, done_rows, finish, same_rows, write
 
 import stribeck as sb
 from stribeck.batches import chain as sweep_chain
@@ -245,7 +245,7 @@ def start(file, store, *arguments, **options):
     return subprocess.Popen([SCRIPT, "sweep", str(file), "--out", str(store), *arguments], env=environment(), **options)
 
 
-def until(condition, seconds=60):
+def until(condition, seconds=240):
     """Wait for a condition."""
     end = time.monotonic() + seconds
     while not condition():
@@ -302,7 +302,7 @@ def test_ctrl_c_keeps_what_is_finished_and_the_same_command_goes_on(tmp_path, wo
             os.killpg(process.pid, number)  # as a terminal does
         else:
             process.send_signal(number)
-        out, err = process.communicate(timeout=60)
+        out, err = finish(process, 60)
     finally:
         process.kill()
     assert process.returncode == 130
@@ -333,7 +333,7 @@ def test_ctrl_c_while_the_workers_start_is_quiet(tmp_path):
         until(lambda: len(workers_of(process.pid)) == 2)
         time.sleep(0.3)  # now they import, where an interrupt would be a traceback
         os.killpg(process.pid, signal.SIGINT)
-        _, err = process.communicate(timeout=60)
+        _, err = finish(process, 60)
     finally:
         process.kill()
     assert process.returncode == 130
@@ -403,7 +403,7 @@ def test_a_killed_worker_process_is_replaced(tmp_path):
         until(lambda: rows_in(store) > 20)
         before = chunks(store)
         os.kill(workers_of(process.pid)[-1], signal.SIGKILL)
-        _, err = process.communicate(timeout=120)
+        _, err = finish(process, 120)
     finally:
         process.kill()
     assert (process.returncode, err) == (0, "")
@@ -488,7 +488,7 @@ def test_a_full_disk_is_a_sentence_and_the_store_opens_and_goes_on(tmp_path, wor
                 until(lambda: rows_in(store) > 20)
                 for pid in (process.pid, *children_of(process.pid)):
                     resource.prlimit(pid, resource.RLIMIT_FSIZE, (0, resource.RLIM_INFINITY))
-            _, err = process.communicate(timeout=120)
+            _, err = finish(process, 120)
         finally:
             process.kill()
         assert process.returncode == 1, err

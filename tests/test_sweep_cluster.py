@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import call, environment
-from sweep_files import RANDOM, chunks, done_rows, write
+from sweep_files import RANDOM, chunks, done_rows, finish, write
 from test_sweep import right, start, until
 
 import stribeck as sb
@@ -75,7 +75,7 @@ def lose_a_worker(tmp_path, total, kill_at):
             until(lambda: rows_in(store) >= kill_at)
             made.workers[1].send_signal(signal.SIGKILL)
             before = chunks(store)
-            out, err = process.communicate(timeout=300)
+            out, err = finish(process, 300)
         finally:
             process.kill()
         assert made.workers[1].wait() == -signal.SIGKILL
@@ -128,7 +128,7 @@ def test_killing_the_run_keeps_the_states_and_another_goes_on_without_the_cluste
         try:
             until(lambda: rows_in(store) >= len(before) // 3 + 10)
             process.send_signal(signal.SIGINT)
-            _, err = process.communicate(timeout=60)
+            _, err = finish(process, 60)
         finally:
             process.kill()
     assert process.returncode == 130, err
@@ -161,7 +161,7 @@ def test_a_scheduler_that_is_lost_ends_the_sweep_with_a_sentence(tmp_path):
         try:
             until(lambda: rows_in(store) >= 5)
             made.scheduler.kill()
-            _, err = process.communicate(timeout=120)
+            _, err = finish(process, 120)
         finally:
             process.kill()
     assert process.returncode == 1, err
