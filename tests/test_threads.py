@@ -1,0 +1,123 @@
+"""Threads: those of BLAS, of which a solve uses one, and those of the caller, who may solve in several."""
+
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from fit_data import TRUE, measured
+from scipy.linalg import lapack
+from threadpoolctl import threadpool_info, threadpool_limits
+
+import stribeck as sb
+from stribeck.numerics.threads import one_blas_thread
+
+GROUPS = sb.Groups(1e-4, 0.1, 1e-3)
+
+
+def blas_threads():
+    """Return the numbers of threads of the BLAS libraries in this process."""
+    return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
+
+
+@pytest.fixture
+def two_threads():
+    """Let BLAS use two threads, whatever the environment says."""
+    with threadpool_limits(2, user_api="blas"):
+        assert blas_threads() == {2}
+        yield
+
+
+class FactorisedError(Exception):
+    """The first factorisation was reached: no need to solve on."""
+
+
+def fit_solved():
+    data = measured(np.geomspace(1e-3, 1e-1, 5), np.full(5, 0.5))
+    return sb.fit(data, TRUE.replace(law=sb.GreenwoodTripp()), intervals=False)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: sb.solve(GROUPS),
+        lambda: sb.stribeck_curve(GROUPS, speed=(1e-4, 1e-3)),
+        lambda: sb.solve_batch(sb.Groups([1e-4, 1e-3], 0.1, 1e-3)),
+        lambda: sb.phase_diagram(TRUE),
+        fit_solved,
+    ],
+    ids=["solve", "stribeck_curve", "solve_batch", "phase_diagram", "fit"],
+)
+def test_matrices_are_factorised_with_one_blas_thread(two_threads, monkeypatch, call):
+    during = []
+
+    def spied(matrix, **options):
+        during.append(blas_threads())
+        raise FactorisedError
+
+    monkeypatch.setattr(lapack, "dgetrf", spied)
+    with pytest.raises(FactorisedError):
+        call()
+    assert during[0] == {1}
+    assert blas_threads() == {2}
+
+
+def test_calls_that_overlap_keep_one_blas_thread_until_the_last_ends(two_threads):
+    first_in, second_in, first_out = threading.Event(), threading.Event(), threading.Event()
+    seen = {}
+
+    @one_blas_thread
+    def first():
+        first_in.set()
+        assert second_in.wait(10)
+
+    @one_blas_thread
+    def second():
+        second_in.set()
+        assert first_out.wait(10)
+        seen["alone"] = blas_threads()
+
+    def run_first():
+        first()
+        seen["after the first"] = blas_threads()
+        first_out.set()
+
+    with ThreadPoolExecutor(2) as pool:
+        calls = [pool.submit(run_first)]
+        assert first_in.wait(10)
+        calls.append(pool.submit(second))
+        for call in calls:
+            call.result(30)
+    assert seen == {"after the first": {1}, "alone": {1}}
+    assert blas_threads() == {2}
+
+
+def test_a_call_that_raises_gives_the_threads_back(two_threads):
+    @one_blas_thread
+    def fails():
+        raise ValueError
+
+    with pytest.raises(ValueError):
+        fails()
+    assert blas_threads() == {2}
+
+
+def test_eight_threads_give_the_bits_of_one(two_threads):
+    problems = [sb.Groups(speed, 0.1, 1e-3) for speed in np.geomspace(1e-5, 1e-1, 8)]
+    start = threading.Barrier(8)
+
+    def solve(problem, wait=start.wait):
+        wait()
+        state = sb.solve(problem)
+        return state, state.profile(np.linspace(-2, 2, 50))
+
+    alone = [solve(problem, lambda: None) for problem in problems]
+    with ThreadPoolExecutor(8) as pool:
+        together = list(pool.map(solve, problems))
+    for (one, its_profile), (other, its_own) in zip(alone, together, strict=True):
+        assert np.array_equal(one.nodal_gap, other.nodal_gap)
+        assert one.observables == other.observables
+        assert np.array_equal(one.relative_errors, other.relative_errors)
+        for name in ("gap", "fluid_pressure", "contact_pressure"):
+            assert np.array_equal(getattr(its_profile, name), getattr(its_own, name)), name
+    assert blas_threads() == {2}
