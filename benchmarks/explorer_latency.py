@@ -65,7 +65,7 @@ def measure(page, address: str, number: int) -> None:
     page.wait_for_timeout(3000)
     page.evaluate(CLOCK)
     print("| slider | median, ms | 90 % within, ms | worst, ms |\n|---|---|---|---|")
-    for name in ("speed", "load", "roughness", "friction_coefficient", "load_group"):
+    for name in ("speed", "load", "roughness", "boundary_friction", "load_group"):
         page.evaluate("window.moves = []")
         page.focus(f"[data-row={name}] input.slider")
         for _ in range(number):

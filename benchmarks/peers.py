@@ -81,7 +81,7 @@ class Smooth:
 
 @dataclass(frozen=True)
 class Mixed:
-    """A mixed state for mu0 = beta = 1, printed friction."""
+    """A mixed state for boundary_friction = beta = 1, printed friction."""
 
     contact_share: float
     viscous: float

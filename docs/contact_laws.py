@@ -63,7 +63,7 @@ def persson() -> sb.surfaces.PerssonLaw:
 def solved(load: float, law: sb.surfaces.PerssonLaw | None, beta: float) -> Pair:
     """Return state at rest and curve at one load."""
     groups = sb.Groups(0.0, load, KAPPA * load, law=law)
-    curve = sb.stribeck_curve(groups, speed=SPEEDS, points=POINTS, mu0=1.0, beta=beta)
+    curve = sb.stribeck_curve(groups, speed=SPEEDS, points=POINTS, boundary_friction=1.0, beta=beta)
     if not curve.outcome.ok:
         raise RuntimeError(f"load {load}: {curve.outcome.value}")
     return Pair(sb.solve(groups), curve)

@@ -10,7 +10,7 @@ from pathlib import Path
 import stribeck as sb
 
 HERE = Path(__file__).parent
-TRUTH = {"friction_coefficient": 0.62, "roughness": 1.3e-6, "modulus": 2.3e6}
+TRUTH = {"boundary_friction": 0.62, "roughness": 1.3e-6, "modulus": 2.3e6}
 
 
 def main():

@@ -23,7 +23,7 @@ def balance(state):
     here = state.profile(x)
     step = 1e-6 * np.maximum(1.0, np.abs(x))
     gap_slope = (state.profile(x + step).gap - state.profile(x - step).gap) / (2 * step)
-    paper, balanced = (state.friction(mu0=1, beta=1, definition=d) for d in ("paper", "balanced"))
+    paper, balanced = (state.friction(boundary_friction=1, beta=1, definition=d) for d in ("paper", "balanced"))
     return {
         "int p w'": relative(weights * here.pressure * (gap_slope - x)),
         "int p_c h'": relative(weights * here.contact_pressure * gap_slope),

@@ -41,5 +41,5 @@ if __name__ == "__main__":
     print(f"central gap {state.central_gap:.8f} u_Hz, least gap {state.minimum_gap:.8f} u_Hz")
     print(f"flux gap {state.flux_gap:.8f} u_Hz, offset {state.offset:.8f} u_Hz")
     for definition in ("paper", "balanced"):
-        print(f"friction ({definition}): {state.friction(mu0=1, beta=1, definition=definition).total:.8f}")
+        print(f"friction ({definition}): {state.friction(boundary_friction=1, beta=1, definition=definition).total:.8f}")
     plot(data).savefig("one_state.png")

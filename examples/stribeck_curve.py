@@ -21,7 +21,7 @@ def main():
         roughness="1 um",
         alpha=2.0,
         beta=0.06,
-        friction_coefficient=0.7,
+        boundary_friction=0.7,
     )
     return sb.stribeck_curve(contact)
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import stribeck as sb
 
 CASE = Path(__file__).with_name("pdms_cylinder.toml")
-QUANTITIES = ("roughness", "load", "viscosity", "modulus", "radius", "friction_coefficient", "beta")
+QUANTITIES = ("roughness", "load", "viscosity", "modulus", "radius", "boundary_friction", "beta")
 
 
 def main():

@@ -23,7 +23,7 @@ CONTACT = {
     "roughness": '"1 um"',
     "alpha": "2.0",
     "beta": "0.06",
-    "friction_coefficient": "0.7",
+    "boundary_friction": "0.7",
 }
 
 FEW = ("--range", "0.3 mm/s", "0.1 m/s", "--points", "6")

@@ -12,12 +12,12 @@ modulus = "2.7 MPa"
 viscosity = "50 mPa*s"
 alpha = 2.0
 beta = 0.06
-friction_coefficient = 0.7
+boundary_friction = 0.7
 """
 
 GRID = """
 [groups]
-mu0 = 0.8
+boundary_friction = 0.8
 beta = 0.05
 
 [vary]

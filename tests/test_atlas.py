@@ -88,7 +88,7 @@ def test_the_certificate_holds_on_five_thousand_states(mixed):
 def test_rest_is_that_of_the_solver(load, kappa):
     groups = sb.Groups(0.0, load, kappa * load)
     state = sb.solve(groups, rtol=1e-8)
-    assert sb.atlas.friction(groups, mu0=0.7) == 0.7
+    assert sb.atlas.friction(groups, boundary_friction=0.7) == 0.7
     assert sb.atlas.contact_load_share(groups) == 1
     assert sb.atlas.fluid_load_share(groups) == 0
     for function in (sb.atlas.central_gap, sb.atlas.minimum_gap):
@@ -113,7 +113,7 @@ def test_the_dry_contact_is_that_of_hertz():
     groups = sb.Groups(0.0, 0.4, 0.0)
     state = sb.solve(groups)
     assert [function(groups) for function in FUNCTIONS[:6]] == [getattr(state, name) for name in NAMES]
-    assert sb.atlas.friction(groups, mu0=0.3) == 0.3
+    assert sb.atlas.friction(groups, boundary_friction=0.3) == 0.3
 
 
 # --- derivatives ---
@@ -123,7 +123,7 @@ def test_the_dry_contact_is_that_of_hertz():
 @pytest.mark.parametrize("states", [random_groups(400, 57721)[3], transition_groups(400, 16180)], ids=["box", "transition"])
 def test_derivatives_agree_with_differences(states, definition):
     at = np.log([states.speed, states.load, states.roughness])
-    settings = {"mu0": 0.9, "beta": 0.3, "definition": definition}
+    settings = {"boundary_friction": 0.9, "beta": 0.3, "definition": definition}
     exact = sb.atlas.friction_derivatives(states, **settings)
     friction = sb.atlas.friction(states, **settings)
     for row, step in enumerate(np.eye(3) * 1e-5):
@@ -194,7 +194,7 @@ def test_the_ends_of_the_box_belong_to_it():
                 assert np.isfinite([function(groups) for function in FUNCTIONS]).all()
 
 
-@pytest.mark.parametrize("wrong", [{"definition": "total"}, {"beta": 0.0}, {"mu0": -1.0}])
+@pytest.mark.parametrize("wrong", [{"definition": "total"}, {"beta": 0.0}, {"boundary_friction": -1.0}])
 def test_wrong_arguments_are_refused(wrong):
     with pytest.raises(sb.InputError):
         sb.atlas.friction(sb.Groups(1e-3, 0.1, 1e-4), **wrong)

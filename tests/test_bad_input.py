@@ -162,7 +162,7 @@ BAD_ARGUMENTS = [
     (["regimes"], "CASE is missing"),
     (["solve", "case.toml", "other.toml"], "'other.toml' is one argument too many"),
     (["solve", "case.toml", "--groups", "1", "1", "1"], "case.toml and --groups are both given"),
-    (["solve", "case.toml", "--mu0", "0.5"], "--mu0 = 0.5 goes with --groups only"),
+    (["solve", "case.toml", "--boundary-friction", "0.5"], "--boundary-friction = 0.5 goes with --groups only"),
     (["curve", "case.toml", "--beta", "0.5"], "--beta = 0.5 goes with --groups only"),
     (["solve", "--groups", "1", "1"], "--groups needs 3 values, 2 given"),
     (["solve", "--groups", "1", "1", "1", "1"], "--groups has more than 3 numbers: 1 1 1 1"),
@@ -170,7 +170,8 @@ BAD_ARGUMENTS = [
     (["solve", "--groups", "1", "0", "1e-3"], "load = 0.0 must be finite and positive"),
     (["solve", "--groups", "1", "0.1", "nan"], "roughness = nan must be finite and zero or positive"),
     (["solve", "--groups", "1 m/s", "0.1", "1e-3"], "speed = '1 m/s' is not a number; write it as 0.001 or 1e-3"),
-    (["solve", "--groups", "1", "1", "1", "--mu0", "-1"], "mu0 = -1.0 must be zero or positive"),
+    (["solve", "--groups", "1", "1", "1", "--boundary-friction", "-1"], "boundary_friction = -1.0 must be zero or positive"),
+    (["solve", "--groups", "1", "1", "1", "--mu0", "1"], "Unknown option: --mu0; it is called --boundary-friction"),
     (["solve", "--groups", "1", "1", "1", "--beta", "0"], "beta = 0.0 must be positive"),
     (["solve", "case.toml", "--rtol", "small"], "rtol = 'small' is not a number"),
     (["solve", "case.toml", "--rtol"], "--rtol needs a value"),
@@ -260,7 +261,8 @@ WORDS = st.one_of(
     st.sampled_from(
         [
             *("solve", "curve", "regimes", "case.toml", "empty.toml", "old.nc", "new.nc", "--groups", "--rtol"),
-            *("--points", "--range", "--over", "speed", "load", "-o", "--plot", "--json", "--mu0", "--beta", "--", "-"),
+            *("--points", "--range", "--over", "speed", "load", "-o"),
+            *("--plot", "--json", "--boundary-friction", "--beta", "--", "-"),
             *("1", "-1", "1e-3", "1 mm/s", "1e999", "nan", "", " ", "=", "--json=5", "--help", "[", "\0", "ä"),
         ]
     ),

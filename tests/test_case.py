@@ -25,7 +25,7 @@ CONTACT = {
     "roughness": '"1 um"',
     "alpha": "2",
     "beta": "0.06",
-    "friction_coefficient": "0.7",
+    "boundary_friction": "0.7",
 }
 
 
@@ -78,7 +78,7 @@ def test_a_case_with_a_contact_alone_has_the_defaults(write):
         roughness=1e-6,
         alpha=2.0,
         beta=0.06,
-        friction_coefficient=0.7,
+        boundary_friction=0.7,
     )
     assert load_case(path) == Case(path=path, contact=contact)
     assert load_case(str(path)).curve == CurveSettings(over="speed", range=None, points=101)
@@ -152,6 +152,10 @@ def test_a_case_knows_every_quantity(write):
         ({"contact": {"law": '"greenwood"'}}, "[contact] law = 'greenwood' must be one of 'exponential'"),
         ({"contact": {"spede": "1"}}, "[contact] spede = 1 is not a known key; did you mean speed."),
         ({"contact": {"eta": "1"}}, "[contact] eta = 1 is not a known key; write viscosity."),
+        (
+            {"contact": {"friction_coefficient": "0.7"}},
+            "[contact] friction_coefficient = 0.7 is not a known key; write boundary_friction.",
+        ),
         ({"contact": {"Shore_A": "70"}}, "[contact] Shore_A = 70 is not a known key; for S Shore A Gent's relation gives"),
         ({"contact": {"Ra": "1e-6"}}, "[contact] Ra = 1e-06 is not a known key; heights are root mean squares"),
         (

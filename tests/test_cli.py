@@ -107,7 +107,7 @@ def test_json_knows_no_nan_and_no_infinity(capsys, groups, missing):
 
 def test_coefficients_given_with_groups_scale_friction_and_hersey_number(capsys):
     plain = strict_json(call(capsys, "solve", *GROUPS, "--json").out)
-    scaled = strict_json(call(capsys, "solve", *GROUPS, "--mu0", "0.5", "--beta", "0.1", "--json").out)
+    scaled = strict_json(call(capsys, "solve", *GROUPS, "--boundary-friction", "0.5", "--beta", "0.1", "--json").out)
     for definition in ("friction_paper", "friction_balanced"):
         assert scaled[definition]["contact"] == pytest.approx(0.5 * plain[definition]["contact"], rel=1e-14)
         assert scaled[definition]["viscous"] == pytest.approx(0.1 * plain[definition]["viscous"], rel=1e-14)
@@ -204,7 +204,19 @@ def test_the_settings_of_the_case_hold_and_options_override_them(capsys, tmp_pat
 def test_the_json_of_a_curve_holds_its_points_and_landmarks(capsys, tmp_path):
     found = strict_json(call(capsys, "curve", PDMS, *FEW, "--json", "-o", tmp_path / "curve.csv").out)
     assert set(found) == {
-        *("title", "over", "unit", "definition", "rtol", "mu0", "beta", "inputs", "units", "minimum", "transitions"),
+        *(
+            "title",
+            "over",
+            "unit",
+            "definition",
+            "rtol",
+            "boundary_friction",
+            "beta",
+            "inputs",
+            "units",
+            "minimum",
+            "transitions",
+        ),
         *("regimes", "points", "requested_points", "complete", "error_estimate", "outcome", "message", "notes"),
         *("files", "contact_law", "contact_law_parameters"),
     }
@@ -225,10 +237,10 @@ def test_the_json_of_a_curve_holds_its_points_and_landmarks(capsys, tmp_path):
     ],
 )
 def test_a_curve_of_groups_takes_the_two_that_stay_fixed(capsys, over, fixed, ends, constant):
-    tokens = ("--groups", *fixed, "--over", over, "--range", *ends, "--points", "2", "--mu0", "0.5", "--json")
+    tokens = ("--groups", *fixed, "--over", over, "--range", *ends, "--points", "2", "--boundary-friction", "0.5", "--json")
     found = strict_json(call(capsys, "curve", *tokens).out)
     assert found["points"]["value"] == pytest.approx([float(end) for end in ends])
-    assert found["mu0"] == 0.5
+    assert found["boundary_friction"] == 0.5
     for name, value in constant.items():
         assert found["points"][name] == pytest.approx([value, value])
 
@@ -288,9 +300,9 @@ def test_regimes_as_json_gives_transitions_as_factors_of_the_speed(capsys):
         assert mark["factor"] == pytest.approx(mark["value"] / 0.001)
     assert len(found["transitions"]) == 4
     assert set(found["elasticities"]) == {
-        *("speed", "load", "viscosity", "modulus", "radius", "roughness", "alpha", "beta", "friction_coefficient")
+        *("speed", "load", "viscosity", "modulus", "radius", "roughness", "alpha", "beta", "boundary_friction")
     }
-    assert found["moves_friction_most"] == "friction_coefficient"
+    assert found["moves_friction_most"] == "boundary_friction"
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ CONTACT = sb.LineContact(
     roughness="1 um",
     alpha=2.0,
     beta=0.06,
-    friction_coefficient=0.7,
+    boundary_friction=0.7,
 )
 HEAVY = CONTACT.replace(beta=0.01)  # load group 3.5
 
@@ -87,7 +87,7 @@ def test_groups_and_a_contact_of_these_groups_give_the_same_curve():
     of_contact = sb.stribeck_curve(CONTACT, speed=("1 mm/s", "50 mm/s"), points=3)
     groups = of_contact.groups
     of_groups = sb.stribeck_curve(
-        load=float(groups.load[0]), roughness=float(groups.roughness[0]), speed=groups.speed, mu0=0.7, beta=0.06
+        load=float(groups.load[0]), roughness=float(groups.roughness[0]), speed=groups.speed, boundary_friction=0.7, beta=0.06
     )
     np.testing.assert_allclose(of_groups.friction, of_contact.friction, rtol=3e-6)
     np.testing.assert_allclose(of_groups.hersey_number, of_contact.hersey_number, rtol=1e-12)
@@ -311,7 +311,7 @@ def test_each_kind_of_note_is_told_once(curve):
         ({"speed": (1, 2), "load": (1, 2)}, "speed and load are both ranges"),
         ({"rtol": 1e-20}, "rtol = 1e-20; it must be a number from 1e-11"),
         ({"definition": "mine"}, "definition = 'mine'; it must be one of 'paper', 'balanced'"),
-        ({"mu0": -1}, "friction_coefficient = -1 must be zero or positive"),
+        ({"boundary_friction": -1}, "boundary_friction = -1 must be zero or positive"),
     ],
 )
 def test_arguments_that_cannot_be_are_refused(arguments, words):

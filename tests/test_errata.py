@@ -57,7 +57,7 @@ def minimum(load, kappa, definition="paper"):
 def pdms(**changes):
     """Return a contact in SI units, with alpha and beta that are not one."""
     inputs = {"radius": 0.01, "modulus": 2.1e6, "load": 50.0, "viscosity": 0.02, "speed": 0.05, "roughness": 4e-7}
-    return sb.LineContact(**(inputs | {"alpha": 2.0, "beta": 0.05, "friction_coefficient": 0.8} | changes))
+    return sb.LineContact(**(inputs | {"alpha": 2.0, "beta": 0.05, "boundary_friction": 0.8} | changes))
 
 
 def in_other_units(contact, metre=1e3, kilogram=7.0, second=0.03):
@@ -214,7 +214,7 @@ def test_alpha_is_of_order_one_and_beta_is_the_slope_of_the_longest_roughness():
 
 def test_a_load_group_of_one_is_no_large_deformation_where_beta_is_small():
     """[BP] Section "Large indentation limit": F = O(1) "also correspond to large elastic deformations"."""
-    scales = {"radius": 0.01, "modulus": 1e6, "viscosity": 0.01, "alpha": 2.0, "friction_coefficient": 1.0}
+    scales = {"radius": 0.01, "modulus": 1e6, "viscosity": 0.01, "alpha": 2.0, "boundary_friction": 1.0}
     slopes = {}
     for load, beta in ((1.0, 0.01), (0.1, 1.0)):
         contact = sb.LineContact.from_groups(sb.Groups(1e-5, load, 1e-4), beta=beta, **scales)
@@ -246,7 +246,7 @@ def test_lambda_holds_alpha_and_the_film_over_the_roughness_does_not():
 def test_smoothness_is_roughness_over_indentation_and_not_over_radius():
     """[BP] Conclusion: for "h_rms/R << 1, the transition occurs in the large-deformation limit"."""
     rough = sb.LineContact.from_groups(
-        sb.Groups(1.0, 1e-3, 1e-4), radius=0.01, modulus=1e6, viscosity=0.01, alpha=2.0, beta=0.05, friction_coefficient=1.0
+        sb.Groups(1.0, 1e-3, 1e-4), radius=0.01, modulus=1e6, viscosity=0.01, alpha=2.0, beta=0.05, boundary_friction=1.0
     )
     assert rough.roughness / rough.radius < 3e-6
     curve = sb.stribeck_curve(load=1e-3, roughness=1e-4, speed=(0.3, 20.0), points=7)
@@ -292,7 +292,7 @@ def test_very_rough_gaps_collapse_on_the_root_of_radius_times_gap():
     """[BP] caption of Fig. 6: sqrt(a h_0), where the text has sqrt(R h_0)."""
     for beta in (0.05, 0.5):
         contact = sb.LineContact.from_groups(
-            sb.Groups(0.0, 1e-4, 0.1), radius=0.01, modulus=1e6, viscosity=1, alpha=2, beta=beta, friction_coefficient=1
+            sb.Groups(0.0, 1e-4, 0.1), radius=0.01, modulus=1e6, viscosity=1, alpha=2, beta=beta, boundary_friction=1
         )
         found = sb.solve(contact)
         h_0 = float(found.to_si(np.array([0.0])).gap[0])
@@ -602,9 +602,9 @@ def test_the_mixed_law_of_the_conclusion_lacks_alpha_and_beta():
 
     def law(alpha, beta):
         contact_part = math.exp(-alpha * film / contact.roughness) * beta * contact.modulus * length / contact.load
-        return contact.friction_coefficient * contact_part + viscous
+        return contact.boundary_friction * contact_part + viscous
 
-    right = float(mixed.friction.function(groups, contact.friction_coefficient, contact.beta, film="large"))
+    right = float(mixed.friction.function(groups, contact.boundary_friction, contact.beta, film="large"))
     assert law(contact.alpha, contact.beta) == pytest.approx(right, rel=1e-12)
     assert law(1.0, 1.0) > 20 * right
 
@@ -622,7 +622,7 @@ def test_lambda_is_a_function_of_k_in_the_limit_of_small_roughness_only():
     lightest = sb.Groups(1.0, 1e-3, 1e-3)
     assert transitions.weakening_number(lightest) == pytest.approx(k[0], rel=1e-12)
     assert not weakening(lightest).present
-    # The parameter holds beta/mu0 too.
+    # The parameter holds beta/boundary_friction too.
     groups = sb.Groups(1.0, LOAD, LOAD * KAPPA)
     assert transitions.weakening_number(groups, 0.1, 0.5) == pytest.approx(5 * k[1], rel=1e-12)
 
@@ -749,15 +749,15 @@ def test_both_printed_forms_of_the_film_of_small_indentation_are_right():
 def test_the_weakening_number_and_both_speeds_have_the_printed_si_scales():
     """[BP] Conclusion: k, both forms of Eq. (speed_mixed-to-hydro), the factors of Eq. (speed_boundary-to-mixed)."""
     c = pdms()
-    groups, mu0 = c.groups, c.friction_coefficient
+    groups, boundary_friction = c.groups, c.boundary_friction
     p, u, a = c.hertz.pressure, c.hertz.indentation, c.hertz.half_width
     base = c.roughness**2 * c.load / (16 * math.pi * c.alpha**2 * c.beta**6 * c.modulus * c.radius**3)
-    k = 2 / (9 * 0.44 ** (5 / 3)) * c.beta / mu0 * base ** (1 / 3)
-    assert k == pytest.approx(transitions.weakening_number(groups, mu0, c.beta, printed=True), rel=1e-12)
+    k = 2 / (9 * 0.44 ** (5 / 3)) * c.beta / boundary_friction * base ** (1 / 3)
+    assert k == pytest.approx(transitions.weakening_number(groups, boundary_friction, c.beta, printed=True), rel=1e-12)
     first = p * u**2 / (6 * c.viscosity * a) * (-c.roughness * math.log(k) / (0.44 * c.alpha * u)) ** (5 / 3)
     inner = -math.pi * c.modulus * c.roughness * math.log(k) / (4 * 0.44 * c.alpha * c.load)
     second = 4 * c.load**2 / (3 * math.pi**2 * c.modulus * c.radius * c.viscosity) * inner ** (5 / 3)
-    speed = transitions.speed_at_minimum(groups, mu0, c.beta, printed=True) * c.speed / groups.speed
+    speed = transitions.speed_at_minimum(groups, boundary_friction, c.beta, printed=True) * c.speed / groups.speed
     assert first == pytest.approx(second, rel=1e-12) == pytest.approx(speed, rel=1e-12)
     assert p / (6 * a) == pytest.approx(c.modulus / (12 * c.radius), rel=1e-12)
 
@@ -788,9 +788,9 @@ def test_the_least_friction_in_si_units_has_the_printed_powers_and_beta_in_its_l
 
     def scale(contact):
         groups = contact.groups
-        k = float(transitions.weakening_number(groups, contact.friction_coefficient, contact.beta))
+        k = float(transitions.weakening_number(groups, contact.boundary_friction, contact.beta))
         ratio = -math.log(k)
-        law = transitions.friction_at_minimum(groups, contact.friction_coefficient, contact.beta, form="leading")
+        law = transitions.friction_at_minimum(groups, contact.boundary_friction, contact.beta, form="leading")
         return float(law) / (2 / 3 * ratio ** (-1 / 3) + ratio ** (2 / 3))
 
     base = scale(pdms())

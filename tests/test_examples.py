@@ -61,7 +61,7 @@ def test_friction_of_the_pdms_cylinder_is_least_at_28_mm_per_second(results):
 def test_the_fluid_carries_two_thirds_in_the_mixed_state(results):
     _, (state, fields) = results("one_state")
     assert state.fluid_load_share == pytest.approx(0.6830745, abs=1e-7)
-    assert state.friction(mu0=1, beta=1).total == pytest.approx(0.3433184, abs=1e-7)
+    assert state.friction(boundary_friction=1, beta=1).total == pytest.approx(0.3433184, abs=1e-7)
     assert fields.gap.min() == pytest.approx(state.minimum_gap, rel=1e-3)
 
 

@@ -52,7 +52,7 @@ def test_a_group_moves_load_speed_and_roughness_so_that_the_other_groups_stay(na
     for other in inputs.GROUP_FIELDS:
         wanted = inputs.value_of(START, other) * (10**-0.5 if other == name else 1.0)
         assert inputs.value_of(moved, other) == pytest.approx(wanted, rel=5e-3 if other == name else 1e-12)
-    for kept in ("radius", "modulus", "viscosity", "alpha", "beta", "friction_coefficient"):
+    for kept in ("radius", "modulus", "viscosity", "alpha", "beta", "boundary_friction"):
         assert getattr(moved.contact, kept) == getattr(START.contact, kept)
 
 
@@ -128,7 +128,7 @@ def test_an_empty_address_is_the_start():
 # --- answers ---
 
 
-@pytest.mark.parametrize("name", ["speed", "load_group", "roughness", "friction_coefficient"])
+@pytest.mark.parametrize("name", ["speed", "load_group", "roughness", "boundary_friction"])
 def test_the_numbers_are_those_of_solve_within_their_errors(name):
     model = Model()
     model(START)
@@ -180,7 +180,7 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
     assert charts.friction_chart(heavier, [], [], LIGHT)["series"][0]["lineStyle"]["opacity"] < 1
 
 
-@pytest.mark.parametrize("change", [{"speed": 0.0}, {"roughness": 0.0}, {"friction_coefficient": 0.0}])
+@pytest.mark.parametrize("change", [{"speed": 0.0}, {"roughness": 0.0}, {"boundary_friction": 0.0}])
 def test_rest_smooth_and_frictionless_contacts_are_shown(change):
     shown = Model()(replace(START, contact=START.contact.replace(**change)))
     rows = {row.key: row for row in table.numbers(shown)}
@@ -356,7 +356,7 @@ CONTACT = sb.LineContact(
     roughness=1e-6,
     alpha=2.0,
     beta=0.06,
-    friction_coefficient=0.7,
+    boundary_friction=0.7,
 )
 
 

@@ -22,7 +22,7 @@ from stribeck.fits.model import FrictionModel, free_inputs
 from stribeck.fits.objective import minimise, objective
 from stribeck.fits.posterior import draw_posterior
 
-START = TRUE.replace(friction_coefficient=0.3, roughness="2 um", modulus="1.5 MPa")
+START = TRUE.replace(boundary_friction=0.3, roughness="2 um", modulus="1.5 MPa")
 NEAR = START.replace(modulus=TRUE.modulus)
 MEASURED, CASE = EXAMPLES / "pdms_measured.csv", EXAMPLES / "pdms_fit.toml"
 
@@ -100,7 +100,7 @@ def test_atlas_and_solver_give_the_same_prediction():
 
 def test_data_without_noise_give_the_true_inputs_from_far_away():
     speeds, friction = exact()
-    far = TRUE.replace(friction_coefficient=0.1, roughness="5 um", modulus="0.5 MPa", beta=0.2)
+    far = TRUE.replace(boundary_friction=0.1, roughness="5 um", modulus="0.5 MPa", beta=0.2)
     found = sb.fit(measured(speeds, friction), far, free=["mu0", "h_rms", "E_star", "beta"], intervals=False)
     assert found.converged
     for each in found.inputs:
@@ -159,7 +159,7 @@ def test_an_end_of_an_interval_is_where_the_best_fit_is_worse_by_the_quantile(fi
 def test_intervals_of_nearly_linear_inputs_are_those_of_the_covariance(fitted):
     from scipy.stats import t
 
-    each = fitted["friction_coefficient"]
+    each = fitted["boundary_friction"]
     half = t.ppf(0.975, 22) * each.standard_error
     assert np.log(each.interval_95) == pytest.approx(
         [math.log(each.value) - half, math.log(each.value) + half], abs=0.02 * half
@@ -186,18 +186,16 @@ def test_a_prior_adds_its_information(tmp_path):
     data = noisy(8, low=0.02)
     alone = sb.fit(data, TRUE, free=["mu0", "h_rms"])
     prior = Prior(0.7, 1.05)
-    held = sb.fit(
-        data, with_settings(tmp_path, free=("friction_coefficient", "roughness"), priors={"friction_coefficient": prior})
-    )
+    held = sb.fit(data, with_settings(tmp_path, free=("boundary_friction", "roughness"), priors={"boundary_friction": prior}))
     assert held.converged
-    assert alone["friction_coefficient"].standard_error > 0.3
-    assert held["friction_coefficient"].standard_error == pytest.approx(math.log(1.05), rel=0.05)
+    assert alone["boundary_friction"].standard_error > 0.3
+    assert held["boundary_friction"].standard_error == pytest.approx(math.log(1.05), rel=0.05)
     assert held["roughness"].standard_error < 0.5 * alone["roughness"].standard_error
     strong = Prior(1.4, 1.001)
     moved = sb.fit(
-        data, with_settings(tmp_path, free=("friction_coefficient", "roughness"), priors={"friction_coefficient": strong})
+        data, with_settings(tmp_path, free=("boundary_friction", "roughness"), priors={"boundary_friction": strong})
     )
-    assert moved["friction_coefficient"].value == pytest.approx(1.4, rel=1e-3)
+    assert moved["boundary_friction"].value == pytest.approx(1.4, rel=1e-3)
 
 
 def test_an_input_at_its_bound_is_said(tmp_path):
@@ -219,9 +217,9 @@ def test_curves_share_inputs_or_have_their_own(tmp_path):
     data = measured(
         np.tile(u, 2), np.append(first, second) * noise, curve=[0] * 25 + [1] * 25, curves=("a", "b"), inputs=({}, {})
     )
-    case = with_settings(tmp_path, free=("friction_coefficient", "roughness"), per_curve=("roughness",))
+    case = with_settings(tmp_path, free=("boundary_friction", "roughness"), per_curve=("roughness",))
     found = sb.fit(data, case)
-    assert [each.label for each in found.inputs] == ["friction_coefficient", "roughness (a)", "roughness (b)"]
+    assert [each.label for each in found.inputs] == ["boundary_friction", "roughness (a)", "roughness (b)"]
     assert found["roughness (a)"].value == pytest.approx(1e-6, rel=0.05)
     assert found["roughness (b)"].value == pytest.approx(2e-6, rel=0.05)
     assert found.contacts[1].roughness == found["roughness (b)"].value
@@ -248,15 +246,15 @@ def test_a_shared_input_with_different_values_is_fitted_as_a_factor():
 def test_a_curve_without_a_plateau_cannot_give_the_dry_friction():
     found = sb.fit(noisy(2, low=0.03, high=3.0), TRUE)
     [weak] = found.undetermined
-    assert weak.names == ("friction_coefficient",)
+    assert weak.names == ("boundary_friction",)
     assert "asperities cause at most" in weak.message and "boundary plateau" in weak.message
-    assert math.isinf(found["friction_coefficient"].interval_95[1])
+    assert math.isinf(found["boundary_friction"].interval_95[1])
 
 
 def test_a_share_below_the_error_of_friction_is_said_to_be_that_at_most():
     speeds, friction = exact(low=5.0, high=50.0, rows=8)
     found = sb.fit(measured(speeds, friction), TRUE, free=["mu0"], intervals=False)
-    assert found["friction_coefficient"].interval_95 == (0.0, math.inf)
+    assert found["boundary_friction"].interval_95 == (0.0, math.inf)
     [weak] = found.undetermined
     share = float(re.search(r"asperities cause at most (\S+) % of the friction", weak.message)[1])
     assert 1e-7 < share < 1e-3
@@ -264,7 +262,7 @@ def test_a_share_below_the_error_of_friction_is_said_to_be_that_at_most():
 
 def test_a_curve_with_a_plateau_gives_it(fitted):
     assert fitted.undetermined == ()
-    assert fitted["friction_coefficient"].standard_error < 0.02
+    assert fitted["boundary_friction"].standard_error < 0.02
 
 
 def test_the_combination_that_the_data_give_is_named():
@@ -280,19 +278,19 @@ def test_the_combination_that_the_data_give_is_named():
     assert fit.roughness * fit.alpha == pytest.approx(case.roughness * case.alpha, rel=1e-6)
     alone = sb.fit(noisy(1), START, free=["mu0", "h_rms"])
     assert fit.roughness / fit.alpha == pytest.approx(alone.contact.roughness / alone.contact.alpha, rel=1e-4)
-    assert found["friction_coefficient"].interval_95 == pytest.approx(alone["friction_coefficient"].interval_95, rel=1e-2)
+    assert found["boundary_friction"].interval_95 == pytest.approx(alone["boundary_friction"].interval_95, rel=1e-2)
 
 
 def test_inputs_of_a_smooth_contact_that_do_not_matter_stay_where_they_were():
     smooth = TRUE.replace(roughness=0)
     found = sb.fit(noisy(4, contact=smooth, low=1e-2, rows=12), smooth, free=["mu0", "modulus", "beta"], intervals=False)
     assert [weak.names for weak in found.undetermined] in (
-        [("beta",), ("friction_coefficient",)],
-        [("friction_coefficient",), ("beta",)],
+        [("beta",), ("boundary_friction",)],
+        [("boundary_friction",), ("beta",)],
     )
     # Not even by rounding: no step goes along what changes nothing.
     assert found["beta"].value == pytest.approx(TRUE.beta, rel=1e-11)
-    assert found["friction_coefficient"].value == pytest.approx(0.7, rel=1e-11)
+    assert found["boundary_friction"].value == pytest.approx(0.7, rel=1e-11)
 
 
 def test_three_tied_inputs_are_told_apart_from_what_is_known():
@@ -398,8 +396,12 @@ def test_a_fit_stopped_short_of_the_optimum_says_so():
 
 
 FEW = {
-    "two rows": (2, ["mu0"], "2 rows with speed and friction are too few to fit 1 input"),
-    "as many as inputs": (3, ["mu0", "h_rms", "beta"], "3 rows with speed and friction are too few to fit 3 inputs"),
+    "two rows": (2, ["boundary_friction"], "2 rows with speed and friction are too few to fit 1 input"),
+    "as many as inputs": (
+        3,
+        ["boundary_friction", "h_rms", "beta"],
+        "3 rows with speed and friction are too few to fit 3 inputs",
+    ),
 }
 
 
@@ -465,7 +467,7 @@ def test_the_command_writes_a_case_that_solves_a_figure_and_json(tmp_path, capsy
     case = sb.load_case(out)
     for name, value in values.items():
         assert getattr(case.contact, name) == pytest.approx(value, rel=1e-8)
-    assert case.fit.free == ("friction_coefficient", "roughness", "modulus")
+    assert case.fit.free == ("boundary_friction", "roughness", "modulus")
     assert sb.solve(case.contact).outcome.ok
     assert plot.stat().st_size > 20_000
     assert call(capsys, "fit", MEASURED, CASE, "--out", out).code == 2
@@ -473,7 +475,7 @@ def test_the_command_writes_a_case_that_solves_a_figure_and_json(tmp_path, capsy
 
 def test_the_example_holds_its_true_values():
     found = sb.fit(MEASURED, CASE)
-    for name, value in (("friction_coefficient", 0.62), ("roughness", 1.3e-6), ("modulus", 2.3e6)):
+    for name, value in (("boundary_friction", 0.62), ("roughness", 1.3e-6), ("modulus", 2.3e6)):
         low, high = found[name].interval_95
         assert low < value < high
 
@@ -503,7 +505,7 @@ def test_the_table_says_how_the_fit_ended_and_warns(tmp_path, capsys):
     answer = call(capsys, "fit", tmp_path / "lab.csv", EXAMPLES / "pdms_cylinder.toml", "--free", "mu0", "h_rms", "--robust")
     assert answer.code == 0
     assert "The fit converged." in answer.out
-    assert re.search("Warning: friction_coefficient .*not determined.*boundary plateau", answer.out)
+    assert re.search("Warning: boundary_friction .*not determined.*boundary plateau", answer.out)
 
 
 def test_files_in_each_others_place_are_told_with_the_right_order(tmp_path):
@@ -516,7 +518,7 @@ def test_files_in_each_others_place_are_told_with_the_right_order(tmp_path):
 
 @pytest.mark.parametrize("case", [CASE, EXAMPLES / "pdms_cylinder.toml"], ids=["with [fit]", "without"])
 def test_what_counts_as_known_exactly_is_said(capsys, case):
-    fitted = {"friction_coefficient", "roughness"} | ({"modulus"} if case == CASE else set())
+    fitted = {"boundary_friction", "roughness"} | ({"modulus"} if case == CASE else set())
     held = ["beta 0.06", "alpha 2", "modulus 2.7 MPa", "viscosity of each curve", "load 30 N/m", "radius 10 mm"]
     shown = ", ".join(each for each in held if each.split()[0] not in fitted)
     assert f"Counted as known exactly: {shown}. No error above holds theirs" in call(capsys, "fit", MEASURED, case).out

@@ -7,7 +7,7 @@ from scipy.stats import binom
 
 import stribeck as sb
 
-FREE = ("friction_coefficient", "roughness", "modulus")
+FREE = ("boundary_friction", "roughness", "modulus")
 
 
 def covered(experiments, first_seed):

@@ -2,6 +2,7 @@
 
 import pytest
 
+import stribeck as sb
 from stribeck.contacts.friction import DEFINITIONS
 
 MIXED = (1e-5, 0.1, 1e-4)
@@ -22,3 +23,23 @@ def test_the_definitions_agree_where_asperities_carry_nothing_and_not_in_the_bou
     assert published.viscous == pytest.approx(balanced.viscous, rel=1e-6)
     published, balanced = (rough.friction(definition=d) for d in DEFINITIONS)
     assert published.viscous == pytest.approx(70.55 * balanced.viscous, rel=1e-4)
+
+
+OLD = {
+    "a contact": lambda: sb.LineContact(radius="1 mm", friction_coefficient=0.7),
+    "a contact from groups": lambda: sb.LineContact.from_groups(sb.Groups(1, 1, 1), friction_coefficient=0.7),
+    "a curve": lambda: sb.stribeck_curve(load=0.1, roughness=1e-3, mu0=0.7),
+    "the atlas": lambda: sb.atlas.friction(sb.Groups(1e-5, 0.1, 1e-4), mu0=0.7),
+    "a diagram": lambda: sb.phase_diagram(mu0=0.7),
+}
+
+
+@pytest.mark.parametrize("call", OLD.values(), ids=OLD)
+def test_a_former_name_of_the_boundary_friction_is_refused_with_the_present_one(call):
+    with pytest.raises(sb.InputError, match=r"= 0\.7: this input is called boundary_friction; write boundary_friction = "):
+        call()
+
+
+def test_a_state_refuses_the_former_name_too(solved):
+    with pytest.raises(sb.InputError, match="write boundary_friction"):
+        solved(*MIXED).friction(mu0=0.5)

@@ -214,7 +214,7 @@ def line_contact(**changes):
         "roughness": "1 um",
         "alpha": 2.0,
         "beta": 0.06,
-        "friction_coefficient": 0.7,
+        "boundary_friction": 0.7,
     }
     return sb.LineContact(**(given | changes))
 

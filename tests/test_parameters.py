@@ -23,7 +23,7 @@ INPUTS = {
     "roughness": "1 um",
     "alpha": 2.0,
     "beta": 0.05,
-    "friction_coefficient": 0.8,
+    "boundary_friction": 0.8,
 }
 reproducible = settings(derandomize=True, deadline=None, max_examples=150)
 factor = st.floats(1e-6, 1e6)
@@ -37,7 +37,7 @@ contacts = st.builds(
     roughness=st.floats(1e-10, 1e-3),
     alpha=st.floats(0.5, 5.0),
     beta=st.floats(1e-4, 10.0),
-    friction_coefficient=st.floats(0.0, 2.0),
+    boundary_friction=st.floats(0.0, 2.0),
 )
 
 
@@ -105,7 +105,7 @@ def test_zero_speed_and_zero_roughness_are_ordinary():
 )
 def test_groups_survive_the_way_through_si(speed, load, roughness, **kept):
     groups = Groups(speed, load, roughness)
-    back = LineContact.from_groups(groups, friction_coefficient=0.3, **kept)
+    back = LineContact.from_groups(groups, boundary_friction=0.3, **kept)
     assert_same_groups(back.groups, groups)
     assert {name: getattr(back, name) for name in kept} == kept
 
@@ -113,14 +113,14 @@ def test_groups_survive_the_way_through_si(speed, load, roughness, **kept):
 @reproducible
 @given(contacts)
 def test_a_contact_survives_the_way_through_groups(c):
-    names = ("radius", "modulus", "viscosity", "alpha", "beta", "friction_coefficient")
+    names = ("radius", "modulus", "viscosity", "alpha", "beta", "boundary_friction")
     back = LineContact.from_groups(c.groups, **{name: getattr(c, name) for name in names})
     assert [getattr(back, name) for name in INPUTS] == pytest.approx([getattr(c, name) for name in INPUTS], rel=1e-13)
 
 
 def test_from_groups_takes_units_and_refuses_many_states():
     kept = {"radius": "10 mm", "modulus": "2.1 MPa", "viscosity": "1 mPa*s", "alpha": 2.0, "beta": 0.05}
-    kept["friction_coefficient"] = 0.8
+    kept["boundary_friction"] = 0.8
     assert LineContact.from_groups(contact().groups, **kept).load == pytest.approx(50.0, rel=1e-13)
     with pytest.raises(InputError, match=r"shape \(2,\)"):
         LineContact.from_groups(Groups([1.0, 2.0], 0.1, 0.0), **kept)
@@ -210,7 +210,7 @@ def test_an_impossible_value_is_refused_by_name(name, value):
 
 @pytest.mark.parametrize("name", INPUTS)
 def test_zero_is_refused_where_it_is_impossible(name):
-    if name in ("speed", "roughness", "friction_coefficient"):
+    if name in ("speed", "roughness", "boundary_friction"):
         assert getattr(contact(**{name: 0}), name) == 0.0
     else:
         with pytest.raises(InputError, match=f"^{name} = 0 must be positive"):

@@ -24,7 +24,14 @@ MU0, BETA = 0.8, 0.7
 
 
 def made(**changes):
-    settings = {"load": LOADS, "roughness": ROUGHNESSES, "speed": SPEEDS, "points": POINTS, "mu0": MU0, "beta": BETA}
+    settings = {
+        "load": LOADS,
+        "roughness": ROUGHNESSES,
+        "speed": SPEEDS,
+        "points": POINTS,
+        "boundary_friction": MU0,
+        "beta": BETA,
+    }
     return sb.phase_diagram(**settings | changes)
 
 
@@ -49,7 +56,7 @@ def si_diagram():
 
 def contact_of(groups):
     return sb.LineContact.from_groups(
-        groups, radius="8 mm", modulus="3 MPa", viscosity="20 mPa*s", alpha=1.9, beta=BETA, friction_coefficient=MU0
+        groups, radius="8 mm", modulus="3 MPa", viscosity="20 mPa*s", alpha=1.9, beta=BETA, boundary_friction=MU0
     )
 
 
@@ -84,7 +91,7 @@ def test_every_variable_has_unit_and_name_and_the_file_holds_them(diagram, tmp_p
         assert variable.attrs["units"]
         assert variable.attrs["long_name"]
     assert diagram.attrs["source"].startswith("stribeck ")
-    assert (diagram.attrs["mu0"], diagram.attrs["beta"], diagram.attrs["complete"]) == (MU0, BETA, 1)
+    assert (diagram.attrs["boundary_friction"], diagram.attrs["beta"], diagram.attrs["complete"]) == (MU0, BETA, 1)
     assert diagram.regime.attrs["flag_meanings"] == "unknown boundary mixed hydrodynamic"
     store.write_netcdf(diagram, tmp_path / "phase.nc")
     with xarray.open_dataset(tmp_path / "phase.nc") as read:
@@ -175,7 +182,7 @@ def test_formulas_stand_beside_the_solved_transitions(diagram):
         for j in (0, 2):
             row = diagram.isel(load=i, roughness=j)
             groups = sb.Groups(1.0, load, float(row["roughness"]))
-            speed = transitions.speed_at_minimum.function(groups, mu0=MU0, beta=BETA)
+            speed = transitions.speed_at_minimum.function(groups, boundary_friction=MU0, beta=BETA)
             assert float(row["formula_speed_at_minimum"]) == pytest.approx(float(speed), rel=1e-12)
             for name, share in (("formula_speed_at_5_percent_fluid", 0.05), ("formula_speed_at_half_fluid", 0.5)):
                 speed = load_sharing.speed_at_fluid_share.function(groups, share)
@@ -202,9 +209,11 @@ merging = functools.cache(merging_roughness)
 def test_the_merging_roughness_parts_curves_with_a_minimum_from_those_without(load, ratio):
     merged = merging(load, ratio)
     for factor, falls in ((0.98, True), (1.02, False)):
-        place = weakening(sb.Groups(1.0, load, factor * merged), mu0=ratio)
+        place = weakening(sb.Groups(1.0, load, factor * merged), boundary_friction=ratio)
         speeds = (place.speed / 30, place.speed * 30)
-        curve = sb.stribeck_curve(load=load, roughness=factor * merged, speed=speeds, points=121, rtol=1e-9, mu0=ratio)
+        curve = sb.stribeck_curve(
+            load=load, roughness=factor * merged, speed=speeds, points=121, rtol=1e-9, boundary_friction=ratio
+        )
         assert (np.diff(curve.friction).min() < 0) == falls
         assert place.present == falls
 
@@ -227,7 +236,7 @@ def test_only_the_quotient_of_the_friction_coefficients_moves_the_merging():
 
 
 def test_without_dry_friction_no_roughness_makes_a_minimum():
-    assert merging_roughness(0.1, mu0=0) == 0
+    assert merging_roughness(0.1, boundary_friction=0) == 0
 
 
 def test_a_merging_beyond_the_range_is_no_number(monkeypatch):
@@ -235,7 +244,9 @@ def test_a_merging_beyond_the_range_is_no_number(monkeypatch):
     assert math.isnan(merging_roughness(0.1))
 
 
-@pytest.mark.parametrize("arguments", [{"criterion": "mine"}, {"load": -1.0}, {"rtol": 0.0}, {"definition": "x"}, {"mu0": -1}])
+@pytest.mark.parametrize(
+    "arguments", [{"criterion": "mine"}, {"load": -1.0}, {"rtol": 0.0}, {"definition": "x"}, {"boundary_friction": -1}]
+)
 def test_bad_input_to_the_merging_is_refused(arguments):
     with pytest.raises(sb.InputError):
         merging_roughness(**{"load": 0.1} | arguments)

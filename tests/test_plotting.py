@@ -42,8 +42,8 @@ KINDS = {
     "of groups": lambda: sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-5, 10), points=4),
     "quasistatic": lambda: sb.stribeck_curve(sb.Groups(0, 0.1, 1e-3), load=(0.1, 5), points=4),
     "of a smooth contact": lambda: sb.stribeck_curve(load=0.1, roughness=0, speed=(1e-5, 10), points=4),
-    "without dry friction": lambda: sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 2), points=2, mu0=0),
-    "without any friction": lambda: sb.stribeck_curve(sb.Groups(0, 0.1, 1e-3), load=(0.1, 1), points=2, mu0=0),
+    "without dry friction": lambda: sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 2), points=2, boundary_friction=0),
+    "without any friction": lambda: sb.stribeck_curve(sb.Groups(0, 0.1, 1e-3), load=(0.1, 1), points=2, boundary_friction=0),
     "beyond the law": lambda: curve_of(WIPER, speed=("1 mm/s", "100 m/s"), points=4),
 }
 

@@ -22,7 +22,7 @@ CONTACT = sb.LineContact(
     roughness="1 um",
     alpha=2.0,
     beta=0.06,
-    friction_coefficient=0.7,
+    boundary_friction=0.7,
 )
 
 
@@ -77,19 +77,19 @@ def test_elasticities_obey_the_dimensions():
 
 def test_at_rest_only_the_dry_friction_coefficient_matters():
     solution, found = friction_elasticities(CONTACT.replace(speed=0))
-    assert found.pop("friction_coefficient") == pytest.approx(1, abs=1e-6)
+    assert found.pop("boundary_friction") == pytest.approx(1, abs=1e-6)
     assert set(found.values()) == {0.0}
     assert solution.groups.speed == 0
 
 
 def test_a_smooth_contact_does_not_ask_for_its_law_of_roughness():
     _, found = friction_elasticities(CONTACT.replace(roughness=0))
-    assert found["roughness"] == found["alpha"] == found["beta"] == found["friction_coefficient"] == 0
+    assert found["roughness"] == found["alpha"] == found["beta"] == found["boundary_friction"] == 0
     assert found["speed"] > 0.4
 
 
 def test_where_there_is_no_friction_elasticities_are_no_number():
-    _, found = friction_elasticities(CONTACT.replace(speed=0, friction_coefficient=0))
+    _, found = friction_elasticities(CONTACT.replace(speed=0, boundary_friction=0))
     assert all(math.isnan(value) for value in found.values())
 
 
@@ -227,7 +227,7 @@ def test_a_saturated_contact_at_rest_leaves_boundary_lubrication_as_soon_as_it_m
 
 
 def test_without_dry_friction_nothing_leads_on():
-    found = transition_distances(CONTACT.replace(friction_coefficient=0))
+    found = transition_distances(CONTACT.replace(boundary_friction=0))
     assert found.regime == "hydrodynamic"
     assert list(crossings(found)) == []
     assert any("Without dry friction" in note for note in found.notes)
@@ -272,7 +272,7 @@ def test_distances_refuse_bad_input(contact, settings):
 def command(capsys, tmp_path, *options, **changes):
     """Return what ``stribeck regimes`` prints for the contact above with some inputs changed."""
     contact = CONTACT.replace(**changes)
-    names = ("radius", "modulus", "load", "viscosity", "speed", "roughness", "alpha", "beta", "friction_coefficient")
+    names = ("radius", "modulus", "load", "viscosity", "speed", "roughness", "alpha", "beta", "boundary_friction")
     lines = "\n".join(f"{name} = {getattr(contact, name)!r}" for name in names)
     (tmp_path / "case.toml").write_text(f"[contact]\n{lines}\n")
     assert cli.main(["regimes", str(tmp_path / "case.toml"), *options]) == 0
@@ -315,7 +315,7 @@ def test_the_command_gives_the_distances_as_json(capsys, tmp_path, mixed):
         ({"speed": 0.0}, "To reach mixed: speed from zero to 367.9 µm/s; none within reach by load, roughness, viscosity."),
         ({"roughness": 0.0}, "To reach mixed: roughness from zero to 97.74 nm; none within reach by speed, load, viscosity."),
         ({"speed": 0.0, "roughness": 0.0}, "To reach hydrodynamic: speed of any size"),
-        ({"friction_coefficient": 0.0}, "To reach mixed: nothing within reach, by speed, load, roughness, viscosity."),
+        ({"boundary_friction": 0.0}, "To reach mixed: nothing within reach, by speed, load, roughness, viscosity."),
     ],
 )
 def test_the_command_has_words_for_the_corners(capsys, tmp_path, changes, sentence):

@@ -346,7 +346,7 @@ def test_the_dry_smooth_contact_is_hertz_in_closed_form():
     assert s.offset == pytest.approx(-(1 + math.log(4)) / 4, rel=1e-15)
     assert np.abs(fields.contact_pressure - [0, 0, 0.8, 1, 0.6, 0, 0]).max() < 1e-6
     assert np.abs(fields.gap - gap).max() < 1e-6
-    assert s.friction(mu0=0.7).total == 0.7
+    assert s.friction(boundary_friction=0.7).total == 0.7
     assert s.mesh.weights @ in_mesh_order(s, s.pressure) == pytest.approx(math.pi / 2, rel=1e-12)
     assert "Hertz" in s.notes[0]
 
@@ -452,7 +452,7 @@ def test_heavy_loads_are_carried_at_any_speed_but_below_the_plateau(solved):
         assert s.contact_pressure.max() <= 0.5 + 1e-9
         assert s.contact_load_share < 0.8
         assert s.minimum_gap > 0
-        assert s.friction(mu0=1.0, beta=1e-3, definition="balanced").total < 0.8
+        assert s.friction(boundary_friction=1.0, beta=1e-3, definition="balanced").total < 0.8
         assert any("not below 1" in note for note in s.notes)
 
 
@@ -469,13 +469,13 @@ def test_loads_that_asperities_cannot_carry_are_reached_at_low_speed(numbers, so
 
 def test_friction_adds_contact_and_viscous_parts(solved):
     s = solved(*TYPICAL["mixed"])
-    f, g = s.friction(mu0=0.3, beta=0.01), s.friction(mu0=0.6, beta=0.02, definition="balanced")
+    f, g = s.friction(boundary_friction=0.3, beta=0.01), s.friction(boundary_friction=0.6, beta=0.02, definition="balanced")
     assert f.contact == pytest.approx(0.3 * s.contact_load_share, rel=1e-15)
     assert f.viscous == pytest.approx(0.01 * viscous(s), rel=1e-15)
     assert g.viscous == pytest.approx(0.02 * viscous(s, "balanced"), rel=1e-15)
     assert f.total == f.contact + f.viscous
     assert 0 < f.error < 1e-6
-    assert s.friction() == s.friction(mu0=1.0, beta=1.0, definition="paper")
+    assert s.friction() == s.friction(boundary_friction=1.0, beta=1.0, definition="paper")
 
 
 def test_a_contact_brings_its_own_coefficients_and_scales():
@@ -488,13 +488,13 @@ def test_a_contact_brings_its_own_coefficients_and_scales():
         roughness="1 um",
         alpha=2.0,
         beta=0.05,
-        friction_coefficient=0.8,
+        boundary_friction=0.8,
     )
     s, plain = sb.solve(contact), sb.solve(contact.groups)
     assert s.contact is contact
     assert s.groups == contact.groups
     assert s.central_gap == plain.central_gap
-    assert s.friction() == plain.friction(mu0=0.8, beta=0.05)
+    assert s.friction() == plain.friction(boundary_friction=0.8, beta=0.05)
     assert s.hersey_number == pytest.approx(0.1 * 0.01 / 50, rel=1e-14)
     a = math.sqrt(4 * 50 * 0.01 / (math.pi * 2.7e6))
     si, x = s.to_si(), 0.3 * a
@@ -545,7 +545,7 @@ def test_contacts_too_wide_for_a_half_space_are_noted(modulus, wide):
         roughness=0.0,
         alpha=2.0,
         beta=0.05,
-        friction_coefficient=0.8,
+        boundary_friction=0.8,
     )
     slope = 2 * contact.beta * float(contact.groups.load) ** 0.5
     assert (slope > 0.3) == wide
@@ -559,7 +559,7 @@ def test_contacts_too_wide_for_a_half_space_are_noted(modulus, wide):
 def test_the_gap_is_judged_in_roughness_heights_of_the_surface():
     """alpha counts: the law's length is h_rms/alpha."""
     common = {"radius": 0.01, "modulus": 2.7e6, "load": 10.0, "viscosity": 0.1, "speed": 0.0}
-    common |= {"beta": 0.05, "friction_coefficient": 0.8}
+    common |= {"beta": 0.05, "boundary_friction": 0.8}
     contacts = (sb.LineContact(roughness=alpha * 1e-6, alpha=alpha, **common) for alpha in (1.0, 4.0))
     low, high = (sb.solve(contact, rtol=1e-4) for contact in contacts)
     assert low.central_gap == pytest.approx(high.central_gap, rel=1e-9)
@@ -569,7 +569,7 @@ def test_the_gap_is_judged_in_roughness_heights_of_the_surface():
 
 def test_a_dictionary_of_a_solution_holds_every_observable(solved):
     s = solved(*TYPICAL["mixed"])
-    values = s.to_dict(mu0=0.4, beta=0.01)
+    values = s.to_dict(boundary_friction=0.4, beta=0.01)
     for name in NAMES[:6]:
         assert values[name] == getattr(s, name)
     assert values["friction_balanced"]["total"] == s.friction(0.4, 0.01, "balanced").total
@@ -615,7 +615,7 @@ def test_an_unknown_treatment_of_failures_is_refused(on_failure):
 @pytest.mark.parametrize(
     "arguments, message",
     [
-        ({"mu0": -0.1}, "friction_coefficient = -0.1"),
+        ({"boundary_friction": -0.1}, "boundary_friction = -0.1"),
         ({"beta": 0.0}, "beta = 0"),
         ({"definition": "both"}, "'paper', 'balanced'"),
     ],

@@ -30,9 +30,9 @@ CONTACT = sb.LineContact(
     roughness="1 um",
     alpha=2.0,
     beta=0.06,
-    friction_coefficient=0.7,
+    boundary_friction=0.7,
 )
-INPUTS = ("radius", "modulus", "load", "viscosity", "roughness", "alpha", "beta", "friction_coefficient")
+INPUTS = ("radius", "modulus", "load", "viscosity", "roughness", "alpha", "beta", "boundary_friction")
 WRITERS = {".nc": write_netcdf, ".csv": write_csv}
 
 
@@ -48,7 +48,7 @@ def dataset(curve):
 
 @pytest.fixture(scope="module")
 def dimensionless():
-    return sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1.0), points=4, mu0=0.5, beta=0.1)
+    return sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1.0), points=4, boundary_friction=0.5, beta=0.1)
 
 
 @pytest.fixture(params=[".nc", ".csv"])
@@ -112,7 +112,7 @@ def test_the_attributes_of_a_file_suffice_to_solve_its_points_again(dataset):
     again = sb.solve(sb.LineContact(speed=float(point.speed), **inputs), rtol=dataset.attrs["rtol"])
     assert again.friction().total == pytest.approx(float(point.friction), abs=2 * float(point.friction_error))
     assert "viscosity Pa s" in dataset.attrs["input_units"]
-    assert dataset.attrs["mu0"] == 0.7
+    assert dataset.attrs["boundary_friction"] == 0.7
     assert dataset.attrs["beta"] == 0.06
 
 
@@ -139,7 +139,7 @@ def test_without_a_contact_the_coordinate_is_a_group_and_nothing_is_in_metres(di
     assert dataset.speed.attrs == {"units": "1", "long_name": "speed group, what varies"}
     assert {variable.attrs["units"] for variable in dataset.data_vars.values()} == {"1"}
     assert not [name for name in dataset.attrs if name.startswith("input_")]
-    assert (dataset.attrs["mu0"], dataset.attrs["beta"]) == (0.5, 0.1)
+    assert (dataset.attrs["boundary_friction"], dataset.attrs["beta"]) == (0.5, 0.1)
     assert dataset.attrs["roughness_group"] == 1e-3
 
 

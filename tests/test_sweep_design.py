@@ -48,10 +48,12 @@ def test_youngs_modulus_and_poisson_ratio_may_vary(tmp_path):
 
 
 def test_groups_may_vary_with_the_coefficients_of_friction(tmp_path):
-    design = load(tmp_path, "[groups]\nspeed = 1e-4\nload = 0.1\n[vary]\nroughness = [0, 1e-3]\nmu0 = [0.5, 1]\n")
+    design = load(
+        tmp_path, "[groups]\nspeed = 1e-4\nload = 0.1\n[vary]\nroughness = [0, 1e-3]\nboundary_friction = [0.5, 1]\n"
+    )
     assert not design.si
     assert design.groups.tolist() == [[1e-4, 0.1, 0.0]] * 2 + [[1e-4, 0.1, 1e-3]] * 2
-    assert design.inputs["mu0"].tolist() == [0.5, 1.0, 0.5, 1.0]
+    assert design.inputs["boundary_friction"].tolist() == [0.5, 1.0, 0.5, 1.0]
     assert design.inputs["beta"].tolist() == [1.0] * 4
 
 
@@ -90,7 +92,11 @@ def test_a_random_design_draws_from_a_list_in_equal_parts(tmp_path):
 def test_the_fingerprint_is_that_of_the_states_and_not_of_the_comments(tmp_path):
     base = load(tmp_path, GRID)
     assert load(tmp_path, "# why\n" + GRID).fingerprint == base.fingerprint
-    for changed in (GRID.replace("mu0 = 0.8", "mu0 = 0.9"), GRID.replace("17", "18"), GRID + "[solver]\nrtol = 1e-5\n"):
+    for changed in (
+        GRID.replace("boundary_friction = 0.8", "boundary_friction = 0.9"),
+        GRID.replace("17", "18"),
+        GRID + "[solver]\nrtol = 1e-5\n",
+    ):
         assert load(tmp_path, changed).fingerprint != base.fingerprint
 
 
@@ -107,7 +113,10 @@ GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
         (GROUPS + "[vary]\nspeed = 3\n", "[vary] speed = 3 must be a list of values, or a range as in"),
         (GROUPS + "[vary]\nspeed = [1, -1]\n", "[vary] speed = -1 must be finite and zero or positive."),
         (GROUPS + '[vary]\nspeed = ["1 m/s"]\n', "[vary] speed = '1 m/s' is text; groups are bare numbers"),
-        (GROUPS + "[vary]\nspede = [1]\n", "[vary] 'spede' cannot vary; known are speed, load, roughness, mu0, beta."),
+        (
+            GROUPS + "[vary]\nspede = [1]\n",
+            "[vary] 'spede' cannot vary; known are speed, load, roughness, boundary_friction, beta.",
+        ),
         (GROUPS + "[vary]\nspeed = [1]\nbeta = [0]\n", "[vary] beta = 0 must be positive."),
         (GROUPS + "[vary]\nspeed = { range = [1, 2] }\n", "[vary] speed: points = None must be a whole number from 2 to"),
         (GROUPS + "[vary]\nspeed = { range = [2, 1], points = 3 }\n", "speed: range = [2, 1] must increase; write the lowest"),
@@ -213,7 +222,9 @@ def test_short_lines_are_joined_each_beginning_where_the_one_before_ended(tmp_pa
 
 
 def test_states_that_differ_in_friction_alone_follow_one_another(tmp_path):
-    design = load(tmp_path, GRID.replace("mu0 = 0.8\n", "").replace("[vary]\n", "[vary]\nmu0 = [0.5, 0.8]\n"))
+    design = load(
+        tmp_path, GRID.replace("boundary_friction = 0.8\n", "").replace("[vary]\n", "[vary]\nboundary_friction = [0.5, 0.8]\n")
+    )
     chains = chains_of(design.groups, design.shape)
     assert sorted(np.concatenate(chains)) == list(range(136))
     for chain in chains:

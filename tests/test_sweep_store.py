@@ -52,7 +52,7 @@ def test_zarr_reads_what_was_written(filled):
     assert group.attrs["design"] == SMALL == (filled.path / "sweep.toml").read_text()
     assert group.attrs["outcomes"] == list(OUTCOMES)
     names = group["inputs"].attrs["columns"]
-    assert group["inputs"][:, names.index("mu0")].tolist() == [0.8] * 12
+    assert group["inputs"][:, names.index("boundary_friction")].tolist() == [0.8] * 12
 
 
 def test_the_dataset_holds_what_solve_gives(filled):

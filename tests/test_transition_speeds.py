@@ -14,13 +14,20 @@ NAMES = {
 
 
 @pytest.mark.parametrize("definition", ["paper", "balanced"])
-@pytest.mark.parametrize(("load", "mu0", "beta"), [(0.098, 0.7, 0.06), (0.003, 1.0, 0.01)])
-def test_they_are_those_of_solved_curves_within_the_stated_error(load, mu0, beta, definition):
+@pytest.mark.parametrize(("load", "boundary_friction", "beta"), [(0.098, 0.7, 0.06), (0.003, 1.0, 0.01)])
+def test_they_are_those_of_solved_curves_within_the_stated_error(load, boundary_friction, beta, definition):
     roughness = load * np.array([1e-3, 0.03, 0.2])
-    found = transition_speeds(load, roughness, mu0, beta, definition)
+    found = transition_speeds(load, roughness, boundary_friction, beta, definition)
     for i, h in enumerate(roughness):
         curve = sb.stribeck_curve(
-            load=load, roughness=h, speed=(1e-8, 1e3), points=45, mu0=mu0, beta=beta, definition=definition, rtol=1e-7
+            load=load,
+            roughness=h,
+            speed=(1e-8, 1e3),
+            points=45,
+            boundary_friction=boundary_friction,
+            beta=beta,
+            definition=definition,
+            rtol=1e-7,
         )
         marks = {mark.name: mark.value for mark in curve.transitions}
         for row, (name, words) in enumerate(NAMES.items()):

@@ -35,7 +35,7 @@ def minimum(kappa, load):
 def test_our_contact_share_and_friction_know_outlet_and_thickened_film(film_ratio, kappa, load):
     groups = state(film_ratio, kappa, load)
     solved = sb.solve(groups)
-    share, friction = solved.contact_load_share, solved.friction(mu0=1, beta=1).total
+    share, friction = solved.contact_load_share, solved.friction(boundary_friction=1, beta=1).total
     ours = mixed.contact_load_share(groups) / share - 1
     paper = mixed.contact_load_share(groups, "large") / share - 1
     assert abs(ours) < 0.09
@@ -81,7 +81,7 @@ def test_the_friction_of_the_paper_is_the_printed_equation_with_its_constant():
 def test_the_lean_of_the_contact_pressure_is_what_the_two_definitions_differ_by():
     groups = state(6, 1e-3, 0.1)
     solved = sb.solve(groups, rtol=1e-8)
-    paper, balanced = (solved.friction(mu0=1, beta=1, definition=d).viscous for d in ("paper", "balanced"))
+    paper, balanced = (solved.friction(boundary_friction=1, beta=1, definition=d).viscous for d in ("paper", "balanced"))
     lean = mixed.friction(groups, 0.0, 1.0) - mixed.friction(groups, 0.0, 1.0, "central")
     assert lean == pytest.approx(paper - balanced, rel=0.1)
 

@@ -107,7 +107,7 @@ def test_contacts_at_rest_and_without_roughness_are_exact():
         share = load_sharing.contact_load_share(groups)
     assert share[0] == 1.0 and share[1] == 0.0 and 0 < share[2] < 1
     with pytest.warns(OutOfRangeWarning):
-        friction = uniform.friction(groups, mu0=0.7)
+        friction = uniform.friction(groups, boundary_friction=0.7)
     assert friction[0] == 0.7
     assert friction[1] == hydrodynamic.friction_uniform(sb.Groups(1e-3, 0.1, 0.0))
 

@@ -106,13 +106,13 @@ def test_the_ends_of_a_range_are_in_it_though_the_relative_roughness_is_rounded(
 
 def test_coefficients_given_to_a_formula_hold_for_the_solver_too():
     grid = {"load": 0.1, "relative_roughness": 0.01, "speed": [1e-6, 1e-4, 1e-2]}
-    data = error_map(uniform.friction, **grid, mu0=0.3, beta=0.02, definition="balanced")
+    data = error_map(uniform.friction, **grid, boundary_friction=0.3, beta=0.02, definition="balanced")
     for speed, error in zip(grid["speed"], data["error"].values.ravel(), strict=True):
         groups = sb.Groups(speed, 0.1, 1e-3)
-        right = sb.solve(groups).friction(mu0=0.3, beta=0.02, definition="balanced").total
-        found = uniform.friction(groups, mu0=0.3, beta=0.02, definition="balanced")
+        right = sb.solve(groups).friction(boundary_friction=0.3, beta=0.02, definition="balanced").total
+        found = uniform.friction(groups, boundary_friction=0.3, beta=0.02, definition="balanced")
         assert math.isclose(error, found / right - 1, rel_tol=1e-3, abs_tol=1e-6)
-    assert data.attrs["title"] == "uniform.friction(mu0=0.3, beta=0.02, definition='balanced')"
+    assert data.attrs["title"] == "uniform.friction(boundary_friction=0.3, beta=0.02, definition='balanced')"
     least = error_map(transitions.friction_at_minimum, load=0.1, relative_roughness=1e-3, beta=0.02)
     assert abs(float(least["error"].values[0, 0])) < 0.01
 
@@ -244,7 +244,7 @@ def test_the_uniform_law_of_friction_is_as_good_over_its_box_as_the_page_says(bl
         load, kappa = np.exp(rng.uniform(np.log([1e-4, 1e-4]), np.log([0.7, 1e-1])))
         curve = sb.stribeck_curve(load=load, roughness=kappa * load, speed=(1e-9, 1e2), points=12)
         for beta in (1.0, 0.1, 0.01):
-            right = np.array([state.friction(mu0=1.0, beta=beta).total for state in curve.solutions])
+            right = np.array([state.friction(boundary_friction=1.0, beta=beta).total for state in curve.solutions])
             errors.append(np.abs(uniform.friction.function(curve.groups, 1.0, beta) / right - 1))
     assert np.max(errors) <= 0.072
     assert np.median(errors) < 0.002

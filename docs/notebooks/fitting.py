@@ -27,7 +27,7 @@ from stribeck.fits.plot import plot_fit
 data, case = "../../examples/pdms_measured.csv", "../../examples/pdms_fit.toml"
 fit = sb.fit(data, case)
 print(fit.outcome.name)
-truth = {"friction_coefficient": 0.62, "roughness": 1.3e-6, "modulus": 2.3e6}
+truth = {"boundary_friction": 0.62, "roughness": 1.3e-6, "modulus": 2.3e6}
 for name, value in truth.items():
     low, high = fit[name].interval_95
     print(f"{name:22} {fit[name].value:.4g}  95 %: {low:.4g} to {high:.4g}  made with {value:.4g}")

@@ -138,7 +138,7 @@ _ = axes.legend()
 
 # %%
 still = sb.solve(sb.Groups(1e-8, 0.1, 1e-4))
-paper, balanced = (still.friction(mu0=1, beta=1, definition=name).viscous for name in ("paper", "balanced"))
+paper, balanced = (still.friction(boundary_friction=1, beta=1, definition=name).viscous for name in ("paper", "balanced"))
 print(f"viscous friction as printed {paper:.3e}, balanced {balanced:.3e}: {paper / balanced:.1f} times")
 assert 65 < paper / balanced < 75
 

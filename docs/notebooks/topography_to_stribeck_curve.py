@@ -53,7 +53,7 @@ def contact(law, radius=surface.shape.radius):
         load="30 N/m",
         viscosity="50 mPa*s",
         speed="1 mm/s",
-        friction_coefficient=0.7,
+        boundary_friction=0.7,
         law=law,
         **law.coefficients,
     )
@@ -103,7 +103,7 @@ plain = sb.LineContact(
     load="30 N/m",
     viscosity="50 mPa*s",
     speed="1 mm/s",
-    friction_coefficient=0.7,
+    boundary_friction=0.7,
     **surface.law.coefficients,
 )
 other = sb.stribeck_curve(plain, speed=("1 um/s", "1 m/s"), points=41)

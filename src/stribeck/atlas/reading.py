@@ -19,7 +19,7 @@ from stribeck.contact_laws.law import LawShape, is_exponential
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import Groups, InputError
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.inputs import quantity
+from stribeck.quantities.inputs import quantity, refuse_former
 from stribeck.quantities.units import show
 from stribeck.solids import hertz
 
@@ -56,7 +56,8 @@ ODDS, CENTRAL, MINIMUM, FLUX, DEFLECTION = (
 Value = float | Array
 
 
-def friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Value:
+@refuse_former
+def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Value:
     r"""Return the friction coefficient.
 
     .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \mu_f
@@ -65,7 +66,7 @@ def friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, definition: De
     ----------
     groups : Groups
         The states [-]; arrays broadcast.
-    mu0, beta : float
+    boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
     definition : {"paper", "balanced"}
         Definition of the viscous friction, theory.md, section 6.
@@ -84,10 +85,10 @@ def friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, definition: De
     -----
     Both parts are positive, so that its relative error is at most the larger of theirs.
     """
-    mu0, beta, row = quantity("friction_coefficient", mu0), quantity("beta", beta), _row(definition)
+    boundary_friction, beta, row = quantity("boundary_friction", boundary_friction), quantity("beta", beta), _row(definition)
     flat, values = _read(groups, (ODDS, row))
     odds, viscous = values.values
-    return _shaped(groups, mu0 * _contact(odds) + _viscous(flat, viscous, beta))
+    return _shaped(groups, boundary_friction * _contact(odds) + _viscous(flat, viscous, beta))
 
 
 def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition = "paper") -> Value:
@@ -117,7 +118,10 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
     return _shaped(groups, _viscous(flat, values.values[0], beta))
 
 
-def friction_derivatives(groups: Groups, mu0: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Array:
+@refuse_former
+def friction_derivatives(
+    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper"
+) -> Array:
     r"""Return the derivatives of the friction coefficient with respect to the logarithms of the groups.
 
     .. math:: \frac{\partial \mu}{\partial \ln \lambda}, \quad \frac{\partial \mu}{\partial \ln \bar F_N}, \quad
@@ -127,7 +131,7 @@ def friction_derivatives(groups: Groups, mu0: float = 1.0, beta: float = 1.0, de
     ----------
     groups : Groups
         The states [-]; arrays broadcast.
-    mu0, beta : float
+    boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
     definition : {"paper", "balanced"}
         Definition of the viscous friction, theory.md, section 6.
@@ -146,13 +150,13 @@ def friction_derivatives(groups: Groups, mu0: float = 1.0, beta: float = 1.0, de
     -----
     Exact derivatives of :func:`friction`, shown by ``test_atlas.py``; zero at rest.
     """
-    mu0, beta = quantity("friction_coefficient", mu0), quantity("beta", beta)
+    boundary_friction, beta = quantity("boundary_friction", boundary_friction), quantity("beta", beta)
     _, contact_slopes, viscous_slopes = friction_parts(groups, definition)
-    return mu0 * contact_slopes + beta * viscous_slopes
+    return boundary_friction * contact_slopes + beta * viscous_slopes
 
 
 def friction_parts(groups: Groups, definition: Definition = "paper") -> tuple[Array, Array, Array]:
-    r"""Return both parts of the friction for mu0 = beta = 1, and the derivatives of each.
+    r"""Return both parts of the friction for boundary_friction = beta = 1, and the derivatives of each.
 
     .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
 
@@ -179,7 +183,7 @@ def friction_parts(groups: Groups, definition: Definition = "paper") -> tuple[Ar
 
     Notes
     -----
-    One reading of the table gives all, for fits in which mu0 and beta differ from state to state.
+    One reading of the table gives all, for fits in which boundary_friction and beta differ from state to state.
     """
     flat, values = _read(groups, (ODDS, _row(definition)), slopes=True)
     assert values.slopes is not None
@@ -195,14 +199,17 @@ def friction_parts(groups: Groups, definition: Definition = "paper") -> tuple[Ar
     return np.stack([contact, viscous]).reshape(2, *groups.shape), slopes[0], slopes[1]
 
 
-def shares_and_friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Array:
+@refuse_former
+def shares_and_friction(
+    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper"
+) -> Array:
     """Return at once what tells the regimes apart, at the cost of one of its parts.
 
     Parameters
     ----------
     groups : Groups
         The states [-]; arrays broadcast.
-    mu0, beta : float
+    boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
     definition : {"paper", "balanced"}
         Definition of the viscous friction, theory.md, section 6.
@@ -218,12 +225,12 @@ def shares_and_friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, def
     InputError
         If a state is outside :data:`BOX`, or an argument is wrong.
     """
-    mu0, beta, row = quantity("friction_coefficient", mu0), quantity("beta", beta), _row(definition)
+    boundary_friction, beta, row = quantity("boundary_friction", boundary_friction), quantity("beta", beta), _row(definition)
     flat, values = _read(groups, (ODDS, row), slopes=True)
     assert values.slopes is not None
     odds = values.values[0]
     contact, viscous = _contact(odds), _viscous(flat, values.values[1], beta)
-    by_speed = viscous * (1 + values.slopes[0, 1]) - mu0 * contact * (1 - contact) * values.slopes[0, 0]
+    by_speed = viscous * (1 + values.slopes[0, 1]) - boundary_friction * contact * (1 - contact) * values.slopes[0, 0]
     by_speed[flat[0] == 0] = 0.0
     return np.stack([_contact(-odds), contact, viscous, by_speed]).reshape(4, *groups.shape)
 

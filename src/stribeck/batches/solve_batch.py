@@ -80,14 +80,14 @@ class BatchSolution:
         """Estimated relative error of each observable; absolute for the load shares."""
         return dict(zip(NAMES, self.relative_errors, strict=True))
 
-    def friction(self, mu0: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Array:
+    def friction(self, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Array:
         r"""Return the friction coefficients.
 
         .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
 
         Parameters
         ----------
-        mu0 : float
+        boundary_friction : float
             Friction coefficient of the dry contact [-], >= 0.
         beta : float
             Coefficient of the contact law [-], > 0.
@@ -104,9 +104,9 @@ class BatchSolution:
         InputError
             If an argument is outside its range.
         """
-        mu0, beta = quantity("friction_coefficient", mu0), quantity("beta", beta)
+        boundary_friction, beta = quantity("boundary_friction", boundary_friction), quantity("beta", beta)
         viscous: Array = getattr(self, f"viscous_{check_definition(definition)}")
-        return mu0 * self.contact_load_share + beta * viscous
+        return boundary_friction * self.contact_load_share + beta * viscous
 
 
 def solve_batch(groups: Groups, *, rtol: float = 1e-6, on_progress: Progress | None = None) -> BatchSolution:

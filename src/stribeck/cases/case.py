@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
 from stribeck.contacts.line import InputError, LineContact
-from stribeck.quantities.inputs import QUANTITIES, check_modulus_choice, quantity
+from stribeck.quantities.inputs import FORMER, QUANTITIES, check_modulus_choice, quantity
 from stribeck.quantities.units import DIMENSIONS, FROM_HARDNESS, show
 
 __all__ = [
@@ -42,8 +42,8 @@ _SYMBOLS = {
     "eta": "viscosity",
     "U": "speed",
     "h_rms": "roughness",
-    "mu0": "friction_coefficient",
-    "mu_0": "friction_coefficient",
+    "mu0": "boundary_friction",
+    "mu_0": "boundary_friction",
     "E_star": "modulus",
     "E": "youngs_modulus",
     "nu": "poisson_ratio",
@@ -360,7 +360,7 @@ def _model() -> Any:
         roughness: number | None = None
         alpha: number | None = None
         beta: number | None = None
-        friction_coefficient: number
+        boundary_friction: number
         modulus: number | None = None
         youngs_modulus: number | None = None
         poisson_ratio: number | None = None
@@ -479,7 +479,7 @@ def _nearest(file: Any, model: Any, key: str) -> str:
     if key.lower() in _DATA_SHEET:
         return _DATA_SHEET[key.lower()]
     known = list(model.model_fields)
-    meant = _SYMBOLS.get(key, key)
+    meant = _SYMBOLS.get(key, FORMER.get(key, key))
     if meant in known:
         return f"write {meant}"
     for name, info in file.model_fields.items():

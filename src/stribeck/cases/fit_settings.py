@@ -11,21 +11,21 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from stribeck.quantities.inputs import QUANTITIES, quantity
+from stribeck.quantities.inputs import FORMER, QUANTITIES, quantity
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["FREE", "FitSettings", "Prior", "check_fit_table", "free_names"]
 
 Noise = Literal["relative", "absolute"]
 
-FREE = ("friction_coefficient", "roughness", "beta", "alpha", "modulus", "viscosity", "load", "radius")
+FREE = ("boundary_friction", "roughness", "beta", "alpha", "modulus", "viscosity", "load", "radius")
 """Inputs that may be fitted, in the order of outputs; all of them enter friction through groups, mu0 and beta."""
 
-DEFAULT_FREE = ("friction_coefficient", "roughness")
+DEFAULT_FREE = ("boundary_friction", "roughness")
 
 SYMBOLS = {
-    "mu0": "friction_coefficient",
-    "mu_0": "friction_coefficient",
+    "mu0": "boundary_friction",
+    "mu_0": "boundary_friction",
     "h_rms": "roughness",
     "E_star": "modulus",
     "eta": "viscosity",
@@ -188,7 +188,7 @@ def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
         if meant in ("speed", "U"):
             raise InputError(f"{where} has {show(name)}, which is measured; a common factor on it is that of the viscosity.")
         if meant not in FREE:
-            near = difflib.get_close_matches(str(name).lower(), FREE, n=1)
+            near = [FORMER[name]] if name in FORMER else difflib.get_close_matches(str(name).lower(), FREE, n=1)
             hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(FREE)}."
             raise InputError(f"{where} has {show(name)}, which is no input that can be fitted; {hint}")
         if meant in found:
@@ -200,7 +200,7 @@ def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
 def _setting(key: str, value: Any) -> Any:
     if key in ("free", "per_curve"):
         if not isinstance(value, list) or (key == "free" and not value):
-            raise InputError(f'{key} = {show(value)} must be a list of inputs, such as ["friction_coefficient", "roughness"].')
+            raise InputError(f'{key} = {show(value)} must be a list of inputs, such as ["boundary_friction", "roughness"].')
         return free_names(value, key)
     if key == "noise":
         if value not in ("relative", "absolute"):
@@ -224,7 +224,7 @@ def _entry(table: str, name: str, value: Any) -> tuple[str, Any]:
     if table in ("bounds", "priors"):
         [meant] = free_names([name], f"[fit.{table}]")
         return meant, _bounds(meant, value) if table == "bounds" else _prior(meant, value)
-    known = (*COLUMNS, *(each for each in FREE if each != "friction_coefficient"))
+    known = (*COLUMNS, *(each for each in FREE if each != "boundary_friction"))
     meant = SYMBOLS.get(name, name)
     if meant not in known:
         raise InputError(_unknown(name, value, known))
@@ -268,6 +268,6 @@ def _curve(name: str, entry: Any) -> dict[str, float]:
 
 
 def _unknown(key: str, value: Any, known: tuple[str, ...]) -> str:
-    near = difflib.get_close_matches(key.lower(), known, n=1)
+    near = [FORMER[key]] if key in FORMER else difflib.get_close_matches(key.lower(), known, n=1)
     hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}."
     return f"{key} = {show(value)} is not a known key; {hint}"

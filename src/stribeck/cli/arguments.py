@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import re
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -28,7 +27,7 @@ Triple = Annotated[tuple[str, str, str] | None, Parameter(allow_leading_hyphen=T
 
 
 def read_case(
-    path: Path | None, groups: Sequence[str] | None, mu0: str | None, beta: str | None, law: str | None
+    path: Path | None, groups: Sequence[str] | None, boundary_friction: str | None, beta: str | None, law: str | None
 ) -> Case | None:
     """Return the case, or None where groups are given instead."""
     if path is not None and groups is not None:
@@ -39,7 +38,11 @@ def read_case(
         raise InputError("CASE is missing; give a case file, or groups with --groups.")
     if path is None:
         return None
-    for name, key, value in (("--mu0", "friction_coefficient", mu0), ("--beta", "beta", beta), ("--law", "law", law)):
+    for name, key, value in (
+        ("--boundary-friction", "boundary_friction", boundary_friction),
+        ("--beta", "beta", beta),
+        ("--law", "law", law),
+    ):
         if value is not None:
             raise InputError(f"{name} = {value} goes with --groups only; in {path} it is the key {key}.")
     return load_case(path)
@@ -77,7 +80,7 @@ def curve_arguments(
     points: str | None,
     rtol: str | None,
     groups: tuple[str, str] | None,
-    mu0: str | None,
+    boundary_friction: str | None,
     beta: str | None,
 ) -> dict[str, Any]:
     """Return the arguments of :func:`stribeck_curve` that a command line asks for."""
@@ -97,7 +100,7 @@ def curve_arguments(
     else:
         fixed = [name for name in AXES if name != varied]
         found |= {name: as_group(name, text) for name, text in zip(fixed, groups or (), strict=True)}
-        found |= {"mu0": as_number("mu0", mu0), "beta": as_number("beta", beta)}
+        found |= {"boundary_friction": as_number("boundary_friction", boundary_friction), "beta": as_number("beta", beta)}
         span = None
         if ends is not None:
             low, high = (as_group(varied, text) for text in ends)
@@ -157,14 +160,3 @@ def need_extra(purpose: str, extra: str, library: str) -> None:
     """Refuse what needs a library that is not installed."""
     if importlib.util.find_spec(library) is None:
         raise MissingExtraError(purpose, extra, library)
-
-
-@contextmanager
-def speaking_of(key: str, option: str, wanted: bool) -> Iterator[None]:
-    """Let sentences about a key of case files speak of the option that took its place."""
-    try:
-        yield
-    except InputError as problem:
-        if not wanted or type(problem) is not InputError:
-            raise
-        raise InputError(str(problem).replace(key, option)) from None

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from cyclopts import App, CycloptsError, MissingArgumentError, UnusedCliTokensError
+from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionError, UnusedCliTokensError
 
 from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain
 from stribeck.cli.solving import curve_command, figures_command, regimes_command, solve_command
@@ -111,6 +111,8 @@ def _parsing(problem: CycloptsError) -> str:
         wanted = f"{count} values" if count > 1 else "a value"
         name = getattr(problem, "keyword", None) or problem.argument.name
         return f"{name} needs {wanted}, {len(problem.tokens_so_far)} given."
+    if isinstance(problem, UnknownOptionError) and "--mu0" in str(problem):
+        return "Unknown option: --mu0; it is called --boundary-friction."
     return _line(problem)
 
 

@@ -25,7 +25,6 @@ from stribeck.cli.arguments import (
     check_pictures,
     curve_arguments,
     read_case,
-    speaking_of,
 )
 from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain
 from stribeck.cli.progress import interruptible, stdout_console
@@ -49,7 +48,7 @@ def solve_command(
     /,
     *,
     groups: Triple = None,
-    mu0: Number = None,
+    boundary_friction: Number = None,
     beta: Number = None,
     law: Word = None,
     rtol: Number = None,
@@ -69,7 +68,7 @@ def solve_command(
         Case file (TOML).
     groups
         Groups instead of a case: SPEED LOAD ROUGHNESS.
-    mu0
+    boundary_friction
         Dry friction coefficient; only with --groups, 1 if not given.
     beta
         Coefficient of the contact law; only with --groups, 1 if not given.
@@ -84,11 +83,10 @@ def solve_command(
     force
         Replace an existing file.
     """
-    loaded = read_case(case, groups, mu0, beta, law)
+    loaded = read_case(case, groups, boundary_friction, beta, law)
     tolerance = as_rtol(rtol, loaded)
-    mu, b = as_number("mu0", mu0), as_number("beta", beta)
-    with speaking_of("friction_coefficient", "mu0", loaded is None):
-        coefficients(loaded.contact if loaded else None, mu, b)
+    mu, b = as_number("boundary_friction", boundary_friction), as_number("beta", beta)
+    coefficients(loaded.contact if loaded else None, mu, b)
     pictures = check_pictures(plot, force)
     problem = loaded.contact if loaded else Groups(*map(as_group, AXES, groups or ()))
     solution = solve(problem, rtol=tolerance, law=law)
@@ -121,7 +119,7 @@ def curve_command(
     points: Number = None,
     rtol: Number = None,
     groups: Pair = None,
-    mu0: Number = None,
+    boundary_friction: Number = None,
     beta: Number = None,
     law: Word = None,
     json: Flag = False,
@@ -155,7 +153,7 @@ def curve_command(
         Largest relative error of the results, 1e-11 to 1e-2; that of the case or 1e-6 if not given.
     groups
         Groups instead of a case: the two that stay fixed, in the order speed, load, roughness.
-    mu0
+    boundary_friction
         Dry friction coefficient; only with --groups, 1 if not given.
     beta
         Coefficient of the contact law; only with --groups, 1 if not given.
@@ -166,12 +164,12 @@ def curve_command(
     force
         Replace existing files.
     """
-    loaded = read_case(case, groups, mu0, beta, law)
+    loaded = read_case(case, groups, boundary_friction, beta, law)
     outputs, pictures = check_outputs(output or [], plot, force)
-    arguments = curve_arguments(loaded, over, range, points, rtol, groups, mu0, beta)
+    arguments = curve_arguments(loaded, over, range, points, rtol, groups, boundary_friction, beta)
     arguments["law"] = law
     title = loaded.title if loaded else ""
-    with interruptible() as progress, speaking_of("friction_coefficient", "mu0", loaded is None):
+    with interruptible() as progress:
         curve = stribeck_curve(on_point=progress, **arguments)
         if curve.outcome is Outcome.ROUNDING:
             raise InputError(_too_small(curve))

@@ -117,7 +117,7 @@ def fit_command(
 
     Example: stribeck fit examples/pdms_measured.csv examples/pdms_fit.toml --plot fit.png --out fitted.toml
 
-    Example: stribeck fit measured.csv case.toml --free mu0 h_rms modulus --robust
+    Example: stribeck fit measured.csv case.toml --free boundary_friction h_rms modulus --robust
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def fit_command(
     case
         Case file (TOML) with the contact where the fit begins, and in its table [fit] what is asked.
     free
-        Inputs to fit; those of the case, else friction_coefficient and roughness.
+        Inputs to fit; those of the case, else boundary_friction and roughness.
     out
         Write the case with the fitted values to this file (.toml).
     plot

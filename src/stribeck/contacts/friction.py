@@ -24,7 +24,7 @@ class Friction:
     Attributes
     ----------
     contact : float
-        Part from asperities, mu0 times their share of the load [-].
+        Part from asperities, boundary_friction times their share of the load [-].
     viscous : float
         Part from the fluid [-].
     total : float
@@ -39,13 +39,13 @@ class Friction:
     error: float
 
 
-def coefficients(contact: LineContact | None, mu0: float | None, beta: float | None) -> tuple[float, float]:
-    """Return mu0 and beta as given, else those of the contact, else 1."""
-    if mu0 is None:
-        mu0 = 1.0 if contact is None else contact.friction_coefficient
+def coefficients(contact: LineContact | None, boundary_friction: float | None, beta: float | None) -> tuple[float, float]:
+    """Return boundary_friction and beta as given, else those of the contact, else 1."""
+    if boundary_friction is None:
+        boundary_friction = 1.0 if contact is None else contact.boundary_friction
     if beta is None:
         beta = 1.0 if contact is None else contact.beta
-    return quantity("friction_coefficient", mu0), quantity("beta", beta)
+    return quantity("boundary_friction", boundary_friction), quantity("beta", beta)
 
 
 def check_definition(definition: str) -> Definition:

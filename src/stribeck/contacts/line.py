@@ -14,7 +14,7 @@ from typing import Any, Self
 
 from stribeck.contact_laws.law import LawShape, check_law
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.inputs import INPUTS, SYMBOLS, check_modulus_choice, quantity, si_text
+from stribeck.quantities.inputs import INPUTS, SYMBOLS, check_modulus_choice, quantity, refuse_former, si_text
 from stribeck.quantities.units import InputError
 
 __all__ = ["Groups", "HertzScales", "InputError", "LineContact"]
@@ -29,7 +29,7 @@ EXPONENTS = {
     "roughness": (0, 0, 1),
     "alpha": (0, 0, -1),
     "beta": (0, -2, -2),
-    "friction_coefficient": (0, 0, 0),
+    "boundary_friction": (0, 0, 0),
 }
 """Exponents with which each input enters the groups of speed, load and roughness."""
 
@@ -86,7 +86,7 @@ class LineContact:
     beta : float
         Coefficient :math:`\beta > 0` of the same law [-]; about the wave number of the longest roughness
         times :math:`h_\mathrm{rms}`, so 1e-3 to 1e-1 for real surfaces.
-    friction_coefficient : float
+    boundary_friction : float
         Friction coefficient :math:`\mu_0 \ge 0` of the solid contact [-].
     modulus : str or float, optional
         Effective modulus :math:`E^* = E/(1 - \nu^2) > 0` [Pa]; or give the next two.
@@ -122,7 +122,7 @@ class LineContact:
     --------
     >>> contact = LineContact(radius="10 mm", modulus="2.1 MPa", load="50 N/m", viscosity="1 mPa*s",
     ...                       speed="0.1 m/s", roughness="1 um", alpha=2.0, beta=0.05,
-    ...                       friction_coefficient=0.8)
+    ...                       boundary_friction=0.8)
     >>> round(contact.groups.load, 3)
     0.303
     """
@@ -134,10 +134,11 @@ class LineContact:
     roughness: float
     alpha: float
     beta: float
-    friction_coefficient: float
+    boundary_friction: float
     modulus: float
     law: LawShape | None
 
+    @refuse_former
     def __init__(
         self,
         *,
@@ -148,7 +149,7 @@ class LineContact:
         roughness: str | float,
         alpha: float,
         beta: float,
-        friction_coefficient: float,
+        boundary_friction: float,
         modulus: str | float | None = None,
         youngs_modulus: str | float | None = None,
         poisson_ratio: float | None = None,
@@ -165,7 +166,7 @@ class LineContact:
             "roughness": roughness,
             "alpha": alpha,
             "beta": beta,
-            "friction_coefficient": friction_coefficient,
+            "boundary_friction": boundary_friction,
             "modulus": modulus,
         }
         for name, value in given.items():
@@ -222,6 +223,7 @@ class LineContact:
         return type(self)(**(kept | changes))
 
     @classmethod
+    @refuse_former
     def from_groups(
         cls,
         groups: Groups,
@@ -231,7 +233,7 @@ class LineContact:
         viscosity: str | float,
         alpha: float,
         beta: float,
-        friction_coefficient: float,
+        boundary_friction: float,
     ) -> Self:
         r"""Return the contact whose :attr:`groups` are ``groups``.
 
@@ -247,7 +249,7 @@ class LineContact:
             Groups of one state.
         radius, modulus, viscosity : str or float
             As in :class:`LineContact`.
-        alpha, beta, friction_coefficient : float
+        alpha, beta, boundary_friction : float
             As in :class:`LineContact`.
 
         Returns
@@ -273,7 +275,7 @@ class LineContact:
             roughness=4 * alpha * beta * beta * R * float(groups.roughness),
             alpha=alpha,
             beta=beta,
-            friction_coefficient=friction_coefficient,
+            boundary_friction=boundary_friction,
             modulus=E_star,
             law=groups.law,
         )

@@ -59,7 +59,7 @@ class AtlasCurve:
         The groups at an array of such values.
     contact : LineContact or None
         The contact.
-    mu0, beta : float
+    boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
     definition : {"paper", "balanced"}
         Definition of the viscous friction.
@@ -69,7 +69,7 @@ class AtlasCurve:
     values: Array
     groups_at: Callable[[Array], Groups]
     contact: LineContact | None
-    mu0: float
+    boundary_friction: float
     beta: float
     definition: Definition
 
@@ -121,7 +121,7 @@ class AtlasCurve:
     @property
     def friction_contact(self) -> Array:
         """Contact part of the friction coefficient [-]."""
-        return np.asarray(self.mu0 * self.observable("contact_load_share"))
+        return np.asarray(self.boundary_friction * self.observable("contact_load_share"))
 
     @property
     def friction_error(self) -> Array:
@@ -172,11 +172,11 @@ class AtlasCurve:
         return Mark(name, value, float(self._friction_at(np.array([value]))[0]))
 
     def _friction_at(self, values: Array) -> Array:
-        return np.asarray(atlas.friction(self.groups_at(values), self.mu0, self.beta, self.definition))
+        return np.asarray(atlas.friction(self.groups_at(values), self.boundary_friction, self.beta, self.definition))
 
     def _slope_at(self, values: Array) -> Array:
         """Return the derivative of the friction along the curve."""
-        slopes = atlas.friction_derivatives(self.groups_at(values), self.mu0, self.beta, self.definition)
+        slopes = atlas.friction_derivatives(self.groups_at(values), self.boundary_friction, self.beta, self.definition)
         direction = [float(name == self.over) for name in ("speed", "load", "roughness")]
         if self.contact is not None and self.over == "load":
             direction[0] = -2.0
@@ -186,7 +186,7 @@ class AtlasCurve:
         return np.asarray(atlas.fluid_load_share(self.groups_at(values)))
 
     def _contact_part_at(self, values: Array) -> Array:
-        contact = self.mu0 * np.asarray(atlas.contact_load_share(self.groups_at(values)))
+        contact = self.boundary_friction * np.asarray(atlas.contact_load_share(self.groups_at(values)))
         return np.asarray(contact / np.maximum(self._friction_at(values), 1e-300))
 
 

@@ -89,21 +89,21 @@ def friction_elasticities(
         point = solved_point(groups, rtol)
         solution = finish(point, groups, contact, rtol)
         assert point.state is not None
-        slopes = friction_slopes(point.state, contact.friction_coefficient, contact.beta, definition)
+        slopes = friction_slopes(point.state, contact.boundary_friction, contact.beta, definition)
     friction = solution.friction(definition=definition)
     return solution, _elasticities(slopes, friction.contact, friction.viscous)
 
 
 def _from_atlas(contact: LineContact, definition: Definition) -> dict[str, float]:
-    groups, mu0, beta = contact.groups, contact.friction_coefficient, contact.beta
+    groups, boundary_friction, beta = contact.groups, contact.boundary_friction, contact.beta
     viscous = float(atlas.viscous_friction(groups, beta, definition))
-    slopes = atlas.friction_derivatives(groups, mu0, beta, definition)
-    return _elasticities(slopes, mu0 * float(atlas.contact_load_share(groups)), viscous)
+    slopes = atlas.friction_derivatives(groups, boundary_friction, beta, definition)
+    return _elasticities(slopes, boundary_friction * float(atlas.contact_load_share(groups)), viscous)
 
 
 def _elasticities(slopes: Array, contact: float, viscous: float) -> dict[str, float]:
     """Return the elasticities by the derivatives of the friction and its two parts."""
-    direct = {"friction_coefficient": contact, "beta": viscous}
+    direct = {"boundary_friction": contact, "beta": viscous}
     total = (contact + viscous) or math.nan
     return {
         name: (float(slopes @ np.array(exponents)) + direct.get(name, 0.0)) / total for name, exponents in EXPONENTS.items()

@@ -247,7 +247,7 @@ def _footer(curve: StribeckCurve) -> list[tuple[str, str]]:
     law = law_text(curve.solutions[0]) if len(curve) else ""
     first = [*input_texts(curve.contact, None if curve.over != "speed" else "speed", curve.over)]
     if curve.contact is None:
-        first += [rf"$\mu_0$ = {curve.mu0:.4g}", rf"$\beta$ = {curve.beta:.4g}"]
+        first += [rf"$\mu_0$ = {curve.boundary_friction:.4g}", rf"$\beta$ = {curve.beta:.4g}"]
     groups = curve.groups
     for name in ("speed", "load", "roughness"):
         values = np.asarray(getattr(groups, name))

@@ -46,7 +46,7 @@ class StribeckCurve:
         The state of each point.
     contact : LineContact or None
         The contact, at its own speed, load and roughness.
-    mu0, beta : float
+    boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
     definition : {"paper", "balanced"}
         Definition of the viscous friction.
@@ -62,7 +62,7 @@ class StribeckCurve:
     values: Array
     solutions: tuple[Solution, ...]
     contact: LineContact | None
-    mu0: float
+    boundary_friction: float
     beta: float
     definition: Definition
     rtol: float
@@ -103,7 +103,7 @@ class StribeckCurve:
 
     @cached_property
     def _friction(self) -> Array:
-        found = [s.friction(self.mu0, self.beta, self.definition) for s in self.solutions]
+        found = [s.friction(self.boundary_friction, self.beta, self.definition) for s in self.solutions]
         return np.array([[f.contact, f.viscous, f.total, f.error] for f in found]).reshape(-1, 4)
 
     @property
@@ -194,7 +194,7 @@ class StribeckCurve:
 
         def slope(point: Point) -> float:
             assert point.state is not None
-            slopes = friction_slopes(point.state, self.mu0, self.beta, self.definition)
+            slopes = friction_slopes(point.state, self.boundary_friction, self.beta, self.definition)
             return float(slopes @ self._path.direction)
 
         return self._landmark("minimum of friction", i - 1, i + 1, slope)
@@ -223,7 +223,7 @@ class StribeckCurve:
 
     def _contact_part(self, point: Point) -> float:
         assert point.values is not None
-        contact = self.mu0 * point.values.contact_load_share
+        contact = self.boundary_friction * point.values.contact_load_share
         return contact / (contact + self.beta * float(getattr(point.values, f"viscous_{self.definition}")))
 
     def _landmark(self, name: str, first: int, last: int, function: Callable[[Point], float]) -> Landmark | None:
@@ -232,7 +232,7 @@ class StribeckCurve:
         if found is None:
             return None
         value, solution = found
-        return Landmark(name, value, solution.friction(self.mu0, self.beta, self.definition).total, solution)
+        return Landmark(name, value, solution.friction(self.boundary_friction, self.beta, self.definition).total, solution)
 
     def to_dataset(self) -> xarray.Dataset:
         """Return the curve as an xarray Dataset.

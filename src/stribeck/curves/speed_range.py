@@ -34,7 +34,7 @@ MARGIN = 10.0
 """Factor by which the curve goes on beyond plateau and branch."""
 
 
-def automatic_speeds(groups: Groups, mu0: float, beta: float, definition: str) -> tuple[float, float]:
+def automatic_speeds(groups: Groups, boundary_friction: float, beta: float, definition: str) -> tuple[float, float]:
     """Return the speed groups from boundary plateau to hydrodynamic branch for the load and roughness of ``groups``.
 
     They are found on coarse states that come down in speed from the rigid film.  Smooth surfaces have no plateau: their
@@ -61,7 +61,7 @@ def automatic_speeds(groups: Groups, mu0: float, beta: float, definition: str) -
         nonlocal plateau
         values = observables(state.equations, state.y, float(groups.load))
         viscous = beta * float(getattr(values, f"viscous_{definition}"))
-        contact = mu0 * values.contact_load_share
+        contact = boundary_friction * values.contact_load_share
         shares.append((-s, values.fluid_load_share, contact / max(contact + viscous, 1e-300)))
         if len(shares) > 1:
             (s0, f0, _), (s1, f1, _) = shares[-2:]

@@ -19,6 +19,7 @@ from stribeck.curves.regime import Method, check_method
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.speed_range import automatic_speeds
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.path import follow
@@ -39,7 +40,7 @@ def stribeck_curve(
     roughness: ArrayLike | Sequence[str] | None = ...,
     points: int = ...,
     rtol: float = ...,
-    mu0: float | None = ...,
+    boundary_friction: float | None = ...,
     beta: float | None = ...,
     definition: Definition = ...,
     on_point: Callable[[int, int], object] | None = ...,
@@ -57,7 +58,7 @@ def stribeck_curve(
     roughness: ArrayLike | Sequence[str] | None = ...,
     points: int = ...,
     rtol: float = ...,
-    mu0: float | None = ...,
+    boundary_friction: float | None = ...,
     beta: float | None = ...,
     definition: Definition = ...,
     on_point: Callable[[int, int], object] | None = ...,
@@ -66,6 +67,7 @@ def stribeck_curve(
 ) -> AtlasCurve: ...
 
 
+@refuse_former
 @one_blas_thread
 def stribeck_curve(
     problem: LineContact | Groups | None = None,
@@ -75,7 +77,7 @@ def stribeck_curve(
     roughness: ArrayLike | Sequence[str] | None = None,
     points: int = 101,
     rtol: float = 1e-6,
-    mu0: float | None = None,
+    boundary_friction: float | None = None,
     beta: float | None = None,
     definition: Definition = "paper",
     on_point: Callable[[int, int], object] | None = None,
@@ -96,7 +98,7 @@ def stribeck_curve(
         Number of points, 2 to 100000.
     rtol : float
         Relative tolerance of each state.
-    mu0, beta : float, optional
+    boundary_friction, beta : float, optional
         Friction coefficient of the dry contact and coefficient of the contact law [-]; those of the contact, or 1.
     definition : {"paper", "balanced"}
         Definition of the viscous friction, see :meth:`Solution.friction`.
@@ -131,19 +133,19 @@ def stribeck_curve(
     base, over, ends = read_problem(problem, given)
     base = with_law(base, law)
     contact = base if isinstance(base, LineContact) else None
-    mu0, beta = coefficients(contact, mu0, beta)
+    boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     if isinstance(points, bool) or not isinstance(points, int) or not POINTS_RANGE[0] <= points <= POINTS_RANGE[1]:
         raise InputError(f"points = {show(points)}; it must be a whole number from {POINTS_RANGE[0]} to {POINTS_RANGE[1]}.")
     coordinate = Coordinate(over, base)
     if ends is None:
-        values = _automatic(coordinate, mu0, beta, definition, points)
+        values = _automatic(coordinate, boundary_friction, beta, definition, points)
     elif len(ends) == 2:
         values = np.geomspace(ends[0], ends[1], points)
     else:
         values = ends
     check_inside(coordinate, values)
     if check_method(method) == "atlas":
-        return AtlasCurve(over, values, coordinate.groups_along, contact, mu0, beta, definition)
+        return AtlasCurve(over, values, coordinate.groups_along, contact, boundary_friction, beta, definition)
     descending = values[::-1]
     done = 0
     targets = np.log(descending)
@@ -174,7 +176,7 @@ def stribeck_curve(
         values=np.array(where),
         solutions=tuple(solutions),
         contact=contact,
-        mu0=mu0,
+        boundary_friction=boundary_friction,
         beta=beta,
         definition=definition,
         rtol=rtol,
@@ -185,8 +187,8 @@ def stribeck_curve(
     )
 
 
-def _automatic(coordinate: Coordinate, mu0: float, beta: float, definition: Definition, points: int) -> Array:
+def _automatic(coordinate: Coordinate, boundary_friction: float, beta: float, definition: Definition, points: int) -> Array:
     """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm."""
     groups = coordinate.groups_at(0.0)
-    low, high = automatic_speeds(groups, mu0, beta, definition)
+    low, high = automatic_speeds(groups, boundary_friction, beta, definition)
     return np.geomspace(low / float(groups.speed), high / float(groups.speed), points)

@@ -87,7 +87,7 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
     for name in GROUPS:
         columns[f"{name}_group"] = (np.asarray(getattr(curve.groups, name)), "1", f"{name} group")
     for definition in DEFINITIONS:
-        found = [s.friction(curve.mu0, curve.beta, definition) for s in curve.solutions]
+        found = [s.friction(curve.boundary_friction, curve.beta, definition) for s in curve.solutions]
         name, label = f"friction_{definition}", f"friction coefficient, definition {definition}"
         columns[name] = (np.array([f.total for f in found]), "1", label)
         columns[f"{name}_viscous"] = (
@@ -126,7 +126,7 @@ def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
         **law_attributes(curve.law, bool(len(curve)) and curve.solutions[0].law == "smooth"),
         "rtol": curve.rtol,
         "error_estimate": curve.error_estimate,
-        "mu0": curve.mu0,
+        "boundary_friction": curve.boundary_friction,
         "beta": curve.beta,
     }
     if curve.contact is not None:

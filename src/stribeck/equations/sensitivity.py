@@ -67,7 +67,7 @@ def log_derivatives(state: State) -> dict[str, Array]:
     return {"contact_load_share": share} | dict(zip(FRICTIONS, frictions, strict=True))
 
 
-def friction_slopes(state: State, mu0: float, beta: float, definition: str) -> Array:
+def friction_slopes(state: State, boundary_friction: float, beta: float, definition: str) -> Array:
     """Return the derivatives of the friction coefficient with respect to ln(speed), ln(load), ln(roughness)."""
     derivatives = log_derivatives(state)
-    return np.asarray(mu0 * derivatives["contact_load_share"] + beta * derivatives[f"viscous_{definition}"])
+    return np.asarray(boundary_friction * derivatives["contact_load_share"] + beta * derivatives[f"viscous_{definition}"])

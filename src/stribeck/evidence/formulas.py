@@ -55,8 +55,8 @@ def _state(groups: Groups) -> Solution:
 
 
 @lru_cache(maxsize=512)
-def _curve(groups: Groups, mu0: float, beta: float, definition: Definition) -> StribeckCurve:
-    coefficients: dict[str, Any] = {"mu0": mu0, "beta": beta, "definition": definition}
+def _curve(groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> StribeckCurve:
+    coefficients: dict[str, Any] = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
     curve: StribeckCurve = stribeck_curve(
         load=groups.load, roughness=groups.roughness, points=CURVE_POINTS, rtol=RTOL, **coefficients
     )
@@ -67,7 +67,7 @@ def _coefficients(options: dict[str, Any]) -> dict[str, Any]:
     """Return what the options of a formula ask of the solver: 1 and the definition of the paper, where they do not say."""
     definition = options.get("definition", options.get("viscous"))
     known = definition if definition in DEFINITIONS else "paper"
-    return {"mu0": options.get("mu0", 1.0), "beta": options.get("beta", 1.0), "definition": known}
+    return {"boundary_friction": options.get("boundary_friction", 1.0), "beta": options.get("beta", 1.0), "definition": known}
 
 
 def _minimum(groups: Groups, options: dict[str, Any]) -> Landmark | None:
@@ -161,7 +161,7 @@ def relative_error(formula: Formula[Any], groups: Groups, **options: Any) -> flo
     groups : Groups
         One state.
     **options
-        Arguments of the formula beside the groups; mu0, beta and definition hold for the solver too.
+        Arguments of the formula beside the groups; boundary_friction, beta and definition hold for the solver too.
 
     Returns
     -------
@@ -226,7 +226,7 @@ def error_map(
     predicts : str, optional
         Key of :data:`MEASURED` to judge by, where the options make the formula predict something else.
     **options
-        Arguments of the formula beside the groups; mu0, beta and definition hold for the solver too.
+        Arguments of the formula beside the groups; boundary_friction, beta and definition hold for the solver too.
 
     Returns
     -------

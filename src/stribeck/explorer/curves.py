@@ -127,11 +127,11 @@ def in_atlas(contact: LineContact) -> bool:
 
 def transition_marks(contact: LineContact, definition: Definition) -> tuple[Transition, ...]:
     """Return the transitions along the speed, ascending, from the atlas."""
-    if contact.roughness == 0 or contact.friction_coefficient == 0:
+    if contact.roughness == 0 or contact.boundary_friction == 0:
         return ()
     groups, unit = contact.groups, _speed_group(contact)
-    mu0, beta = contact.friction_coefficient, contact.beta
-    found = transition_speeds(float(groups.load), np.array([float(groups.roughness)]), mu0, beta, definition)
+    boundary_friction, beta = contact.boundary_friction, contact.beta
+    found = transition_speeds(float(groups.load), np.array([float(groups.roughness)]), boundary_friction, beta, definition)
     marks = [
         Transition(name, float(getattr(found, name)[0]) / unit, float(found.error[i, 0]))
         for i, name in enumerate(("boundary", "hydrodynamic", "minimum"))
@@ -152,10 +152,10 @@ def axis_speeds(contact: LineContact, marks: Sequence[Transition]) -> tuple[floa
 def curve_from_atlas(contact: LineContact, speeds: tuple[float, float], marks: tuple[Transition, ...]) -> Curve:
     """Return a curve read off the atlas."""
     groups, unit = contact.groups, _speed_group(contact)
-    mu0, beta = contact.friction_coefficient, contact.beta
+    boundary_friction, beta = contact.boundary_friction, contact.beta
     speed = np.geomspace(*speeds, POINTS)
     along = Groups(np.clip(speed * unit, *atlas.BOX["speed"]), groups.load, groups.roughness)
-    solid = mu0 * np.asarray(atlas.contact_load_share(along))
+    solid = boundary_friction * np.asarray(atlas.contact_load_share(along))
     friction = {kind: solid + np.asarray(atlas.viscous_friction(along, beta, kind)) for kind in DEFINITIONS}
     return Curve(speed, friction, solid, marks, f"read off the atlas, within {_power(ERROR)}")
 
@@ -206,7 +206,7 @@ def diagram_from_atlas(contact: LineContact, definition: Definition, speeds: tup
     low, high = atlas.BOX["relative_roughness"]
     inside = np.clip(h, low * load, high * load)
     ends = (max(speeds[0] * unit, atlas.BOX["speed"][0]), min(speeds[1] * unit, atlas.BOX["speed"][1]))
-    found = transition_speeds(load, inside, contact.friction_coefficient, contact.beta, definition, ends, narrowings=1)
+    found = transition_speeds(load, inside, contact.boundary_friction, contact.beta, definition, ends, narrowings=1)
     boundary, hydrodynamic, minimum = (
         np.where(inside == h, line / unit, math.nan) for line in (found.boundary, found.hydrodynamic, found.minimum)
     )

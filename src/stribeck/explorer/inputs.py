@@ -65,7 +65,7 @@ FIELDS = {
     "roughness": Field("Roughness", "h<sub>rms</sub>", 1e-9, 1e-4, ("nm", "µm", "mm")),
     "radius": Field("Radius", "R", 1e-4, 1.0, ("mm", "cm", "m")),
     "modulus": Field("Modulus", "E*", 1e4, 1e12, ("kPa", "MPa", "GPa")),
-    "friction_coefficient": Field("Dry friction", "µ<sub>0</sub>", 0.01, 2.0),
+    "boundary_friction": Field("Dry friction", "µ<sub>0</sub>", 0.01, 2.0),
     "alpha": Field("Law decay", "α", 0.5, 5.0),
     "beta": Field("Law strength", "β", 1e-3, 2.0),
 }
@@ -212,7 +212,7 @@ def _with_group(inputs: Inputs, name: str, value: float) -> Inputs:
     contact = inputs.contact
     change: dict[str, Any] = {name.removesuffix("_group"): value}
     groups = replace(contact.groups, **change)
-    kept = ("radius", "modulus", "viscosity", "alpha", "beta", "friction_coefficient")
+    kept = ("radius", "modulus", "viscosity", "alpha", "beta", "boundary_friction")
     moved = LineContact.from_groups(groups, **{key: getattr(contact, key) for key in kept})
     return replace(inputs, contact=moved)
 

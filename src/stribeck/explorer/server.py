@@ -94,7 +94,7 @@ def example() -> Inputs:
         roughness="1 um",
         alpha=2.0,
         beta=0.06,
-        friction_coefficient=0.7,
+        boundary_friction=0.7,
     )
     return Inputs(contact, units_of(contact), title="PDMS cylinder in glycerol-water")
 

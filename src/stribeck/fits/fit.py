@@ -121,7 +121,7 @@ def fit(
         data = read_measurements(data, settings)
     names = free_names(free) if free is not None else settings.free or DEFAULT_FREE
     if not names:
-        raise InputError("free is empty; name at least one input to fit, such as friction_coefficient.")
+        raise InputError("free is empty; name at least one input to fit, such as boundary_friction.")
     if robust is not None:
         settings = replace(settings, robust=robust)
     settings = replace(settings, per_curve=tuple(name for name in settings.per_curve if name in names))

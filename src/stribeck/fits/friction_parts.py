@@ -1,6 +1,6 @@
 """Friction of many states with its derivatives, for fits: read off the atlas, solved, or whichever holds.
 
-The two parts of the friction come for mu0 = beta = 1, so that both may differ from state to state.
+The two parts of the friction come for boundary_friction = beta = 1, so that both may differ from state to state.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ ATLAS_ERROR = 2.4e-5
 
 @dataclass(frozen=True)
 class Parts:
-    """Both parts of the friction of n states for mu0 = beta = 1, and their derivatives.
+    """Both parts of the friction of n states for boundary_friction = beta = 1, and their derivatives.
 
     Parameters
     ----------

@@ -140,7 +140,7 @@ def _weak_alone(column: Array) -> bool:
 
 def _off_plateau(free: FreeInput, prediction: Prediction) -> bool:
     """Return whether a friction coefficient shows in no row by itself."""
-    return free.name == "friction_coefficient" and float(prediction.contact_share.max()) < 0.5
+    return free.name == "boundary_friction" and float(prediction.contact_share.max()) < 0.5
 
 
 def _tie(first: str, other: str, a: float, b: float) -> str:
@@ -168,7 +168,7 @@ def _reason(free: FreeInput, prediction: Prediction) -> str:
     error = float((prediction.error / prediction.friction).max())
     # A share below its error is said to be that at most.
     asperities, fluid = (max(float(part.max()), error) for part in (prediction.contact_share, prediction.fluid_share))
-    if free.name == "friction_coefficient":
+    if free.name == "boundary_friction":
         return (
             f"asperities cause at most {_percent(asperities)} of the friction in any row, and a curve without a boundary "
             "plateau cannot give it"

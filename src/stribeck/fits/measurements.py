@@ -125,7 +125,7 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     rows: list[tuple[str, int, float, float, float, dict[str, float]]] = []
     empty: list[int] = []
     frictions = columns["friction"]
-    given = [name for name in columns if name in QUANTITIES and name not in ("speed", "friction_coefficient")]
+    given = [name for name in columns if name in QUANTITIES and name not in ("speed", "boundary_friction")]
     for i, number in enumerate(table.numbers):
         place = reader.value(i, columns[abscissa][0], abscissa)
         label = table.rows[i][table.header.index(columns["curve"][0])] if "curve" in columns else ""

@@ -185,18 +185,18 @@ class FrictionModel:
         self.logs = self.logs_at(data.curve, data.values)
 
     def _exponents(self, curve: int) -> list[list[float]]:
-        """Return the exponents with which each free input enters the groups, mu0 and beta of a curve."""
+        """Return the exponents with which each free input enters the groups, boundary_friction and beta of a curve."""
         rows = []
         for free in self.free:
             speed, load, roughness = EXPONENTS[free.name]
             if self.data.abscissa == "hersey_number" and free.name == "load":
                 speed += 1  # U = H F_N/eta
-            row = [speed, load, roughness, free.name == "friction_coefficient", free.name == "beta"]
+            row = [speed, load, roughness, free.name == "boundary_friction", free.name == "beta"]
             rows.append([float(x) * (free.curve in (None, curve)) for x in row])
         return rows
 
     def logs_at(self, curve: Indices, values: Array) -> Array:
-        """Return the logarithms of groups, mu0 and beta at any places of the abscissa, all factors being one.
+        """Return the logarithms of groups, boundary_friction and beta at any places of the abscissa, all factors being one.
 
         Parameters
         ----------
@@ -208,7 +208,7 @@ class FrictionModel:
         Returns
         -------
         ndarray, shape (n, 5)
-            ln of speed group, load group, roughness group, mu0 and beta; minus infinity where one is zero.
+            ln of speed group, load group, roughness group, boundary_friction and beta; minus infinity where one is zero.
         """
         rows = np.empty((len(self.contacts), 5))
         for i, contact in enumerate(self.contacts):
@@ -216,7 +216,7 @@ class FrictionModel:
             eta, F_N = contact.viscosity, contact.load
             per_value = {"speed": 1.0, "speed_viscosity": 1 / eta, "hersey_number": F_N / eta}
             speed = float(g.speed) * per_value[self.data.abscissa]
-            rows[i] = speed, float(g.load), float(g.roughness), contact.friction_coefficient, contact.beta
+            rows[i] = speed, float(g.load), float(g.roughness), contact.boundary_friction, contact.beta
         with np.errstate(divide="ignore"):
             found = np.log(rows)[curve]
         found[:, 0] += np.log(values)

@@ -5,13 +5,29 @@ A contact, a case file, the columns of a sweep and the settings of a fit all rea
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 from stribeck.quantities.units import DIMENSIONS, InputError, format_si, show, to_si
 
-__all__ = ["INPUTS", "QUANTITIES", "Quantity", "SYMBOLS", "check_modulus_choice", "quantity", "si_text", "unit_of"]
+__all__ = [
+    "FORMER",
+    "INPUTS",
+    "QUANTITIES",
+    "SYMBOLS",
+    "Quantity",
+    "check_modulus_choice",
+    "quantity",
+    "refuse_former",
+    "si_text",
+    "unit_of",
+]
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
 @dataclass(frozen=True)
@@ -31,13 +47,16 @@ QUANTITIES = {
     "roughness": Quantity("length", zero=True),
     "alpha": Quantity("number"),
     "beta": Quantity("number"),
-    "friction_coefficient": Quantity("number", zero=True),
+    "boundary_friction": Quantity("number", zero=True),
     "modulus": Quantity("pressure"),
     "youngs_modulus": Quantity("pressure"),
     "poisson_ratio": Quantity("number", zero=True, highest=0.5),
 }
 
-INPUTS = ("radius", "load", "viscosity", "speed", "roughness", "alpha", "beta", "friction_coefficient", "modulus")
+FORMER = {"friction_coefficient": "boundary_friction", "mu0": "boundary_friction"}
+"""What inputs were once called, and the names that took their place."""
+
+INPUTS = ("radius", "load", "viscosity", "speed", "roughness", "alpha", "beta", "boundary_friction", "modulus")
 """The quantities of :class:`stribeck.LineContact`, in its order."""
 
 
@@ -50,7 +69,7 @@ SYMBOLS = {
     "roughness": r"$h_\mathrm{rms}$",
     "alpha": r"$\alpha$",
     "beta": r"$\beta$",
-    "friction_coefficient": r"$\mu_0$",
+    "boundary_friction": r"$\mu_0$",
 }
 """Symbols for pictures."""
 
@@ -83,6 +102,18 @@ def quantity(name: str, value: Any) -> float:
         allowed = "zero or positive" if wanted.zero else "positive"
         raise InputError(f"{name} = {show(value)} must be {allowed}.")
     return result
+
+
+def refuse_former(function: Callable[P, R]) -> Callable[P, R]:
+    """Return the function such that an argument under one of the :data:`FORMER` names is refused with the present name."""
+
+    @functools.wraps(function)
+    def checked(*args: P.args, **kwargs: P.kwargs) -> R:
+        for old in FORMER.keys() & kwargs.keys():
+            raise InputError(f"{old} = {show(kwargs[old])}: this input is called {FORMER[old]}; write {FORMER[old]} = ...")
+        return function(*args, **kwargs)
+
+    return checked
 
 
 def check_modulus_choice(modulus: Any, youngs_modulus: Any, poisson_ratio: Any) -> None:

@@ -11,7 +11,7 @@ INPUTS = (
     "roughness",
     "alpha",
     "beta",
-    "friction_coefficient",
+    "boundary_friction",
 )
 """What a contact is made of, in the order in which outputs name it."""
 

@@ -177,7 +177,7 @@ def transition_distances(
         notes.append("At rest neither load nor roughness nor viscosity changes the regime.")
     if contact.roughness == 0 and contact.speed > 0:
         notes.append("Smooth surfaces touch at no speed and no load: there is no boundary and no mixed lubrication.")
-    if contact.friction_coefficient == 0:
+    if contact.boundary_friction == 0:
         notes.append("Without dry friction all friction is that of the fluid, and every state counts as hydrodynamic.")
     if contact.groups.load >= largest_load(contact.law) and contact.roughness > 0:
         notes.append("From load group 1 on the fluid must carry a part at any speed; there may be no boundary lubrication.")
@@ -230,7 +230,7 @@ class _Scan:
 
     def _both_ways(self, name: Over, value: float) -> Distance:
         # Zero speed, zero roughness and zero dry friction hold the regime, whatever else changes.
-        held = self.contact.speed == 0 or self.contact.friction_coefficient == 0 or self.contact.roughness == 0
+        held = self.contact.speed == 0 or self.contact.boundary_friction == 0 or self.contact.roughness == 0
         if held:
             return Distance(name, None, None, (value, value))
         low, high = _limits(self.contact, name)
@@ -240,7 +240,7 @@ class _Scan:
 
     def _from_zero(self, name: Over) -> Distance:
         """Return the change with more of an input that is zero."""
-        if self.contact.friction_coefficient == 0 or (name == "roughness" and self.contact.speed == 0):
+        if self.contact.boundary_friction == 0 or (name == "roughness" and self.contact.speed == 0):
             return Distance(name, None, None, (0.0, 0.0))
         if self.contact.roughness == 0 and name == "speed":
             return Distance(name, None, Crossing("hydrodynamic", 0.0, math.inf), (0.0, 0.0))

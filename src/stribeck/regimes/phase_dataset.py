@@ -145,16 +145,16 @@ def _formula_speeds(diagram: Diagram) -> dict[str, Array]:
     from stribeck.asymptotics.rough import load_sharing, transitions
 
     groups, unit = _row_groups(diagram)
-    mu0, beta = diagram.mu0, diagram.beta
+    boundary_friction, beta = diagram.boundary_friction, diagram.beta
     with np.errstate(all="ignore"):
         shares = load_sharing.speed_at_fluid_share.function
         found = {
             "formula_speed_at_5_percent_fluid": shares(groups, BOUNDARY_FLUID_SHARE),
             "formula_speed_at_half_fluid": shares(groups, 0.5),
             "formula_speed_boundary_to_mixed": transitions.speed_boundary_to_mixed.function(groups),
-            "formula_speed_at_minimum": transitions.speed_at_minimum.function(groups, mu0, beta),
+            "formula_speed_at_minimum": transitions.speed_at_minimum.function(groups, boundary_friction, beta),
             "printed_speed_boundary_to_mixed": transitions.speed_boundary_to_mixed.function(groups, printed=True),
-            "printed_speed_at_minimum": transitions.speed_at_minimum.function(groups, mu0, beta, printed=True),
+            "printed_speed_at_minimum": transitions.speed_at_minimum.function(groups, boundary_friction, beta, printed=True),
         }
         smooth = (np.asarray(groups.roughness) == 0) | (not transitions.speed_at_minimum.holds_for(groups.law))
         return {name: np.where(smooth, np.nan, np.broadcast_to(values, unit.shape) / unit) for name, values in found.items()}
@@ -167,7 +167,7 @@ def _formula_merging(diagram: Diagram) -> Array:
     loads = np.asarray(groups.load)[:, 0]
     if not transitions.speed_at_minimum.holds_for(groups.law):
         return np.full(len(loads), np.nan)
-    line = np.asarray(transitions.merging_roughness(loads, diagram.mu0, diagram.beta))
+    line = np.asarray(transitions.merging_roughness(loads, diagram.boundary_friction, diagram.beta))
     if diagram.contact is None:
         return line
     return line / float(diagram.contact.replace(roughness=1.0).groups.roughness)
@@ -183,7 +183,7 @@ def _attributes(diagram: Diagram) -> dict[str, Any]:
         "definition": diagram.definition,
         **law_attributes(_row_groups(diagram)[0].law),
         "rtol": diagram.rtol,
-        "mu0": diagram.mu0,
+        "boundary_friction": diagram.boundary_friction,
         "beta": diagram.beta,
     }
     if diagram.contact is not None:

@@ -24,6 +24,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.curves.speed_range import automatic_speeds
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes import phase_from_atlas as atlas_phase
 from stribeck.regimes.phase_grid import FIELDS, MARKS, REGIMES, Diagram, empty_diagram
@@ -40,6 +41,7 @@ DENSITY = 4
 """States per decade that a row has at least, so that its transitions are seen and soon located."""
 
 
+@refuse_former
 @one_blas_thread
 def phase_diagram(
     problem: LineContact | Groups | None = None,
@@ -48,7 +50,7 @@ def phase_diagram(
     speed: Any = None,
     roughness: Any = None,
     points: int | Mapping[str, int] | None = None,
-    mu0: float | None = None,
+    boundary_friction: float | None = None,
     beta: float | None = None,
     definition: Definition = "paper",
     rtol: float = 1e-4,
@@ -69,7 +71,7 @@ def phase_diagram(
         the grid reaches from the boundary plateau to the hydrodynamic branch of all its rows.
     points : int or dict of str to int, optional
         Points of the ranges, for all or by name; 2 loads, 25 roughnesses and 61 speeds where not given.
-    mu0, beta : float, optional
+    boundary_friction, beta : float, optional
         Friction coefficient of the dry contact and coefficient of the contact law [-]; those of the contact, or 1.
     definition : {"paper", "balanced"}
         Definition of the viscous friction.
@@ -109,7 +111,7 @@ def phase_diagram(
     """
     check_rtol(rtol)
     diagram = empty_diagram(
-        problem, {"load": load, "roughness": roughness, "speed": speed}, points, mu0, beta, definition, rtol, law
+        problem, {"load": load, "roughness": roughness, "speed": speed}, points, boundary_friction, beta, definition, rtol, law
     )
     from stribeck.regimes.phase_dataset import diagram_dataset, import_xarray
 
@@ -144,7 +146,7 @@ def _fill_row(diagram: Diagram, i: int, j: int, report: Callable[[float], None])
         _fill_rest(diagram, problem, (i, j, wanted.pop(0.0)))
     values = _filled(np.array(list(wanted)), groups, unit, diagram)
     settings: dict[str, Any] = {
-        "mu0": diagram.mu0,
+        "boundary_friction": diagram.boundary_friction,
         "beta": diagram.beta,
         "definition": diagram.definition,
         "rtol": diagram.rtol,
@@ -181,7 +183,7 @@ def _fill_rest(diagram: Diagram, problem: LineContact | Groups, place: tuple[int
 
 
 def _enter(diagram: Diagram, place: tuple[int, int, int], solution: Solution) -> None:
-    friction = solution.friction(diagram.mu0, diagram.beta, diagram.definition)
+    friction = solution.friction(diagram.boundary_friction, diagram.beta, diagram.definition)
     contact = friction.contact / friction.total if friction.total > 0 else 0.0
     shares = solution.fluid_load_share, contact
     films = solution.central_gap, solution.lambda_ratio
@@ -200,8 +202,8 @@ def _enter_lines(diagram: Diagram, place: tuple[int, int], curve: StribeckCurve,
     found = math.nan, math.nan
     if curve.minimum is not None:
         found = curve.minimum.value, curve.minimum.friction
-    elif groups.roughness > 0 and diagram.mu0 > 0:
-        branch = weakening(groups, diagram.mu0, diagram.beta, diagram.definition)
+    elif groups.roughness > 0 and diagram.boundary_friction > 0:
+        branch = weakening(groups, diagram.boundary_friction, diagram.beta, diagram.definition)
         found = branch.minimum_speed / unit, branch.minimum_friction
     diagram.lines["speed_at_minimum"][place], diagram.lines["friction_at_minimum"][place] = found
     diagram.velocity_weakening[place] = int(math.isfinite(found[0]))
@@ -211,7 +213,7 @@ def _filled(speeds: Array, groups: Groups, unit: float, diagram: Diagram) -> Arr
     """Return the speeds of a row: those of the grid, what lies in wide gaps, and as far out as its transitions may lie."""
     if len(speeds) > 1 and groups.roughness == 0:  # smooth surfaces have no transitions
         return speeds
-    low, high = (end / unit for end in automatic_speeds(groups, diagram.mu0, diagram.beta, diagram.definition))
+    low, high = (end / unit for end in automatic_speeds(groups, diagram.boundary_friction, diagram.beta, diagram.definition))
     ends = sorted({*speeds.tolist(), low, high} if len(speeds) else {low, high})
     pieces = [np.geomspace(*pair, 1 + max(1, round(DENSITY * math.log10(pair[1] / pair[0]))))[:-1] for pair in pairwise(ends)]
     return np.concatenate([*pieces, ends[-1:]])
@@ -223,7 +225,9 @@ def _merging_line(diagram: Diagram) -> Array:
     for i in range(len(line)):
         _, groups, _ = diagram.problem(i, 0)
         try:
-            group = merging_roughness(float(groups.load), diagram.mu0, diagram.beta, diagram.definition, law=groups.law)
+            group = merging_roughness(
+                float(groups.load), diagram.boundary_friction, diagram.beta, diagram.definition, law=groups.law
+            )
         except SolveError:
             continue
         line[i] = group if diagram.contact is None else _in_metres(diagram.contact, group)

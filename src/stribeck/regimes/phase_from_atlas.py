@@ -15,6 +15,7 @@ from stribeck.contacts.line import Groups
 from stribeck.curves.atlas_curve import ERROR, AtlasCurve
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.phase_grid import MARKS, REGIMES, Diagram
 
@@ -50,11 +51,12 @@ class TransitionSpeeds:
     error: Array
 
 
+@refuse_former
 @one_blas_thread
 def transition_speeds(
     load: float,
     roughness: Array,
-    mu0: float = 1.0,
+    boundary_friction: float = 1.0,
     beta: float = 1.0,
     definition: Definition = "paper",
     speeds: tuple[float, float] = atlas.BOX["speed"],
@@ -68,7 +70,7 @@ def transition_speeds(
         Load group [-].
     roughness : ndarray, shape (n,)
         Roughness groups [-].
-    mu0, beta : float
+    boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
     definition : {"paper", "balanced"}
         Definition of the viscous friction.
@@ -95,8 +97,10 @@ def transition_speeds(
 
     def signs(s: Array, h: Array) -> Array:
         """Return what passes from below to above zero at each of the three, shape (3, ...)."""
-        fluid, contact, viscous, slope = atlas.shares_and_friction(Groups(np.exp(s), load, h), mu0, beta, definition)
-        solid = mu0 * contact
+        fluid, contact, viscous, slope = atlas.shares_and_friction(
+            Groups(np.exp(s), load, h), boundary_friction, beta, definition
+        )
+        solid = boundary_friction * contact
         return np.stack(
             [
                 np.log(np.maximum(fluid, 1e-300) / BOUNDARY_FLUID_SHARE),
@@ -164,10 +168,10 @@ def fill(diagram: Diagram) -> None:
 
 
 def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups) -> None:
-    mu0, beta, definition = diagram.mu0, diagram.beta, diagram.definition
-    friction = np.asarray(atlas.friction(groups, mu0, beta, definition))
+    boundary_friction, beta, definition = diagram.boundary_friction, diagram.beta, diagram.definition
+    friction = np.asarray(atlas.friction(groups, boundary_friction, beta, definition))
     fluid, central = np.asarray(atlas.fluid_load_share(groups)), np.asarray(atlas.central_gap(groups))
-    contact = mu0 * np.asarray(atlas.contact_load_share(groups)) / np.where(friction > 0, friction, 1.0)
+    contact = boundary_friction * np.asarray(atlas.contact_load_share(groups)) / np.where(friction > 0, friction, 1.0)
     kappa = float(groups.relative_roughness)
     values = {
         "friction": friction,
@@ -194,12 +198,12 @@ def _enter_lines(diagram: Diagram, row: tuple[int, int], groups: Groups, unit: f
         return Groups(speed, groups.load, groups.roughness, law=groups.law)
 
     speeds = np.geomspace(low, high, 1 + DENSITY * round(np.log10(high / low)))
-    curve = AtlasCurve("speed", speeds, groups_at, None, diagram.mu0, diagram.beta, diagram.definition)
+    curve = AtlasCurve("speed", speeds, groups_at, None, diagram.boundary_friction, diagram.beta, diagram.definition)
     marks = {mark.name: mark.value for mark in curve.transitions}
     for variable, name in MARKS.items():
         if name in marks:
             diagram.lines[variable][row] = marks[name] / unit
-    minima = sorted(curve.local_minima(), key=lambda mark: mark.friction) if diagram.mu0 > 0 else []
+    minima = sorted(curve.local_minima(), key=lambda mark: mark.friction) if diagram.boundary_friction > 0 else []
     if minima:
         diagram.lines["speed_at_minimum"][row] = minima[0].value / unit
         diagram.lines["friction_at_minimum"][row] = minima[0].friction

@@ -64,7 +64,7 @@ class Diagram:
         The contact, where the axes are in SI units.
     axes : dict of str to ndarray
         Values of load, roughness and speed, ascending.
-    mu0, beta : float
+    boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
     definition : {"paper", "balanced"}
         Definition of the viscous friction.
@@ -78,7 +78,7 @@ class Diagram:
 
     contact: LineContact | None
     axes: dict[str, Array]
-    mu0: float
+    boundary_friction: float
     beta: float
     definition: Definition
     rtol: float
@@ -116,7 +116,7 @@ def empty_diagram(
     problem: LineContact | Groups | None,
     given: dict[str, Any],
     points: int | Mapping[str, int] | None,
-    mu0: float | None,
+    boundary_friction: float | None,
     beta: float | None,
     definition: Definition,
     rtol: float,
@@ -125,7 +125,7 @@ def empty_diagram(
     """Return the empty diagram that the arguments ask for."""
     problem = problem if problem is None else with_law(problem, law)
     contact = problem if isinstance(problem, LineContact) else None
-    mu0, beta = coefficients(contact, mu0, beta)
+    boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     definition = check_definition(definition)
     if problem is not None:
         as_groups(problem)
@@ -138,12 +138,12 @@ def empty_diagram(
     law = named_law(law) if isinstance(law, str) else check_law(law)
     if law is None and problem is not None:
         law = problem.law
-    corners = Diagram(contact, axes | {"speed": np.ones(1)}, mu0, beta, definition, rtol, law)
+    corners = Diagram(contact, axes | {"speed": np.ones(1)}, boundary_friction, beta, definition, rtol, law)
     if given["speed"] is None:
         axes["speed"] = _automatic_axis(corners, counts["speed"])
     else:
         axes["speed"] = _axis("speed", given["speed"], contact is not None, counts["speed"])
-    return Diagram(contact, axes, mu0, beta, definition, rtol, law)
+    return Diagram(contact, axes, boundary_friction, beta, definition, rtol, law)
 
 
 def _points(points: int | Mapping[str, int] | None) -> dict[str, int]:
@@ -182,5 +182,5 @@ def _automatic_axis(diagram: Diagram, points: int) -> Array:
     ends = []
     for i, j in product((0, -1), repeat=2):
         _, groups, unit = diagram.problem(i, j)
-        ends += [end / unit for end in automatic_speeds(groups, diagram.mu0, diagram.beta, diagram.definition)]
+        ends += [end / unit for end in automatic_speeds(groups, diagram.boundary_friction, diagram.beta, diagram.definition)]
     return np.geomspace(min(ends), max(ends), points)

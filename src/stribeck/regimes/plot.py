@@ -349,7 +349,7 @@ def _footer(dataset: xarray.Dataset, loads: list[float]) -> list[tuple[str, str]
         if f"input_{key}" in attributes:
             first.append(f"{symbol} = {format_si(attributes[f'input_{key}'], QUANTITIES[key].dimension, 4)}")
     if "input_radius" not in attributes:
-        first += [rf"$\mu_0$ = {attributes['mu0']:.4g}", rf"$\beta$ = {attributes['beta']:.4g}"]
+        first += [rf"$\mu_0$ = {attributes['boundary_friction']:.4g}", rf"$\beta$ = {attributes['beta']:.4g}"]
     solved = int((dataset.regime.values >= 0).sum())
     count = f"{solved} states" if solved == dataset.regime.size else f"{solved} of {dataset.regime.size} states"
     error = float(np.nanmax(dataset.error_estimate.values, initial=0.0))

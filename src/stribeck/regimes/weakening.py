@@ -3,7 +3,7 @@ r"""Where the velocity-weakening branch disappears: the roughness from which fri
 With roughness the minimum of a Stribeck curve rises and meets the maximum before it; beyond, boundary lubrication passes to
 hydrodynamic without weakening, and the two lines of transition have merged.  All of it on solved states.
 
-Source: [BP] Conclusion, which names a minimum that exceeds mu0 and a branch that disappears as one; they are two
+Source: [BP] Conclusion, which names a minimum that exceeds boundary_friction and a branch that disappears as one; they are two
 (:data:`CRITERIA`).
 """
 
@@ -22,6 +22,7 @@ from stribeck.contacts.line import Groups
 from stribeck.curves.speed_range import automatic_speeds
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.corrector import Follower
@@ -33,7 +34,7 @@ __all__ = ["Weakening", "merging_roughness", "weakening"]
 Criterion = Literal["slope", "plateau"]
 
 CRITERIA: tuple[Criterion, ...] = get_args(Criterion)
-"""What merging means: the slope of the curve is nowhere negative, or its minimum is as high as the boundary plateau mu0."""
+"""What merging means: the slope of the curve is nowhere negative, or its minimum is as high as the boundary plateau boundary_friction."""
 
 POINTS_PER_DECADE = 3
 """Points on which the least slope of a curve is looked for, before it is located."""
@@ -82,8 +83,8 @@ class Weakening:
 class _Slopes:
     """The normalised slope of friction along ln(speed), each value from a state solved there."""
 
-    def __init__(self, groups: Groups, mu0: float, beta: float, definition: Definition, rtol: float) -> None:
-        self.groups, self.mu0, self.beta, self.definition = groups, mu0, beta, definition
+    def __init__(self, groups: Groups, boundary_friction: float, beta: float, definition: Definition, rtol: float) -> None:
+        self.groups, self.boundary_friction, self.beta, self.definition = groups, boundary_friction, beta, definition
         self.follower = Follower(self.at, rtol)
         self.points: dict[float, Point] = {}
         self.found: dict[float, float] = {}
@@ -98,20 +99,23 @@ class _Slopes:
             if point is None or point.state is None or point.values is None:
                 raise SolveError(Outcome.PATH_LOST, None, f"{describe(self.at(s))}: {Outcome.PATH_LOST.value}")
             self.points[s] = point
-            slope = float(friction_slopes(point.state, self.mu0, self.beta, self.definition)[0])
+            slope = float(friction_slopes(point.state, self.boundary_friction, self.beta, self.definition)[0])
             self.found[s] = slope / (self.beta * point.values.viscous_paper)
         return self.found[s]
 
     def friction(self, s: float) -> float:
         values = self.points[s].values
         assert values is not None
-        return self.mu0 * values.contact_load_share + self.beta * float(getattr(values, f"viscous_{self.definition}"))
+        return self.boundary_friction * values.contact_load_share + self.beta * float(
+            getattr(values, f"viscous_{self.definition}")
+        )
 
 
+@refuse_former
 @one_blas_thread
 def weakening(
     groups: Groups,
-    mu0: float | None = None,
+    boundary_friction: float | None = None,
     beta: float | None = None,
     definition: Definition = "paper",
     *,
@@ -125,7 +129,7 @@ def weakening(
     ----------
     groups : Groups
         One state, of which ``load`` and ``roughness`` count [-]; its speed is replaced.
-    mu0, beta : float, optional
+    boundary_friction, beta : float, optional
         Friction coefficient of the dry contact and coefficient of the contact law [-]; 1 if not given.
     definition : {"paper", "balanced"}
         Definition of the viscous friction.
@@ -150,9 +154,9 @@ def weakening(
     """
     as_groups(groups)
     check_rtol(rtol)
-    mu0, beta = coefficients(None, mu0, beta)
-    slope = _Slopes(groups, mu0, beta, check_definition(definition), rtol)
-    low, high = automatic_speeds(groups, mu0, beta, definition)
+    boundary_friction, beta = coefficients(None, boundary_friction, beta)
+    slope = _Slopes(groups, boundary_friction, beta, check_definition(definition), rtol)
+    low, high = automatic_speeds(groups, boundary_friction, beta, definition)
     count = max(8, math.ceil(POINTS_PER_DECADE * math.log10(high / low)))
     coarse = np.linspace(math.log(high), math.log(low), count).tolist()
     values = [slope(s) for s in coarse]
@@ -170,9 +174,10 @@ def weakening(
     return Weakening(math.exp(least), slope.found[least], math.exp(s), slope.friction(s))
 
 
+@refuse_former
 def merging_roughness(
     load: float,
-    mu0: float | None = None,
+    boundary_friction: float | None = None,
     beta: float | None = None,
     definition: Definition = "paper",
     *,
@@ -186,13 +191,13 @@ def merging_roughness(
     ----------
     load : float
         Load group [-].
-    mu0, beta : float, optional
+    boundary_friction, beta : float, optional
         Friction coefficient of the dry contact and coefficient of the contact law [-]; 1 if not given.  Their quotient counts.
     definition : {"paper", "balanced"}
         Definition of the viscous friction.
     criterion : {"slope", "plateau"}
         ``"slope"``: from here on friction nowhere falls with speed.  ``"plateau"``: from here on the minimum of friction,
-        where there still is one, lies above mu0 (the words of [BP]); always the smaller.
+        where there still is one, lies above boundary_friction (the words of [BP]); always the smaller.
     rtol : float
         Relative tolerance of the states, and of the result.
     law : LawShape, optional
@@ -223,16 +228,16 @@ def merging_roughness(
     if criterion not in CRITERIA:
         raise InputError(f"criterion = {show(criterion)}; it must be 'slope' or 'plateau'.")
     check_rtol(rtol)
-    mu0, beta = coefficients(None, mu0, beta)
+    boundary_friction, beta = coefficients(None, boundary_friction, beta)
     F = float(as_groups(Groups(1.0, load, 1.0))[0].load)
-    if mu0 == 0:
+    if boundary_friction == 0:
         return 0.0
 
     def excess(log_kappa: float) -> float:
-        found = weakening(Groups(1.0, F, F * math.exp(log_kappa), law=law), mu0, beta, definition, rtol=rtol)
+        found = weakening(Groups(1.0, F, F * math.exp(log_kappa), law=law), boundary_friction, beta, definition, rtol=rtol)
         if criterion == "slope" or not found.present:
             return found.slope
-        return found.minimum_friction / mu0 - 1
+        return found.minimum_friction / boundary_friction - 1
 
     return _root(excess, F, rtol)
 

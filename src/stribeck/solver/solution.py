@@ -16,6 +16,7 @@ from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import NAMES, Observables, gap_at
 from stribeck.numerics.panels import Mesh
+from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 
@@ -246,14 +247,17 @@ class Solution:
         """Hersey number eta U/F_N [-]: of the contact, or for beta = 1 where only groups are known."""
         return float(self.groups.hersey_number() if self.contact is None else self.contact.hersey_number)
 
-    def friction(self, mu0: float | None = None, beta: float | None = None, definition: Definition = "paper") -> Friction:
+    @refuse_former
+    def friction(
+        self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "paper"
+    ) -> Friction:
         r"""Return the friction coefficient.
 
         .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
 
         Parameters
         ----------
-        mu0 : float, optional
+        boundary_friction : float, optional
             Friction coefficient of the dry contact [-], >= 0; that of the contact, or 1, if omitted.
         beta : float, optional
             Coefficient of the contact law [-], > 0; that of the contact, or 1, if omitted.
@@ -275,12 +279,12 @@ class Solution:
         -----
         Source: [BP] Eq. (friction); theory.md, section 6, for the balanced form.
         """
-        mu0, beta = coefficients(self.contact, mu0, beta)
+        boundary_friction, beta = coefficients(self.contact, boundary_friction, beta)
         name = f"viscous_{check_definition(definition)}"
-        contact = mu0 * self.contact_load_share
+        contact = boundary_friction * self.contact_load_share
         viscous = beta * float(getattr(self.observables, name))
         share, relative = self.relative_errors[0], self.relative_errors[NAMES.index(name)]
-        return Friction(contact, viscous, contact + viscous, float(mu0 * share + abs(viscous) * relative))
+        return Friction(contact, viscous, contact + viscous, float(boundary_friction * share + abs(viscous) * relative))
 
     def profile(self, x: Array) -> Profile:
         """Return the fields at any positions from the polynomial on each panel.
@@ -346,12 +350,13 @@ class Solution:
             "SI",
         )
 
-    def to_dict(self, mu0: float | None = None, beta: float | None = None) -> dict[str, object]:
+    @refuse_former
+    def to_dict(self, boundary_friction: float | None = None, beta: float | None = None) -> dict[str, object]:
         """Return inputs, observables, both frictions, errors and outcome under their names, ready for JSON.
 
         Parameters
         ----------
-        mu0, beta : float, optional
+        boundary_friction, beta : float, optional
             As in :meth:`friction`.
 
         Returns
@@ -372,7 +377,7 @@ class Solution:
             result["central_area_fraction"] = self.central_area_fraction
             result["central_area_fraction_error"] = self.central_area_fraction_error
         for definition in DEFINITIONS:
-            f = self.friction(mu0, beta, definition)
+            f = self.friction(boundary_friction, beta, definition)
             parts = {"contact": f.contact, "viscous": f.viscous, "total": f.total, "error": f.error}
             result[f"friction_{definition}"] = parts
         result["errors"] = self.errors

@@ -31,7 +31,7 @@ class Chain:
     groups : tuple of tuple
         Speed, load and roughness group of each.
     inputs : dict of str to tuple
-        By the name of the input, its values: those of a contact in SI units, or ``mu0`` and ``beta``.
+        By the name of the input, its values: those of a contact in SI units, or ``boundary_friction`` and ``beta``.
     si : bool
         Which of the two.
     rtol : float
@@ -54,8 +54,8 @@ class Chain:
         return LineContact(**{name: self.inputs[name][i] for name in INPUTS}, law=self.law)
 
     def coefficients(self, i: int) -> tuple[float, float]:
-        """Return mu0 and beta of the i-th state."""
-        return self.inputs["friction_coefficient" if self.si else "mu0"][i], self.inputs["beta"][i]
+        """Return boundary_friction and beta of the i-th state."""
+        return self.inputs["boundary_friction"][i], self.inputs["beta"][i]
 
     def row(self, i: int, ended: Ended) -> tuple[Array, str]:
         """Return the numbers that a sweep keeps of the i-th state, and what there is to say about it."""

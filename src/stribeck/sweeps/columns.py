@@ -83,15 +83,18 @@ def input_columns(names: tuple[str, ...]) -> dict[str, tuple[str, str]]:
             found[name] = ("1", name.replace("_", " "))
         else:
             unit = unit_of(name) if name in QUANTITIES else "1"
-            found[name] = (unit, "friction coefficient of the dry contact" if name == "mu0" else name.replace("_", " "))
+            found[name] = (
+                unit,
+                "friction coefficient of the dry contact" if name == "boundary_friction" else name.replace("_", " "),
+            )
     return found
 
 
-def row_of(solution: Solution, mu0: float, beta: float) -> tuple[Array, str]:
+def row_of(solution: Solution, boundary_friction: float, beta: float) -> tuple[Array, str]:
     """Return the numbers of a state, in the order of :func:`columns_of`, and what there is to say about it."""
     values = [float(getattr(solution, name)) for name in OBSERVABLES]
     values += [solution.errors[name] for name in NAMES if name in OBSERVABLES]
-    frictions = [solution.friction(mu0, beta, definition) for definition in DEFINITIONS]
+    frictions = [solution.friction(boundary_friction, beta, definition) for definition in DEFINITIONS]
     values.append(frictions[0].contact)
     for friction in frictions:
         values += [friction.total, friction.viscous, friction.error]

@@ -20,7 +20,7 @@ from stribeck.cases.case import Case, contact_inputs, error_sentence, example_of
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
 from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.line import Groups, LineContact
-from stribeck.quantities.inputs import INPUTS, QUANTITIES, check_modulus_choice, quantity
+from stribeck.quantities.inputs import FORMER, INPUTS, QUANTITIES, check_modulus_choice, quantity
 from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.points import KINDS, RANDOM, Axis, Kind, points_of
 
@@ -29,8 +29,8 @@ __all__ = ["SweepDesign", "load_sweep"]
 MOST_STATES = 1_000_000
 
 GROUPS = ("speed", "load", "roughness")
-COEFFICIENTS = {"mu0": "friction_coefficient", "beta": "beta"}
-"""What friction needs beside groups, and the quantities that these are."""
+COEFFICIENTS = ("boundary_friction", "beta")
+"""What friction needs beside groups."""
 
 ELASTICITY = ("modulus", "youngs_modulus", "poisson_ratio")
 
@@ -54,7 +54,7 @@ class SweepDesign:
     varied : tuple of str
         The inputs that vary, in the order of the file.
     inputs : dict of str to ndarray
-        Every input at every state: in SI units, or ``mu0`` and ``beta`` beside the groups.
+        Every input at every state: in SI units, or ``boundary_friction`` and ``beta`` beside the groups.
     groups : ndarray, shape (n, 3)
         Speed, load and roughness group of each state.
     si : bool
@@ -101,9 +101,9 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
     Parameters
     ----------
     path : str or path-like
-        A TOML file: a table ``[contact]`` (as in a case file) or ``[groups]`` (``speed``, ``load``, ``roughness``, ``mu0``,
-        ``beta``) with what stays fixed, a table ``[vary]`` with what does not, and where wanted ``[design]`` (``kind``,
-        ``points``, ``seed``), ``[solver]`` (``rtol``), ``title`` and ``notes``.
+        A TOML file: a table ``[contact]`` (as in a case file) or ``[groups]`` (``speed``, ``load``, ``roughness``,
+        ``boundary_friction``, ``beta``) with what stays fixed, a table ``[vary]`` with what does not, and where wanted
+        ``[design]`` (``kind``, ``points``, ``seed``), ``[solver]`` (``rtol``), ``title`` and ``notes``.
 
     Returns
     -------
@@ -216,7 +216,7 @@ def _model() -> Any:
         roughness: si | None = None
         alpha: si | None = None
         beta: si | None = None
-        friction_coefficient: si | None = None
+        boundary_friction: si | None = None
         modulus: si | None = None
         youngs_modulus: si | None = None
         poisson_ratio: si | None = None
@@ -226,7 +226,7 @@ def _model() -> Any:
         speed: number | None = None
         load: number | None = None
         roughness: number | None = None
-        mu0: number | None = None
+        boundary_friction: number | None = None
         beta: number | None = None
         law: Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")] = Case.law
 
@@ -273,7 +273,8 @@ def _axis(name: str, entry: Any, kind: Kind, si: bool) -> Axis:
     """Return what one entry of ``[vary]`` says."""
     known = tuple(QUANTITIES) if si else (*GROUPS, *COEFFICIENTS)
     if name not in known:
-        raise InputError(f"{show(name)} cannot vary; known are {', '.join(known)}.")
+        hint = f"write {FORMER[name]}" if name in FORMER else f"known are {', '.join(known)}"
+        raise InputError(f"{show(name)} cannot vary; {hint}.")
     check: Callable[[str, Any], float] = quantity if si else _group
     if isinstance(entry, list):
         if not entry:
@@ -354,10 +355,7 @@ def _missing(fixed: dict[str, Any], varied: dict[str, Any], si: bool, by_tables:
 def _group(name: str, value: Any) -> float:
     """Return a group or a coefficient, checked."""
     if name in COEFFICIENTS:
-        try:
-            return quantity(COEFFICIENTS[name], value)
-        except InputError as problem:
-            raise InputError(str(problem).replace(COEFFICIENTS[name], name)) from None
+        return quantity(name, value)
     if isinstance(value, str):
         raise InputError(f"{name} = {show(value)} is text; groups are bare numbers, for values with units use [contact].")
     return float(getattr(Groups(**{**dict.fromkeys(GROUPS, 1.0), name: value}), name))

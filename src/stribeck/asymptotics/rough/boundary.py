@@ -221,7 +221,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "pape
 )
 def friction(
     groups: Groups,
-    mu0: float = 1.0,
+    boundary_friction: float = 1.0,
     beta: float = 1.0,
     viscous: Viscous = "paper",
     form: PhiForm = "quadrature",
@@ -235,7 +235,7 @@ def friction(
     ----------
     groups : Groups
         Uses all three groups [-]; arrays broadcast.
-    mu0 : float
+    boundary_friction : float
         Friction coefficient of the dry contact [-].
     beta : float
         Coefficient of the contact law [-].
@@ -264,4 +264,4 @@ def friction(
     Source: [BP] Eqs. (friction_contact), (fluid-normal-dl).
     """
     mu_f = viscous_friction.function(groups, beta, "neglected" if printed else viscous)
-    return mu0 * contact_load_share.function(groups, form, printed) + mu_f
+    return boundary_friction * contact_load_share.function(groups, form, printed) + mu_f

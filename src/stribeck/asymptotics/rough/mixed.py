@@ -112,7 +112,9 @@ def contact_load_share(groups: Groups, film: Film = "uniform", *, printed: bool 
     worst=0.09,
     source="ours; [BP] Eq. (friction_hydro-mixed_transition)",
 )
-def friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, film: Film = "uniform", *, printed: bool = False) -> Value:
+def friction(
+    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, film: Film = "uniform", *, printed: bool = False
+) -> Value:
     r"""Return the friction where asperities reach through a film.
 
     .. math::
@@ -126,7 +128,7 @@ def friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, film: Film = "
     ----------
     groups : Groups
         All three [-]; arrays broadcast.
-    mu0 : float
+    boundary_friction : float
         Friction coefficient of the dry contact [-].
     beta : float
         Coefficient of the contact law [-].
@@ -162,14 +164,14 @@ def friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, film: Film = "
     film = _film(film, printed)
     share = contact_load_share.function(groups, film, printed=printed)
     if film == "large":
-        return mu0 * share + friction_large.function(groups, beta, printed=printed)
+        return boundary_friction * share + friction_large.function(groups, beta, printed=printed)
     viscous = friction_uniform.function(groups, beta)
     if film == "central":
-        return mu0 * share + viscous
+        return boundary_friction * share + viscous
     with np.errstate(all="ignore"):
         ratio = np.divide(central_gap.function(groups), groups.relative_roughness)
         lean = np.where(np.equal(share, 0), 0.0, ratio * groups.speed**0.2 * share)[()]
-    return mu0 * share + viscous + math.pi / 2 * beta * FILM_CONSTANT**2 * groups.load**0.5 * lean
+    return boundary_friction * share + viscous + math.pi / 2 * beta * FILM_CONSTANT**2 * groups.load**0.5 * lean
 
 
 def lambert_w(z: Value, branch: int = 0) -> Array:

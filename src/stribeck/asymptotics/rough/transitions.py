@@ -63,7 +63,7 @@ BOX = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 0.01))
     source="ours; [BP] Eqs. (Lambda_solution) and (Lambda_asymptotic)",
 )
 def lambda_ratio_at_minimum(
-    groups: Groups, mu0: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
+    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
 ) -> Value:
     r"""Return the central gap over h_rms/alpha at the friction minimum.
 
@@ -76,7 +76,7 @@ def lambda_ratio_at_minimum(
     ----------
     groups : Groups
         Uses ``load`` and ``roughness`` [-]; arrays broadcast.
-    mu0 : float
+    boundary_friction : float
         Friction coefficient of the dry contact [-].
     beta : float
         Coefficient of the contact law [-].
@@ -107,10 +107,10 @@ def lambda_ratio_at_minimum(
     """
     form = "expansion" if printed else checked_form(form)
     if form == "uniform":
-        speed = speed_at_minimum.function(groups, mu0, beta)
+        speed = speed_at_minimum.function(groups, boundary_friction, beta)
         with np.errstate(all="ignore"):
             return np.divide(central_gap.function(Groups(_known(speed), 1.0, 0.0)), groups.relative_roughness) + 0 * speed
-    k = np.asarray(weakening_number(groups, mu0, beta, printed=printed))
+    k = np.asarray(weakening_number(groups, boundary_friction, beta, printed=printed))
     with np.errstate(all="ignore"):
         k = np.where(k < LARGEST_WEAKENING, k, np.nan)
         if form == "exact":
@@ -128,7 +128,7 @@ def lambda_ratio_at_minimum(
     source="ours; [BP] Eq. (lambda_min)",
 )
 def speed_at_minimum(
-    groups: Groups, mu0: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
+    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
 ) -> Value:
     r"""Return the speed at the friction minimum.
 
@@ -138,7 +138,7 @@ def speed_at_minimum(
     ----------
     groups : Groups
         Uses ``load`` and ``roughness`` [-]; arrays broadcast.
-    mu0 : float
+    boundary_friction : float
         Friction coefficient of the dry contact [-].
     beta : float
         Coefficient of the contact law [-].
@@ -169,11 +169,11 @@ def speed_at_minimum(
     kappa = groups.relative_roughness
     c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
     if form == "uniform":
-        ratio = film_ratio_at_minimum(groups, mu0, beta)
+        ratio = film_ratio_at_minimum(groups, boundary_friction, beta)
     elif printed:
-        ratio = _leading_as_printed(groups, mu0, beta)
+        ratio = _leading_as_printed(groups, boundary_friction, beta)
     else:
-        ratio = lambda_ratio_at_minimum.function(groups, mu0, beta, form)
+        ratio = lambda_ratio_at_minimum.function(groups, boundary_friction, beta, form)
     with np.errstate(all="ignore"):
         return np.power(kappa * ratio / c, 5 / 3)
 
@@ -186,7 +186,7 @@ def speed_at_minimum(
     source="ours; [BP] Eq. (minimal_friction)",
 )
 def friction_at_minimum(
-    groups: Groups, mu0: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
+    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
 ) -> Value:
     r"""Return the least friction of a Stribeck curve.
 
@@ -199,7 +199,7 @@ def friction_at_minimum(
     ----------
     groups : Groups
         Uses ``load`` and ``roughness`` [-]; arrays broadcast.
-    mu0 : float
+    boundary_friction : float
         Friction coefficient of the dry contact [-].
     beta : float
         Coefficient of the contact law [-].
@@ -231,9 +231,15 @@ def friction_at_minimum(
     form = "leading" if printed else checked_form(form)
     c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
     if form == "uniform":
-        speed = speed_at_minimum.function(groups, mu0, beta)
-        return mixed.friction.function(Groups(_known(speed), groups.load, groups.roughness), mu0, beta) + 0 * speed
-    ratio = _leading_as_printed(groups, mu0, beta) if printed else lambda_ratio_at_minimum.function(groups, mu0, beta, form)
+        speed = speed_at_minimum.function(groups, boundary_friction, beta)
+        return (
+            mixed.friction.function(Groups(_known(speed), groups.load, groups.roughness), boundary_friction, beta) + 0 * speed
+        )
+    ratio = (
+        _leading_as_printed(groups, boundary_friction, beta)
+        if printed
+        else lambda_ratio_at_minimum.function(groups, boundary_friction, beta, form)
+    )
     scale: Value = 4 * beta / (3 * math.pi * c ** (5 / 3)) * np.power(groups.roughness, 2 / 3) * np.power(groups.load, -1 / 6)
     with np.errstate(all="ignore"):
         bracket: Value = 2 / 3 * np.power(ratio, -1 / 3) + np.power(ratio, -2 / 3 if printed else 2 / 3)
@@ -281,9 +287,9 @@ def speed_boundary_to_mixed(groups: Groups, *, printed: bool = False) -> Value:
         return found[()]
 
 
-def _leading_as_printed(groups: Groups, mu0: float, beta: float) -> Value:
+def _leading_as_printed(groups: Groups, boundary_friction: float, beta: float) -> Value:
     with np.errstate(all="ignore"):
-        leading: Value = -np.log(weakening_number(groups, mu0, beta, printed=True))
+        leading: Value = -np.log(weakening_number(groups, boundary_friction, beta, printed=True))
     return leading
 
 

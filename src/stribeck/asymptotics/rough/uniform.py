@@ -84,7 +84,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
     worst=0.075,
     source="ours",
 )
-def friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Value:
+def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Value:
     r"""Return the friction coefficient.
 
     .. math:: \mu = \mu_0 S + \mu_f
@@ -93,7 +93,7 @@ def friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, definition: De
     ----------
     groups : Groups
         The states [-]; arrays broadcast.
-    mu0 : float
+    boundary_friction : float
         Friction coefficient of the dry contact [-].
     beta : float
         Coefficient of the contact law [-].
@@ -120,7 +120,7 @@ def friction(groups: Groups, mu0: float = 1.0, beta: float = 1.0, definition: De
     """
     odds = log_odds(groups)
     share = np.exp(-np.logaddexp(0.0, odds))
-    return (mu0 * share + _viscous(groups, odds, beta, definition))[()]
+    return (boundary_friction * share + _viscous(groups, odds, beta, definition))[()]
 
 
 def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition) -> Array:

@@ -42,7 +42,7 @@ ROUGHNESSES = (1e-7, 1e3)
 """Relative roughness between which the uniform law is asked for its merging."""
 
 
-def weakening_number(groups: Groups, mu0: float = 1.0, beta: float = 1.0, *, printed: bool = False) -> Value:
+def weakening_number(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, *, printed: bool = False) -> Value:
     r"""Return the number on which the minimum of friction depends in the limit of small roughness.
 
     .. math:: k = \frac{2}{9 c^{5/3}} \frac{\beta \bar h_\mathrm{rms}^{2/3} \bar F_N^{1/3}}{\mu_0}
@@ -51,7 +51,7 @@ def weakening_number(groups: Groups, mu0: float = 1.0, beta: float = 1.0, *, pri
     ----------
     groups : Groups
         Uses ``load`` and ``roughness`` [-]; arrays broadcast.
-    mu0 : float
+    boundary_friction : float
         Friction coefficient of the dry contact [-].
     beta : float
         Coefficient of the contact law [-].
@@ -69,12 +69,12 @@ def weakening_number(groups: Groups, mu0: float = 1.0, beta: float = 1.0, *, pri
     """
     c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
     with np.errstate(divide="ignore"):
-        scale = np.divide(2 * beta, 9 * c ** (5 / 3) * mu0)
+        scale = np.divide(2 * beta, 9 * c ** (5 / 3) * boundary_friction)
     number: Value = scale * np.power(groups.roughness, 2 / 3) * np.power(groups.load, 1 / 3)
     return number
 
 
-def has_minimum(groups: Groups, mu0: float = 1.0, beta: float = 1.0, form: Form = "uniform") -> Flags:
+def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform") -> Flags:
     r"""Tell where friction has a minimum over the speed.
 
     .. math:: k < (3e)^{-1/3} = 0.4968
@@ -83,7 +83,7 @@ def has_minimum(groups: Groups, mu0: float = 1.0, beta: float = 1.0, form: Form 
     ----------
     groups : Groups
         Uses ``load`` and ``roughness`` [-]; arrays broadcast.
-    mu0 : float
+    boundary_friction : float
         Friction coefficient of the dry contact [-].
     beta : float
         Coefficient of the contact law [-].
@@ -108,11 +108,13 @@ def has_minimum(groups: Groups, mu0: float = 1.0, beta: float = 1.0, form: Form 
     Source: [BP] Eq. (Lambda_solution), whose condition is not stated there.
     """
     if checked_form(form) == "uniform":
-        return np.isfinite(film_ratio_at_minimum(groups, mu0, beta))
-    return np.asarray(weakening_number(groups, mu0, beta) < LARGEST_WEAKENING)
+        return np.isfinite(film_ratio_at_minimum(groups, boundary_friction, beta))
+    return np.asarray(weakening_number(groups, boundary_friction, beta) < LARGEST_WEAKENING)
 
 
-def merging_roughness(load: Value, mu0: float = 1.0, beta: float = 1.0, criterion: Criterion = "uniform") -> Value:
+def merging_roughness(
+    load: Value, boundary_friction: float = 1.0, beta: float = 1.0, criterion: Criterion = "uniform"
+) -> Value:
     r"""Return the roughness from which the branch of falling friction is gone, by formulas.
 
     .. math::
@@ -127,13 +129,13 @@ def merging_roughness(load: Value, mu0: float = 1.0, beta: float = 1.0, criterio
     ----------
     load : float or array_like
         Load group [-].
-    mu0 : float
+    boundary_friction : float
         Friction coefficient of the dry contact [-].
     beta : float
         Coefficient of the contact law [-].
     criterion : {"uniform", "plateau", "lines", "weakening"}
         ``"uniform"``: :func:`stribeck.asymptotics.rough.mixed.friction` no longer falls anywhere.
-        ``"plateau"``: the minimum of [BP]'s friction reaches mu0, what its Conclusion names.
+        ``"plateau"``: the minimum of [BP]'s friction reaches boundary_friction, what its Conclusion names.
         ``"lines"``: the two transitions of [BP],
         ``speed_boundary_to_mixed`` and ``speed_at_minimum`` (exact), meet, what its Conclusion means by merging.
         ``"weakening"``: the minimum of [BP]'s friction disappears, k = 0.4968.
@@ -156,7 +158,7 @@ def merging_roughness(load: Value, mu0: float = 1.0, beta: float = 1.0, criterio
     Load                 0.001  0.01   0.1    0.5
     ===================  =====  =====  =====  =====
     solver, no minimum   0.784  0.343  0.160  0.103
-    solver, above mu0    0.577  0.254  0.122  0.084
+    solver, above boundary_friction    0.577  0.254  0.122  0.084
     uniform              0.813  0.297  0.115  0.040
     plateau              12.2   2.69   0.645  0.266
     lines                0.271  0.672  1.59   1.21
@@ -172,7 +174,7 @@ def merging_roughness(load: Value, mu0: float = 1.0, beta: float = 1.0, criterio
         raise InputError(f"criterion = {show(criterion)}; it must be 'uniform', 'plateau', 'lines' or 'weakening'.")
     F = np.asarray(Groups(0.0, load, 0.0).load)
     if criterion == "uniform":
-        return _uniform_merging(F, mu0, beta)
+        return _uniform_merging(F, boundary_friction, beta)
     c = FILM_CONSTANT
     with np.errstate(all="ignore"):
         if criterion == "plateau":
@@ -180,13 +182,13 @@ def merging_roughness(load: Value, mu0: float = 1.0, beta: float = 1.0, criterio
             ratio = -2 / 3 - lambert_w(argument, -1)
         elif criterion == "lines":
             phi = np.where(np.less(F, 1), phi_of(F), np.nan)
-            ratio = 3 * lambert_w(np.power(9 * c**5 * mu0 / (2 * beta * F * phi), 1 / 3) / 3)
+            ratio = 3 * lambert_w(np.power(9 * c**5 * boundary_friction / (2 * beta * F * phi), 1 / 3) / 3)
         else:
             ratio = np.full(np.shape(F), 1 / 3)
         # Below 1/3 lies the other branch, the maximum.
         ratio = np.where(ratio >= 1 / 3, ratio, np.nan)
         k = np.power(ratio, 1 / 3) * np.exp(-ratio)
-        found: Value = np.power(9 * c ** (5 / 3) * k * mu0 / (2 * beta * np.power(F, 1 / 3)), 1.5)[()]
+        found: Value = np.power(9 * c ** (5 / 3) * k * boundary_friction / (2 * beta * np.power(F, 1 / 3)), 1.5)[()]
         return found
 
 
@@ -197,39 +199,39 @@ def checked_form(form: Form) -> Form:
     return form
 
 
-def _uniform_slopes(load: Value, kappa: Value, mu0: float, beta: float, log_ratio: Value) -> Array:
+def _uniform_slopes(load: Value, kappa: Value, boundary_friction: float, beta: float, log_ratio: Value) -> Array:
     """Return differences of the uniform law over the speed, of the sign of its slope."""
 
     def friction(log_ratio: Value) -> Value:
         speed = np.power(np.exp(log_ratio) * kappa / FILM_CONSTANT, 5 / 3)
-        return mixed.friction.function(Groups(speed, load, kappa * load), mu0, beta)
+        return mixed.friction.function(Groups(speed, load, kappa * load), boundary_friction, beta)
 
     return np.asarray(friction(log_ratio + STEP) - friction(log_ratio - STEP))
 
 
-def film_ratio_at_minimum(groups: Groups, mu0: float, beta: float) -> Value:
+def film_ratio_at_minimum(groups: Groups, boundary_friction: float, beta: float) -> Value:
     """Return the film ratio at which the uniform law has its minimum, nan where it has none."""
     load, kappa = np.broadcast_arrays(groups.load, groups.relative_roughness)
     ratios = np.linspace(math.log(FILM_RATIOS[0]), math.log(FILM_RATIOS[1]), SEARCH_POINTS).reshape(-1, *(1,) * load.ndim)
-    falling = _uniform_slopes(load, kappa, mu0, beta, ratios) < 0
+    falling = _uniform_slopes(load, kappa, boundary_friction, beta, ratios) < 0
     last = SEARCH_POINTS - 1 - np.argmax(falling[::-1], axis=0)
     found = falling.any(axis=0) & (last < SEARCH_POINTS - 1) & (kappa > 0)
     low = ratios.ravel()[np.minimum(last, SEARCH_POINTS - 2)]
     high = ratios.ravel()[np.minimum(last, SEARCH_POINTS - 2) + 1]
     for _ in range(BISECTIONS):
         middle = (low + high) / 2
-        falls = _uniform_slopes(load, kappa, mu0, beta, middle) < 0
+        falls = _uniform_slopes(load, kappa, boundary_friction, beta, middle) < 0
         low, high = np.where(falls, middle, low), np.where(falls, high, middle)
     return np.where(found, np.exp(low), np.nan)[()]
 
 
-def _uniform_merging(load: Value, mu0: float, beta: float) -> Value:
+def _uniform_merging(load: Value, boundary_friction: float, beta: float) -> Value:
     """Return the roughness from which the uniform law has no minimum, nan where that lies outside ROUGHNESSES."""
     low, high = (np.full(np.shape(load), math.log(end)) for end in ROUGHNESSES)
 
     def falls(log_kappa: Array) -> Flags:
         groups = Groups(1.0, load, load * np.exp(log_kappa))
-        return np.isfinite(film_ratio_at_minimum(groups, mu0, beta))
+        return np.isfinite(film_ratio_at_minimum(groups, boundary_friction, beta))
 
     inside = falls(low) & ~falls(high)
     for _ in range(BISECTIONS):

@@ -50,14 +50,14 @@ def _plain(content: Any) -> Any:
     return content
 
 
-def solution_json(solution: Solution, mu0: float | None = None, beta: float | None = None) -> dict[str, Any]:
+def solution_json(solution: Solution, boundary_friction: float | None = None, beta: float | None = None) -> dict[str, Any]:
     """Return :meth:`Solution.to_dict`, and under ``si`` inputs and films of the contact, if any, in SI units.
 
     Parameters
     ----------
     solution : Solution
         The state.
-    mu0, beta : float, optional
+    boundary_friction, beta : float, optional
         As in :meth:`Solution.friction`.
 
     Returns
@@ -65,7 +65,7 @@ def solution_json(solution: Solution, mu0: float | None = None, beta: float | No
     dict
         Ready for :func:`dump`.
     """
-    found: dict[str, Any] = solution.to_dict(mu0, beta)
+    found: dict[str, Any] = solution.to_dict(boundary_friction, beta)
     found["hersey_number"] = hersey_of(solution, beta)
     if solution.contact is not None:
         films = si_films(solution)
@@ -109,7 +109,7 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[s
         "definition": curve.definition,
         **law_json(curve.law),
         "rtol": curve.rtol,
-        "mu0": curve.mu0,
+        "boundary_friction": curve.boundary_friction,
         "beta": curve.beta,
         "inputs": None if curve.contact is None else _inputs(curve.contact),
         "units": None if curve.contact is None else _units(),

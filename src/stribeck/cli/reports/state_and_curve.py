@@ -31,7 +31,7 @@ __all__ = ["print_curve", "print_solution"]
 
 
 def print_solution(
-    console: Console, solution: Solution, title: str, mu0: float | None = None, beta: float | None = None
+    console: Console, solution: Solution, title: str, boundary_friction: float | None = None, beta: float | None = None
 ) -> None:
     """Print one state as a table with units and errors.
 
@@ -43,22 +43,24 @@ def print_solution(
         The state.
     title : str
         Headline.
-    mu0, beta : float, optional
+    boundary_friction, beta : float, optional
         As in :meth:`Solution.friction`.
     """
     print_head(console, title, solution.contact, solution.groups)
     columns = (0, 1, 3) if solution.contact is None else (0, 1, 2, 3)
     table = table_of(*(("quantity", "value", "in SI", "error")[i] for i in columns))
-    for row in _solution_rows(solution, mu0, beta):
+    for row in _solution_rows(solution, boundary_friction, beta):
         table.add_row(*(row[i] for i in columns))
     console.print(table)
     print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes)
 
 
-def _solution_rows(solution: Solution, mu0: float | None, beta: float | None) -> Iterator[tuple[str, str, str, str]]:
+def _solution_rows(
+    solution: Solution, boundary_friction: float | None, beta: float | None
+) -> Iterator[tuple[str, str, str, str]]:
     errors = solution.errors
     for definition in DEFINITIONS:
-        f = solution.friction(mu0, beta, definition)
+        f = solution.friction(boundary_friction, beta, definition)
         relative = f.error / f.total if f.total > 0 else 0.0
         yield f"friction coefficient ({definition})", digits(f.total, relative), "", error_text(relative)
         yield "  from asperities", part(f.contact, f.error), "", ""
@@ -87,7 +89,7 @@ def _solution_rows(solution: Solution, mu0: float | None, beta: float | None) ->
     if not math.isnan(solution.central_area_fraction):
         area, error = solution.central_area_fraction, solution.central_area_fraction_error
         yield "real contact area at x = 0", part(area, error), "", error_text(error / area) if area > 0 else ""
-    regime = regime_of(solution.fluid_load_share, contact_part(solution.friction(mu0, beta)))
+    regime = regime_of(solution.fluid_load_share, contact_part(solution.friction(boundary_friction, beta)))
     yield "Hersey number", f"{hersey_of(solution, beta):.4g}", "", ""
     yield "regime", regime, "", ""
 

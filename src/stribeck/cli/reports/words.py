@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 LABELS = {
-    "friction_coefficient": "dry friction coefficient",
+    "boundary_friction": "dry friction coefficient",
     "alpha": "alpha of the contact law",
     "beta": "beta of the contact law",
 }
 """Names of inputs that are not words by themselves."""
 
-HANDS_ON = ("speed", "load", "viscosity", "modulus", "radius", "roughness", "friction_coefficient")
+HANDS_ON = ("speed", "load", "viscosity", "modulus", "radius", "roughness", "boundary_friction")
 """Inputs that one may change; alpha and beta follow from the surface."""
 
 Elasticities = dict[str, float]

@@ -45,7 +45,9 @@ def _compute(report: Report) -> xarray.Dataset:
     if not found.attrs["complete"]:
         reasons = {text for text in found.message.values.ravel() if text}
         raise SolveError(Outcome.PATH_LOST, None, " ".join(sorted(reasons)) or found.attrs["outcome"])
-    attributes = {name: found.attrs[name] for name in ("rtol", "mu0", "beta", "definition", "complete", "outcome")}
+    attributes = {
+        name: found.attrs[name] for name in ("rtol", "boundary_friction", "beta", "definition", "complete", "outcome")
+    }
     attributes |= {"error_estimate": float(found.error_estimate.max()), "finding": _finding(found)}
     found = found.drop_vars(["message", "outcome"])
     found.attrs = attributes
