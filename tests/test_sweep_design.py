@@ -113,6 +113,7 @@ GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
         (GROUPS + "[vary]\nspeed = 3\n", "[vary] speed = 3 must be a list of values, or a range as in"),
         (GROUPS + "[vary]\nspeed = [1, -1]\n", "[vary] speed = -1 must be finite and zero or positive."),
         (GROUPS + '[vary]\nspeed = ["1 m/s"]\n', "[vary] speed = '1 m/s' is text; groups are bare numbers"),
+        (GROUPS + "[vary]\nmu0 = [1]\n", "[vary] 'mu0' cannot vary; write boundary_friction."),
         (
             GROUPS + "[vary]\nspede = [1]\n",
             "[vary] 'spede' cannot vary; known are speed, load, roughness, boundary_friction, beta.",
