@@ -68,7 +68,9 @@ def test_a_contact_has_its_films_in_si_units_and_its_notes(tmp_path):
 
 
 def test_the_coefficients_scale_friction_on_the_same_states(tmp_path):
-    text = "[groups]\nload = 0.1\nroughness = 1e-3\n[vary]\nmu0 = [0.5, 1]\nbeta = [1, 0.1]\nspeed = [1e-3, 1e-4]\n"
+    text = (
+        "[groups]\nload = 0.1\nroughness = 1e-3\n[vary]\nboundary_friction = [0.5, 1]\nbeta = [1, 0.1]\nspeed = [1e-3, 1e-4]\n"
+    )
     found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset()
     cube = {
         name: found[name].values.reshape(2, 2, 2) for name in ("central_gap", "friction_paper_viscous", "friction_contact")

@@ -34,7 +34,7 @@ __all__ = ["Weakening", "merging_roughness", "weakening"]
 Criterion = Literal["slope", "plateau"]
 
 CRITERIA: tuple[Criterion, ...] = get_args(Criterion)
-"""What merging means: the slope of the curve is nowhere negative, or its minimum is as high as the boundary plateau boundary_friction."""
+"""What merging means: the slope of the curve is nowhere negative, or its minimum is as high as the boundary plateau mu0."""
 
 POINTS_PER_DECADE = 3
 """Points on which the least slope of a curve is looked for, before it is located."""
