@@ -8,15 +8,14 @@ from scipy.optimize import minimize_scalar
 
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
+from stribeck.equations.gap import gap_at, least_gap
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import (
     NAMES,
     friction_integrals,
     friction_integrands,
     friction_scale,
-    gap_at,
     gradients,
-    least_gap,
     observables,
 )
 from stribeck.numerics.panels import Mesh, base_edges

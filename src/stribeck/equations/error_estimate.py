@@ -22,8 +22,9 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
+from stribeck.equations.gap import far_gap
 from stribeck.equations.line import LOAD, Operators
-from stribeck.equations.observables import ROW, Observables, far_gap, friction_integrals, friction_scale, gradients
+from stribeck.equations.observables import ROW, Observables, friction_integrals, friction_scale, gradients
 from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import Rows
 from stribeck.fluids import newtonian as reynolds

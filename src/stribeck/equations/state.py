@@ -1,4 +1,4 @@
-"""Discrete states: the unknowns on one mesh, how they are predicted on another, and how that mesh is chosen.
+"""Discrete states: the unknowns on one mesh, and Newton's iteration that finds them.
 
 A state knows its groups, its equations and the Newton iteration that made it.  Between meshes travel the logarithm of the
 gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and the fluid pressure.
@@ -7,75 +7,26 @@ gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
+from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
-from stribeck.numerics.continuation import extrapolation_weights
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
-from stribeck.numerics.panels import Mesh, adapt
+from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outcome import Outcome
 
 CHORD = 0.25
 """Contraction above which a kept factorisation is given up."""
 
-LARGEST_AMPLIFICATION = 40.0
-"""Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
-
-ROUNDING = 1e-9
-"""Relative rounding of what tells where a panel lies."""
-
-LONG_REACH_ORDER = 14
-"""Nodes a panel from which the panel through infinity begins twice as far out, to keep up with them: the logarithm in the
-gap limits its order."""
-
 PREDICTION_GOAL = 0.5
 """Relative error of the predicted gap at which the step of a path is kept."""
-
-
-class Guess(Protocol):
-    """A guessed state, on the whole line."""
-
-    @property
-    def flux_gap(self) -> float:
-        """Guess of the flux gap."""
-
-    @property
-    def offset(self) -> float:
-        """Guess of the offset."""
-
-    @property
-    def least_position(self) -> float:
-        """About where the gap is least."""
-
-    def log_gap(self, mesh: Mesh) -> Array:
-        """Return the logarithm of the gap at the nodes of ``mesh``."""
-
-    def fields(self, x: Array) -> Array:
-        """Return the logarithm of the gap and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
-
-
-class RowsGuess(Protocol):
-    """What :func:`mesh_for` asks of guesses of states in rows."""
-
-    @property
-    def flux_gap(self) -> Array:
-        """Guess of the flux gaps, a column."""
-
-    @property
-    def least_position(self) -> Array:
-        """About where the gaps are least, a column."""
-
-    def fields(self, x: Array) -> Array:
-        """Return the logarithms of the gaps and, if known, the fluid pressures at ``x``, shape (1 or 2, rows, len(x))."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +96,12 @@ class State:
         return float(self.y[self.equations.layout.index("flux_gap")])
 
     @property
+    def exit(self) -> float:
+        """Exit of the film, from which x is measured; zero without one [a]."""
+        layout = self.equations.layout
+        return float(self.y[layout.index("exit")]) if "exit" in layout else 0.0
+
+    @property
     def least_position(self) -> float:
         """The node where the gap is least."""
         return float(self.mesh.nodes[np.argmin(self.gap)])
@@ -206,119 +163,6 @@ class State:
         return found
 
 
-@dataclass(frozen=True, eq=False)
-class Extrapolation:
-    """A guess from the states before it along a path."""
-
-    weights: Array
-    states: Sequence[State]
-
-    @property
-    def flux_gap(self) -> float:
-        """Extrapolated in its logarithm."""
-        return math.exp(sum(w * math.log(s.flux_gap) for w, s in zip(self.weights, self.states, strict=True)))
-
-    @property
-    def offset(self) -> float:
-        """That of the last state; Newton's first step corrects it exactly."""
-        return self.states[-1].offset
-
-    @property
-    def least_position(self) -> float:
-        """That of the last state."""
-        return self.states[-1].least_position
-
-    def log_gap(self, mesh: Mesh) -> Array:
-        """Return the logarithm of the gap at the nodes of ``mesh``."""
-        log_gap = np.zeros(mesh.size)
-        for w, s in zip(self.weights, self.states, strict=True):
-            log_gap += w * s.log_gap(mesh)
-        return log_gap
-
-    def fields(self, x: Array) -> Array:
-        """Return the logarithm of the gap and the fluid pressure at ``x``."""
-        fields = np.zeros((2, x.size))
-        for w, s in zip(self.weights, self.states, strict=True):
-            fields += w * s.fields(x)
-        return fields
-
-
-def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
-    """Return the guess at coordinate ``s`` by the highest polynomial through ``history`` that does not amplify errors."""
-    for first in range(len(history) - 1):
-        points = history[first:]
-        weights = extrapolation_weights([c for c, _ in points], s)
-        if np.abs(weights).sum() <= LARGEST_AMPLIFICATION:
-            return Extrapolation(weights, [state for _, state in points])
-    return history[-1][1]
-
-
-def mesh_for(
-    guess: Guess | RowsGuess,
-    groups: Groups,
-    law: ContactLaw,
-    order: int,
-    tolerance: float,
-    gap_tolerance: float = 1e-2,
-    profile_tolerance: float = np.inf,
-) -> Mesh:
-    """Return the coarsest mesh that resolves a guess, or those of many states that are to share it.
-
-    Parameters
-    ----------
-    guess : Guess or RowsGuess
-        The fields to resolve: contact and fluid pressure to ``tolerance``, relative to what a Hertz pressure has at that
-        distance from its edge, the square root of the half-width of the panel; the viscous shear 1/h, relative to that at
-        zero, to ``tolerance`` too, the logarithm of the gap to ten times that.
-    groups : Groups
-        Scalar groups; columns for states in rows.
-    law : ContactLaw
-        Contact pressure from the gap.
-    order : int
-        Nodes a panel.
-    tolerance : float
-        Legendre tail allowed on each panel.
-    profile_tolerance : float
-        That of the logarithm of the gap on all other panels, where it is below ten times ``tolerance``.
-    gap_tolerance : float
-        That of the logarithm of the gap on the panels where the central and the least gap are read off.
-
-    Raises
-    ------
-    MeshTooLargeError
-        If more panels are needed than :data:`mesh.MAX_PANELS`.
-    """
-    central_gap = np.exp(guess.fields(np.zeros(1))[0])
-    width = np.sqrt(1.0 + central_gap)
-    scale = 2.0 ** round(float(np.log2(width).mean()))
-
-    def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
-        flat = x.ravel()
-        found = guess.fields(flat)
-        gap = np.exp(found[0])
-        if len(found) == 2:
-            fluid = found[1]
-        else:
-            slopes = groups.speed * (gap - guess.flux_gap) / gap**3
-            fluid = slopes * np.repeat(half_widths, x.shape[1])
-        edge_scale = np.minimum(1.0, half_widths / width) ** 0.5
-        pressures = width / np.repeat(edge_scale, x.shape[1], axis=-1) * np.stack([law.pressure(gap), fluid])
-        nodal = (*gap.shape[:-1], *x.shape)
-        shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
-        centres = x.mean(axis=1)
-        at_zero = np.abs(centres) <= (1 + ROUNDING) * half_widths
-        read_off = at_zero | (np.abs(centres - guess.least_position) <= half_widths)
-        read_off &= stretch[:, 0] == 1.0
-        weight = max(0.1, tolerance / profile_tolerance)
-        shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[..., None]
-        shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
-        return np.concatenate([stretch * pressures.reshape(2, *nodal), shape[None], shear[None]])
-
-    start = guess.mesh if isinstance(guess, State) else None
-    reach = (8 if order < LONG_REACH_ORDER else 16) * scale
-    return adapt(fields, scale, reach, order, tolerance, start)
-
-
 def unknowns_on(operators: Operators, guess: Guess) -> Array:
     """Return the unknowns of a guess on the mesh of ``operators``."""
     mesh, layout = operators.mesh, operators.layout
@@ -327,6 +171,10 @@ def unknowns_on(operators: Operators, guess: Guess) -> Array:
         "offset": guess.offset,
         "flux_gap": guess.flux_gap,
     }
+    if "exit" in layout:
+        values["exit"] = guess.exit
+    if "pressure" in layout:
+        values["pressure"] = guess.fields(mesh.nodes)[1]
     return layout.stacked(**values)
 
 

@@ -19,8 +19,11 @@ from stribeck._types import Array
 from stribeck.contact_laws.scaled import BlendedShape
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
+from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
-from stribeck.equations.state import Guess, State, extrapolate, mesh_for, solve_state
+from stribeck.equations.prediction import extrapolate
+from stribeck.equations.resolution import mesh_for
+from stribeck.equations.state import State, solve_state
 from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
@@ -56,6 +59,11 @@ class RigidGuess:
     def offset(self) -> float:
         """The height."""
         return self.height
+
+    @property
+    def exit(self) -> float:
+        """The middle: a rigid film starts full films only."""
+        return 0.0
 
     @property
     def least_position(self) -> float:

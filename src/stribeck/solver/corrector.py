@@ -12,8 +12,11 @@ from dataclasses import replace
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import FineOperators, reads_off
+from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
-from stribeck.equations.state import Guess, State, extrapolate, mesh_for, solve_state
+from stribeck.equations.prediction import extrapolate
+from stribeck.equations.resolution import mesh_for
+from stribeck.equations.state import State, solve_state
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome

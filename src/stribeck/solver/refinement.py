@@ -12,9 +12,11 @@ from stribeck.contact_laws.law import has_constant_decay
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimates
+from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.state import Guess, State, mesh_for, solve_state
+from stribeck.equations.resolution import mesh_for
+from stribeck.equations.state import State, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
@@ -102,7 +104,7 @@ def converge(
 ) -> Point:
     """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
 
-    ``tolerances`` are the Legendre tails to start with, see :func:`states.mesh_for`; the point tells with which it ended.
+    ``tolerances`` are the Legendre tails to start with, see :func:`stribeck.equations.resolution.mesh_for`.
     ``profile_tolerance`` is the tail of the gap between the nodes, which no observable needs small.
     """
     base = solvable(groups)

@@ -14,7 +14,8 @@ from stribeck._types import Array, Indices
 from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
 from stribeck.contacts.line import Groups, LineContact
-from stribeck.equations.observables import NAMES, Observables, gap_at
+from stribeck.equations.gap import gap_at
+from stribeck.equations.observables import NAMES, Observables
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome

@@ -1,0 +1,98 @@
+"""The gap between the nodes: at any position, in the middle, and its minimum."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from stribeck._types import Array
+from stribeck.numerics.panels import Mesh, reference
+
+NEWTON_STEPS = 3
+LARGEST_STEP = 0.2
+"""Of the search for the least gap, the step in half-widths of a panel."""
+
+
+def gap_at(mesh: Mesh, h: Array, x: Array) -> Array:
+    """Return the gap at ``x`` from the panels' polynomials.
+
+    Those are of the logarithm of the gap over its growth, or of the gap over its growth where it touches zero; on the panel
+    through infinity they are of what the gap has beyond ``x**2/2 - ln|x|/2``.
+    """
+    far = mesh.scale**2 + x * x
+    if h.min() > 0:
+        gap = np.exp(mesh.interpolate(np.log(h / mesh.far), x)) * far
+    else:
+        gap = mesh.interpolate(h / mesh.far, x) * far
+    beyond = np.abs(x) > mesh.edges[-1]
+    if beyond.any():
+        x, tail = x[beyond], mesh.nodes[-mesh.order :]
+        rule = reference(mesh.order)
+        remainder = rule.interpolation(1 / (x * mesh.half_widths[-1])) @ (h[-mesh.order :] - far_gap(tail))
+        gap[beyond] = far_gap(x) + remainder
+    return np.asarray(gap)
+
+
+def far_gap(x: Array) -> Array:
+    """Return ``x**2/2 - ln|x|/2``, the gap far away but for a smooth function of ``1/x``."""
+    return 0.5 * x**2 - 0.5 * np.log(np.abs(x))
+
+
+def central_gap(mesh: Mesh, h: Array) -> Array:
+    """Return the gap at zero, where the panel right of it begins; that of every row of ``h``."""
+    first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
+    nodes = slice(first, first + mesh.order)
+    return np.asarray(np.exp(np.log(h[..., nodes] / mesh.far[nodes]) @ reference(mesh.order).left_end) * mesh.scale**2)
+
+
+def least_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
+    """Return position and value of the least gap, that of the panels' polynomials around the least node."""
+    order = mesh.order
+    panel, node = divmod(int(np.argmin(h)), order)
+    panels = {panel, panel - (node == 0), panel + (node == order - 1)}
+    found = [_least_on_panel(mesh, h, k) for k in panels if 0 <= k < mesh.panels - 1]
+    return min(found, key=lambda pair: pair[1]) if found else (float(mesh.nodes[np.argmin(h)]), float(h.min()))
+
+
+def _least_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
+    """Return position and value of the least gap on a panel, by Newton's iteration from its least node."""
+    nodes = slice(panel * mesh.order, (panel + 1) * mesh.order)
+    rule, c, d = reference(mesh.order), float(mesh.centres[panel]), float(mesh.half_widths[panel])
+    node = int(np.argmin(h[nodes]))
+    polynomial = (_taylor(mesh.order)[node] @ np.log(h[nodes] / mesh.far[nodes])).tolist()[::-1]
+    start = s = float(rule.nodes[node])
+    for _ in range(NEWTON_STEPS):
+        _, slope, curvature = _jet(polynomial, s - start)
+        x = c + d * s
+        far = mesh.scale**2 + x * x
+        slope += 2 * d * x / far
+        curvature += 2 * d * d * (mesh.scale**2 - x * x) / far**2
+        step = -slope / max(curvature, abs(slope) / LARGEST_STEP, 1e-300)
+        s = min(1.0, max(-1.0, s + step))
+    x = c + d * s
+    return x, math.exp(_jet(polynomial, s - start)[0]) * (mesh.scale**2 + x * x)
+
+
+@lru_cache(maxsize=32)
+def _taylor(order: int) -> Array:
+    """Matrices, one a node, from nodal values to the Taylor coefficients of their polynomial about that node."""
+    rule = reference(order)
+    coefficients, factor = rule.to_legendre, 1.0
+    found = np.empty((order, order, order))
+    for n in range(order):
+        found[:, n] = legendre.legvander(rule.nodes, order - 1) @ coefficients / factor
+        coefficients, factor = rule.derivative @ coefficients, factor * (n + 1)
+    return found
+
+
+def _jet(polynomial: list[float], t: float) -> tuple[float, float, float]:
+    """Return a polynomial, its highest coefficient first, and its first two derivatives at ``t``."""
+    value = slope = half_curvature = 0.0
+    for coefficient in polynomial:
+        half_curvature = half_curvature * t + slope
+        slope = slope * t + value
+        value = value * t + coefficient
+    return value, slope, 2 * half_curvature

@@ -1,0 +1,49 @@
+"""What a guess of a state must tell, on the whole line."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from stribeck._types import Array
+from stribeck.numerics.panels import Mesh
+
+
+class Guess(Protocol):
+    """A guessed state, on the whole line."""
+
+    @property
+    def flux_gap(self) -> float:
+        """Guess of the flux gap."""
+
+    @property
+    def offset(self) -> float:
+        """Guess of the offset."""
+
+    @property
+    def exit(self) -> float:
+        """Guess of the exit, from which x is measured if the film has a free one."""
+
+    @property
+    def least_position(self) -> float:
+        """About where the gap is least."""
+
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
+
+
+class RowsGuess(Protocol):
+    """What :func:`mesh_for` asks of guesses of states in rows."""
+
+    @property
+    def flux_gap(self) -> Array:
+        """Guess of the flux gaps, a column."""
+
+    @property
+    def least_position(self) -> Array:
+        """About where the gaps are least, a column."""
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithms of the gaps and, if known, the fluid pressures at ``x``, shape (1 or 2, rows, len(x))."""

@@ -1,0 +1,111 @@
+"""The prediction of a state from others: along a path, or seen from another origin."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.equations.guess import Guess
+from stribeck.equations.state import State
+from stribeck.numerics.continuation import extrapolation_weights
+from stribeck.numerics.panels import Mesh
+
+LARGEST_AMPLIFICATION = 40.0
+"""Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
+
+
+@dataclass(frozen=True, eq=False)
+class Extrapolation:
+    """A guess from the states before it along a path."""
+
+    weights: Array
+    states: Sequence[State]
+
+    @property
+    def flux_gap(self) -> float:
+        """Extrapolated in its logarithm."""
+        return math.exp(sum(w * math.log(s.flux_gap) for w, s in zip(self.weights, self.states, strict=True)))
+
+    @property
+    def offset(self) -> float:
+        """That of the last state; Newton's first step corrects it exactly."""
+        return self.states[-1].offset
+
+    @property
+    def exit(self) -> float:
+        """Extrapolated as it is."""
+        return float(sum(w * s.exit for w, s in zip(self.weights, self.states, strict=True)))
+
+    @property
+    def least_position(self) -> float:
+        """That of the last state."""
+        return self.states[-1].least_position
+
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
+        log_gap = np.zeros(mesh.size)
+        for w, s in zip(self.weights, self.states, strict=True):
+            log_gap += w * s.log_gap(mesh)
+        return log_gap
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap and the fluid pressure at ``x``."""
+        fields = np.zeros((2, x.size))
+        for w, s in zip(self.weights, self.states, strict=True):
+            fields += w * s.fields(x)
+        return fields
+
+
+def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
+    """Return the guess at coordinate ``s`` by the highest polynomial through ``history`` that does not amplify errors."""
+    for first in range(len(history) - 1):
+        points = history[first:]
+        weights = extrapolation_weights([c for c, _ in points], s)
+        if np.abs(weights).sum() <= LARGEST_AMPLIFICATION:
+            return Extrapolation(weights, [state for _, state in points])
+    return history[-1][1]
+
+
+@dataclass(frozen=True, eq=False)
+class SeenFrom:
+    """A state seen from another origin: the guess of a film that ends at a free exit there.
+
+    Attributes
+    ----------
+    state : State
+        The state, of a film without an exit.
+    exit : float
+        The guessed exit [a], the new origin.
+    """
+
+    state: State
+    exit: float
+
+    @property
+    def flux_gap(self) -> float:
+        """That of the state."""
+        return self.state.flux_gap
+
+    @property
+    def offset(self) -> float:
+        """That of the state."""
+        return self.state.offset
+
+    @property
+    def least_position(self) -> float:
+        """That of the state, from the new origin."""
+        return self.state.least_position - self.exit
+
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
+        return np.asarray(self.fields(mesh.nodes)[0])
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap and the fluid pressure at ``x``; beyond the exit the film carries nothing."""
+        found = self.state.fields(x + self.exit)
+        found[1, x > 0] = 0.0
+        return found
