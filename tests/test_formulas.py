@@ -128,8 +128,8 @@ def arguments(formula, groups):
 
 def test_the_table_holds_every_formula_of_the_package_once():
     found = {}
-    for module in pkgutil.iter_modules(asymptotics.__path__):
-        members = vars(importlib.import_module(f"stribeck.asymptotics.{module.name}")).values()
+    for module in pkgutil.walk_packages(asymptotics.__path__, "stribeck.asymptotics."):
+        members = vars(importlib.import_module(module.name)).values()
         found |= {id(member): member.name for member in members if isinstance(member, Formula)}
     assert sorted(found) == sorted(id(formula) for formula in FORMULAS), sorted(found.values())
 
