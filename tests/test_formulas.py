@@ -117,7 +117,7 @@ def states(formula):
 
 
 def coefficients(formula):
-    """Return mu0 and beta at the ends of the range of a formula, and one beside it; once nothing where it has no such range."""
+    """Return mu0 and beta at the ends of the range of a formula and in it; nothing, once, if it has no such range."""
     found = [limit for limit in formula.limits if limit.parameter == COEFFICIENTS]
     if not found:
         return [{}]

@@ -63,7 +63,7 @@ on the scale of the roughness over Hertz pressure), the fluid's load share at sl
 (lambda**2/kappa**4)/(2 (-ln F)**5), and the film ratio c lambda**(3/5)/kappa (smooth film over h_rms/alpha)."""
 
 COEFFICIENTS = "beta/mu0"
-"""The parameter of a range that no group holds: the coefficients of a friction law enter its relative error as this ratio only."""
+"""The parameter of a range that is not of the groups: coefficients enter the relative error of friction as this ratio."""
 
 
 @dataclass(frozen=True)

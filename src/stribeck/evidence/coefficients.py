@@ -1,8 +1,8 @@
 r"""Errors of the friction laws over the ratio of their coefficients, beta/mu0.
 
-Friction is :math:`\mu_0 S + \beta m`, with S and m of the groups alone, so that its relative error depends on beta/mu0: where that
-is small the share of asperities S counts even where little is left of it, where it is large the viscous part does even in
-boundary lubrication.  S and m are read off the atlas, whose own errors of 1e-5 do not matter here.
+Friction is :math:`\mu_0 S + \beta m`, with S and m of the groups alone, so that its relative error depends on beta/mu0.  Where
+that is small, the share of asperities S counts even where little is left of it; where it is large, the viscous part
+counts even in boundary lubrication.  S and m are read off the atlas, whose own errors of 1e-5 do not matter here.
 
 Source: none; this is the evidence for the limits in beta/mu0 of :data:`stribeck.asymptotics.FORMULAS`, shown in validity.md.
 """
@@ -19,6 +19,7 @@ from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.formula import COEFFICIENTS, Formula
 from stribeck.asymptotics.rough import boundary, mixed, transitions, uniform
 from stribeck.atlas import reading as atlas
+from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups
 
 __all__ = ["JUDGED", "RATIOS", "largest_errors"]
@@ -52,7 +53,7 @@ def _of_states(formula: Formula[Any], points: tuple[int, int], **options: Any) -
     groups = Groups(speed, load, kappa * load)
     inside = np.logical_and.reduce([limit.holds(groups, 1.0) for limit in formula.limits if limit.parameter != COEFFICIENTS])
     groups = Groups(speed[inside], load[inside], (kappa * load)[inside])
-    definition = next(iter(options.values()), "paper")
+    definition: Definition = next(iter(options.values()), "paper")
     share, viscous = atlas.contact_load_share(groups), atlas.viscous_friction(groups, 1.0, definition)
 
     def errors(ratio: float) -> Array:

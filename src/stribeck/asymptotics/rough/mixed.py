@@ -156,9 +156,10 @@ def friction(
     so that the contact pressure leans towards the outlet.  The balanced friction is without it.
 
     Against the solver, in the range: ``"uniform"`` within 9 %, 0.2 % in the median.  Where beta/mu0 is smaller, asperities
-    count at film ratios where little of their load is left, and the error is 17 % at 1e-3 and 29 % at 1e-4.  With
-    mu0 = beta = 1 and up to relative roughness 0.1: ``"uniform"`` within 3.5 % from film ratio 5 on; ``"central"`` from 28 % below to 290 % above, 7 % in the median; ``"large"`` from 76 % below, as the
-    viscous friction of relative roughness 0.1 is beyond its limit, to 300 % above, 31 % in the median.
+    count at film ratios where little of their load is left, and the error is 17 % at 1e-3 and 29 % at 1e-4.  With mu0 = beta =
+    1 and up to relative roughness 0.1: ``"uniform"`` within 3.5 % from film ratio 5 on; ``"central"`` from 28 % below to 290 %
+    above, 7 % in the median; ``"large"`` from 76 % below, as the viscous friction of relative roughness 0.1 is beyond its
+    limit, to 300 % above, 31 % in the median.
 
     Source: [BP] Eq. (friction_hydro-mixed_transition_dl); ours for ``"uniform"``.
     """

@@ -100,8 +100,8 @@ def lambda_ratio_at_minimum(
     Notes
     -----
     Against the central gap of the solver, in the range: ``"uniform"`` within 2.2 % for beta/mu0 = 1 and 4.4 % for 1e-3, 0.2
-    and 0.6 % in the median; beyond, 6 % at 1e-4, 9 % at 3 and 20 % at 10.  For mu0 = beta = 1 ``"exact"`` and ``"expansion"`` within 1.1 % and 1.5 % at relative roughness 1e-4, up to 13 % above at 0.01; ``"leading"``
-    up to 10 % below.
+    and 0.6 % in the median; beyond, 6 % at 1e-4, 9 % at 3 and 20 % at 10.  For mu0 = beta = 1 ``"exact"`` and ``"expansion"``
+    within 1.1 % and 1.5 % at relative roughness 1e-4, up to 13 % above at 0.01; ``"leading"`` up to 10 % below.
 
     Source: [BP] Eqs. (Lambda_solution) and (Lambda_asymptotic).
     """
@@ -160,8 +160,8 @@ def speed_at_minimum(
     Notes
     -----
     Against the solver, in the range: ``"uniform"`` within 1.9 % for beta/mu0 = 1 and 6.9 % for 1e-3, 0.3 and 1.1 % in the
-    median; beyond, 9 % at 1e-4, 10 % at 3 and 27 % at 10.  For mu0 = beta = 1 ``"exact"`` within 1.1 % at relative roughness 1e-4, up to 35 % above at 0.01; as printed from 14 % below to 12 % above, as its two errors
-    cancel.
+    median; beyond, 9 % at 1e-4, 10 % at 3 and 27 % at 10.  For mu0 = beta = 1 ``"exact"`` within 1.1 % at relative roughness
+    1e-4, up to 35 % above at 0.01; as printed from 14 % below to 12 % above, as its two errors cancel.
 
     Source: [BP] Eq. (lambda_min), which neglects the logarithm of a logarithm.
     """
@@ -222,9 +222,9 @@ def friction_at_minimum(
     Notes
     -----
     Against the solver, in the range: ``"uniform"`` within 1.1 % for beta/mu0 = 1 and 4.9 % for 1e-3, 0.1 and 0.6 % in the
-    median: the error grows by 1.3 % a decade towards light coefficients, whose minimum lies at a thicker film with less of the
-    load on asperities; beyond, 6.1 % at 1e-4 and 2.7 % at 10.  For mu0 = beta = 1 ``"exact"`` 6 to 8 % below at relative roughness 1e-4, 36 to 50 % at 0.01, an error that goes about as its square root; as printed 82 to 95 %
-    below.
+    median: the error grows by 1.3 % a decade towards small beta/mu0, where the minimum lies at a thicker film with less of the
+    load on asperities; beyond, 6.1 % at 1e-4 and 2.7 % at 10.  For mu0 = beta = 1 ``"exact"`` 6 to 8 % below at relative
+    roughness 1e-4, 36 to 50 % at 0.01, an error that goes about as its square root; as printed 82 to 95 % below.
 
     Source: [BP] Eq. (minimal_friction), with the sign of the second exponent corrected; it follows from Eqs.
     (friction_hydro-mixed_transition_dl) and (Lambda_solution).
