@@ -121,7 +121,8 @@ def coefficients(formula):
     found = [limit for limit in formula.limits if limit.parameter == COEFFICIENTS]
     if not found:
         return [{}]
-    return [{"mu0": 0.3, "beta": 0.3 * max(end, 1e-3)} for end in (found[0].low, found[0].high)] + [{"mu0": 1.0, "beta": 0.03}]
+    ends = [{"boundary_friction": 0.3, "beta": 0.3 * max(end, 1e-3)} for end in (found[0].low, found[0].high)]
+    return [*ends, {"boundary_friction": 1.0, "beta": 0.03}]
 
 
 def arguments(formula, groups):
@@ -165,12 +166,12 @@ def test_what_a_formula_says_of_itself_is_complete(formula):
 
 @NAMED
 def test_a_formula_of_both_coefficients_states_for_which_of_them_its_error_holds(formula):
-    has_both = {"mu0", "beta"} <= set(inspect.signature(formula.function).parameters)
+    has_both = {"boundary_friction", "beta"} <= set(inspect.signature(formula.function).parameters)
     assert formula.needs_coefficients == has_both
     if has_both:
         assert COEFFICIENTS in formula.range
         # What rubber and gels have, by the surfaces of theory.md, section 8.
-        assert formula.valid(states(formula)[0], mu0=1.0, beta=0.05) and formula.valid(states(formula)[0])
+        assert formula.valid(states(formula)[0], boundary_friction=1.0, beta=0.05) and formula.valid(states(formula)[0])
 
 
 @NAMED
@@ -250,7 +251,7 @@ def test_a_formula_is_silent_in_its_range(formula):
 
 
 @pytest.mark.parametrize("law", [law for law in FORMULAS if law.needs_coefficients], ids=lambda law: law.name)
-@pytest.mark.parametrize("given", [{"beta": 300.0}, {"mu0": 1e-6}, {"mu0": 0.0}])
+@pytest.mark.parametrize("given", [{"beta": 300.0}, {"boundary_friction": 1e-6}, {"boundary_friction": 0.0}])
 def test_a_friction_law_warns_of_coefficients_outside_its_range(law, given):
     groups = states(law)[0]
     value = law.function(groups, **given)
@@ -259,7 +260,7 @@ def test_a_friction_law_warns_of_coefficients_outside_its_range(law, given):
         found = law(groups, **given)
     assert found == pytest.approx(value, nan_ok=True)
     with pytest.warns(OutOfRangeWarning):
-        law(groups, given.get("mu0", 1.0), given.get("beta", 1.0))
+        law(groups, given.get("boundary_friction", 1.0), given.get("beta", 1.0))
 
 
 @NAMED

@@ -121,7 +121,7 @@ def test_coefficients_given_to_a_formula_hold_for_the_solver_too():
 def test_a_map_of_coefficients_outside_the_range_has_no_state_in_it():
     grid = {"load": 0.1, "relative_roughness": 0.01, "speed": [1e-6, 1e-4]}
     assert error_map(uniform.friction, **grid, beta=0.1)["valid"].values.all()
-    assert not error_map(uniform.friction, **grid, mu0=0.1, beta=0.7)["valid"].values.any()
+    assert not error_map(uniform.friction, **grid, boundary_friction=0.1, beta=0.7)["valid"].values.any()
 
 
 @pytest.mark.parametrize("name", ["mixed.friction", "friction_at_minimum"])

@@ -152,14 +152,14 @@ class Formula(Generic[Arguments]):
         """Whether the range depends on mu0 and beta."""
         return any(limit.parameter == COEFFICIENTS for limit in self.limits)
 
-    def valid(self, groups: Groups, mu0: float = 1.0, beta: float = 1.0) -> Flags:
+    def valid(self, groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0) -> Flags:
         """Return where all limits hold.
 
         Parameters
         ----------
         groups : Groups
             States.
-        mu0 : float
+        boundary_friction : float
             Friction coefficient of the dry contact [-].
         beta : float
             Coefficient of the contact law [-].
@@ -171,7 +171,7 @@ class Formula(Generic[Arguments]):
         """
         found = np.ones(groups.shape, dtype=bool)
         for limit in self.limits:
-            found = found & limit.holds(groups, _ratio(beta, mu0))
+            found = found & limit.holds(groups, _ratio(beta, boundary_friction))
         return found
 
     def __call__(self, groups: Groups, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Value:
@@ -191,7 +191,7 @@ class Formula(Generic[Arguments]):
             return {}
         call = inspect.signature(self.function).bind(groups, *args, **kwargs)
         call.apply_defaults()
-        return {name: call.arguments[name] for name in ("mu0", "beta")}
+        return {name: call.arguments[name] for name in ("boundary_friction", "beta")}
 
     def check_law(self, groups: Groups) -> None:
         """Refuse a contact law for which the formula was not derived; smooth contacts have none.

@@ -348,7 +348,7 @@ def _valid(formula: Formula[Any], groups: Groups, options: dict[str, Any]) -> Fl
     """Return where a formula is in its range, to which its ends belong although the grid is rounded."""
     steps = 1 - ROUNDING, 1 + ROUNDING
     near = [replace(groups, speed=groups.speed * i, roughness=groups.roughness * j) for i in steps for j in steps]
-    given = {name: options[name] for name in ("mu0", "beta") if name in options}
+    given = {name: options[name] for name in ("boundary_friction", "beta") if name in options}
     return np.asarray(np.logical_or.reduce([formula.valid(state, **given) for state in near]))
 
 
