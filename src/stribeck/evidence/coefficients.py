@@ -53,7 +53,7 @@ def _of_states(formula: Formula[Any], points: tuple[int, int], **options: Any) -
     groups = Groups(speed, load, kappa * load)
     inside = np.logical_and.reduce([limit.holds(groups, 1.0) for limit in formula.limits if limit.parameter != COEFFICIENTS])
     groups = Groups(speed[inside], load[inside], (kappa * load)[inside])
-    definition: Definition = next(iter(options.values()), "paper")
+    definition: Definition = next(iter(options.values()), "published")
     share, viscous = atlas.contact_load_share(groups), atlas.viscous_friction(groups, 1.0, definition)
 
     def errors(ratio: float) -> Array:
@@ -68,7 +68,7 @@ def _of_minimum(formula: Formula[Any], points: tuple[int, int]) -> Callable[[flo
 
     def parts(log_speed: Array) -> tuple[Array, Array]:
         groups = Groups(np.exp(log_speed), load, kappa * load)
-        return np.asarray(atlas.contact_load_share(groups)), np.asarray(atlas.viscous_friction(groups, 1.0, "paper"))
+        return np.asarray(atlas.contact_load_share(groups)), np.asarray(atlas.viscous_friction(groups, 1.0, "published"))
 
     coarse = np.log(FILM_RATIOS * kappa / FILM_CONSTANT) * 5 / 3
     share, viscous = parts(coarse)
@@ -97,10 +97,10 @@ def _of_minimum(formula: Formula[Any], points: tuple[int, int]) -> Callable[[flo
 
 
 JUDGED: dict[str, tuple[Formula[Any], dict[str, Any]]] = {
-    "uniform.friction, published": (uniform.friction, {"definition": "paper"}),
+    "uniform.friction, published": (uniform.friction, {"definition": "published"}),
     "uniform.friction, balanced": (uniform.friction, {"definition": "balanced"}),
     "mixed.friction": (mixed.friction, {}),
-    "boundary.friction": (boundary.friction, {"viscous": "paper"}),
+    "boundary.friction": (boundary.friction, {"viscous": "published"}),
     "speed_at_minimum": (transitions.speed_at_minimum, {}),
     "friction_at_minimum": (transitions.friction_at_minimum, {}),
     "lambda_ratio_at_minimum": (transitions.lambda_ratio_at_minimum, {}),

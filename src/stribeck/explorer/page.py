@@ -33,7 +33,7 @@ UPDATING = "Updating ..."
 PATIENCE = 2.0
 """Seconds after which a browser that does not answer gets the next picture all the same."""
 
-DEFINITIONS = {"paper": "as printed", "balanced": "balanced"}
+DEFINITIONS = {"balanced": "balanced", "published": "as published"}
 ABSCISSAS = {"speed": "speed", "hersey": "Hersey number"}
 
 

@@ -33,7 +33,7 @@ class Pin:
         What it is called.
     contact : LineContact
         Its contact.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Its friction.
     law : str
         Its contact law, as in :mod:`stribeck.explorer.carried`.
