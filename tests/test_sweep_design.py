@@ -116,7 +116,7 @@ GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
         (GROUPS + "[vary]\nmu0 = [1]\n", "[vary] 'mu0' cannot vary; write boundary_friction."),
         (
             GROUPS + "[vary]\nspede = [1]\n",
-            "[vary] 'spede' cannot vary; known are speed, load, roughness, boundary_friction, beta.",
+            "[vary] 'spede' cannot vary; did you mean speed.",
         ),
         (GROUPS + "[vary]\nspeed = [1]\nbeta = [0]\n", "[vary] beta = 0 must be positive."),
         (GROUPS + "[vary]\nspeed = { range = [1, 2] }\n", "[vary] speed: points = None must be a whole number from 2 to"),
