@@ -103,6 +103,40 @@ def test_a_header_may_stand_below_other_text(read):
     assert "row 2" in refused(read, "a;b\n# c\n" + PLAIN, header_row=2)
 
 
+PREAMBLE = "Tribometer 7\nOperator; N.N.\nSample;PDMS\nLoad;30;N\nDate;2024-01-05;12:30\n\n"
+
+
+@pytest.mark.parametrize("units", ["", "\nm/s;-"])
+def test_the_only_header_below_a_preamble_is_found(read, units):
+    header, rows = PLAIN.split("\n", 1)
+    found = read(PREAMBLE + header + units + "\n" + rows)
+    assert found.values == pytest.approx(SPEEDS) and found.friction == pytest.approx(FRICTIONS)
+    assert found.notes[0] == "5 rows of other text above the header skipped."
+    assert found.rows.min() == 8 + bool(units)
+
+
+def test_where_two_rows_may_be_the_header_the_error_names_header_row(read):
+    text = PREAMBLE + "stiffness;damping\n3;4\n\n" + PLAIN
+    assert "header_row" in refused(read, text)
+    assert read(text, header_row=10).values == pytest.approx(SPEEDS)
+
+
+def test_rows_of_spaces_below_a_header_of_tabs_are_read(read):
+    lines = PLAIN.replace(";", "\t").split("\n")
+    lines[2:4] = [line.replace("\t", "   ") for line in lines[2:4]]
+    assert read("\n".join(lines)).values == pytest.approx(SPEEDS)
+
+
+def test_a_force_is_not_taken_for_a_friction_coefficient(read):
+    sentence = refused(read, "Speed (mm/s);Traction Force (N)\n1;0.5\n2;0.4")
+    assert "none of which is a friction coefficient" in sentence and "over the normal force" in sentence
+    assert "as in friction = 'Traktion'" in refused(read, "Speed (mm/s);Traktion;Traction Force (N)\n1;0.5;3")
+
+
+def test_a_unit_of_angle_is_called_one(read):
+    assert "is an angle; expected a speed" in refused(read, "speed [rad];friction\n1;0.5\n2;0.4")
+
+
 def test_other_abscissas_are_read_in_si(read):
     found = read("eta U [mPa*s*m/s];mu\n1;0.5\n2;0.4\n3;0.3")
     assert (found.abscissa, found.values.tolist()) == ("speed_viscosity", [0.001, 0.002, 0.003])

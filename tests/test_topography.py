@@ -89,6 +89,17 @@ def test_what_is_not_of_the_format_of_its_ending_is_told(tmp_path, name, content
             read_topography(tmp_path / name, **given)
 
 
+def test_a_binary_file_under_an_ending_of_text_is_read_as_that_of_an_instrument(tmp_path, heights):
+    np.save(tmp_path / "z.npy", heights)
+    (tmp_path / "z.npy").rename(tmp_path / "scan.dat")  # the ending of MetroPro
+    read = read_topography(tmp_path / "scan.dat", unit="m", spacing="1 um")
+    assert np.array_equal(read.heights, heights)
+    (tmp_path / "bad.dat").write_bytes(b"\x88\x1b\x03\x6f" + bytes(5000))
+    with pytest.raises(sb.InputError, match="bad.dat") as caught:
+        read_topography(tmp_path / "bad.dat")
+    assert "the ending of its format" not in str(caught.value)
+
+
 def test_heights_under_an_ending_of_no_format_are_read(tmp_path, heights):
     np.savetxt(tmp_path / "a.heights", heights)
     assert read_topography(tmp_path / "a.heights", unit="m", spacing="1 um").heights.shape == heights.T.shape
@@ -180,7 +191,7 @@ TEXTS = {
     "no area": ("0;0;1\n0;0;1\n", {"unit": "um"}, "all points have the same x"),
     "either comma": ("1,5\n2,5\n", {"unit": "um"}, "may be two columns or one number"),
     "two points": ("1;2\n2;3\n", {"unit": "um"}, "2 points are too few"),
-    "binary": ("1\0;2\n", {"unit": "um"}, "is no text"),
+    "binary": ("1\0;2\n", {"unit": "um"}, "is not text"),
     "channel": ("1;2\n", {"channel": "Height"}, "plain text without channels"),
 }
 

@@ -17,7 +17,7 @@ from stribeck.contact_laws.persson import GAMMA, PerssonLaw, persson_law
 from stribeck.contact_laws.scaled import NAMED
 from stribeck.contact_laws.spectrum import Spectrum
 from stribeck.contact_laws.table import TableLaw
-from stribeck.files.two_columns import read_two_columns
+from stribeck.files.text_table import read_two_columns
 from stribeck.quantities.units import InputError, show
 
 __all__ = [

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stribeck._types import Array
-from stribeck.files.two_columns import read_two_columns
+from stribeck.files.text_table import read_two_columns
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["TableLaw"]

@@ -16,7 +16,7 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.lab_table import MISSING, LabTable, number_of, read_table
+from stribeck.files.text_table import MISSING, TextTable, number_of, read_table
 from stribeck.quantities.inputs import QUANTITIES, quantity
 from stribeck.quantities.units import InputError, show, to_si
 
@@ -48,6 +48,10 @@ WORDS = {
 LARGEST_FRICTION = 10.0
 """Friction coefficient from which percent are suspected."""
 
+BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}
+"""Units of a friction coefficient."""
+
+_FORCE = re.compile(r"force|kraft|\(m?N\)|\[m?N\]", re.IGNORECASE)
 _HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 
 
@@ -162,7 +166,7 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
 class _Reader:
     """Cells in SI units; a cell with a unit of its own is read with that."""
 
-    def __init__(self, table: LabTable, settings: FitSettings) -> None:
+    def __init__(self, table: TextTable, settings: FitSettings) -> None:
         self.table, self.settings = table, settings
         self.decimal = "," if table.decimal_comma else "."
         self.factors: dict[tuple[str, str], float] = {}
@@ -194,10 +198,9 @@ class _Reader:
     def _factor(self, unit: str, meaning: str, where: str) -> float:
         dimension = DIMENSION.get(meaning) or QUANTITIES[meaning].dimension
         if dimension == "number":
-            known = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}
-            if unit not in known:
+            if unit not in BARE:
                 raise InputError(f"{where} has the unit {show(unit)}; {meaning.replace('_', ' ')} is a bare number or in %.")
-            return known[unit]
+            return BARE[unit]
         if not unit:
             noun = meaning.replace("_", " ")
             raise InputError(
@@ -253,7 +256,7 @@ def _plain(text: str) -> str:
     return " ".join(re.sub(r"[^0-9a-zµμ]+", " ", text.lower()).split())
 
 
-def _columns(table: LabTable, settings: FitSettings) -> dict[str, list[str]]:
+def _columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
     """Return what is in the file -> headers of its columns."""
     found: dict[str, list[str]] = {}
     for meaning, wanted in settings.columns.items():
@@ -282,7 +285,13 @@ def _columns(table: LabTable, settings: FitSettings) -> dict[str, list[str]]:
         used = {name for names in found.values() for name in names}
         unknown = [name for name in table.header if name not in used] or [""]
         speeds = [name for name in unknown if re.search(r"/\s*(s|min|h)\b", _split(name)[1])]
-        examples = {"speed": (speeds or unknown)[0], "friction": unknown[-1]}
+        bare = [name for name in unknown if name not in speeds and _split(name)[1] in (*BARE, "") and not _FORCE.search(name)]
+        if "friction" in missing and not bare and any(_FORCE.search(name) for name in unknown):
+            raise InputError(
+                f"{table.path}: {_listed(table)}, none of which is a friction coefficient; a force is none: add a column "
+                "friction, the friction force over the normal force."
+            )
+        examples = {"speed": (speeds or unknown)[0], "friction": (bare or unknown)[-1]}
         raise InputError(
             f"{table.path}: {_listed(table)}, none of which is known as {' or '.join(missing)}; say which in [fit.columns] of "
             f"the case, as in {' and '.join(f'{name} = {show(examples[name])}' for name in missing)}."
@@ -290,11 +299,11 @@ def _columns(table: LabTable, settings: FitSettings) -> dict[str, list[str]]:
     return found
 
 
-def _listed(table: LabTable) -> str:
-    return f"the columns are {', '.join(show(name) for name in table.header if name)} (parted by {table.separator}s)"
+def _listed(table: TextTable) -> str:
+    return f"the columns are {', '.join(show(name) for name in table.header if name)} (separated by {table.separator}s)"
 
 
-def _abscissa(table: LabTable, columns: dict[str, list[str]]) -> Abscissa:
+def _abscissa(table: TextTable, columns: dict[str, list[str]]) -> Abscissa:
     there = [name for name in ABSCISSAS if name in columns]
     if len(there) > 1:
         # Speed is what was set; the others follow from it.
@@ -335,8 +344,10 @@ def _curves(
     return tuple(labels), of_row, inputs_of
 
 
-def _notes(table: LabTable, columns: dict[str, list[str]], empty: list[int]) -> tuple[str, ...]:
+def _notes(table: TextTable, columns: dict[str, list[str]], empty: list[int]) -> tuple[str, ...]:
     notes = []
+    if table.skipped:
+        notes.append(f"{table.skipped} row{'s' * (table.skipped > 1)} of other text above the header skipped.")
     if table.decimal_comma:
         notes.append("Numbers were read with decimal commas.")
     if empty:

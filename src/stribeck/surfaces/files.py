@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import math
 import os
 import warnings
@@ -18,6 +19,9 @@ from stribeck.surfaces.text import TEXT, read_text
 from stribeck.surfaces.topography import Topography
 
 __all__ = ["read_topography"]
+
+AMBIGUOUS = (".dat", ".xyz")
+"""Endings of text files that binary files of instruments have too, as those of MetroPro."""
 
 UNSIGNED = {"asc", "hgt", "xyz"}
 """Formats of SurfaceTopography that begin with no mark of their own, so that it takes much for them that is something else."""
@@ -65,7 +69,7 @@ def read_topography(
     for name, value in (("unit", unit), ("height_unit", height_unit)):
         if value is not None:
             to_si(f"1 {value}", "length", name)
-    if path.suffix.lower() in TEXT:
+    if path.suffix.lower() in TEXT and not (path.suffix.lower() in AMBIGUOUS and _is_binary(path)):
         if channel is not None:
             raise InputError(f"{path} is plain text without channels; leave out channel = {show(channel)}.")
         return read_text(path, unit=unit, height_unit=height_unit, spacing=spacing)
@@ -96,6 +100,13 @@ def read_topography(
             f"{path} could not be read by SurfaceTopography ({type(problem).__name__}: {_first(problem)}); "
             "export it as X3P or as text with units."
         ) from None
+
+
+def _is_binary(path: Path) -> bool:
+    """Return whether a file is an instrument's and no text."""
+    with path.open("rb") as stream:
+        begin = stream.read(4096)
+    return b"\0" in begin and not begin.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
 
 
 def _check_whole(path: Path) -> None:

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.files.text_table import MISSING, cells_of, text_of, values_of
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.topography import Topography
 
@@ -22,8 +23,8 @@ __all__ = ["TEXT", "read_text"]
 TEXT = (".csv", ".tsv", ".txt", ".dat", ".xyz")
 """Endings of plain text files."""
 
-MISSING = {"", "nan", "n/a", "na", "-", "--", "---", "bad", "null", "none", "inf", "-inf", "***", "#n/a"}
-"""Words for a point without a height."""
+INFINITE = {"inf", "-inf"}
+"""What some instruments write for a missing point."""
 
 UNEVEN = 0.02
 """Largest deviation of a position from the even grid, over the spacing, that passes for even."""
@@ -179,69 +180,46 @@ def _factor(path: Path, name: str, given: str | None, declared: str | None, what
 
 
 def _table(path: Path) -> _Table:
-    try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{path} has more than {LARGEST_FILE // 10**9} GB; cut out a part of the scan.")
-        raw = path.read_bytes()
-    except OSError as problem:
-        raise InputError(f"{path} cannot be read ({problem.strerror or problem}).") from None
-    encoding = "utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
-    try:
-        text = raw.decode(encoding)
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
-    if "\0" in text:
-        raise InputError(f"{path} is no text; give it the ending of its format, such as .x3p, .sur or .opd.")
+    text = text_of(path, LARGEST_FILE, "cut out a part of the scan", "a text file of heights")
     rows = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1)]
     rows = [(i, line) for i, line in rows if line]
     start = next((k for k, (_, line) in enumerate(rows) if _is_data(line)), None)
     if start is None:
         raise InputError(f"{path} has no line of numbers.")
-    separator, comma = _dialect(path, [line for _, line in rows[start : start + 200]])
-    body = [(i, line.split(separator)) for i, line in rows[start:] if not line.startswith(("#", "%"))]
-    if separator and len(body[0][1]) > 1 and all(not cells[-1].strip() for _, cells in body):
-        body = [(i, cells[:-1]) for i, cells in body]  # a separator at the end of each line makes no column
-    width = len(body[0][1])
-    values = np.empty((len(body), width))
-    for k, (number, cells) in enumerate(body):
-        if len(cells) != width:
+    body = [(i, line) for i, line in rows[start:] if not line.startswith(("#", "%"))]
+    separator, comma = _dialect(path, [line for _, line in body[:200]])
+    numbers, cells = [i for i, _ in body], [cells_of(line, separator, path, i) for i, line in body]
+    if separator and len(cells[0]) > 1 and all(not row[-1] for row in cells):
+        cells = [row[:-1] for row in cells]  # a separator at the end of each line makes no column
+    width = len(cells[0])
+    for number, row in zip(numbers, cells, strict=True):
+        if len(row) != width:
             raise InputError(
-                f"{path}: line {number} has {len(cells)} columns where the lines above have {width}; "
+                f"{path}: line {number} has {len(row)} columns where the lines above have {width}; "
                 "mend the line, or check separator and decimal comma."
             )
-        for j, cell in enumerate(cells):
-            values[k, j] = _number(path, number, j + 1, cell, comma)
-    header = [cell for _, line in rows[:start] for cell in [line.lstrip("#%; ")]]
-    return _Table(values, [i for i, _ in body], _units(header, separator, width))
-
-
-def _number(path: Path, line: int, column: int, cell: str, comma: bool) -> float:
-    word = cell.strip().strip('"').strip()
-    if word.lower() in MISSING:
-        return math.nan
-    try:
-        return float(word.replace(",", ".") if comma else word)
-    except ValueError:
-        raise InputError(f"{path}: line {line}, column {column} is {show(word)}, not a number.") from None
+    header = [line.lstrip("#%; ") for _, line in rows[:start]]
+    values = values_of(path, cells, numbers, comma=comma)
+    values[np.isinf(values)] = np.nan
+    return _Table(values, numbers, _units(header, separator or None, width))
 
 
 def _is_data(line: str) -> bool:
     cells = [cell.strip().strip('"') for cell in re.split(r"[;\t, ]+", line) if cell.strip()]
     numbers = [cell for cell in cells if re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", cell)]
-    return bool(numbers) and all(cell in numbers or cell.lower() in MISSING for cell in cells)
+    return bool(numbers) and all(cell in numbers or cell.lower() in MISSING | INFINITE for cell in cells)
 
 
-def _dialect(path: Path, lines: list[str]) -> tuple[str | None, bool]:
-    """Return separator (None is white space) and whether the comma is the decimal sign."""
-    sample = [line for line in lines if not line.startswith(("#", "%"))]
+def _dialect(path: Path, sample: list[str]) -> tuple[str, bool]:
+    """Return separator (empty is white space) and whether the comma is the decimal sign."""
     if all(";" in line for line in sample):
         return ";", any("," in line for line in sample)
-    if all("\t" in line for line in sample):
+    if all("\t" in line and not re.search(r"[^\t] +[^\t ]", line) for line in sample):
         return "\t", any("," in line for line in sample)
     if not any("," in line for line in sample):
-        return None, False
+        return "", False
     if all(re.fullmatch(r"\S+(\s+\S+)+", line) and not re.search(r",\s|\s,", line) for line in sample):
-        return None, True
+        return "", True
     if all(re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", line) for line in sample):
         raise InputError(
             f"{path}: '{sample[0]}' may be two columns or one number with a decimal comma; write points, or ; between columns."
