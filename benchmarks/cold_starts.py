@@ -64,7 +64,7 @@ def true_error(s: sb.Solution) -> float:
     gaps = [ROW["central_gap"], ROW["minimum_gap"]]
     exact[[*gaps, ROW["offset"]]] += shift
     if shift:
-        gap = root.x[equations.layout["gap"]] + shift
+        gap = root.x[equations.layout.gap] + shift
         exact[ROW["flux_gap"]] = reynolds.flux_gap(gap, mesh.weights) if gap.min() > 0 else np.nan
     scales = np.abs(exact)
     scales[[ROW["contact_load_share"], ROW["fluid_load_share"]]] = 1.0

@@ -25,8 +25,7 @@ import stribeck as sb
 from stribeck.equations.error_estimate import FineOperators
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import NAMES
-from stribeck.equations.resolution import mesh_for
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.solver.cold_start import cold_start
 from stribeck.solver.refinement import judge

@@ -23,15 +23,15 @@ def balance(state):
     here = state.profile(x)
     step = 1e-6 * np.maximum(1.0, np.abs(x))
     gap_slope = (state.profile(x + step).gap - state.profile(x - step).gap) / (2 * step)
-    published, balanced = (state.friction(boundary_friction=1, beta=1, definition=d) for d in ("published", "balanced"))
+    paper, balanced = (state.friction(boundary_friction=1, beta=1, definition=d) for d in ("paper", "balanced"))
     return {
         "int p w'": relative(weights * here.pressure * (gap_slope - x)),
         "int p_c h'": relative(weights * here.contact_pressure * gap_slope),
-        "published": published.viscous,
+        "paper": paper.viscous,
         "balanced": balanced.viscous,
-        "difference": published.viscous - balanced.viscous,
+        "difference": paper.viscous - balanced.viscous,
         "4 F^(1/2)/pi int p_c x": 4 * LOAD**0.5 / np.pi * (weights @ (here.contact_pressure * x)),
-        "published, total": published.total,
+        "paper, total": paper.total,
         "balanced, total": balanced.total,
     }
 
@@ -46,7 +46,7 @@ def plot(rows):
     from matplotlib.figure import Figure
 
     axes = Figure(layout="constrained").subplots()
-    for name in ("published", "balanced"):
+    for name in ("paper", "balanced"):
         axes.loglog(list(rows), [row[name] for row in rows.values()], "o-", label=name)
     axes.set(xlabel=r"speed group $\lambda$", ylabel="viscous friction for beta = 1")
     return axes.legend().figure

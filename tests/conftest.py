@@ -70,7 +70,7 @@ def _refined_values(solution, extra_nodes=6, doublings=5):
     values = values_of(equations, root.x, light)
     if shift:
         values[[NAMES.index(name) for name in ("central_gap", "minimum_gap", "offset")]] += shift
-        shifted = root.x[equations.layout["gap"]] + shift
+        shifted = root.x[equations.layout.gap] + shift
         values[NAMES.index("flux_gap")] = reynolds.flux_gap(shifted, mesh.weights) if shifted.min() > 0 else math.nan
     return values
 

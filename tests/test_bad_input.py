@@ -70,11 +70,8 @@ def assert_refused(capsys, folder, tokens, *parts):
 BAD_CONTACTS = {
     "unknown key": ({"radios": '"10 mm"'}, "[contact] radios = '10 mm' is not a known key; did you mean radius"),
     "missing key": ({"viscosity": None}, "[contact] viscosity is missing; add a viscosity"),
-    "speed in metres": ({"speed": '"1 m"'}, "speed = '1 m' is a length; expected a speed such as '0.1 m/s'"),
-    "load in newtons": (
-        {"load": '"30 N"'},
-        "load = '30 N' is a force; expected a load per unit length such as '50 N/m': divide the force on a cylinder",
-    ),
+    "speed in metres": ({"speed": '"1 m"'}, "speed = '1 m' is a length; a speed such as '0.1 m/s' is wanted"),
+    "load in newtons": ({"load": '"30 N"'}, "load = '30 N' is a force (divide it by the length of the contact)"),
     "unknown unit": ({"viscosity": '"50 mPaxs"'}, "viscosity = '50 mPaxs' has the unknown unit"),
     "no unit": ({"radius": '"10"'}, "radius = '10' has no unit; add one"),
     "negative radius": ({"radius": '"-10 mm"'}, "radius = '-10 mm' must be positive"),
@@ -113,7 +110,7 @@ BAD_TABLES = {
     "unknown coordinate": ({"curve": {"over": '"time"'}}, "over = 'time' must be 'speed', 'load' or 'roughness'"),
     "small rtol": ({"solver": {"rtol": "1e-20"}}, "rtol = 1e-20 must be a number from 1e-11 to 1e-2"),
     "rtol in quotes": ({"solver": {"rtol": '"1e-6"'}}, "rtol = '1e-6' must be a number from 1e-11 to 1e-2"),
-    "definition": ({"solver": {"definition": '"mine"'}}, "definition = 'mine' must be 'balanced' or 'published'"),
+    "definition": ({"solver": {"definition": '"mine"'}}, "definition = 'mine' must be 'paper' or 'balanced'"),
     "unknown table": ({"contacts": {"a": "1"}}, "contacts = {'a': 1} is not a known key; did you mean contact"),
 }
 

@@ -22,7 +22,7 @@ ARGUMENTS = {
 }
 """Scripts, and what makes them small; explorer_latency needs a browser, instructions valgrind: they are tested apart."""
 
-APART = {"explorer_latency", "instructions"}
+APART = {"walk", "explorer_latency", "instructions"}
 NO_SCRIPTS = {"textbook"}
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
 

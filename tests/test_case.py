@@ -129,7 +129,7 @@ def test_a_case_knows_every_quantity(write):
     [
         ({"contact": {"radius": '"-1 mm"'}}, "[contact] radius = '-1 mm' must be positive."),
         ({"contact": {"radius": "0"}}, "[contact] radius = 0 must be positive."),
-        ({"contact": {"speed": '"1 m"'}}, "[contact] speed = '1 m' is a length; expected a speed such as"),
+        ({"contact": {"speed": '"1 m"'}}, "[contact] speed = '1 m' is a length; a speed such as"),
         ({"contact": {"roughness": "nan"}}, "[contact] roughness = nan is not a finite number"),
         ({"contact": {"alpha": '"two"'}}, "[contact] alpha = 'two' is text where a number belongs"),
         (
@@ -138,11 +138,11 @@ def test_a_case_knows_every_quantity(write):
         ),
         (
             {"contact": {"load": None}},
-            '[contact] load is missing; add a load per unit length, for example load = "30 N/m" (as in examples/',
+            '[contact] load is missing; add a load per unit length, for example load = "50',
         ),
         (
             {"contact": {"beta": None}},
-            "[contact] beta is missing; add a bare number, for example beta = 0.06 (about 1.4 q0 h_rms by Persson's theory",
+            "[contact] beta is missing; add a bare number, for example beta = 0.5.",
         ),
         ({"contact": {"modulus": None}}, "[contact] modulus (which is E*) is missing"),
         (
@@ -157,23 +157,6 @@ def test_a_case_knows_every_quantity(write):
             "[contact] friction_coefficient = 0.7 is not a known key; write boundary_friction.",
         ),
         ({"contact": {"Shore_A": "70"}}, "[contact] Shore_A = 70 is not a known key; for S Shore A Gent's relation gives"),
-        (
-            {"contact": {"roughness": None}},
-            '[contact] roughness is missing; add a length, for example roughness = "1 um" (rms height of',
-        ),
-        (
-            {"contact": {"pressure_viscosity": "1e-8"}},
-            "[contact] pressure_viscosity = 1e-08 is not a known key; there is no pressure-viscosity coefficient: the fluid",
-        ),
-        ({"contact": {"pressure_viscosity_coefficient": "1"}}, "[contact] pressure_viscosity_coefficient = 1 is not a known"),
-        (
-            {"contact": {"density": "900"}},
-            "[contact] density = 900 is not a known key; there is no density of the fluid",
-        ),
-        ({"contact": {"shear_modulus": "1"}}, "[contact] shear_modulus = 1 is not a known key; of the solid give modulus"),
-        ({"contact": {"normal_force": "1"}}, "[contact] normal_force = 1 is not a known key; the model is a line contact"),
-        ({"contact": {"surface_speed_ratio": "1"}}, "[contact] surface_speed_ratio = 1 is not a known key; known are radius"),
-        ({"contact": {"deviation": "1"}}, "[contact] deviation = 1 is not a known key; it belongs in the table [asperities]."),
         ({"contact": {"Ra": "1e-6"}}, "[contact] Ra = 1e-06 is not a known key; heights are root mean squares"),
         (
             {"contact": {"rtol": "1"}},
@@ -207,7 +190,7 @@ def test_a_case_knows_every_quantity(write):
             {"solver": {"rtol": '"1e-6"'}},
             "[solver] rtol = '1e-6' must be a number from 1e-11 to 1e-2, without quotes.",
         ),
-        ({"solver": {"definition": '"mine"'}}, "[solver] definition = 'mine' must be 'balanced' or 'published'."),
+        ({"solver": {"definition": '"mine"'}}, "[solver] definition = 'mine' must be 'paper' or 'balanced'."),
         ({"top": '"a\\nb" = 3'}, "'a\\nb' = 3 is not a known key; known are contact, curve,"),
         ({"top": "title = 3"}, "title = 3 must be text in quotes."),
         ({"top": "solver = 3"}, "solver = 3 must be a table, [solver]."),

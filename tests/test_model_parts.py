@@ -18,8 +18,8 @@ from stribeck.contacts.model import Model
 from stribeck.equations.gap import gap_at, least_gap
 from stribeck.equations.line import LOAD, Equations, Operators
 from stribeck.equations.prediction import SeenFrom
-from stribeck.equations.resolution import mesh_for
-from stribeck.equations.state import solve_state
+from stribeck.equations.state import mesh_for, solve_state
+from stribeck.equations.unknowns import NOWHERE
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.viscosity import Barus
@@ -113,18 +113,26 @@ def stiffening():
     return solved(Model(Barus(1.0), Cavitation.EXIT, Layer(3.0)), 1e-3, 0.1, 1e-2)
 
 
+def stacked(layout, gap, pressure, offset, flux_gap, leaving):
+    """Return the vector of these unknowns, as far as the layout has them."""
+    y = np.empty(layout.size)
+    y[layout.gap], y[layout.offset], y[layout.flux_gap], y[layout.exit] = gap, offset, flux_gap, leaving
+    if layout.pressure != NOWHERE:
+        y[layout.pressure] = pressure
+    return y
+
+
 @pytest.mark.parametrize("cavitation", list(Cavitation))
 @pytest.mark.parametrize("film", [Newtonian(), Barus(1.5)], ids=lambda film: film.name)
 def test_the_inverse_undoes_the_derivative_of_the_residual(film, cavitation, stiffening):
     operators = Operators(stiffening.mesh, Model(film, cavitation))
     equations = Equations(operators, 1e-3, stiffening.equations.law, stiffening.flux_gap**2)
     layout, rng = operators.layout, np.random.default_rng(83)
-    values = {"gap": stiffening.gap, "offset": -0.3, "flux_gap": 1.1 * stiffening.flux_gap, "exit": 0.9}
     pressure = stiffening.equations.pressures(stiffening.y)[1]
-    y = layout.stacked(pressure=pressure, **values)
+    y = stacked(layout, stiffening.gap, pressure, -0.3, 1.1 * stiffening.flux_gap, 0.9)
     units = equations.units(y)
     smooth = np.cos(rng.uniform(1, 3) * np.arctan(operators.mesh.nodes))
-    step = layout.stacked(gap=smooth, pressure=smooth, offset=0.7, flux_gap=-0.4, exit=0.2)
+    step = stacked(layout, smooth, smooth, 0.7, -0.4, 0.2)
     size = 1e-6
     ahead, behind = (equations.residual(y + sign * size * units * step) for sign in (1, -1))
     found = equations.inverse(y)((behind - ahead) / (2 * size))

@@ -57,7 +57,7 @@ Value = float | Array
 
 
 @refuse_former
-def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced") -> Value:
+def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Value:
     r"""Return the friction coefficient.
 
     .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \mu_f
@@ -68,7 +68,7 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
         The states [-]; arrays broadcast.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"balanced", "published"}
+    definition : {"paper", "balanced"}
         Definition of the viscous friction, theory.md, section 6.
 
     Returns
@@ -91,7 +91,7 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
     return _shaped(groups, boundary_friction * _contact(odds) + _viscous(flat, viscous, beta))
 
 
-def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition = "balanced") -> Value:
+def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition = "paper") -> Value:
     """Return the part of the friction coefficient that the fluid causes.
 
     Parameters
@@ -100,7 +100,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
         The states [-]; arrays broadcast.
     beta : float
         Coefficient of the contact law [-].
-    definition : {"balanced", "published"}
+    definition : {"paper", "balanced"}
         Definition of the viscous friction, theory.md, section 6.
 
     Returns
@@ -120,7 +120,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
 
 @refuse_former
 def friction_derivatives(
-    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced"
+    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper"
 ) -> Array:
     r"""Return the derivatives of the friction coefficient with respect to the logarithms of the groups.
 
@@ -133,7 +133,7 @@ def friction_derivatives(
         The states [-]; arrays broadcast.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"balanced", "published"}
+    definition : {"paper", "balanced"}
         Definition of the viscous friction, theory.md, section 6.
 
     Returns
@@ -155,7 +155,7 @@ def friction_derivatives(
     return boundary_friction * contact_slopes + beta * viscous_slopes
 
 
-def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple[Array, Array, Array]:
+def friction_parts(groups: Groups, definition: Definition = "paper") -> tuple[Array, Array, Array]:
     r"""Return both parts of the friction for boundary_friction = beta = 1, and the derivatives of each.
 
     .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
@@ -164,7 +164,7 @@ def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple
     ----------
     groups : Groups
         The states [-]; arrays broadcast.
-    definition : {"balanced", "published"}
+    definition : {"paper", "balanced"}
         Definition of the viscous friction, theory.md, section 6.
 
     Returns
@@ -201,7 +201,7 @@ def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple
 
 @refuse_former
 def shares_and_friction(
-    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced"
+    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper"
 ) -> Array:
     """Return at once what tells the regimes apart, at the cost of one of its parts.
 
@@ -211,7 +211,7 @@ def shares_and_friction(
         The states [-]; arrays broadcast.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"balanced", "published"}
+    definition : {"paper", "balanced"}
         Definition of the viscous friction, theory.md, section 6.
 
     Returns

@@ -11,10 +11,10 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["DEFINITIONS", "Definition", "Friction", "check_definition", "coefficients"]
 
-Definition = Literal["balanced", "published"]
+Definition = Literal["paper", "balanced"]
 
-DEFINITIONS: tuple[Definition, ...] = ("balanced", "published")
-"""Definitions of the viscous friction: the force on the substrate, and Eq. (friction) of [BP] (theory.md, section 6)."""
+DEFINITIONS: tuple[Definition, ...] = ("paper", "balanced")
+"""Definitions of the viscous friction: Eq. (friction) of [BP], and the force on the substrate (theory.md, section 6)."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,8 @@ class Friction:
 
 def coefficients(contact: LineContact | None, boundary_friction: float | None, beta: float | None) -> tuple[float, float]:
     """Return boundary_friction and beta as given, else those of the contact, else 1."""
+    if contact is None and boundary_friction is None and beta is None:
+        return 1.0, 1.0
     if boundary_friction is None:
         boundary_friction = 1.0 if contact is None else contact.boundary_friction
     if beta is None:
@@ -53,5 +55,4 @@ def check_definition(definition: str) -> Definition:
     for known in DEFINITIONS:
         if definition == known:
             return known
-    hint = " The friction of the paper is called 'published'." if definition == "paper" else ""
-    raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.{hint}")
+    raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.")

@@ -35,7 +35,7 @@ class Groups:
     Parameters
     ----------
     speed : float or array_like
-        :math:`\lambda \ge 0` [-]; zero is the quasistatic contact.
+        :math:`\lambda \ge 0` [-]; zero is the contact at rest.
     load : float or array_like
         :math:`\bar F_N > 0` [-]; from one on, the exponential contact law is outside its range.
     roughness : float or array_like
@@ -64,7 +64,8 @@ class Groups:
 
     def __post_init__(self) -> None:
         """Check the groups and make them floats or read-only arrays."""
-        check_law(self.law)
+        if self.law is not None:
+            check_law(self.law)
         for name, positive in (("speed", False), ("load", True), ("roughness", False)):
             object.__setattr__(self, name, _group(name, getattr(self, name), positive))
         try:
@@ -79,11 +80,6 @@ class Groups:
         if isinstance(self.speed, float) and isinstance(self.load, float) and isinstance(self.roughness, float):
             return ()
         return np.broadcast_shapes(np.shape(self.speed), np.shape(self.load), np.shape(self.roughness))
-
-    @property
-    def is_hertzian(self) -> bool:
-        """Whether all states are dry and smooth, speed and roughness zero: the contact of Hertz, in closed form."""
-        return not (np.any(self.speed) or np.any(self.roughness))
 
     @property
     def relative_roughness(self) -> float | Array:
@@ -189,7 +185,6 @@ def contact_law(groups: Groups) -> ContactLaw:
     """
     if not np.any(groups.roughness):
         return NoContact()
-    if has_constant_decay(groups.law):
+    if groups.law is None or has_constant_decay(groups.law):
         return ExponentialLaw(groups.load, groups.relative_roughness)
-    assert groups.law is not None
     return ScaledLaw(groups.law, groups.load, groups.relative_roughness)

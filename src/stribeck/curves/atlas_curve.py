@@ -61,7 +61,7 @@ class AtlasCurve:
         The contact.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"balanced", "published"}
+    definition : {"paper", "balanced"}
         Definition of the viscous friction.
     """
 

@@ -14,8 +14,7 @@ from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import observables
 from stribeck.equations.prediction import extrapolate
-from stribeck.equations.resolution import mesh_for
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.numerics.continuation import Steps, march
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome

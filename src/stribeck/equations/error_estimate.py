@@ -71,7 +71,7 @@ GAP_FLOOR = 1e-3
 
 SHARES = [ROW["contact_load_share"], ROW["fluid_load_share"]]
 GAPS = [ROW["central_gap"], ROW["minimum_gap"]]
-FRICTION = [ROW["viscous_published"], ROW["viscous_balanced"]]
+FRICTION = [ROW["viscous_paper"], ROW["viscous_balanced"]]
 
 
 def _by_highest(s: Array, order: int) -> Array:
@@ -212,8 +212,8 @@ def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
     """Return what defect, quadrature and rounding may change in states; ``observed`` as in :func:`error_estimates`."""
     equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
     coarse, mesh = fine.coarse, fine.mesh
-    h, z0, h_star = y[:, at["gap"]], y[:, at["offset"]], y[:, at["flux_gap"]]
-    balance, net = at.index("offset"), at.index("flux_gap")
+    h, z0, h_star = y[:, at.gap], y[:, at.offset], y[:, at.flux_gap]
+    balance, net = at.offset.start, at.flux_gap.start
     gap = np.exp(coarse.to_order(np.log(h / coarse.far), mesh.order)) * mesh.far
     own, finer = slice(-coarse.order, None), slice(-mesh.order, None)  # through infinity, where the gap holds a logarithm
     smooth = h[:, own] - far_gap(coarse.nodes[own])
@@ -226,11 +226,11 @@ def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
     pressure = equations.law.pressure(gap) + equations.speed * fine.integral(slopes)
     deflection = fine.deflection(pressure, op)
     residual = np.empty((1 + PATTERNS, *y.shape))
-    residual[0, :, at["gap"]] = h - z0 - op.parabola - deflection
+    residual[0, :, at.gap] = h - z0 - op.parabola - deflection
     residual[0, :, balance] = pressure @ mesh.weights - LOAD
     residual[0, :, net] = np.ravel(equations.flux_scale) * (slopes @ mesh.weights)
     size = np.finfo(float).eps * ROUNDING_UNITS
-    residual[1:, :, at["gap"]] = size * (np.abs(z0) + op.parabola + np.abs(deflection))
+    residual[1:, :, at.gap] = size * (np.abs(z0) + op.parabola + np.abs(deflection))
     residual[1:, :, balance] = size * LOAD
     residual[1:, :, net] = size * np.ravel(equations.flux_scale) * (np.abs(slopes) @ mesh.weights)
     residual[1:] *= _signs(coarse.panels, coarse.order)[:, None]
@@ -247,7 +247,7 @@ def interpolation_errors(states: Rows, minimum_positions: Array) -> Array:
     central = int(np.searchsorted(mesh.edges, 0.0))
     least = np.clip(np.searchsorted(mesh.edges, minimum_positions) - 1, 0, mesh.panels - 1)
     panels = np.stack([np.full_like(least, central), least])
-    gap = states.y[:, states.equations.layout["gap"]].reshape(len(least), mesh.panels, -1)[np.arange(len(least)), panels]
+    gap = states.y[:, states.equations.layout.gap].reshape(len(least), mesh.panels, -1)[np.arange(len(least)), panels]
     return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
 
 
@@ -272,7 +272,7 @@ def _signs(panels: int, order: int) -> Array:
 def error_estimates(states: Rows, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
     """Return the estimated errors of what was ``observed`` on states.
 
-    At speed zero the values may be those of the same state under another load, see ``refine.quasistatic_shift``.
+    At speed zero the values may be those of the same state under another load, see :mod:`stribeck.solver.at_rest`.
     """
     values = np.array([one.array() for one in observed])
     changed = changes(states, values, fine)
@@ -288,10 +288,10 @@ def error_estimates(states: Rows, observed: list[Observables], fine: FineOperato
         scales[:, GAPS] = np.maximum(scales[:, GAPS], GAP_FLOOR * states.equations.law.decay)
     scales[scales == 0] = 1.0
     rounding = DEVIATIONS * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
-    positions, gap = np.array([one.minimum_position for one in observed]), states.y[:, states.equations.layout["gap"]]
+    positions, gap = np.array([one.minimum_position for one in observed]), states.y[:, states.equations.layout.gap]
     minimum = ROW["minimum_gap"]
     depth = (effects[:, minimum, 0] + interpolation[:, minimum] + rounding[:, minimum]) / gap.min(axis=1)
-    of_gap = changed.unknowns[:, :, states.equations.layout["gap"]]
+    of_gap = changed.unknowns[:, :, states.equations.layout.gap]
     places = position_errors(states.equations.operators.mesh, gap, of_gap, positions, depth).tolist()
     parts = (DEFECT_SAFETY * effects[:, :, 0], interpolation, rounding, scales, places)
     return [ErrorEstimate(*row) for row in zip(*parts, strict=True)]

@@ -50,10 +50,19 @@ class Operators:
 
     @cached_property
     def layout(self) -> Layout:
-        """The unknowns by name."""
-        fields = ("gap", "pressure") if self.model.film.uses_pressure else ("gap",)
-        numbers = ("offset", "flux_gap", "exit") if self.has_exit else ("offset", "flux_gap")
-        return Layout(self.mesh.size, fields, numbers)
+        """The unknowns by name; the fluid pressure and the exit are among them if the model has them."""
+        n = self.mesh.size
+        fields = 2 * n if self.model.film.uses_pressure else n
+        size = fields + 2 + self.has_exit
+        return Layout(
+            size,
+            gap=slice(0, n),
+            numbers=slice(fields, size),
+            offset=slice(fields, fields + 1),
+            flux_gap=slice(fields + 1, fields + 2),
+            pressure=slice(n, fields),
+            exit=slice(fields + 2, size),
+        )
 
     @property
     def has_exit(self) -> bool:
@@ -135,10 +144,10 @@ class Equations:
     def pressures(self, y: Array) -> tuple[Array, Array]:
         """Return the contact and the fluid pressure at the nodes [p_Hz]."""
         at, film = self.layout, self.operators.model.film
-        h = y[..., at["gap"]]
+        h = y[..., at.gap]
         if film.uses_pressure:
-            return self.law.pressure(h), y[..., at["pressure"]]
-        fluid = np.asarray(self.speed * self.operators.integral(film.gradient(h, None, y[..., at["flux_gap"]])))
+            return self.law.pressure(h), y[..., at.pressure]
+        fluid = np.asarray(self.speed * self.operators.integral(film.gradient(h, None, y[..., at.flux_gap])))
         return self.law.pressure(h), fluid
 
     @cached_property
@@ -149,26 +158,26 @@ class Equations:
     def residual(self, y: Array) -> Array:
         """Return the residual at ``y``, in its layout."""
         op, at, film = self.operators, self.layout, self.operators.model.film
-        h, z0, h_star = y[..., at["gap"]], y[..., at["offset"]], y[..., at["flux_gap"]]
-        p_f = y[..., at["pressure"]] if film.uses_pressure else None
+        h, z0, h_star = y[..., at.gap], y[..., at.offset], y[..., at.flux_gap]
+        p_f = y[..., at.pressure] if film.uses_pressure else None
         g = film.gradient(h, p_f, h_star)
         p_c = self.law.pressure(h)
         r = np.empty_like(y)
-        r[..., at["gap"]] = h - z0 - op.parabola - p_c @ op.deflection.T
-        r[..., at.index("offset")] = p_c @ op.mesh.weights - LOAD
-        r[..., at["flux_gap"]] = self.flux_scale * (g @ op.integral.weights)[..., None]
+        r[..., at.gap] = h - z0 - op.parabola - p_c @ op.deflection.T
+        r[..., at.offset.start] = p_c @ op.mesh.weights - LOAD
+        r[..., at.flux_gap] = self.flux_scale * (g @ op.integral.weights)[..., None]
         if op.has_exit:
-            x_c = y[..., at["exit"]]
-            r[..., at["gap"]] -= x_c * (op.mesh.nodes + 0.5 * x_c)
-            r[..., at["exit"]] = self.flux_scale * (g @ op.at_exit)[..., None]
+            x_c = y[..., at.exit]
+            r[..., at.gap] -= x_c * (op.mesh.nodes + 0.5 * x_c)
+            r[..., at.exit] = self.flux_scale * (g @ op.at_exit)[..., None]
         if p_f is not None:
-            r[..., at["pressure"]] = p_f - self.speed * op.integral(g)
-            r[..., at["gap"]] -= p_f @ op.deflection.T
-            r[..., at.index("offset")] += p_f @ op.mesh.weights
+            r[..., at.pressure] = p_f - self.speed * op.integral(g)
+            r[..., at.gap] -= p_f @ op.deflection.T
+            r[..., at.offset.start] += p_f @ op.mesh.weights
         elif self.is_sliding:
             g *= self.speed
-            r[..., at["gap"]] -= g @ op.deflection_of_gradient.T
-            r[..., at.index("offset")] += g @ op.load_of_gradient
+            r[..., at.gap] -= g @ op.deflection_of_gradient.T
+            r[..., at.offset.start] += g @ op.load_of_gradient
         return r
 
     def units(self, y: Array) -> Array:
@@ -179,8 +188,8 @@ class Equations:
         """
         at = self.layout
         units = np.ones_like(y)
-        units[..., at["gap"]] = y[..., at["gap"]]
-        units[..., at["flux_gap"]] = y[..., at["flux_gap"]]
+        units[..., at.gap] = y[..., at.gap]
+        units[..., at.flux_gap] = y[..., at.flux_gap]
         return units
 
     def inverse(self, y: Array) -> Inverse:
@@ -203,15 +212,16 @@ class Equations:
         eliminated: A is then ``(I - lambda A diag(dG/dp))**-1 A``.
         """
         op, at, film = self.operators, self.layout, self.operators.model.film
-        n, numbers = op.mesh.size, len(at.numbers)
-        h = y[at["gap"]]
-        u, v = (np.ones(n), np.ones(numbers)) if units is None else (units[at["gap"]], at.numbers_of(units))
+        n = op.mesh.size
+        h = y[at.gap]
+        u, v = (np.ones(n), np.ones(3)) if units is None else (units[at.gap], units[at.numbers])
         p_slope = self.law.slope(h, self.law.pressure(h)) * u
-        p_f = y[at["pressure"]] if film.uses_pressure else None
-        by_h, by_p, by_flux = film.slopes(h, p_f, y[at["flux_gap"]])
+        p_f = y[at.pressure] if film.uses_pressure else None
+        by_h, by_p, by_flux = film.slopes(h, p_f, y[at.flux_gap])
         g_h, g_flux = by_h * u, by_flux * v[1]
         ends = [op.integral.weights, op.at_exit] if op.has_exit else [op.integral.weights]
-        matrix = np.zeros((n + numbers, n + numbers), order="F")
+        size = n + 2 + op.has_exit
+        matrix = np.zeros((size, size), order="F")
         block, offset, flux = matrix[:n, :n], n, n + 1
         np.multiply(op.deflection, -p_slope, out=block)
         matrix[offset, :n] = op.mesh.weights * p_slope
@@ -233,7 +243,7 @@ class Equations:
             matrix[n + 1 + k, :n] = row * g_h * self.flux_scale
             matrix[n + 1 + k, flux] = self.flux_scale * (row @ g_flux)
         if op.has_exit:
-            matrix[:n, n + 2] = -v[2] * (op.mesh.nodes + y[at.index("exit")])
+            matrix[:n, n + 2] = -v[2] * (op.mesh.nodes + y[at.exit.start])
         return matrix
 
     def parameter_derivative(self, y: Array, name: str) -> Array:
@@ -247,20 +257,20 @@ class Equations:
             The group; the other two are held.
         """
         op, at, film = self.operators, self.layout, self.operators.model.film
-        h, found = y[at["gap"]], np.zeros_like(y)
+        h, found = y[at.gap], np.zeros_like(y)
         if name == "speed":
-            p_f = y[at["pressure"]] if film.uses_pressure else None
-            g = self.speed * film.gradient(h, p_f, y[at["flux_gap"]])
+            p_f = y[at.pressure] if film.uses_pressure else None
+            g = self.speed * film.gradient(h, p_f, y[at.flux_gap])
             if p_f is not None:
-                found[at["pressure"]] = -op.integral(g)
+                found[at.pressure] = -op.integral(g)
             else:
-                found[at["gap"]] = -(op.deflection_of_gradient @ g)
-                found[at["offset"]] = op.load_of_gradient @ g
+                found[at.gap] = -(op.deflection_of_gradient @ g)
+                found[at.offset] = op.load_of_gradient @ g
             return found
         derivative = self.law.load_derivative if name == "load" else self.law.roughness_derivative
         change = derivative(h, self.law.pressure(h))
-        found[at["gap"]] = -(op.deflection @ change)
-        found[at["offset"]] = op.mesh.weights @ change
+        found[at.gap] = -(op.deflection @ change)
+        found[at.offset] = op.mesh.weights @ change
         return found
 
     def admissible(self, y: Array, dy: Array) -> float:
@@ -269,12 +279,12 @@ class Equations:
         The gap may lose 70 % at most; if contact matters, its pressure may grow or fall by e**3 at most.
         """
         at = self.layout
-        h, dh = y[at["gap"]], dy[at["gap"]]
+        h, dh = y[at.gap], dy[at.gap]
         part = 0.7 / max(0.7, -float((dh / h).min()))
-        flux = dy[at.index("flux_gap")] / y[at.index("flux_gap")]
+        flux = dy[at.flux_gap.start] / y[at.flux_gap.start]
         part = min(part, 0.7 / max(0.7, abs(flux)))
-        if "exit" in at:
-            part = min(part, 0.3 / max(0.3, abs(dy[at.index("exit")])))
+        if self.operators.has_exit:
+            part = min(part, 0.3 / max(0.3, abs(dy[at.exit.start])))
         if np.all(self.law.decay > 0):
             log_p = self.law.log_pressure(h)
             decays = dh / self.law.local_decay(h)
@@ -302,9 +312,9 @@ class Equations:
         Exit and pressure change in their own units, a and p_Hz.
         """
         at = self.layout
-        gaps = dy[..., at["gap"]] / y[..., at["gap"]]
-        fluxes = dy[..., at.index("flux_gap")] / y[..., at.index("flux_gap")]
-        others = [np.abs(dy[..., at[name]]).max() for name in ("pressure", "exit") if name in at]
+        gaps = dy[..., at.gap] / y[..., at.gap]
+        fluxes = dy[..., at.flux_gap.start] / y[..., at.flux_gap.start]
+        others = (np.abs(dy[..., block]).max(initial=0.0) for block in (at.pressure, at.exit))
         return float(max(np.abs(gaps).max(), np.abs(fluxes).max(), *others))
 
 
@@ -319,7 +329,7 @@ class _Eliminated:
         self.equations = equations
         op, at, film = equations.operators, equations.layout, equations.operators.model.film
         self.units = equations.units(y)
-        self.slopes = film.slopes(y[at["gap"]], y[at["pressure"]], y[at["flux_gap"]])
+        self.slopes = film.slopes(y[at.gap], y[at.pressure], y[at.flux_gap])
         assert self.slopes.by_pressure is not None
         self.by_pressure = self.slopes.by_pressure
         self.factor = np.asarray(equations.speed * self.by_pressure)
@@ -339,10 +349,10 @@ class _Eliminated:
     def __call__(self, residuals: Array) -> Array:
         """Return ``-J^-1 r`` in units of the unknowns."""
         equations, op, at = self.equations, self.equations.operators, self.equations.layout
-        n = at.nodes
-        r_p = residuals[..., at["pressure"]]
+        n = op.mesh.size
+        r_p = residuals[..., at.pressure]
         q = r_p + self.volterra(self.factor * r_p)
-        reduced = np.concatenate([residuals[..., at["gap"]], at.numbers_of(residuals)], axis=-1)
+        reduced = np.concatenate([residuals[..., at.gap], residuals[..., at.numbers]], axis=-1)
         reduced[..., :n] += q @ op.deflection.T
         reduced[..., n] -= q @ op.mesh.weights
         scaled = equations.flux_scale * self.by_pressure * q
@@ -351,9 +361,9 @@ class _Eliminated:
             reduced[..., n + 2] -= scaled @ op.at_exit
         step = self.reduced(reduced)
         found = np.empty_like(residuals)
-        found[..., at["gap"]], at.numbers_of(found)[...] = step[..., :n], step[..., n:]
-        by_gap = self.slopes.by_gap * self.units[at["gap"]]
-        by_flux = self.slopes.by_flux * self.units[at["flux_gap"]]
+        found[..., at.gap], found[..., at.numbers] = step[..., :n], step[..., n:]
+        by_gap = self.slopes.by_gap * self.units[at.gap]
+        by_flux = self.slopes.by_flux * self.units[at.flux_gap]
         gradients = equations.speed * (by_gap * step[..., :n] + by_flux * step[..., n + 1 : n + 2])
-        found[..., at["pressure"]] = self.volterra(gradients) - q
+        found[..., at.pressure] = self.volterra(gradients) - q
         return found

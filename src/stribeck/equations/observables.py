@@ -5,7 +5,7 @@ Friction is kept for beta = 1 and in the two definitions of :data:`DEFINITIONS`;
 
 .. math::
 
-    \mu_f^\mathrm{published} &= C \int \frac1h \left[1 - 3\frac{h-h^*}{h} + 6\frac{h-h^*}{h^2}\frac{x^2}{2}\right] dx \\
+    \mu_f^\mathrm{paper} &= C \int \frac1h \left[1 - 3\frac{h-h^*}{h} + 6\frac{h-h^*}{h^2}\frac{x^2}{2}\right] dx \\
     \mu_f^\mathrm{balanced} &= C \int \frac1h \left[1 + 3\frac{h-h^*}{h}\right] dx
 
 The first is Eq. (friction) of [BP], the force on the cylinder with the contact pressure left unprojected.  The second is the
@@ -33,7 +33,7 @@ NAMES = (
     "minimum_gap",
     "flux_gap",
     "offset",
-    "viscous_published",
+    "viscous_paper",
     "viscous_balanced",
 )
 """The observables, in the order of every array of them here."""
@@ -56,7 +56,7 @@ class Observables:
     minimum_position: float
     flux_gap: float
     offset: float
-    viscous_published: float
+    viscous_paper: float
     viscous_balanced: float
 
     def array(self) -> Array:
@@ -87,14 +87,14 @@ def observables(equations: Equations, y: Array, load: float) -> Observables:
 def observables_of_rows(equations: Equations, y: Array, load: Numbers) -> list[Observables]:
     """Return the observables of many states, the unknowns ``y`` of each in a row and their load groups in a column."""
     mesh, at = equations.operators.mesh, equations.layout
-    h, h_star = y[:, at["gap"]], y[:, at["flux_gap"]]
+    h, h_star = y[:, at.gap], y[:, at.flux_gap]
     contact = equations.law.pressure(h) @ mesh.weights / LOAD
     positions, least = np.array([least_gap(mesh, row) for row in h]).T
     fluid, friction = np.zeros(len(y)), np.zeros((2, len(y)))
     if equations.is_sliding:
         fluid = (equations.speed * reynolds.gradient(h, h_star)) @ equations.operators.load_of_gradient / LOAD
         friction = np.ravel(friction_scale(load, equations.speed)) * friction_integrals(mesh, h, h_star)
-    numbers = (y[:, at.index("flux_gap")], y[:, at.index("offset")])
+    numbers = (y[:, at.flux_gap.start], y[:, at.offset.start])
     values = np.stack([contact, fluid, central_gap(mesh, h), least, positions, *numbers, *friction])
     return [Observables(*row) for row in values.T.tolist()]
 
@@ -138,8 +138,8 @@ def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
     the gap, but this one is insensitive to what the quadrature of g leaves.
     """
     op, mesh, speed, at = equations.operators, equations.operators.mesh, equations.speed, equations.layout
-    of_gap, flux, offset = at["gap"], at.index("flux_gap"), at.index("offset")
-    h, h_star = y[..., of_gap], y[..., at["flux_gap"]]
+    of_gap, flux, offset = at.gap, at.flux_gap.start, at.offset.start
+    h, h_star = y[..., of_gap], y[..., at.flux_gap]
     found = np.zeros((len(NAMES), *y.shape))
     rows = dict(zip(NAMES, found, strict=True))
     rows["contact_load_share"][..., of_gap] = mesh.weights / LOAD * equations.law.slope(h, equations.law.pressure(h))
@@ -151,8 +151,8 @@ def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
         weights, moment = scale * mesh.weights * u * u, -6 * scale * op.moment_of_gradient
         rows["fluid_load_share"][..., of_gap] = of_load * g_h
         rows["fluid_load_share"][..., flux] = (of_load * g_flux).sum(axis=-1)
-        rows["viscous_published"][..., of_gap] = weights * (2 - 6 * h_star * u) + moment * g_h
-        rows["viscous_published"][..., flux] = 3 * weights.sum(axis=-1) + (moment * g_flux).sum(axis=-1)
+        rows["viscous_paper"][..., of_gap] = weights * (2 - 6 * h_star * u) + moment * g_h
+        rows["viscous_paper"][..., flux] = 3 * weights.sum(axis=-1) + (moment * g_flux).sum(axis=-1)
         rows["viscous_balanced"][..., of_gap] = weights * (6 * h_star * u - 4)
         rows["viscous_balanced"][..., flux] = -3 * weights.sum(axis=-1)
     first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order

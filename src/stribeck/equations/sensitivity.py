@@ -15,7 +15,7 @@ from stribeck.equations.observables import friction_integrals, friction_scale, o
 from stribeck.equations.state import State
 
 GROUPS = ("speed", "load", "roughness")
-FRICTIONS = ("viscous_published", "viscous_balanced")
+FRICTIONS = ("viscous_paper", "viscous_balanced")
 
 STEP = 1e-5
 """Relative step of the central differences that carry the change of the unknowns to the friction integrals."""
@@ -42,7 +42,7 @@ def log_derivatives(state: State) -> dict[str, Array]:
     equations, y = state.equations, state.y
     mesh, law, load = state.mesh, equations.law, float(state.groups.load)
     at = equations.layout
-    h, h_star = y[at["gap"]], state.flux_gap
+    h, h_star = y[at.gap], state.flux_gap
     scale = friction_scale(load, equations.speed)
     inverse, units = equations.inverse(y), equations.units(y)
     pressure = law.pressure(h)
@@ -53,7 +53,7 @@ def log_derivatives(state: State) -> dict[str, Array]:
     share, frictions = np.empty(len(GROUPS)), np.empty((len(FRICTIONS), len(GROUPS)))
     for column, name in enumerate(GROUPS):
         dy = units * inverse(equations.parameter_derivative(y, name))
-        dh, dm = dy[at["gap"]], float(dy[at.index("flux_gap")])
+        dh, dm = dy[at.gap], float(dy[at.flux_gap.start])
         change = slope * dh
         if name == "load":
             change = change + law.load_derivative(h, pressure)

@@ -1,4 +1,4 @@
-"""Discrete states: the unknowns on one mesh, and Newton's iteration that finds them.
+"""Discrete states: the mesh that resolves one, the unknowns on it, and Newton's iteration that finds them.
 
 A state knows its groups, its equations and the Newton iteration that made it.  Between meshes travel the logarithm of the
 gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and the fluid pressure.
@@ -14,16 +14,24 @@ from functools import cached_property
 import numpy as np
 
 from stribeck._types import Array, Numbers
+from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
-from stribeck.equations.guess import Guess
+from stribeck.equations.guess import Guess, RowsGuess
 from stribeck.equations.line import Equations, Operators
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
-from stribeck.numerics.panels import Mesh
+from stribeck.numerics.panels import Mesh, adapt
 from stribeck.quantities.outcome import Outcome
 
 CHORD = 0.25
 """Contraction above which a kept factorisation is given up."""
+
+ROUNDING = 1e-9
+"""Relative rounding of what tells where a panel lies."""
+
+LONG_REACH_ORDER = 14
+"""Nodes a panel from which the panel through infinity begins twice as far out, to keep up with them: the logarithm in the
+gap limits its order."""
 
 PREDICTION_GOAL = 0.5
 """Relative error of the predicted gap at which the step of a path is kept."""
@@ -83,23 +91,23 @@ class State:
     @property
     def gap(self) -> Array:
         """Gap at the nodes [u_Hz]."""
-        return self.y[self.equations.layout["gap"]]
+        return self.y[self.equations.layout.gap]
 
     @property
     def offset(self) -> float:
         """Offset z0 [u_Hz]."""
-        return float(self.y[self.equations.layout.index("offset")])
+        return float(self.y[self.equations.layout.offset.start])
 
     @property
     def flux_gap(self) -> float:
         """Flux gap h* [u_Hz]."""
-        return float(self.y[self.equations.layout.index("flux_gap")])
+        return float(self.y[self.equations.layout.flux_gap.start])
 
     @property
     def exit(self) -> float:
         """Exit of the film, from which x is measured; zero without one [a]."""
         layout = self.equations.layout
-        return float(self.y[layout.index("exit")]) if "exit" in layout else 0.0
+        return float(self.y[layout.exit.start]) if self.equations.operators.has_exit else 0.0
 
     @property
     def least_position(self) -> float:
@@ -163,19 +171,81 @@ class State:
         return found
 
 
+def mesh_for(
+    guess: Guess | RowsGuess,
+    groups: Groups,
+    law: ContactLaw,
+    order: int,
+    tolerance: float,
+    gap_tolerance: float = 1e-2,
+    profile_tolerance: float = np.inf,
+) -> Mesh:
+    """Return the coarsest mesh that resolves a guess, or those of many states that are to share it.
+
+    Parameters
+    ----------
+    guess : Guess or RowsGuess
+        The fields to resolve: contact and fluid pressure to ``tolerance``, relative to what a Hertz pressure has at that
+        distance from its edge, the square root of the half-width of the panel; the viscous shear 1/h, relative to that at
+        zero, to ``tolerance`` too, the logarithm of the gap to ten times that.
+    groups : Groups
+        Scalar groups; columns for states in rows.
+    law : ContactLaw
+        Contact pressure from the gap.
+    order : int
+        Nodes a panel.
+    tolerance : float
+        Legendre tail allowed on each panel.
+    profile_tolerance : float
+        That of the logarithm of the gap on all other panels, where it is below ten times ``tolerance``.
+    gap_tolerance : float
+        That of the logarithm of the gap on the panels where the central and the least gap are read off.
+
+    Raises
+    ------
+    MeshTooLargeError
+        If more panels are needed than :data:`mesh.MAX_PANELS`.
+    """
+    central_gap = np.exp(guess.fields(np.zeros(1))[0])
+    width = np.sqrt(1.0 + central_gap)
+    scale = 2.0 ** round(float(np.log2(width).mean()))
+
+    def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
+        flat = x.ravel()
+        found = guess.fields(flat)
+        gap = np.exp(found[0])
+        if len(found) == 2:
+            fluid = found[1]
+        else:
+            slopes = groups.speed * (gap - guess.flux_gap) / gap**3
+            fluid = slopes * np.repeat(half_widths, x.shape[1])
+        edge_scale = np.minimum(1.0, half_widths / width) ** 0.5
+        pressures = width / np.repeat(edge_scale, x.shape[1], axis=-1) * np.stack([law.pressure(gap), fluid])
+        nodal = (*gap.shape[:-1], *x.shape)
+        shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
+        centres = x.mean(axis=1)
+        at_zero = np.abs(centres) <= (1 + ROUNDING) * half_widths
+        read_off = at_zero | (np.abs(centres - guess.least_position) <= half_widths)
+        read_off &= stretch[:, 0] == 1.0
+        weight = max(0.1, tolerance / profile_tolerance)
+        shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[..., None]
+        shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
+        return np.concatenate([stretch * pressures.reshape(2, *nodal), shape[None], shear[None]])
+
+    start = guess.mesh if isinstance(guess, State) else None
+    reach = (8 if order < LONG_REACH_ORDER else 16) * scale
+    return adapt(fields, scale, reach, order, tolerance, start)
+
+
 def unknowns_on(operators: Operators, guess: Guess) -> Array:
     """Return the unknowns of a guess on the mesh of ``operators``."""
-    mesh, layout = operators.mesh, operators.layout
-    values: dict[str, float | Array] = {
-        "gap": np.exp(guess.log_gap(mesh)),
-        "offset": guess.offset,
-        "flux_gap": guess.flux_gap,
-    }
-    if "exit" in layout:
-        values["exit"] = guess.exit
-    if "pressure" in layout:
-        values["pressure"] = guess.fields(mesh.nodes)[1]
-    return layout.stacked(**values)
+    mesh, at = operators.mesh, operators.layout
+    y = np.empty(at.size)
+    y[at.gap] = np.exp(guess.log_gap(mesh))
+    y[at.offset], y[at.flux_gap], y[at.exit] = guess.offset, guess.flux_gap, guess.exit
+    if operators.model.film.uses_pressure:
+        y[at.pressure] = guess.fields(mesh.nodes)[1]
+    return y
 
 
 def inverse_on(operators: Operators, state: State) -> Inverse:
@@ -199,6 +269,6 @@ def solve_state(
     equations = Equations(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2)
     start = unknowns_on(operators, guess)
     root = root_find(equations, start, StepControl(tolerance, max_steps, CHORD), kept)
-    gap = operators.layout["gap"]
+    gap = operators.layout.gap
     error = float(np.abs(start[gap] / root.x[gap] - 1).max())
     return State(groups, equations, root.x, root, error)

@@ -7,59 +7,31 @@ gap the pressure that the film must end with, and the row of the exit the gradie
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from typing import NamedTuple
 
-import numpy as np
-
-from stribeck._types import Array
+NOWHERE = slice(0, 0)
+"""Where an unknown lies that a model does not have."""
 
 
-@dataclass(frozen=True)
-class Layout:
-    """Names of the unknowns on a mesh, in their order.
+class Layout(NamedTuple):
+    """Where each unknown lies; ``y[..., layout.offset]`` keeps the axis of a number, so that it is a column of stacked states.
 
     Attributes
     ----------
-    nodes : int
-        Nodes of the mesh.
-    fields : tuple of str
-        Unknowns with a value at each node.
-    numbers : tuple of str
-        Unknowns with one value, after the fields.
+    size : int
+        Number of all unknowns.
+    gap, pressure : slice
+        Fields: the gap, and the fluid pressure if it is an unknown of its own.
+    numbers : slice
+        All numbers.
+    offset, flux_gap, exit : slice
+        Numbers: the height of the undeformed cylinder, the flux gap, and the exit of a film that ends.
     """
 
-    nodes: int
-    fields: tuple[str, ...] = ("gap",)
-    numbers: tuple[str, ...] = ("offset", "flux_gap")
-
-    @property
-    def size(self) -> int:
-        """Number of all unknowns."""
-        return self.nodes * len(self.fields) + len(self.numbers)
-
-    @cached_property
-    def _blocks(self) -> dict[str, slice]:
-        n, first = self.nodes, self.nodes * len(self.fields)
-        fields = {name: slice(k * n, (k + 1) * n) for k, name in enumerate(self.fields)}
-        return fields | {name: slice(first + k, first + k + 1) for k, name in enumerate(self.numbers)}
-
-    def __getitem__(self, name: str) -> slice:
-        """Return where an unknown lies; a number keeps its axis, so that it is a column of stacked states."""
-        return self._blocks[name]
-
-    def __contains__(self, name: object) -> bool:
-        """Return whether there is such an unknown."""
-        return name in self._blocks
-
-    def index(self, name: str) -> int:
-        """Return the position of a number, without an axis of its own."""
-        return int(self._blocks[name].start)
-
-    def numbers_of(self, y: Array) -> Array:
-        """Return the numbers of the unknowns ``y``, a view of shape (..., number of numbers)."""
-        return y[..., self.nodes * len(self.fields) :]
-
-    def stacked(self, **values: float | Array) -> Array:
-        """Return the vector of unknowns that have these values, each field and number by its name."""
-        return np.concatenate([np.atleast_1d(np.asarray(values[name], float)) for name in (*self.fields, *self.numbers)])
+    size: int
+    gap: slice
+    numbers: slice
+    offset: slice
+    flux_gap: slice
+    pressure: slice = NOWHERE
+    exit: slice = NOWHERE

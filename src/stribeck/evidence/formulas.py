@@ -66,7 +66,7 @@ def _curve(groups: Groups, boundary_friction: float, beta: float, definition: De
 def _coefficients(options: dict[str, Any]) -> dict[str, Any]:
     """Return what the options of a formula ask of the solver: 1 and the definition of the paper, where they do not say."""
     definition = options.get("definition", options.get("viscous"))
-    known = definition if definition in DEFINITIONS else "published"
+    known = definition if definition in DEFINITIONS else "paper"
     return {"boundary_friction": options.get("boundary_friction", 1.0), "beta": options.get("beta", 1.0), "definition": known}
 
 
@@ -339,17 +339,16 @@ def _maps(
             with np.errstate(all="ignore"):
                 values = np.broadcast_to(formula.function(groups, **options), shape)
                 errors[formula.name] = (values - right[formula.predicts]) / right[formula.predicts]
-        valid = np.broadcast_to(_valid(formula, groups, options), shape)
+        valid = np.broadcast_to(_valid(formula, groups), shape)
         found[formula.name] = _dataset(formula, options, axes, errors[formula.name], valid, estimate)
     return found
 
 
-def _valid(formula: Formula[Any], groups: Groups, options: dict[str, Any]) -> Flags:
+def _valid(formula: Formula[Any], groups: Groups) -> Flags:
     """Return where a formula is in its range, to which its ends belong although the grid is rounded."""
     steps = 1 - ROUNDING, 1 + ROUNDING
     near = [replace(groups, speed=groups.speed * i, roughness=groups.roughness * j) for i in steps for j in steps]
-    given = {name: options[name] for name in ("boundary_friction", "beta") if name in options}
-    return np.asarray(np.logical_or.reduce([formula.valid(state, **given) for state in near]))
+    return np.asarray(np.logical_or.reduce([formula.valid(state) for state in near]))
 
 
 def _row(base: Groups, speeds: Array) -> list[tuple[int, Solution]]:

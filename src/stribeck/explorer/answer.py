@@ -139,8 +139,6 @@ class Model:
             Where the state cannot be solved.
         """
         contact, definition = inputs.contact, inputs.definition
-        if self._solve.rtol != inputs.rtol:
-            self._solve = NearSolver(inputs.rtol)
         solution = self._solve(contact)
         friction = solution.friction(definition=definition)
         part = friction.contact / friction.total if friction.total > 0 else 0.0
@@ -210,9 +208,9 @@ class Model:
         return found
 
 
-def _key(contact: LineContact) -> tuple[Any, ...]:
+def _key(contact: LineContact) -> tuple[float, ...]:
     """Return all inputs but the speed."""
-    return (contact.law, *(getattr(contact, name) for name in FIELDS if name != "speed"))
+    return tuple(getattr(contact, name) for name in FIELDS if name != "speed")
 
 
 def round_up(value: float) -> float:

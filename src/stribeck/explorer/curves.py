@@ -13,7 +13,6 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
-from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.atlas_curve import ERROR
@@ -120,9 +119,7 @@ def _speed_group(contact: LineContact) -> float:
 
 
 def in_atlas(contact: LineContact) -> bool:
-    """Tell whether the atlas holds the contact law, the load and the roughness of a contact."""
-    if not is_exponential(contact.law):
-        return False
+    """Tell whether the atlas holds the load and the roughness of a contact."""
     load, kappa = float(contact.groups.load), float(contact.groups.relative_roughness)
     low, high = atlas.BOX["relative_roughness"]
     return atlas.BOX["load"][0] <= load <= atlas.BOX["load"][1] and (kappa == 0 or low <= kappa <= high)
@@ -202,13 +199,8 @@ def diagram_from_atlas(contact: LineContact, definition: Definition, speeds: tup
     none = np.full(ROWS, math.nan)
     load, unit = float(contact.groups.load), _speed_group(contact)
     least, most = atlas.BOX["load"]
-    message = ""
-    if not is_exponential(contact.law):
-        message = "Regime map unavailable: the lookup table holds the exponential contact law only."
-    elif not least <= load <= most:
-        bound = f"up to {most:g}" if load > most else f"from {least:g}"
-        message = f"Regime map unavailable: the lookup table covers load groups {bound}; here it is {load:.3g}."
-    if message:
+    if not least <= load <= most:
+        message = f"No phase diagram: the atlas, off which it is read, ends at load group {most:g}; here it is {load:.3g}."
         return Diagram(roughness, none, none, none, message)
     h = roughness * float(contact.replace(roughness=1.0).groups.roughness)
     low, high = atlas.BOX["relative_roughness"]

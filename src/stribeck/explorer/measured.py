@@ -57,8 +57,9 @@ def read_measured(name: str, content: bytes, contact: LineContact) -> list[Measu
     InputError
         Where the file cannot be read; the sentence names row and column.
     """
-    with tempfile.TemporaryDirectory(prefix="stribeck-") as folder:
-        path = Path(folder) / "curve.csv"  # never under the name that came with it
+    plain = Path(name.replace("\\", "/")).name or "curve"
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / plain
         path.write_bytes(content)
         try:
             data = read_measurements(path)

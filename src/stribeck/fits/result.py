@@ -96,7 +96,7 @@ class Fit:
         The fitted contact of each curve.
     data : Measurements
         What was fitted to.
-    definition : {"balanced", "published"}
+    definition : {"paper", "balanced"}
         Definition of the viscous friction.
     law : str
         Name of the contact law.

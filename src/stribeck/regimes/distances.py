@@ -129,7 +129,7 @@ def transition_distances(
     contact: LineContact,
     *,
     rtol: float = 1e-6,
-    definition: Definition = "balanced",
+    definition: Definition = "paper",
     on_point: Callable[[int, int], object] | None = None,
 ) -> TransitionDistances:
     """Return by which factors of speed, load, roughness and viscosity the lubrication regime of a contact changes.
@@ -140,7 +140,7 @@ def transition_distances(
         The contact; zero speed and zero roughness are ordinary inputs.
     rtol : float
         Relative tolerance of the states that are scanned; the changes are located on finer ones.
-    definition : {"balanced", "published"}
+    definition : {"paper", "balanced"}
         Definition of the viscous friction.
     on_point : callable, optional
         ``on_point(done, scans)`` is called after each state, for progress.

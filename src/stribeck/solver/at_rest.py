@@ -1,7 +1,8 @@
-"""Contacts at rest: a law that lets the gap become negative is shifted, so that all gaps are positive while it is solved."""
+"""Contacts at rest: they are solved where all gaps are positive, and shifted afterwards."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,9 @@ import numpy as np
 from stribeck.contact_laws.law import LawShape, has_constant_decay
 from stribeck.contact_laws.scaled import ShiftedShape
 from stribeck.contacts.groups import Groups
+
+STATIC_LOAD = 0.01
+"""Load at which heavier contacts at rest are solved: all gaps are positive there."""
 
 SAFE_SEPARATION = 2.3
 """Separation at the largest pressure from which all gaps are positive at rest; that of the exponential law at load 0.01."""
@@ -25,18 +29,29 @@ def separation_at(shape: LawShape, log_pressure: float) -> float:
     return 0.5 * (low + high)
 
 
-def lifted(groups: Groups) -> tuple[Groups, float]:
-    r"""Return groups at rest with a shifted law, all gaps of which are positive, and by how much they are larger.
+def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
+    r"""Return the groups that are solved for, whose gap is positive everywhere, and what their gap lacks [u_Hz].
 
-    .. math:: \Delta s = \max(0, s_0 - \Phi^{-1}(\bar F_N^{1/2}))
+    .. math::
 
-    Nowhere is the pressure much above that of the smooth contact, one: there the separation is s_0, :data:`SAFE_SEPARATION`.
-    Laws that diverge at zero need no shift.
+        \Delta h = -\frac{\kappa}{2} \ln \frac{\bar F_N}{\bar F_N'}, \qquad
+        \Delta h = -\kappa \max(0, s_0 - \Phi^{-1}(\bar F_N^{1/2}))
+
+    A sliding contact is solved as it is.  At rest the load only shifts gap and offset: a heavy contact of the exponential law
+    is solved at :data:`STATIC_LOAD`, one of another law at separations so much larger that at the pressure of the smooth
+    contact they are s_0, :data:`SAFE_SEPARATION`.  Laws that diverge at zero need no shift.
     """
+    if groups.speed > 0:
+        return groups, 0.0
     shape = groups.law
-    if shape is None or has_constant_decay(shape) or shape.lowest > -np.inf or isinstance(shape, ShiftedShape):
+    if shape is None or has_constant_decay(shape):
+        if groups.load <= STATIC_LOAD:
+            return groups, 0.0
+        lighter = replace(groups, load=STATIC_LOAD, roughness=STATIC_LOAD * groups.relative_roughness)
+        return lighter, -0.5 * float(groups.relative_roughness) * math.log(float(groups.load / lighter.load))
+    if shape.lowest > -np.inf or isinstance(shape, ShiftedShape):
         return groups, 0.0
     shift = max(0.0, SAFE_SEPARATION - separation_at(shape, 0.5 * float(np.log(groups.load))))
     if shift == 0.0:
         return groups, 0.0
-    return replace(groups, law=ShiftedShape(shape, shift)), shift * float(groups.relative_roughness)
+    return replace(groups, law=ShiftedShape(shape, shift)), -shift * float(groups.relative_roughness)

@@ -22,8 +22,7 @@ from stribeck.contacts.line import Groups
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import extrapolate
-from stribeck.equations.resolution import mesh_for
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
@@ -45,30 +44,25 @@ NEWTON_TOLERANCE = 1e-5
 
 @dataclass(frozen=True)
 class RigidGuess:
-    """The gap of a rigid cylinder at height ``height`` with the deflection under its rigid-film pressure."""
+    """The gap of a rigid cylinder with the deflection under its rigid-film pressure.
+
+    Attributes
+    ----------
+    speed : float
+        Speed group [-].
+    offset : float
+        Height of the cylinder [u_Hz].
+    flux_gap : float
+        Flux gap of the rigid parabola, 4/3 of its height [u_Hz].
+    least_position, exit : float
+        The middle: a rigid film starts full films only [a].
+    """
 
     speed: float
-    height: float
-
-    @property
-    def flux_gap(self) -> float:
-        """Flux gap of the rigid parabola, 4/3 of its height."""
-        return 4 * self.height / 3
-
-    @property
-    def offset(self) -> float:
-        """The height."""
-        return self.height
-
-    @property
-    def exit(self) -> float:
-        """The middle: a rigid film starts full films only."""
-        return 0.0
-
-    @property
-    def least_position(self) -> float:
-        """The middle."""
-        return 0.0
+    offset: float
+    flux_gap: float
+    least_position: float = 0.0
+    exit: float = 0.0
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
@@ -76,9 +70,9 @@ class RigidGuess:
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap at ``x``: the fluid pressure is left to its gradient."""
-        b = math.sqrt(2 * self.height)
+        b = math.sqrt(2 * self.offset)
         deflection = -2 * self.speed / 3 * x / b / (x * x + b * b)
-        return np.asarray(np.log(self.height + x * x / 2 + deflection)[None, :])
+        return np.asarray(np.log(self.offset + x * x / 2 + deflection)[None, :])
 
 
 def unloaded(groups: Groups, log_factor: float) -> Groups:
@@ -108,7 +102,8 @@ def rigid_guess(groups: Groups) -> RigidGuess:
             contact = float(law.pressure(height + x * x / 2).sum() * dx)
         return min(math.pi / 48 * speed**2 / height**3 + contact, 1e9) - LOAD
 
-    return RigidGuess(speed, math.exp(brentq(excess, -80.0, 80.0, xtol=1e-6)))
+    height = math.exp(brentq(excess, -80.0, 80.0, xtol=1e-6))
+    return RigidGuess(speed, height, 4 * height / 3)
 
 
 def cold_start(groups: Groups) -> Path[State]:
@@ -124,7 +119,7 @@ def cold_start(groups: Groups) -> Path[State]:
     Path
         Of states on meshes that resolve them to about 1e-3; its outcome tells whether the end was reached.
     """
-    kappa = float(groups.relative_roughness)
+    kappa = float(contact_law(groups).decay)
     by_speed = groups.speed > 0 and groups.load > SATURATED_LOAD and kappa < RIGID_ROUGHNESS
     along = faster if by_speed else unloaded
     factors = []
@@ -143,7 +138,9 @@ def cold_start(groups: Groups) -> Path[State]:
             return None
         return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
 
-    return march(correct, top, 0.0, Steps(0.6, 2.5, 1e-3))
+    first = correct(top, ())
+    known = [] if first is None or not first.outcome.ok else [(top, first)]
+    return march(correct, top, 0.0, Steps(0.6, 2.5, 1e-3), history=known)
 
 
 def first_path(groups: Groups) -> Path[State]:

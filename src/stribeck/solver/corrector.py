@@ -15,14 +15,14 @@ from stribeck.equations.error_estimate import FineOperators, reads_off
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.prediction import extrapolate
-from stribeck.equations.resolution import mesh_for
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
+from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.judgement import judge_together
-from stribeck.solver.refinement import Point, converge, judge, mesh_tolerances_for, newton_tolerance, order_for, solvable
+from stribeck.solver.refinement import Point, converge, judge, mesh_tolerances_for, newton_tolerance, order_for
 
 MOST_STEPS = 16
 """Newton and chord steps after which the present mesh is given up."""
@@ -75,7 +75,7 @@ class Follower:
         """Return the point at ``s`` predicted from ``history``; from cold where that is empty."""
         groups = self.groups_at(s)
         if not history:
-            path = first_path(solvable(groups))
+            path = first_path(with_positive_gap(groups)[0])
             if path.outcome is Outcome.INTERRUPTED:
                 raise KeyboardInterrupt
             return self._adopt(converge(path.states[-1], groups, self.rtol)) if path.outcome.ok else None
@@ -130,7 +130,7 @@ class Follower:
     def _on_present_mesh(self, guess: Guess, groups: Groups, postpone: bool) -> Point | None:
         if self.operators is None or self.fine is None:
             return None
-        base, tolerance = solvable(groups), newton_tolerance(self.rtol)
+        base, tolerance = with_positive_gap(groups)[0], newton_tolerance(self.rtol)
         state = solve_state(base, self.operators, guess, tolerance, MOST_STEPS, self.inverse)
         if not state.outcome.ok:
             return None

@@ -111,11 +111,13 @@ def between(
     weights = np.stack([extrapolation_weights([a.coordinate for a in through], s) for s in coordinates])
     states = [a.state for a in through]
     at = operators.layout
-    known = np.stack([at.stacked(gap=s.log_gap(mesh), offset=s.offset, flux_gap=float(np.log(s.flux_gap))) for s in states])
+    known = np.empty((len(states), at.size))
+    for row, s in zip(known, states, strict=True):
+        row[at.gap], row[at.offset], row[at.flux_gap] = s.log_gap(mesh), s.offset, np.log(s.flux_gap)
     y = weights @ known
-    for name in ("gap", "flux_gap"):
-        y[:, at[name]] = np.exp(y[:, at[name]])
-    scales = y[:, at["flux_gap"]] ** 2
+    for block in (at.gap, at.flux_gap):
+        y[:, block] = np.exp(y[:, block])
+    scales = y[:, at.flux_gap] ** 2
     equations, load = in_rows(groups, operators, scales)
     first, second = ends
     parts = (np.array(coordinates)[:, None] - first.coordinate) / (second.coordinate - first.coordinate)
@@ -124,7 +126,7 @@ def between(
     y, sizes, rates, steps = _corrected(gap, y, tolerance)
     if not ((sizes <= tolerance) & (rates <= SLOWEST)).all():
         return []
-    prediction = np.abs(guess[:, at["gap"]] / y[:, at["gap"]] - 1).max(axis=1)
+    prediction = np.abs(guess[:, at.gap] / y[:, at.gap] - 1).max(axis=1)
     solved = []
     for i in range(len(groups)):
         own = Equations(operators, float(groups[i].speed), contact_law(groups[i]), float(scales[i, 0]))
@@ -143,7 +145,7 @@ def _corrected(gap: _Gap, y: Array, tolerance: float) -> tuple[Array, Array, Arr
             units = equations.units(y)
             dy = gap.correction(equations.residual(y), units)
             relative = np.abs(dy / units)
-            relative[:, equations.layout["offset"]] = 0.0
+            relative[:, equations.layout.offset] = 0.0
             before, sizes = sizes, relative.max(axis=1)
             rates = sizes / before
             y = y + dy

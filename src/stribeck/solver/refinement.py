@@ -8,22 +8,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import has_constant_decay
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, error_estimates
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.resolution import mesh_for
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.at_rest import lifted
-
-QUASISTATIC_LOAD = 0.01
-"""At speed zero the load only shifts the gap: heavier contacts are solved at this load, where all gaps are positive."""
+from stribeck.solver.at_rest import with_positive_gap
 
 MAX_REFINEMENTS = 12
 
@@ -47,38 +42,12 @@ def mesh_tolerances_for(rtol: float) -> tuple[float, float]:
     return min(1e-2, 0.2 * math.sqrt(rtol)), 0.3 * rtol
 
 
-def solvable(groups: Groups) -> Groups:
-    """Return the groups that are solved for: at speed zero the gap is lifted until it is positive everywhere.
-
-    The exponential law does so by a lower load, another by a shifted separation.
-    """
-    if not has_constant_decay(groups.law):
-        return groups if groups.speed > 0 else lifted(groups)[0]
-    if groups.speed > 0 or groups.load <= QUASISTATIC_LOAD:
-        return groups
-    return Groups(0.0, QUASISTATIC_LOAD, QUASISTATIC_LOAD * groups.relative_roughness, law=groups.law)
-
-
-def quasistatic_shift(groups: Groups) -> float:
-    r"""Return by how much the gap of ``groups`` lies above that of :func:`solvable`.
-
-    .. math:: \Delta h = -\frac{\kappa}{2} \ln \frac{\bar F_N}{\bar F_N'}
-
-    Exact at speed zero, where the solution depends on kappa alone but for this shift of gap and offset.  For other laws than
-    the exponential one it is that of :func:`stribeck.solver.at_rest.lifted`.
-    """
-    if not has_constant_decay(groups.law):
-        return 0.0 if groups.speed > 0 else -lifted(groups)[1]
-    if solvable(groups) is groups:
-        return 0.0
-    return -0.5 * float(groups.relative_roughness) * math.log(float(groups.load / solvable(groups).load))
-
-
 @dataclass(frozen=True, eq=False)
 class Point:
     """A refined state of ``groups``, its observables and their errors, and how the refinement ended.
 
-    ``state`` is that of :func:`solvable` groups; ``estimate`` is None where not even a coarse state was found.
+    ``state`` is that of the groups solved for, see :func:`stribeck.solver.at_rest.with_positive_gap`; ``estimate`` is None if
+    not even a coarse state was found.
     """
 
     groups: Groups
@@ -104,10 +73,10 @@ def converge(
 ) -> Point:
     """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
 
-    ``tolerances`` are the Legendre tails to start with, see :func:`stribeck.equations.resolution.mesh_for`.
+    ``tolerances`` are the Legendre tails to start with, see :func:`stribeck.equations.state.mesh_for`.
     ``profile_tolerance`` is the tail of the gap between the nodes, which no observable needs small.
     """
-    base = solvable(groups)
+    base, _ = with_positive_gap(groups)
     law = contact_law(base)
     tail, gap_tail = mesh_tolerances_for(rtol) if tolerances is None else tolerances
     best = Point(groups, None, None, None, Outcome.REFINEMENT_LIMIT)
@@ -180,7 +149,7 @@ def newton_tolerance(rtol: float) -> float:
 def values_of(state: State, groups: Groups) -> Observables:
     """Return the observables of ``groups`` from the state solved for it."""
     values = observables(state.equations, state.y, float(groups.load))
-    shift = quasistatic_shift(groups)
+    _, shift = with_positive_gap(groups)
     if shift == 0.0:
         return values
     gap = state.gap + shift

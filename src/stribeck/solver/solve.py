@@ -19,9 +19,10 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
+from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
-from stribeck.solver.refinement import Point, converge, order_for, quasistatic_shift, solvable
+from stribeck.solver.refinement import Point, converge, order_for
 from stribeck.solver.solution import Solution
 
 RTOL_RANGE = (1e-11, 1e-2)
@@ -72,7 +73,7 @@ def solve(
     Parameters
     ----------
     problem : Groups or LineContact
-        The state.  Speed zero (quasistatic), roughness zero (smooth) and both (Hertz, closed form) are ordinary inputs.
+        The state.  Speed zero (at rest), roughness zero (smooth) and both (Hertz, closed form) are ordinary inputs.
     rtol : float
         Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2.
     law : str or LawShape, optional
@@ -104,14 +105,14 @@ def solve(
     check_rtol(rtol)
     if on_failure not in ("raise", "return"):
         raise InputError(f"on_failure = {show(on_failure)}; it must be 'raise' or 'return'.")
-    if groups.is_hertzian:
+    if groups.speed == 0 and groups.roughness == 0:
         return hertz_solution(groups, contact, rtol)
     return finish(solved_point(groups, rtol), groups, contact, rtol, on_failure)
 
 
 def solved_point(groups: Groups, rtol: float) -> Point:
     """Return the refined state of ``groups`` from cold; raise where no path leads there."""
-    path = first_path(solvable(groups))
+    path = first_path(groups if groups.speed > 0 else with_positive_gap(groups)[0])
     if not path.outcome.ok:
         raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
     return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
@@ -189,7 +190,7 @@ def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solut
         rounding_floor=estimate.floor,
         mesh=state.mesh,
         nodal_gap=state.gap,
-        gap_shift=quasistatic_shift(point.groups),
+        gap_shift=with_positive_gap(point.groups)[1],
         nodal_pressures=partial(state.equations.pressures, state.y),
         newton_steps=state.root.steps,
     )
@@ -209,7 +210,7 @@ def hertz_solution(groups: Groups, contact: LineContact | None, rtol: float) -> 
         minimum_position=0.0,
         flux_gap=0.0,
         offset=hertz.OFFSET,
-        viscous_published=0.0,
+        viscous_paper=0.0,
         viscous_balanced=0.0,
     )
     return Solution(

@@ -68,8 +68,6 @@ class MeasuredSpectrum:
         What sets these limits.
     mean_square : float
         Mean square of the heights under the window [m^2].
-    texture : complex
-        Second angular harmonic of the spectrum over its ring, the mean of the reliable rings; 0 for a line [-].
     """
 
     wavenumber: Array
@@ -82,7 +80,6 @@ class MeasuredSpectrum:
     lowest_reason: str
     highest_reason: str
     mean_square: float
-    texture: complex = 0.0
 
     @property
     def reliable(self) -> Flags:
@@ -132,8 +129,7 @@ def power_spectrum(
     area = math.prod(topography.size)
     axes = [2 * math.pi * np.fft.fftfreq(n, step) for n, step in zip(z.shape, topography.spacing, strict=True)]
     power = np.abs(np.fft.fftn(z)) ** 2 * (math.prod(topography.spacing) ** 2 / ((2 * math.pi) ** z.ndim * area * square))
-    components = np.meshgrid(*axes, indexing="ij")
-    q = np.sqrt(sum(component**2 for component in components))
+    q = np.sqrt(sum(component**2 for component in np.meshgrid(*axes, indexing="ij")))
     fundamental = 2 * math.pi / min(topography.size)
     largest = math.pi / max(topography.spacing)
     edges = _edges(fundamental, largest)
@@ -154,13 +150,6 @@ def power_spectrum(
     if instrument is not None and 2 * math.pi / instrument < highest:
         highest, highest_reason = 2 * math.pi / instrument, "resolution of the instrument"
     lowest = LONGEST * fundamental
-    texture = 0.0 + 0.0j
-    if not topography.is_line:
-        used = (wavenumber >= lowest) & (wavenumber <= highest)
-        turn = ((components[0] + 1j * components[1])[keep][order] / radius) ** 2
-        # Less one, as the grid's own wave vectors may lie unevenly in a ring.
-        rings = np.add.reduceat((power / np.repeat(density, counts) - 1) * turn, starts)
-        texture = complex(np.sum(rings[used]) / max(np.sum(counts[used]), 1))
     spectrum = MeasuredSpectrum(
         wavenumber=wavenumber,
         density=density,
@@ -172,7 +161,6 @@ def power_spectrum(
         lowest_reason=f"{LONGEST:g} waves in the scan",
         highest_reason=highest_reason,
         mean_square=float(np.mean(z**2) / square),
-        texture=texture,
     )
     if spectrum.reliable.sum() < 6:
         raise InputError(

@@ -37,7 +37,6 @@ def _compute(report: Report) -> xarray.Dataset:
         speed=SPEEDS,
         points={"load": 2, "speed": 34},
         rtol=RTOL,
-        definition="published",
         merging=True,
         on_point=report,
     )

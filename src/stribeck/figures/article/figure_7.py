@@ -24,8 +24,8 @@ from stribeck.figures.article.stribeck_cases import (
     report_variables,
     solved_cases,
 )
-from stribeck.figures.making import Work, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.states import Work, column, dataset
 
 if TYPE_CHECKING:
     import xarray
@@ -72,7 +72,7 @@ def _compute(report: Report) -> xarray.Dataset:
     grid = "case", "speed"
     variables = {
         "hersey_number": column(grid, hersey, "Hersey number eta U/F_N for beta = 1"),
-        "friction": column(grid, friction, "friction coefficient, definition published"),
+        "friction": column(grid, friction, "friction coefficient, definition paper"),
         "hydrodynamic_friction": column(grid, law, "friction of smooth surfaces by the root of squares of the paper"),
         "uniform_friction": column(grid, uniform, "friction of smooth surfaces by our uniform law"),
         "distance": column(grid, off, "friction over hydrodynamic_friction - 1 where asperities cause < 0.1 % of it"),

@@ -9,8 +9,8 @@ import numpy as np
 from stribeck.asymptotics.rough import boundary
 from stribeck.contacts.line import Groups
 from stribeck.figures import style
-from stribeck.figures.making import Work, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
+from stribeck.figures.states import Work, column, dataset
 from stribeck.solids import hertz
 
 if TYPE_CHECKING:
@@ -63,11 +63,9 @@ def _compute(report: Report) -> xarray.Dataset:
     )
     variables = {
         "hersey_number": column("curve_speed", curve.hersey_number, "Hersey number eta U/F_N of the curve for beta = 1"),
-        "friction": column("curve_speed", curve.friction, "friction coefficient, definition published"),
+        "friction": column("curve_speed", curve.friction, "friction coefficient, definition paper"),
         "profile_hersey": column("speed", [state.groups.hersey_number() for state in states], "Hersey number of the profiles"),
-        "profile_friction": column(
-            "speed", [state.friction(definition="published").total for state in states], "friction coefficient there"
-        ),
+        "profile_friction": column("speed", [state.friction().total for state in states], "friction coefficient there"),
         "fluid_load_share": column("speed", shares, "part of the load on the fluid"),
         "central_gap": column("speed", [state.central_gap for state in states], "gap at x = 0 over u_Hz"),
         "gap": column(("speed", "x"), gaps, "gap over u_Hz"),
