@@ -19,7 +19,6 @@ from stribeck.equations.gap import gap_at, least_gap
 from stribeck.equations.line import LOAD, Equations, Operators
 from stribeck.equations.prediction import SeenFrom
 from stribeck.equations.state import mesh_for, solve_state
-from stribeck.equations.unknowns import NOWHERE
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.viscosity import Barus
@@ -117,7 +116,7 @@ def stacked(layout, gap, pressure, offset, flux_gap, leaving):
     """Return the vector of these unknowns, as far as the layout has them."""
     y = np.empty(layout.size)
     y[layout.gap], y[layout.offset], y[layout.flux_gap], y[layout.exit] = gap, offset, flux_gap, leaving
-    if layout.pressure != NOWHERE:
+    if layout.pressure.start < layout.pressure.stop:
         y[layout.pressure] = pressure
     return y
 
