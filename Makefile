@@ -7,6 +7,10 @@ BROWSER := $(VENV)/.ready-browser
 TOOLS  := $(VENV)/.ready-tools
 DOCS   := $(VENV)/.ready-docs
 
+# Those with a mark of pytest, `quick`, so that no module without one is imported.
+QUICK  := -m pytest -q -n auto -m "quick and not slow" $(shell grep -l 'mark\.quick' tests/test_*.py)
+UV     := $(or $(shell command -v uv),$(BIN)/uv)
+
 # One BLAS thread for each test worker: two workers with two threads each slow each other down several times.
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 
@@ -22,11 +26,13 @@ define install
 endef
 
 .PHONY: help demo test slow browser screenshots lint format types benchmark validity atlas certificate docs site notebooks
-.PHONY: clean
+.PHONY: clean quick quick-kernels quick-lowest quick-newest
 
 help:
 	@echo "make demo       the Stribeck curve of a PDMS cylinder: curve.png, curve.nc"
-	@echo "make test       the tests      make slow   those that take minutes"
+	@echo "make quick      the core claims, in a minute      make test   all tests      make slow   those that take minutes"
+	@echo "make quick-kernels, quick-lowest, quick-newest   the core claims under two other BLAS kernels than that of this"
+	@echo "                machine, with the lowest versions that pyproject.toml allows, and with the newest there are"
 	@echo "make browser    the tests of the explorer, in Chromium      make screenshots  docs/images/explorer*.png"
 	@echo "make lint       style          make format apply it"
 	@echo "make types      static types   make benchmark  the tables of the documentation"
@@ -50,6 +56,34 @@ $(DOCS): pyproject.toml requirements.lock | $(READY)
 
 demo: $(READY)
 	$(BIN)/stribeck curve examples/pdms_cylinder.toml -o curve.nc --plot curve.png --force
+
+quick: $(READY)
+	$(ONE_THREAD) $(BIN)/python $(QUICK)
+
+# Rounding differs between kernels, and no claim may hang on it.
+quick-kernels: $(READY)
+	@for kernel in $$($(BIN)/python .ci/kernels.py); do \
+		echo "# OPENBLAS_CORETYPE=$$kernel"; \
+		OPENBLAS_CORETYPE=$$kernel $(ONE_THREAD) $(BIN)/python $(QUICK) || exit 1; done
+
+quick-lowest: $(VENV)-lowest/.ready
+	$(BIN)/python .ci/bounds.py $(UV)
+	$(ONE_THREAD) $(VENV)-lowest/bin/python $(QUICK)
+
+quick-newest: $(VENV)-newest/.ready
+	$(ONE_THREAD) $(VENV)-newest/bin/python $(QUICK)
+
+# What is newest changes, what is lowest does not.
+.PHONY: $(VENV)-newest/.ready
+$(VENV)-newest/.ready: RESOLUTION := highest
+$(VENV)-lowest/.ready: RESOLUTION := lowest-direct
+$(VENV)-newest/.ready $(VENV)-lowest/.ready: pyproject.toml | $(READY) $(UV)
+	$(UV) venv --quiet --clear --python $(BIN)/python $(@D)
+	$(UV) pip install --quiet --python $(@D)/bin/python --resolution $(RESOLUTION) --editable '.[quick]'
+	@touch $@
+
+$(BIN)/uv: | $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check uv
 
 test: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n auto
@@ -104,7 +138,7 @@ certificate: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_certificate
 
 clean:
-	rm -rf $(VENV) build dist curve.nc curve.png curve.csv .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-lowest $(VENV)-newest build dist curve.nc curve.png curve.csv .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	rm -rf docs/gallery docs/generated
 	find src tests benchmarks examples docs -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 

@@ -10,6 +10,8 @@ from scipy.special import gamma, pbdv
 import stribeck as sb
 from stribeck.contact_laws.greenwood import log_moment, log_moment_slope
 
+pytestmark = pytest.mark.quick
+
 ORDERS = (1.5, 2.5)
 
 

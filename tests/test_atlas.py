@@ -83,6 +83,7 @@ def test_the_certificate_holds_on_five_thousand_states(mixed):
         assert errors.max() < 1e-4
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("load", [0.3, 0.999, 1.0])
 @pytest.mark.parametrize("kappa", [1e-5, 0.03, 30.0])
 def test_rest_is_that_of_the_solver(load, kappa):
@@ -119,6 +120,7 @@ def test_the_dry_contact_is_that_of_hertz():
 # --- derivatives ---
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("definition", DEFINITIONS)
 @pytest.mark.parametrize("states", [random_groups(400, 57721)[3], transition_groups(400, 16180)], ids=["box", "transition"])
 def test_derivatives_agree_with_differences(states, definition):
@@ -289,6 +291,7 @@ def contact():
     return sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact
 
 
+@pytest.mark.quick
 def test_a_curve_read_off_it_is_the_solved_one(contact):
     solved = sb.stribeck_curve(contact, points=41)
     read = sb.stribeck_curve(contact, points=41, method="atlas")

@@ -115,6 +115,7 @@ BAD_TABLES = {
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("command", ["solve", "curve", "regimes"])
 @pytest.mark.parametrize(("contact", "sentence"), BAD_CONTACTS.values(), ids=BAD_CONTACTS)
 def test_a_contact_that_cannot_be_is_refused_by_key_value_and_what_is_allowed(capsys, folder, command, contact, sentence):
@@ -143,6 +144,7 @@ def test_a_file_that_is_no_case_is_refused(capsys, folder, command, name, words)
     assert_refused(capsys, folder, [command, name], name, words)
 
 
+@pytest.mark.quick
 def test_all_problems_of_a_file_are_told_at_once_each_on_its_line(capsys, folder):
     (folder / "bad.toml").write_text(case_text({"radius": "-1", "alpha": '"x"', "speed": None}))
     answer = call(capsys, "solve", "bad.toml")
@@ -212,11 +214,13 @@ BAD_ARGUMENTS = [
 ]
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(("tokens", "sentence"), BAD_ARGUMENTS, ids=lambda each: str(each)[:60])
 def test_arguments_that_cannot_be_are_refused_in_one_sentence(capsys, folder, tokens, sentence):
     assert_refused(capsys, folder, tokens, sentence)
 
 
+@pytest.mark.quick
 def test_good_input_gets_past_the_checks(capsys, folder):
     for tokens in (["solve", "case.toml"], ["regimes", "case.toml"], [*CURVE, "-o", "new.nc"], [*OF_GROUPS]):
         answer = call(capsys, *tokens)
@@ -270,6 +274,7 @@ WORDS = st.one_of(
 )
 
 
+@pytest.mark.quick
 @given(tokens=st.lists(WORDS, max_size=7))
 @settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_nonsense_gets_a_sentence_and_never_a_traceback(capsys, folder, tokens):

@@ -8,6 +8,8 @@ import stribeck as sb
 from stribeck.solver.nearby import NearSolver
 from stribeck.solver.notes import ATMOSPHERE
 
+pytestmark = pytest.mark.quick
+
 SEAL = EXAMPLES / "rod_seal.toml"
 
 

@@ -55,6 +55,7 @@ def opened(path):
 # --- solve ---
 
 
+@pytest.mark.quick
 def test_solve_prints_the_dictionary_of_the_solution_as_json(capsys):
     answer = call(capsys, "solve", *GROUPS, "--json")
     assert (answer.code, answer.err) == (0, "")
@@ -157,6 +158,7 @@ def test_every_example_case_is_solved(capsys, path):
 # --- curve ---
 
 
+@pytest.mark.quick
 def test_curve_writes_what_it_was_asked_for_and_says_so(capsys, tmp_path):
     files = [tmp_path / name for name in ("curve.nc", "curve.csv", "curve.png")]
     answer = call(capsys, "curve", PDMS, *FEW, "-o", files[0], "--output", files[1], "--plot", files[2])
@@ -280,6 +282,7 @@ def test_a_failure_to_write_one_file_does_not_lose_the_other(capsys, tmp_path, m
 # --- regimes ---
 
 
+@pytest.mark.quick
 def test_regimes_tells_the_regime_the_transitions_and_what_moves_friction(capsys):
     answer = call(capsys, "regimes", PDMS)
     assert (answer.code, answer.err) == (0, "")
@@ -378,6 +381,7 @@ def test_a_curve_that_rounding_ends_is_refused_and_not_written(capsys, tmp_path,
     assert os.listdir(tmp_path) == []
 
 
+@pytest.mark.quick
 def test_an_unexpected_error_is_one_sentence_unless_debugging(capsys, monkeypatch):
     def bug(*arguments, **options):
         raise ZeroDivisionError("division\nby zero")
@@ -430,6 +434,7 @@ def test_a_terminal_without_greek_and_micro_is_served(tmp_path):
 # --- help ---
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("command", [(), ("solve",), ("curve",), ("regimes",), ("sweep",)])
 def test_every_help_has_an_example(capsys, command):
     answer = call(capsys, *command, "--help")
@@ -452,16 +457,19 @@ def test_the_examples_of_the_help_run(capsys, tmp_path, monkeypatch):
     assert seen == 8
 
 
+@pytest.mark.quick
 def test_the_version_is_that_of_the_package(capsys):
     assert call(capsys, "--version").out == f"{version('stribeck')}\n"
 
 
+@pytest.mark.quick
 def test_without_arguments_the_help_is_shown(capsys):
     answer = call(capsys)
     assert answer.code == 0
     assert "Usage: stribeck COMMAND" in answer.out
 
 
+@pytest.mark.quick
 def test_the_installed_command_and_the_module_are_the_same():
     outside = call_outside("solve", *GROUPS, "--json")
     code = "import runpy; runpy.run_module('stribeck', run_name='__main__', alter_sys=True)"
@@ -482,6 +490,7 @@ assert not {"matplotlib", "xarray", "netCDF4", "pandas", "pint", "pydantic"} & s
     assert answer.code == 0, answer.err
 
 
+@pytest.mark.quick
 def test_shell_completion_can_be_installed(tmp_path):
     home = {"HOME": str(tmp_path), "SHELL": "/bin/bash", "XDG_DATA_HOME": str(tmp_path / "share")}
     answer = call_outside("--install-completion", "--shell", "bash", **home)
@@ -543,11 +552,11 @@ AT_ONCE = """
 import os, signal, sys
 import stribeck.curves.stribeck_curve, stribeck.cli
 signal.signal(signal.SIGINT, signal.default_int_handler)
-whole = stribeck.curve.automatic_speeds
+whole = stribeck.curves.stribeck_curve.automatic_speeds
 def interrupted(*arguments):
     os.kill(os.getpid(), signal.SIGINT)
     return whole(*arguments)
-stribeck.curve.automatic_speeds = interrupted
+stribeck.curves.stribeck_curve.automatic_speeds = interrupted
 sys.exit(stribeck.cli.main(sys.argv[1:]))
 """
 

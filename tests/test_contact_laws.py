@@ -9,6 +9,8 @@ from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 
+pytestmark = pytest.mark.quick
+
 SEED = 52_901
 LOADS = [1e-8, 0.1, 7.0]
 

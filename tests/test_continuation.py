@@ -11,6 +11,8 @@ from stribeck.numerics.continuation import Steps, extrapolation_weights, march
 from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.quantities.outcome import Outcome
 
+pytestmark = pytest.mark.quick
+
 # Semenov's thermal explosion: heat made, p c exp(x), equals heat lost, x. The cold branch x = -W(-p c) ends
 # at p c = 1/e, here for three vessels side by side.
 VESSELS = np.array([0.2, 1.0, 0.5])

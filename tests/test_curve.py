@@ -46,6 +46,7 @@ def friction(speed, definition="paper", rtol=1e-9):
 # --- the points ---
 
 
+@pytest.mark.quick
 def test_points_lie_exactly_where_they_are_asked_for():
     wanted = [3e-4, 1e-3, 1.5e-3, 7e-3, 0.05]
     curve = sb.stribeck_curve(CONTACT, speed=wanted, points=2)
@@ -62,6 +63,7 @@ def test_a_pair_is_a_range_with_points_evenly_in_the_logarithm():
     assert curve.outcome is sb.Outcome.CONVERGED
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("over", "ends"),
     [
@@ -83,6 +85,7 @@ def test_every_point_is_the_state_that_a_single_solve_finds(over, ends):
         assert curve.hersey_number[i] == pytest.approx(alone.hersey_number, rel=1e-12)
 
 
+@pytest.mark.quick
 def test_groups_and_a_contact_of_these_groups_give_the_same_curve():
     of_contact = sb.stribeck_curve(CONTACT, speed=("1 mm/s", "50 mm/s"), points=3)
     groups = of_contact.groups
@@ -98,6 +101,7 @@ def test_a_curve_over_the_load_changes_the_speed_group_too():
     np.testing.assert_allclose(curve.groups.speed * curve.values**2, CONTACT.groups.speed * 30.0**2, rtol=1e-12)
 
 
+@pytest.mark.quick
 def test_the_parts_of_friction_add_up_and_the_error_covers_them(curve):
     np.testing.assert_allclose(curve.friction_contact + curve.friction_viscous, curve.friction, rtol=1e-14)
     assert (curve.friction_error > 0).all()
@@ -113,6 +117,7 @@ def test_both_abscissas_are_those_of_the_paper(curve):
     np.testing.assert_allclose(curve.friction[fast], curve.hydrodynamic_friction[fast], rtol=0.07)
 
 
+@pytest.mark.quick
 def test_a_quasistatic_curve_over_the_load_is_the_dry_friction():
     curve = sb.stribeck_curve(CONTACT.replace(speed=0), load=("5 N/m", "200 N/m"), points=3)
     np.testing.assert_allclose(curve.friction, 0.7, rtol=1e-6)
@@ -190,6 +195,7 @@ def test_the_minimum_is_no_higher_than_golden_section_finds_it_on_cold_solves(cu
     assert curve.minimum.friction < curve.friction.min()
 
 
+@pytest.mark.quick
 def test_the_minimum_does_not_depend_on_the_points_of_the_curve(curve):
     for ends, points in ((("10 mm/s", "80 mm/s"), 4), (("27.8 mm/s", "27.95 mm/s"), 101)):
         other = sb.stribeck_curve(CONTACT, speed=ends, points=points)
@@ -226,6 +232,7 @@ def test_a_range_without_minimum_has_none():
     assert sb.stribeck_curve(CONTACT, speed=("20 mm/s", "40 mm/s"), points=2).minimum is None
 
 
+@pytest.mark.quick
 def test_transitions_lie_where_cold_solves_have_these_shares(curve):
     marks = {mark.name: mark for mark in curve.transitions}
     assert list(marks) == [
@@ -254,6 +261,7 @@ def test_a_transition_agrees_with_the_root_that_cold_solves_have(curve):
     assert math.log(mark.value) == pytest.approx(root, abs=1e-7)
 
 
+@pytest.mark.quick
 def test_regimes_follow_one_another_and_meet_at_the_transitions(curve):
     ranges = curve.regime_ranges
     assert [name for name, _, _ in ranges] == ["boundary", "mixed", "hydrodynamic"]
@@ -292,6 +300,7 @@ def test_each_kind_of_note_is_told_once(curve):
 # --- refused ---
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -332,6 +341,7 @@ def test_the_dry_smooth_contact_has_no_curve():
 # --- interrupted, lost ---
 
 
+@pytest.mark.quick
 def test_an_interrupted_curve_keeps_the_points_it_has():
     def stop(done, total):
         if done == 3:
@@ -354,6 +364,7 @@ def test_ctrl_c_while_the_range_is_looked_for_is_not_taken_for_its_end(monkeypat
         sb.stribeck_curve(CONTACT, points=3)
 
 
+@pytest.mark.quick
 def test_a_lost_path_keeps_the_points_before_and_tells_why(monkeypatch):
     whole = curve_module.follow
 

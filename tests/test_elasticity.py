@@ -8,6 +8,8 @@ from stribeck.numerics.panels import Mesh, base_edges
 from stribeck.solids import hertz
 from stribeck.solids.half_plane import deflection_operator, log_moments
 
+pytestmark = pytest.mark.quick
+
 SEED = 31_337
 
 

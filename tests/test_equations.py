@@ -13,6 +13,8 @@ from stribeck.equations.unknowns import Layout
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import RunningIntegral
 
+pytestmark = pytest.mark.quick
+
 SEED = 64_217
 
 STATES = {

@@ -95,6 +95,7 @@ def test_rounding_is_not_below_the_scatter_of_equivalent_meshes(speed):
     assert found[0][2].floor == pytest.approx(found[0][1]["rounding"].max(), rel=1e-12)
 
 
+@pytest.mark.quick
 def test_an_iteration_that_stopped_early_is_seen(case):
     """The defect holds the residual at the nodes too: a state beside the solution is found to be so."""
     groups, _ = case
@@ -116,6 +117,7 @@ def test_an_iteration_that_stopped_early_is_seen(case):
     assert (ratio < 4).all()
 
 
+@pytest.mark.quick
 def test_a_difference_of_meshes_bounds_the_defect():
     groups = sb.Groups(*STATES["mixed"])
     _, _, estimate = judged(state_on(groups, 10, 3e-3))
@@ -125,6 +127,7 @@ def test_a_difference_of_meshes_bounds_the_defect():
     assert estimate.at_most(1e3 * estimate.discretisation).total == estimate.total
 
 
+@pytest.mark.quick
 def test_errors_of_load_shares_are_absolute_and_others_relative(solved):
     s = solved(*STATES["boundary"])
     assert set(s.errors) == set(NAMES)

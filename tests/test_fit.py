@@ -98,6 +98,7 @@ def test_atlas_and_solver_give_the_same_prediction():
     assert quick.jacobian == pytest.approx(slow.jacobian, abs=1e-4)
 
 
+@pytest.mark.quick
 def test_data_without_noise_give_the_true_inputs_from_far_away():
     speeds, friction = exact()
     far = TRUE.replace(boundary_friction=0.1, roughness="5 um", modulus="0.5 MPa", beta=0.2)
@@ -251,6 +252,7 @@ def test_a_curve_without_a_plateau_cannot_give_the_dry_friction():
     assert math.isinf(found["boundary_friction"].interval_95[1])
 
 
+@pytest.mark.quick
 def test_a_share_below_the_error_of_friction_is_said_to_be_that_at_most():
     speeds, friction = exact(low=5.0, high=50.0, rows=8)
     found = sb.fit(measured(speeds, friction), TRUE, free=["mu0"], intervals=False)
@@ -281,6 +283,7 @@ def test_the_combination_that_the_data_give_is_named():
     assert found["boundary_friction"].interval_95 == pytest.approx(alone["boundary_friction"].interval_95, rel=1e-2)
 
 
+@pytest.mark.quick
 def test_inputs_of_a_smooth_contact_that_do_not_matter_stay_where_they_were():
     smooth = TRUE.replace(roughness=0)
     found = sb.fit(noisy(4, contact=smooth, low=1e-2, rows=12), smooth, free=["mu0", "modulus", "beta"], intervals=False)
@@ -405,6 +408,7 @@ FEW = {
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(("rows", "free", "sentence"), FEW.values(), ids=FEW.keys())
 def test_too_few_rows_are_refused(rows, free, sentence):
     speeds, friction = exact()

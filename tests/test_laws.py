@@ -55,6 +55,7 @@ def shape(request):
 # --- derivatives ---
 
 
+@pytest.mark.quick
 def test_the_slope_of_a_shape_is_its_derivative(shape):
     s = np.concatenate([np.linspace(0.06, 5.9, 50), [8.0, 30.0]])
     step = 1e-4 * s
@@ -63,6 +64,7 @@ def test_the_slope_of_a_shape_is_its_derivative(shape):
     assert (shape.log_slope(s) < 0).all()
 
 
+@pytest.mark.quick
 def test_the_derivatives_of_a_scaled_law_are_those_of_its_pressure(shape):
     load, kappa, d = 0.7, 0.02, 1e-5
     h = kappa * np.random.default_rng(3).uniform(0.1, 8, 40)
@@ -86,6 +88,7 @@ def test_the_derivatives_of_a_scaled_law_are_those_of_its_pressure(shape):
     assert here.local_decay(h) == pytest.approx(-p / here.slope(h, p), rel=1e-12)
 
 
+@pytest.mark.quick
 def test_the_jacobian_under_a_law_is_the_derivative_of_the_residual(shape):
     mesh = Mesh(np.array([-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0]), 8)
     law = ScaledLaw(shape, 0.3, 0.2)
@@ -130,6 +133,7 @@ def test_the_exponential_law_by_the_way_of_others_is_the_exponential_law(groups)
     assert (one.law, other.law) == ("exponential", "function")
 
 
+@pytest.mark.quick
 def test_greenwood_and_williamson_with_exponential_heights_is_the_exponential_law():
     # Their integral over exponential heights, Gamma(5/2) exp(-s), as a table; the factor is a larger beta.
     s = np.linspace(0.5, 8.0, 31)
@@ -140,6 +144,7 @@ def test_greenwood_and_williamson_with_exponential_heights_is_the_exponential_la
     assert table.central_gap == pytest.approx(sb.solve(scaled, rtol=1e-8).central_gap, rel=1e-7)
 
 
+@pytest.mark.quick
 def test_a_table_of_persson_goes_where_persson_goes():
     persson = laws()["persson"]
     s = np.geomspace(1e-3, 12, 200)
@@ -155,6 +160,7 @@ def test_at_large_separation_persson_is_exponential_and_at_small_it_is_stiffer()
     assert sb.solve(thin, law=persson).central_gap > 1.5 * sb.solve(thin).central_gap
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("load", [0.1, 1.0, 10.0, 100.0])
 def test_under_perssons_law_the_gap_is_positive_at_rest_at_any_load(load):
     s = sb.solve(sb.Groups(0.0, load, 0.01 * load), law=laws()["persson"])
@@ -229,6 +235,7 @@ def test_a_contact_and_its_groups_carry_the_law_through_copies():
     assert "law" not in repr(line_contact().groups)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("law", ["persson ", 3, sb.GreenwoodTripp])
 def test_what_is_no_law_is_refused(law):
     with pytest.raises(sb.InputError, match="^law = "):
@@ -345,6 +352,7 @@ S = [0.0, 1.0, 2.0, 3.0, 4.0, 6.0]
 P = [1.0, 0.4, 0.15, 0.05, 0.02, 0.002]
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("s", "p", "sentence"),
     [
@@ -362,6 +370,7 @@ def test_a_table_that_is_no_law_is_refused_with_its_row(s, p, sentence):
         sb.TableLaw(s, p)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(("rows", "degree"), [(S, 5), (S[:4], 3), ([0.0, 0.1, 2.0, 2.1, 4.0, 4.1], 1)])
 def test_a_table_is_met_and_falls_between_its_rows(rows, degree):
     law = sb.TableLaw(rows, P[: len(rows)])
@@ -372,6 +381,7 @@ def test_a_table_is_met_and_falls_between_its_rows(rows, degree):
     assert (np.diff(law.log_pressure(s)) < 0).all()
 
 
+@pytest.mark.quick
 def test_a_table_that_is_flat_at_its_ends_still_falls_there():
     # The cubics that are monotone between these rows would be level at both ends, and so would all beyond.
     law = sb.TableLaw([0.0, 1.0, 2.0, 3.0], np.exp([0.0, -0.1, -5.0, -5.1]))
@@ -388,6 +398,7 @@ def test_a_state_outside_the_rows_of_its_table_says_so():
     assert inside.notes == ()
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("f", "slope", "sentence"),
     [

@@ -7,6 +7,8 @@ from numpy.polynomial import legendre
 from stribeck.numerics.panels import MAX_PANELS, Mesh, MeshTooLargeError, adapt, base_edges, legendre_tail, reference
 from stribeck.numerics.running_integral import RunningIntegral
 
+pytestmark = pytest.mark.quick
+
 SEED = 70_419
 
 

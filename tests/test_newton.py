@@ -10,6 +10,8 @@ from scipy.sparse.linalg import gmres
 from stribeck.numerics.newton import LU, Dense, StepControl, relative_size, root_find
 from stribeck.quantities.outcome import Outcome
 
+pytestmark = pytest.mark.quick
+
 
 def find(residual, jacobian, start, *, fraction=None, size=relative_size, singular_below=2.0**-52, kept=None, **control):
     """Find the root of plain functions."""

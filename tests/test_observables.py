@@ -20,6 +20,8 @@ from stribeck.equations.observables import (
 )
 from stribeck.numerics.panels import Mesh, base_edges
 
+pytestmark = pytest.mark.quick
+
 SEED = 45_389
 STATES = {
     "mixed": (1e-4, 0.1, 2e-4),

@@ -7,6 +7,8 @@ from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import Mesh, base_edges
 from stribeck.numerics.running_integral import RunningIntegral
 
+pytestmark = pytest.mark.quick
+
 SEED = 80_021
 
 

@@ -64,6 +64,7 @@ def scale_of(name, listed):
     return abs(listed[name])
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9])
 @pytest.mark.parametrize("listed", REFERENCE, ids=lambda state: f"speed {state['speed']:.1e}")
 def test_the_reference_states_are_reached(listed, rtol, solved):
@@ -76,6 +77,7 @@ def test_the_reference_states_are_reached(listed, rtol, solved):
     assert max(errors.values()) < allowed, errors
 
 
+@pytest.mark.quick
 def test_the_reference_states_cover_all_regimes():
     shares = [state["contact_load_share"] for state in REFERENCE]
     assert len(REFERENCE) == 14
@@ -95,6 +97,7 @@ FROZEN_MIXED = {
 }
 
 
+@pytest.mark.quick
 def test_frozen_numbers_of_a_mixed_state(solved):
     """Of the first version of this solver, at rtol 1e-9: whoever moves them says so in the changelog."""
     s = solved(3e-6, 0.05, 2e-5, rtol=1e-9)
@@ -137,16 +140,19 @@ def in_mesh_order(solution, values):
     return values[np.argsort(np.argsort(solution.mesh.nodes))]
 
 
+@pytest.mark.quick
 def test_load_shares_sum_to_one(state):
     assert abs(state.contact_load_share + state.fluid_load_share - 1) < 1e-8
 
 
+@pytest.mark.quick
 def test_the_load_holds_for_the_interpolated_pressure(state):
     mesh, fields = finer(state)
     assert abs(mesh.weights @ fields.pressure - math.pi / 2) < 1e-8
     assert mesh.weights @ fields.contact_pressure == pytest.approx(math.pi / 2 * state.contact_load_share, abs=1e-8)
 
 
+@pytest.mark.quick
 def test_the_fluid_load_is_the_moment_of_the_pressure_gradient(state):
     """By parts: int p_f dx = -lambda int x (h - h*)/h**3 dx."""
     mesh, fields = finer(state)
@@ -157,6 +163,7 @@ def test_the_fluid_load_is_the_moment_of_the_pressure_gradient(state):
     assert 2 / math.pi * moment == pytest.approx(state.fluid_load_share, abs=2e-8)
 
 
+@pytest.mark.quick
 def test_the_deflection_does_no_work_along_the_surface(state):
     """int p w' dx = 0: an even kernel transmits no net force along x."""
     mesh = state.mesh
@@ -172,6 +179,7 @@ def test_the_contact_pressure_does_no_work_over_the_gap(state):
     assert abs(work.sum()) <= 2e-6 * np.abs(work).sum() + 1e-30
 
 
+@pytest.mark.quick
 def test_the_two_frictions_differ_by_the_moment_of_the_contact_pressure(state):
     """mu_paper - mu_balanced = (4 F**(1/2)/pi) int p_c x dx, by both identities and Reynolds' equation."""
     mesh, fields = finer(state)
@@ -189,6 +197,7 @@ def test_both_frictions_agree_where_asperities_carry_nothing(speed, solved):
     assert viscous(s) == pytest.approx(viscous(s, "balanced"), rel=1e-9)
 
 
+@pytest.mark.quick
 def test_friction_is_the_integral_of_its_formula(state):
     """Each definition summed once more, on a finer mesh and plainly."""
     mesh, fields = finer(state)
@@ -213,6 +222,7 @@ def test_the_profile_is_the_elastic_gap_of_its_pressure(state):
     assert np.abs(gap / elastic - 1).max() < 3e-7
 
 
+@pytest.mark.quick
 def test_the_profile_obeys_the_contact_law(state):
     x = np.random.default_rng(SEED).uniform(-1.5, 1.5, 60)
     groups, fields = state.groups, state.profile(x)
@@ -259,6 +269,7 @@ def test_at_speed_zero_the_pressure_depends_on_relative_roughness_alone(solved):
     assert light.contact_load_share == pytest.approx(1, abs=1e-9)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("load", [0.3, 0.99, 1.0, 4.0])
 def test_heavy_loads_at_speed_zero_shift_the_gap(load, solved):
     kappa, x = 0.03, np.linspace(-1.3, 1.3, 41)
@@ -336,6 +347,7 @@ def test_the_film_carries_as_speed_squared_where_asperities_carry_the_rest(solve
 # Hertz
 
 
+@pytest.mark.quick
 def test_the_dry_smooth_contact_is_hertz_in_closed_form():
     s = sb.solve(sb.Groups(0.0, 0.3, 0.0))
     x = np.array([-3.0, -1.0, -0.6, 0.0, 0.8, 1.0, 2.0])
@@ -366,6 +378,7 @@ def test_smooth_films_end_in_hertz_lifted_by_the_film(solved):
 # Fast and slow films
 
 
+@pytest.mark.quick
 def test_fast_films_end_in_the_rigid_parabola(solved):
     speeds = np.array([1e4, 1e5, 1e6])
     states = [solved(speed, 0.1, 0.0, rtol=1e-9) for speed in speeds]
@@ -438,6 +451,7 @@ def test_smooth_states_depend_on_speed_alone_but_for_the_scale_of_friction(solve
     assert viscous(heavy) / viscous(light) == pytest.approx(math.sqrt(5e6), rel=1e-9)
 
 
+@pytest.mark.quick
 def test_vanishing_roughness_ends_in_the_smooth_film(solved):
     smooth, rough = solved(1e-2, 0.1, 0.0), solved(1e-2, 0.1, 1e-9)
     assert rough.contact_load_share == 0
@@ -478,6 +492,7 @@ def test_friction_adds_contact_and_viscous_parts(solved):
     assert s.friction() == s.friction(boundary_friction=1.0, beta=1.0, definition="paper")
 
 
+@pytest.mark.quick
 def test_a_contact_brings_its_own_coefficients_and_scales():
     contact = sb.LineContact(
         radius="10 mm",
@@ -589,12 +604,14 @@ def test_the_same_input_gives_the_same_numbers():
 GROUPS = sb.Groups(1e-2, 0.1, 1e-4)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("rtol", [1e-13, 0.1, 0.0, -1e-6, math.nan, True, "1e-6", None, 1e-6 + 0j])
 def test_a_tolerance_out_of_range_is_refused_in_a_sentence(rtol):
     with pytest.raises(sb.InputError, match=r"rtol = .*from 1e-11.* to 0.01"):
         sb.solve(GROUPS, rtol=rtol)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("problem", [0.1, "case.toml", (1e-2, 0.1, 1e-4), None])
 def test_a_problem_of_another_kind_is_refused(problem):
     with pytest.raises(sb.InputError, match="must be a LineContact or Groups"):
@@ -663,6 +680,7 @@ def test_where_refinement_ends_early_the_solve_says_so_and_keeps_what_it_has(mon
     assert returned.central_gap == pytest.approx(sb.solve(groups).central_gap, rel=1e-2)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("on_failure", ["raise", "return"])
 def test_where_no_state_is_reached_the_solve_raises_in_any_case(monkeypatch, on_failure):
     monkeypatch.setattr("stribeck.numerics.panels.MAX_PANELS", 2)
@@ -700,6 +718,7 @@ def test_a_thin_film_near_the_floor_of_double_precision_holds_the_tolerance_or_n
     assert state.error_estimate < 1e-8
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(("groups", "outcome"), [(THIN, Outcome.ROUNDING), (sb.Groups(0.1, 0.1, 0), Outcome.REFINEMENT_LIMIT)])
 def test_a_tolerance_missed_by_uneven_nodal_gaps_is_rounding_and_else_the_meshs_end(groups, outcome, monkeypatch):
     monkeypatch.setattr(refine, "MAX_REFINEMENTS", 1)

@@ -20,6 +20,8 @@ from numpydoc.validate import validate
 
 import stribeck
 
+pytestmark = pytest.mark.quick
+
 PACKAGE = Path(stribeck.__file__).parent
 
 # From the top down: a package imports only packages of lower lines. `_types` is open to all.

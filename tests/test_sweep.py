@@ -117,6 +117,7 @@ def fail_at(monkeypatch, when, how):
     monkeypatch.setattr(sweep_chain.Follower, "__call__", failing)
 
 
+@pytest.mark.quick
 def test_a_failed_state_keeps_its_outcome_and_costs_no_other(tmp_path, monkeypatch):
     fail_at(monkeypatch, lambda groups: 2e-4 < groups.speed < 9e-4, lambda: None)
     found = sb.sweep(write(tmp_path, GRID), tmp_path / "store")
@@ -382,6 +383,7 @@ def kill_and_resume(tmp_path, text, total, kill_at, workers):
     return again
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("workers", [pytest.param(1, marks=SLOW), 2])
 def test_kill_9_loses_nothing_and_computes_nothing_twice(tmp_path, workers):
     text = RANDOM.format(kind="sobol", points=128)

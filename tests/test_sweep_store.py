@@ -106,6 +106,7 @@ def test_states_not_computed_say_so(copy):
 # --- torn writes ---
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("damage", ["no values", "short values", "other values", "empty flag", "other flag", "other text"])
 def test_a_torn_state_is_not_done_and_is_computed_again(copy, filled, damage):
     store, file = copy
@@ -138,6 +139,7 @@ def test_a_torn_state_is_not_done_and_is_computed_again(copy, filled, damage):
     assert again.rows.values[said, numbers] == pytest.approx(filled.rows.values[said, numbers], rel=2e-6, abs=2e-6)
 
 
+@pytest.mark.quick
 def test_a_state_without_its_flag_and_temporary_files_are_cleared_away(copy):
     store, file = copy
     (store / "done" / "c.7").unlink()
@@ -148,6 +150,7 @@ def test_a_state_without_its_flag_and_temporary_files_are_cleared_away(copy):
     assert sb.open_sweep(store).finished == 12
 
 
+@pytest.mark.quick
 def test_data_come_before_the_flag(tmp_path, monkeypatch):
     order = []
     replace = os.replace

@@ -12,6 +12,8 @@ from threadpoolctl import threadpool_info, threadpool_limits
 import stribeck as sb
 from stribeck.numerics.threads import one_blas_thread
 
+pytestmark = pytest.mark.quick
+
 GROUPS = sb.Groups(1e-4, 0.1, 1e-3)
 
 

@@ -34,6 +34,7 @@ def neighbours():
     return [first.state, kept, own], FineOperators(operators.mesh)
 
 
+@pytest.mark.quick
 def test_states_are_judged_together_as_each_is_alone(neighbours):
     states, fine = neighbours
     points = judge_together(states, [state.root.inverse for state in states], fine, RTOL)

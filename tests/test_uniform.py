@@ -65,6 +65,7 @@ def test_the_speeds_of_half_and_of_five_percent_on_the_fluid_are_those_of_the_so
         assert share != 0.5 or abs(found / paper - 1) > 0.3
 
 
+@pytest.mark.quick
 def test_speed_and_share_are_inverse_to_each_other():
     shares = np.array([1e-9, 1e-3, 0.05, 0.5, 0.95, 0.9999])
     base = sb.Groups(np.ones(6), 0.03, 0.03 * 2e-3)
@@ -74,6 +75,7 @@ def test_speed_and_share_are_inverse_to_each_other():
     assert contact == pytest.approx(1 - shares, rel=1e-9)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("load", [1e-4, 0.1, 0.69])
 def test_slow_contacts_share_the_load_as_the_perturbation_says(load):
     # The law has phi in closed form, good to 0.33 %, and a correction of order kappa**(2/3).
@@ -86,6 +88,7 @@ def test_slow_contacts_share_the_load_as_the_perturbation_says(load):
     assert abs(errors[0] - errors[-1]) < 0.02
 
 
+@pytest.mark.quick
 def test_fast_contacts_have_the_friction_of_the_smooth_film():
     groups = sb.Groups([1.0, 10.0, 100.0], 0.1, 1e-4)
     for definition in ("paper", "balanced"):
@@ -101,6 +104,7 @@ def test_the_speed_of_the_film_inverts_the_smooth_film():
     assert np.abs(found / speeds[::4] - 1).max() < 0.0025
 
 
+@pytest.mark.quick
 def test_contacts_at_rest_and_without_roughness_are_exact():
     groups = sb.Groups([0.0, 1e-3, 1e-3], [0.1, 0.1, 0.1], [1e-4, 0.0, 1e-4])
     with pytest.warns(OutOfRangeWarning):
@@ -147,6 +151,7 @@ def test_states_broadcast():
 # --- the limit of small roughness at a fixed fluid number ---
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(("load", "number"), [(1e-4, 300.0), (0.1, 10.0), (0.7, 1.0)])
 def test_the_wedge_obeys_its_equations(load, number):
     state = wedge.wedge(load, number)
@@ -160,6 +165,7 @@ def test_the_wedge_obeys_its_equations(load, number):
     assert np.abs(state.fluid_pressure[[0, -1]]).max() < 1e-9
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("load", [1e-4, 0.1, 0.7])
 def test_a_slow_wedge_carries_what_the_perturbation_says(load):
     share = np.array([1e-4, 1e-5])

@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from stribeck.quantities.units import DIMENSIONS, InputError, format_si, to_si
 
+pytestmark = pytest.mark.quick
+
 ACCEPTED = [
     ("0.1 m/s", "speed", 0.1),
     ("360 km/h", "speed", 100.0),
