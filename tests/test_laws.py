@@ -389,6 +389,22 @@ def test_a_table_that_is_flat_at_its_ends_still_falls_there():
     assert (law.log_slope(np.array([-1.0, 0.0, 3.0, 9.0])) < -0.05).all()
 
 
+@pytest.mark.quick
+@pytest.mark.parametrize("end", [0, -1])
+def test_a_table_goes_on_straight_with_the_slope_of_its_end(end):
+    law = sb.TableLaw(S, P)
+    row = S[end]
+    beyond = row + (np.array([-3.0, -0.5]) if end == 0 else np.array([0.5, 3.0]))
+    at_row, slope = float(law.log_pressure(np.array(row))), float(law.log_slope(np.array(row)))
+    assert law.log_pressure(beyond) == pytest.approx(at_row + slope * (beyond - row), rel=1e-12)
+    assert law.log_slope(beyond) == pytest.approx(slope, rel=1e-12)
+    step = 1e-6
+    inside = row + (step if end == 0 else -step)
+    assert slope == pytest.approx((float(law.log_pressure(np.array(inside))) - at_row) / (inside - row), rel=1e-4)
+    # The slopes of the two ends differ, so that one in the other's place is seen.
+    assert abs(float(law.log_slope(np.array(S[0] + S[-1] - row))) / slope - 1) > 0.01
+
+
 def test_a_state_outside_the_rows_of_its_table_says_so():
     below = sb.solve(sb.Groups(1e-6, 0.9, 9e-3), law=sb.TableLaw([0.5, 1, 2, 3, 9], np.exp([-0.5, -1, -2, -3, -9])))
     assert any("below the first row" in note for note in below.notes)

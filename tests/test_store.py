@@ -329,6 +329,27 @@ def test_a_file_that_appears_meanwhile_is_kept(tmp_path):
     assert path.read_text() == "theirs"
 
 
+@pytest.mark.quick
+def test_a_file_is_on_the_disk_before_it_takes_its_name(tmp_path, monkeypatch):
+    path, synced, at_replacement = tmp_path / "curve.csv", set(), []
+    fsync, replace = os.fsync, os.replace
+
+    def noted_fsync(descriptor):
+        synced.add(os.fstat(descriptor).st_ino)
+        fsync(descriptor)
+
+    def noted_replace(source, target):
+        at_replacement.append(os.stat(source).st_ino in synced)
+        replace(source, target)
+
+    monkeypatch.setattr(os, "fsync", noted_fsync)
+    monkeypatch.setattr(os, "replace", noted_replace)
+    with replacing(path, (".csv",)) as temporary:
+        temporary.write_text("whole")
+    assert at_replacement == [True]
+    assert path.read_text() == "whole"
+
+
 FULL = """
 import resource, sys
 import numpy as np, xarray as xr

@@ -52,6 +52,30 @@ def test_the_contact_share_is_good_to_the_stated_error_down_to_a_millionth(solve
     assert (found[~counts] < 2e-6).all()
 
 
+# Speed, load, relative roughness: contact share, friction by both definitions at mu0 = 0.7 and beta = 0.3.
+# Of the fit as it is: whoever moves a coefficient or a sign says so in the changelog.
+FROZEN = {
+    (1e-6, 0.3, 1e-4): (0.2669706782, 0.1928380131, 0.1872106021),
+    (1e-5, 0.3, 1e-4): (0.02468633671, 0.01963646948, 0.01887553329),
+    (1e-4, 0.05, 1e-3): (0.3784932144, 0.2729909421, 0.2661290867),
+    (1e-3, 0.1, 1e-2): (0.7987728026, 0.5771466578, 0.5626075464),
+    (1e-1, 1e-2, 0.1): (0.9461903028, 0.6832325601, 0.6762737567),
+}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(("state", "values"), FROZEN.items(), ids=str)
+def test_the_frozen_numbers_of_the_laws_are_close_to_solved_states(state, values):
+    speed, load, kappa = state
+    groups = sb.Groups(speed, load, kappa * load)
+    definitions = ("published", "balanced")
+    found = [load_sharing.contact_load_share(groups), *(uniform.friction(groups, 0.7, 0.3, each) for each in definitions)]
+    assert found == pytest.approx(values, rel=1e-8)
+    solution = sb.solve(groups)
+    right = [solution.contact_load_share, *(solution.friction(0.7, 0.3, each).total for each in definitions)]
+    assert found == pytest.approx(right, rel=0.05)
+
+
 @pytest.mark.parametrize(("load", "kappa"), [(3e-4, 2e-2), (0.02, 3e-4), (0.1, 1e-3), (0.5, 5e-3)])
 def test_the_speeds_of_half_and_of_five_percent_on_the_fluid_are_those_of_the_solver(load, kappa):
     groups = sb.Groups(1.0, load, kappa * load)
