@@ -78,7 +78,8 @@ quick-newest: $(VENV)-newest/.ready
 $(VENV)-newest/.ready: RESOLUTION := highest
 $(VENV)-lowest/.ready: RESOLUTION := lowest-direct
 $(VENV)-newest/.ready $(VENV)-lowest/.ready: pyproject.toml | $(READY) $(UV)
-	$(UV) venv --quiet --clear --python $(BIN)/python $(@D)
+	@rm -rf $(@D)
+	$(UV) venv --quiet --python $(BIN)/python $(@D)
 	$(UV) pip install --quiet --python $(@D)/bin/python --resolution $(RESOLUTION) --editable '.[quick]'
 	@touch $@
 

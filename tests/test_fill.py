@@ -87,7 +87,9 @@ def test_rows_are_what_each_state_is_alone():
 def test_the_jacobian_in_units_of_the_unknowns_has_its_columns_scaled_by_them():
     _, alone, y = rows(12)
     units = alone[0].units(y[0])
-    np.testing.assert_allclose(alone[0].jacobian(y[0], units), alone[0].jacobian(y[0]) * units, rtol=1e-13, atol=1e-18)
+    found, scaled = alone[0].jacobian(y[0], units), alone[0].jacobian(y[0]) * units
+    # Elements are differences, and what they lose to rounding depends on the processor.
+    assert (np.abs(found - scaled) <= 1e-12 * np.abs(scaled).max(axis=0)).all()
 
 
 @pytest.mark.parametrize("order", [10, 12, 16])
