@@ -173,12 +173,14 @@ def test_where_no_load_leads_on_the_range_searched_ends_at_load_group_one(mixed)
 
 def test_a_hydrodynamic_contact_stays_so_however_fast():
     contact = CONTACT.replace(speed=1.0)
-    speed, load, *_ = transition_distances(contact).distances
+    speed, load, _, viscosity = transition_distances(contact).distances
     assert (speed.less.regime, speed.more) == ("mixed", None)
     # Less load raises the speed group as its square.
     assert load.less is None
     assert contact.replace(load=load.searched[0]).groups.speed == pytest.approx(BOX["speed"][1])
-    assert speed.searched[1] == pytest.approx(1.0 * BOX["speed"][1] / contact.groups.speed)
+    # One scan of their product: it ends with the group, a speed itself at that of sound.
+    assert viscosity.searched[1] == pytest.approx(contact.viscosity * BOX["speed"][1] / contact.groups.speed)
+    assert speed.searched[1] == pytest.approx(1e3)
 
 
 def test_a_contact_on_the_threshold_is_said_to_stand_there(mixed):
@@ -284,7 +286,7 @@ def test_the_command_says_what_it_takes_to_reach_each_neighbour(capsys, tmp_path
     text = command(capsys, tmp_path)
     assert (
         "To reach boundary: speed / 2.72 (367.9 µm/s), or roughness x 1.68 (1.679 µm), or viscosity / 2.72 (18.39 mPa*s); "
-        "none within reach by load (range searched 7.99 mN/m to 305 N/m)." in text
+        "not reachable by load (range searched 7.99 mN/m to 305 N/m)." in text
     )
     assert "To reach hydrodynamic: speed x 30.4 (30.43 mm/s), or load / 3.75e+03 (7.995 mN/m), or roughness / 10.2" in text
     assert "Speed and viscosity count as their product" in text
@@ -312,10 +314,10 @@ def test_the_command_gives_the_distances_as_json(capsys, tmp_path, mixed):
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"speed": 0.0}, "To reach mixed: speed from zero to 367.9 µm/s; none within reach by load, roughness, viscosity."),
-        ({"roughness": 0.0}, "To reach mixed: roughness from zero to 97.74 nm; none within reach by speed, load, viscosity."),
+        ({"speed": 0.0}, "To reach mixed: speed from zero to 367.9 µm/s; not reachable by load, roughness, viscosity."),
+        ({"roughness": 0.0}, "To reach mixed: roughness from zero to 97.74 nm; not reachable by speed, load, viscosity."),
         ({"speed": 0.0, "roughness": 0.0}, "To reach hydrodynamic: speed of any size"),
-        ({"boundary_friction": 0.0}, "To reach mixed: nothing within reach, by speed, load, roughness, viscosity."),
+        ({"boundary_friction": 0.0}, "To reach mixed: not reachable by speed, load, roughness, viscosity."),
     ],
 )
 def test_the_command_has_words_for_the_corners(capsys, tmp_path, changes, sentence):

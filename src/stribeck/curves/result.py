@@ -23,6 +23,7 @@ from stribeck.equations.sensitivity import GROUPS, friction_slopes
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import format_si
+from stribeck.solver.notes import HARD, minimum_note
 from stribeck.solver.refinement import Point
 from stribeck.solver.solution import Solution
 
@@ -166,22 +167,40 @@ class StribeckCurve:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What to know before using the numbers; each sentence says which points it concerns."""
+        """What to know before using the numbers; each sentence says which points it concerns, or that it is the minimum."""
         found: dict[str, list[tuple[float, str]]] = {}
         for value, solution in zip(self.values.tolist(), self.solutions, strict=True):
             for note in solution.notes:
                 # The numbers in it, which differ from point to point, are those of the first point.
                 kind = re.sub(r"[-+]?[0-9][-+.0-9e]*", "", note)
                 found.setdefault(kind, []).append((value, note))
-        return tuple(self._note(points) for points in found.values())
+        told = [self._note(points) for points in found.values()]
+        return (*sorted(told, key=lambda note: not note.startswith(HARD)), *self.minimum_notes)
+
+    @property
+    def minimum_notes(self) -> tuple[str, ...]:
+        """The sentence on a minimum that lies where the contact law does not hold, one of :attr:`notes`; or nothing."""
+        if self.minimum is None:
+            return ()
+        state = self.minimum.solution
+        friction = state.friction(self.mu0, self.beta, self.definition)
+        note = minimum_note(
+            state.groups,
+            state.contact,
+            state.observables,
+            friction.contact / friction.total if friction.total > 0 else 0.0,
+            self._where(self.minimum.value),
+        )
+        return (note,) if note else ()
+
+    def _where(self, *values: float) -> str:
+        """Return values of what the curve runs over in words, such as ``"speed 1 mm/s to 1 m/s"``."""
+        if self.contact is None:
+            return f"{self.over} group {' to '.join(f'{value:.3g}' for value in values)}"
+        return f"{self.over} {' to '.join(format_si(value, QUANTITIES[self.over].dimension) for value in values)}"
 
     def _note(self, points: list[tuple[float, str]]) -> str:
-        first, last = points[0][0], points[-1][0]
-        if self.contact is None:
-            where = f"{self.over} group {first:.3g} to {last:.3g}"
-        else:
-            ends = (format_si(value, QUANTITIES[self.over].dimension) for value in (first, last))
-            where = f"{self.over} {' to '.join(ends)}"
+        where = self._where(points[0][0], points[-1][0])
         return f"{points[0][1]} ({len(points)} of {len(self)} points, {where}.)"
 
     @cached_property

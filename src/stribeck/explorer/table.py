@@ -212,7 +212,7 @@ def distances_html(distances: TransitionDistances) -> str:
         for target in targets:
             mark = distance.towards(target)
             if mark is None:
-                lines.append("<td>none within reach</td>")
+                lines.append("<td>not reachable</td>")
                 continue
             value = format_si(mark.value, QUANTITIES[distance.name].dimension).replace("*", "·")
             factor = f"{_times(mark.factor)} " if 0 < mark.factor < math.inf else ""

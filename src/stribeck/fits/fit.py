@@ -32,6 +32,7 @@ from stribeck.fits.residuals import judge_residuals
 from stribeck.fits.result import Fit, FitOutcome, FittedInput, unit_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError, show
+from stribeck.solver.notes import pressure_notes
 
 __all__ = ["fit"]
 
@@ -355,7 +356,7 @@ def _result(
         robust=at.objective.robust,
         quality=judge_residuals(at, data.curve, freedom),
         undetermined=weak,
-        notes=(*data.notes, *_notes(at, inputs, correlation, covariance, weak, contacts)),
+        notes=(*_pressure_notes(contacts), *data.notes, *_notes(at, inputs, correlation, covariance, weak, contacts)),
         solver_shift=float(np.nanmax(moved)) if np.isfinite(moved).any() else math.nan,
         model_error=float(errors.max()),
         evaluations=at.evaluations,
@@ -367,6 +368,11 @@ def _result(
 def _interval(free: FreeInput, ends: Ends) -> tuple[float, float]:
     low = 0.0 if math.isinf(ends.low) else free.value(ends.low)
     return low, math.inf if math.isinf(ends.high) else free.value(ends.high)
+
+
+def _pressure_notes(contacts: Sequence[LineContact]) -> tuple[str, ...]:
+    """Return what the highest Hertz pressure of all curves asks to be said before all else."""
+    return pressure_notes(max(contacts, key=lambda contact: contact.hertz.pressure))
 
 
 def _notes(

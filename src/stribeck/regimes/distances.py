@@ -30,6 +30,11 @@ REACH = 1e6
 BOX = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
 """Groups between which is searched, where the solver is tested; the load also no further than the contact law holds."""
 
+PHYSICAL = {"speed": (1e-12, 1e3), "viscosity": (1e-5, 1e8), "load": (1e-6, math.inf), "roughness": (1e-10, math.inf)}
+"""What an input can be made at all [SI]: a speed from an atom's width in 100 s to that of sound, a fluid from gas to pitch,
+a load per length from the weight of a thread of 10 um, a roughness from that of atoms.  Load and roughness end with the
+contact itself: see :func:`physical_bounds`."""
+
 DECADE = math.log(10.0)
 """Length of one step outwards in the logarithm of an input."""
 
@@ -85,7 +90,7 @@ class Distance:
     less, more : Crossing or None
         The first change with less and with more of it; None where there is none within the range searched.
     searched : tuple of float
-        Values between which was searched [SI]; the search ends at a change.
+        Values between which was searched [SI]; the search ends at a change, and where the input can be no more.
     """
 
     name: str
@@ -162,9 +167,9 @@ def transition_distances(
     Notes
     -----
     Each input is followed by continuation, decade by decade, until the regime of :func:`regime_of` changes, by at most a
-    factor of 1e6 and as far as the groups lie in speed 1e-12 to 1e6, load 1e-8 to 1, relative roughness 1e-6 to 1e3.  More
-    load lowers the speed group as its square, and the relative roughness.  Speed and viscosity enter as their product: one
-    scan serves both.
+    factor of 1e6, as far as the groups lie in speed 1e-12 to 1e6, load 1e-8 to 1, relative roughness 1e-6 to 1e3, and
+    within :func:`physical_bounds`.  More load lowers the speed group as its square, and the relative roughness.  Speed and
+    viscosity enter as their product: one scan serves both.
     """
     check_rtol(rtol)
     definition = check_definition(definition)
@@ -182,11 +187,53 @@ def transition_distances(
     if contact.groups.load >= largest_load(contact.law) and contact.roughness > 0:
         notes.append("From load group 1 on the fluid must carry a part at any speed; there may be no boundary lubrication.")
     found = [scan.along(name) for name in SCANNED]
-    found.append(_of_viscosity(contact, found[0]))
+    found.append(_within(_of_viscosity(contact, found[0]), physical_bounds(contact, "viscosity")))
+    if contact.speed > 0:
+        found[0] = _within(found[0], physical_bounds(contact, "speed"))
     close = [mark for distance in found for mark in (distance.less, distance.more) if mark is not None and _at_threshold(mark)]
     if close:
         notes.append(f"The contact stands at the threshold to {close[0].regime} lubrication.")
     return TransitionDistances(present, tuple(found), tuple(notes))
+
+
+def physical_bounds(contact: LineContact, name: str) -> tuple[float, float]:
+    r"""Return between which values an input of a contact can be sought, whatever the model says beyond.
+
+    .. math:: F_N \le \frac{\pi}{4} E^* R \;\;(a \le R), \qquad h_\mathrm{rms} \le a
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    name : {"speed", "load", "roughness", "viscosity"}
+        The input.
+
+    Returns
+    -------
+    tuple of float
+        Lowest and highest value [SI]: speed 1e-12 to 1000 m/s, viscosity 1e-5 to 1e8 Pa s, load from 1e-6 N/m to where the
+        Hertz contact is as wide as the cylinder, roughness from 0.1 nm to the half-width of that contact.
+
+    Notes
+    -----
+    Rules of thumb: roughness higher than the contact is half wide is a matter of shape, and the present value counts as
+    possible even where it is none.
+    """
+    low, high = PHYSICAL[name]
+    if name == "load":
+        high = math.pi / 4 * contact.modulus * contact.radius
+    elif name == "roughness":
+        high = contact.hertz.half_width
+    value = float(getattr(contact, name))
+    return (min(low, value), max(high, value)) if value > 0 else (low, high)
+
+
+def _within(distance: Distance, bounds: tuple[float, float]) -> Distance:
+    """Return a distance without what lies beyond the bounds of its input."""
+    low, high = bounds
+    ends = max(distance.searched[0], low), min(distance.searched[1], high)
+    less, more = (mark if mark is not None and low <= mark.value <= high else None for mark in (distance.less, distance.more))
+    return Distance(distance.name, less, more, ends)
 
 
 def _of_viscosity(contact: LineContact, speed: Distance) -> Distance:
@@ -324,11 +371,11 @@ class _Scan:
 
 
 def _limits(contact: LineContact, name: str) -> tuple[float, float]:
-    """Return the logarithms of the factors of an input between which the groups stay in the box."""
+    """Return the logarithms of the factors of an input between which it is possible and the groups stay in the box."""
     box = BOX | {"load": (BOX["load"][0], min(BOX["load"][1], largest_load(contact.law)))}
     n_speed, n_load, n_roughness = EXPONENTS[name]
     groups = contact.groups
-    low, high = -math.inf, math.inf
+    low, high = _possible_factors(contact, name)
     for group, n in (("speed", n_speed), ("load", n_load), ("relative_roughness", n_roughness - n_load)):
         value = float(getattr(groups, group))
         if n == 0 or value == 0:
@@ -336,6 +383,13 @@ def _limits(contact: LineContact, name: str) -> tuple[float, float]:
         ends = sorted(math.log(end / value) / n for end in box[group])
         low, high = max(low, ends[0]), min(high, ends[1])
     return min(low, 0.0), max(high, 0.0)
+
+
+def _possible_factors(contact: LineContact, name: str) -> tuple[float, float]:
+    """Return the logarithms of the factors that lead to the bounds of an input, of the speed to those of the viscosity too."""
+    names = ("speed", "viscosity") if name == "speed" else (name,)
+    ends = [(getattr(contact, each), physical_bounds(contact, each)) for each in names]
+    return min(math.log(low / value) for value, (low, _) in ends), max(math.log(high / value) for value, (_, high) in ends)
 
 
 def _with_least(contact: LineContact, name: Over) -> LineContact:

@@ -1,4 +1,4 @@
-"""Where the model leaves its range, in sentences for the user: the contact law, and the shape of the contact."""
+"""Where the model leaves its range, in sentences for the user: pressure, width, contact law, suction."""
 
 from __future__ import annotations
 
@@ -7,41 +7,105 @@ from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import Observables
 
-__all__ = ["cavitation_notes", "law_notes", "shape_notes"]
+__all__ = ["HARD", "cavitation_notes", "law_notes", "minimum_note", "pressure_notes", "shape_notes"]
+
+HARD = "Hard elastohydrodynamics:"
+"""How the sentence of :func:`pressure_notes` begins; outputs show it before all else."""
+
+HIGHEST_PRESSURE = 5e7
+"""Hertz pressure that the model is for [Pa]: there an oil of :data:`OIL` is e times as viscous as at rest."""
+
+OIL = 2e-8
+"""Pressure-viscosity coefficient of mineral oil [1/Pa], in the middle of the usual 15 to 25 1/GPa."""
 
 WIDEST_CONTACT = 0.3
 """Hertz half-width over the radius from which a note says that the model is coarse."""
 
-LAW_LEAST_GAP = 0.4
-"""Gap over h_rms down to which the exponential law follows Persson's full relation; facts in theory.md, section 8."""
+LAW_RANGE = (0.4, 2.0)
+"""Gaps over h_rms between which the exponential law follows a rough surface; theory.md, section 8, and contact_laws.md."""
 
+USUAL_ALPHA, USUAL_BETA = 2.0, 0.05
+"""Coefficients of self-affine surfaces, by which groups alone are judged."""
+
+NEGLIGIBLE_SHARE = 0.01
+"""Share of load and of friction up to which it does not matter by which law asperities carry them."""
 
 ATMOSPHERE = 1.01325e5
 """Ambient pressure of a contact in the open [Pa], by which the fluid pressure may fall before nothing is left."""
 
 
+def pressure_notes(contact: LineContact | None) -> tuple[str, ...]:
+    r"""Return the sentence that says that a contact is one of hard elastohydrodynamics.
+
+    .. math:: \eta(p_\mathrm{Hz})/\eta = \exp(\alpha_p \, p_\mathrm{Hz})
+
+    Parameters
+    ----------
+    contact : LineContact or None
+        The contact; without one nothing is known of pressures in Pa.
+
+    Returns
+    -------
+    tuple of str
+        The sentence, or nothing up to a Hertz pressure of 50 MPa.
+
+    Notes
+    -----
+    With the 10 to 25 1/GPa of oils, viscosity is 1.6 to 3.5 times as high at 50 MPa.  Source: when_not_to_use.md.
+    """
+    if contact is None or not contact.hertz.pressure > HIGHEST_PRESSURE:
+        return ()
+    pressure = contact.hertz.pressure
+    return (
+        f"{HARD} the Hertz pressure is {pressure / 1e6:.3g} MPa, and this model is for up to {HIGHEST_PRESSURE / 1e6:g} MPa. "
+        f"There an oil of {OIL * 1e9:g} 1/GPa is exp({OIL * pressure:.2g}) times as viscous as at ambient pressure, which is "
+        "not modelled: with such a fluid film, friction and regimes are not those given here.",
+    )
+
+
 def shape_notes(contact: LineContact | None) -> tuple[str, ...]:
-    """Return the sentence that says where the contact is too wide for a parabola on a half-space."""
+    """Return the sentences about the dry contact alone: its pressure, and its width where that is too much for a parabola."""
     if contact is None:
         return ()
+    notes = pressure_notes(contact)
     slope = contact.hertz.half_width / contact.radius
     if not slope > WIDEST_CONTACT:
-        return ()
+        return notes
     return (
+        *notes,
         f"The contact is wide: the Hertz half-width is {slope:.2g} of the radius. A parabola on a half-space is right up to "
         f"about 0.1 and coarse at {WIDEST_CONTACT}; check modulus, load and radius.",
     )
 
 
 def law_notes(groups: Groups, contact: LineContact | None, values: Observables) -> tuple[str, ...]:
-    """Return the sentences that say where the contact law leaves its range."""
+    """Return the sentences that say where the contact law leaves its range while asperities still matter.
+
+    Parameters
+    ----------
+    groups : Groups
+        The groups of the state, with its law.
+    contact : LineContact or None
+        The contact; groups alone are weighed with mu0 = 1, alpha = 2 and beta = 0.05.
+    values : Observables
+        Those of the state.
+
+    Returns
+    -------
+    tuple of str
+        The sentences; none where asperities have at most 1 % of the load and of the friction.
+    """
     if groups.roughness == 0:
         return ()
+    shares = _shares(contact, values)
+    if max(shares) <= NEGLIGIBLE_SHARE:
+        return ()
+    ratio, measured = _gap_ratio(groups, contact, values)
+    far = _far_note(groups, ratio, measured, shares, contact is not None)
     if groups.law is not None and not is_exponential(groups.law):
         said = groups.law.notes(values.minimum_gap / float(groups.relative_roughness))
-        return ("The gap is negative: asperities alone cannot carry this load at a positive gap.", *said)[
-            values.minimum_gap > 0 :
-        ]
+        negative = ("The gap is negative: asperities alone cannot carry this load at a positive gap.",)
+        return (*(negative if values.minimum_gap <= 0 else ()), *said, *far)
     notes = []
     if groups.load >= largest_load(groups.law):
         notes.append(
@@ -49,22 +113,87 @@ def law_notes(groups: Groups, contact: LineContact | None, values: Observables) 
             "as asperities cannot carry this load at a positive gap. "
             "Persson's law, of a table [surface], goes on from there."
         )
-    alpha = 1.0 if contact is None else contact.alpha
-    ratio = values.central_gap / float(groups.relative_roughness) / alpha
-    measured = "h_rms" if contact is not None else "h_rms/alpha"
     if ratio < 0:
         notes.append("The gap is negative: the exponential contact law is outside its range.")
-    elif ratio < LAW_LEAST_GAP:
+    elif ratio < LAW_RANGE[0]:
         notes.append(
             f"The central gap is {ratio:.2g} {measured}: the exponential contact law is outside its range, "
-            f"which ends at about {LAW_LEAST_GAP} h_rms; the true law stiffens."
+            f"which ends at about {LAW_RANGE[0]} h_rms; the true law stiffens."
         )
-    elif ratio < 1:
-        notes.append(
-            f"The central gap is {ratio:.2g} {measured}: the exponential contact law is at the end of its range "
-            f"({LAW_LEAST_GAP} to 2 h_rms)."
-        )
-    return tuple(notes)
+    return (*notes, *far)
+
+
+def minimum_note(groups: Groups, contact: LineContact | None, values: Observables, friction: float, where: str) -> str:
+    """Return what to know of a minimum of friction whose gap the contact law is not made for; empty if there is nothing.
+
+    Parameters
+    ----------
+    groups : Groups
+        The groups there, with the law.
+    contact : LineContact or None
+        The contact there.
+    values : Observables
+        Those of the state.
+    friction : float
+        Share of the friction that asperities cause [-].
+    where : str
+        Where the minimum lies, such as ``"speed 27.9 mm/s"``.
+
+    Returns
+    -------
+    str
+        One sentence, or none.
+    """
+    if not (groups.roughness > 0 and friction > NEGLIGIBLE_SHARE and _is_limit_of_persson(groups)):
+        return ""
+    ratio, measured = _gap_ratio(groups, contact, values)
+    if ratio <= LAW_RANGE[1]:
+        return ""
+    return (
+        f"At the minimum of friction, {where}, the central gap is {ratio:.2g} {measured}, beyond the range of "
+        f"{_range(groups)}, while asperities cause {100 * friction:.2g} % of the friction: on a surface with "
+        "fewer high asperities the minimum is lower and at less speed, by a fifth in contact_laws.md."
+    )
+
+
+def _gap_ratio(groups: Groups, contact: LineContact | None, values: Observables) -> tuple[float, str]:
+    """Return the central gap over h_rms, and the unit in words."""
+    known = contact.alpha if contact is not None else (groups.law.parameters.get("alpha") if groups.law is not None else None)
+    alpha = USUAL_ALPHA if known is None else float(known)
+    measured = "h_rms" if known is not None else f"h_rms at alpha = {USUAL_ALPHA:g}"
+    return values.central_gap / float(groups.relative_roughness) / alpha, measured
+
+
+def _shares(contact: LineContact | None, values: Observables) -> tuple[float, float]:
+    """Return the shares of load and friction that are the asperities'."""
+    mu0, beta = (1.0, USUAL_BETA) if contact is None else (contact.boundary_friction, contact.beta)
+    dry, viscous = mu0 * values.contact_load_share, beta * values.viscous_balanced
+    return values.contact_load_share, dry / (dry + viscous) if dry > 0 else 0.0
+
+
+def _is_limit_of_persson(groups: Groups) -> bool:
+    """Tell whether the law of a state falls exponentially far apart as Persson's does."""
+    return is_exponential(groups.law) or (groups.law is not None and groups.law.name == "persson")
+
+
+def _range(groups: Groups) -> str:
+    """Return the law of a state and where it holds, in words."""
+    if is_exponential(groups.law):
+        return f"the exponential contact law ({LAW_RANGE[0]} to {LAW_RANGE[1]:g} h_rms)"
+    return f"Persson's contact law (up to {LAW_RANGE[1]:g} h_rms)"
+
+
+def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, float], known: bool) -> tuple[str, ...]:
+    """Return the sentence about a gap above the range; a contact's friction is known, that of groups alone is not."""
+    if ratio <= LAW_RANGE[1] or not _is_limit_of_persson(groups):
+        return ()
+    load, friction = shares
+    supposed = "" if known else f", at mu0 = 1 and beta = {USUAL_BETA:g}"
+    return (
+        f"The central gap is {ratio:.3g} {measured}, beyond the range of {_range(groups)}, while asperities carry "
+        f"{100 * load:.2g} % of the load and cause {100 * friction:.2g} % of the friction{supposed}: few of them reach so "
+        "high, and a surface may have fewer than the law says.",
+    )
 
 
 def cavitation_notes(contact: LineContact | None, fluid_pressure: Array) -> tuple[str, ...]:
@@ -84,7 +213,8 @@ def cavitation_notes(contact: LineContact | None, fluid_pressure: Array) -> tupl
 
     Notes
     -----
-    How much cavitation would change is a matter of the speed group; when_not_to_use.md.
+    Where the film breaks already at ambient pressure, suction of any size counts, and the fluid carries load in another order
+    of the speed; the numbers are from a separate calculation.  Source: when_not_to_use.md, "Cavitation behind the contact".
     """
     if contact is None:
         return ()
@@ -94,5 +224,6 @@ def cavitation_notes(contact: LineContact | None, fluid_pressure: Array) -> tupl
     # In MPa throughout, so that the notes of a curve differ by their numbers alone.
     return (
         f"Behind the contact the fluid pressure falls {suction / 1e6:.3g} MPa below the ambient, more than one atmosphere: "
-        "in the open the film may cavitate there, which is not modelled.",
+        "in the open the film cavitates there, which is not modelled. Where it breaks at ambient pressure the minimum of "
+        "friction is 9 to 20 % lower, and in boundary lubrication the fluid carries more (when_not_to_use.md).",
     )

@@ -6,11 +6,13 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from stribeck.cli.reports.words import print_first
 from stribeck.fits.case_file import format_interval, format_value
 from stribeck.fits.posterior import Posterior
 from stribeck.fits.result import Fit, FittedInput
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.units import format_si
+from stribeck.solver.notes import HARD
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -44,6 +46,7 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
     def say(text: str, style: str = "") -> None:
         console.print(text, style=style or None, markup=False, highlight=False, soft_wrap=True)
 
+    print_first(console, fit.notes)
     if title:
         say(title, "bold")
     data = fit.data
@@ -79,7 +82,8 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
         message = each_weak.message
         say(f"Warning: {message}", "bold yellow")
     for note in fit.notes:
-        say(f"Note: {note}", "yellow")
+        if not note.startswith(HARD):
+            say(f"Note: {note}", "yellow")
     for name in files:
         say(f"Written: {name}")
 

@@ -189,7 +189,7 @@ def regimes_json(
         "error_estimate": max(solution.error_estimate, curve.error_estimate),
         "outcome": curve.outcome.name,
         "message": curve.outcome.value,
-        "notes": [*solution.notes, *distances.notes],
+        "notes": [*solution.notes, *curve.minimum_notes, *distances.notes],
     }
 
 

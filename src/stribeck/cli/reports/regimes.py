@@ -59,7 +59,7 @@ def print_regimes(
     """
     contact = solution.contact
     assert contact is not None
-    print_head(console, title, contact, solution.groups)
+    print_head(console, title, contact, solution.groups, notes=solution.notes)
     friction = solution.friction(definition=curve.definition)
     speed = format_si(contact.speed, "speed")
     say(
@@ -96,7 +96,7 @@ def print_regimes(
             console,
             f"The {name} moves friction most: 10 % {way} of it lowers friction by {gain}, all else kept.",
         )
-    notes = [*solution.notes, *distances.notes]
+    notes = [*solution.notes, *curve.minimum_notes, *distances.notes]
     print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), notes)
 
 
@@ -107,9 +107,9 @@ def _ways(distances: TransitionDistances) -> Iterator[str]:
         ways = [f"{distance.name} {_step(distance.name, mark)}" for distance, mark in found if mark is not None]
         barren = [_searched(distance) for distance, mark in found if mark is None]
         if not ways:
-            yield f"To reach {regime}: nothing within reach, by {', '.join(barren)}."
+            yield f"To reach {regime}: not reachable by {', '.join(barren)}."
             continue
-        rest = f"; none within reach by {', '.join(barren)}" if barren else ""
+        rest = f"; not reachable by {', '.join(barren)}" if barren else ""
         yield f"To reach {regime}: {', or '.join(ways)}{rest}."
     if any(distance.name == "viscosity" and (distance.less or distance.more) for distance in distances.distances):
         yield "Speed and viscosity count as their product, so that their factors are the same."

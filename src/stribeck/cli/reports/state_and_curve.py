@@ -46,7 +46,7 @@ def print_solution(
     boundary_friction, beta : float, optional
         As in :meth:`Solution.friction`.
     """
-    print_head(console, title, solution.contact, solution.groups)
+    print_head(console, title, solution.contact, solution.groups, notes=solution.notes)
     columns = (0, 1, 3) if solution.contact is None else (0, 1, 2, 3)
     table = table_of(*(("quantity", "value", "in SI", "error")[i] for i in columns))
     for row in _solution_rows(solution, boundary_friction, beta):
@@ -108,7 +108,7 @@ def print_curve(console: Console, curve: StribeckCurve, title: str, files: Seque
     files : sequence of str
         Files that were written.
     """
-    print_head(console, title, curve.contact, curve.groups, curve.over)
+    print_head(console, title, curve.contact, curve.groups, curve.over, curve.notes)
     low, high = place(curve, curve.values[0]), place(curve, curve.values[-1])
     say(console, f"{len(curve)} point{'s' * (len(curve) > 1)}, {curve.over} {low} to {high}.")
     table = table_of("regime", "from", "to", right=(1, 2))

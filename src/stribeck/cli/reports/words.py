@@ -16,6 +16,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outputs import GROUPS, INPUTS
 from stribeck.quantities.units import format_bound, format_si
+from stribeck.solver.notes import HARD
 from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:
@@ -100,8 +101,16 @@ def part(value: float, error: float) -> str:
     return digits(value, error / value if value > 0 else error)
 
 
-def print_head(console: Console, title: str, contact: LineContact | None, groups: Groups, over: str | None = None) -> None:
-    """Print the headline, the inputs and the groups, without those that vary."""
+def print_head(
+    console: Console,
+    title: str,
+    contact: LineContact | None,
+    groups: Groups,
+    over: str | None = None,
+    notes: Sequence[str] = (),
+) -> None:
+    """Print what concerns all else of the notes, the headline, the inputs and the groups, without those that vary."""
+    print_first(console, notes)
     if title:
         console.print(title, style="bold", markup=False, highlight=False)
     if contact is not None:
@@ -142,10 +151,18 @@ def law_sentence(law: LawShape) -> str:
 
 
 def print_outcome(console: Console, outcome: str, error: float, notes: Sequence[str]) -> None:
-    """Print how a solve ended, its error and notes."""
+    """Print how a solve ended, its error and the notes that :func:`print_first` leaves."""
     say(console, f"{outcome} Largest estimated relative error: {error:.1e}.")
     for note in notes:
-        console.print(f"Note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+        if not note.startswith(HARD):
+            console.print(f"Note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+
+
+def print_first(console: Console, notes: Sequence[str]) -> None:
+    """Print the notes that say that the model is not for this contact, above all else."""
+    for note in notes:
+        if note.startswith(HARD):
+            console.print(note, style="bold red", markup=False, highlight=False, soft_wrap=True)
 
 
 def say(console: Console, text: str) -> None:

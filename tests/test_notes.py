@@ -1,0 +1,202 @@
+"""Notes: said where the model leaves its range and it matters, and nowhere else."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from command_line import EXAMPLES, FEW, PDMS, call, case_text
+from fit_data import TRUE, exact
+
+import stribeck as sb
+from stribeck.regimes.distances import TransitionDistances, physical_bounds, transition_distances
+from stribeck.solver.notes import HARD, HIGHEST_PRESSURE, LAW_RANGE, NEGLIGIBLE_SHARE
+
+SEAL = sb.load_case(EXAMPLES / "rod_seal.toml").contact
+"""A contact under Persson's law at load group 5.5."""
+
+STIFF = {"modulus": '"5.4 GPa"', "load": '"60 kN/m"', "viscosity": '"100 Pa*s"'}
+"""The PDMS cylinder with all pressures 2000 times as high, so that the groups stay."""
+
+
+def gap(solution):
+    """Return the central gap in roughness heights."""
+    contact = solution.contact
+    return solution.central_gap * contact.hertz.indentation / contact.roughness
+
+
+def matters(solution):
+    """Tell whether asperities have more than 1 % of load or friction."""
+    friction = solution.friction(definition="balanced")
+    return max(solution.contact_load_share, friction.contact / friction.total) > NEGLIGIBLE_SHARE
+
+
+@pytest.fixture(scope="module")
+def pdms():
+    return sb.stribeck_curve(TRUE, speed=("1 mm/s", "1 m/s"), points=21, rtol=1e-5)
+
+
+@pytest.fixture
+def no_scans(monkeypatch):
+    """Leave out the search for the next regimes, which is no matter here and slow."""
+    monkeypatch.setattr("stribeck.cli.solving.transition_distances", lambda *_, **__: TransitionDistances("mixed", (), ()))
+
+
+# --- the contact law ---
+
+
+def test_inside_the_range_of_the_law_nothing_is_said():
+    solution = sb.solve(TRUE)
+    assert LAW_RANGE[0] < gap(solution) < 1  # where "at the end of its range (0.4 to 2)" was said of 0.78
+    assert solution.notes == ()
+
+
+def test_a_gap_above_the_range_is_noted_while_asperities_matter_and_not_beyond(pdms):
+    said = [any("beyond the range of the exponential" in note for note in s.notes) for s in pdms.solutions]
+    wanted = [gap(s) > LAW_RANGE[1] and matters(s) for s in pdms.solutions]
+    assert said == wanted
+    assert any(said) and not said[0] and not said[-1]
+    [note] = [note for s in pdms.solutions for note in s.notes if "beyond" in note][:1]
+    i = said.index(True)
+    assert f"{gap(pdms.solutions[i]):.3g} h_rms" in note
+    assert f"carry {100 * pdms.solutions[i].contact_load_share:.2g} % of the load" in note
+
+
+def test_the_minimum_of_the_demo_says_that_its_gap_is_beyond_the_range(pdms, capsys, no_scans):
+    solution = pdms.minimum.solution
+    friction = solution.friction()
+    assert gap(solution) == pytest.approx(3.57, abs=0.01)
+    assert friction.contact / friction.total == pytest.approx(0.14, abs=0.005)
+    [note] = pdms.minimum_notes
+    assert pdms.notes[-1] == note
+    assert "At the minimum of friction, speed 27.9 mm/s, the central gap is 3.6 h_rms, beyond the range" in note
+    assert "asperities cause 14 % of the friction" in note
+    assert note in call(capsys, "curve", PDMS, *FEW).out
+    assert note in call(capsys, "regimes", PDMS).out
+
+
+def test_the_minimum_of_groups_is_judged_by_the_friction_of_the_curve():
+    def minimum(beta):
+        return sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1.0), points=13, mu0=0.7, beta=beta, rtol=1e-4)
+
+    [note] = minimum(0.06).minimum_notes
+    assert "h_rms at alpha = 2" in note
+    assert minimum(10.0).minimum_notes == ()  # the fluid makes all of the friction there
+
+
+def test_the_law_of_persson_has_the_same_tail_and_no_lower_end():
+    fast = sb.solve(SEAL.replace(speed="1 m/s"), rtol=1e-4)
+    assert gap(fast) > LAW_RANGE[1] and matters(fast)
+    assert any("beyond the range of Persson's contact law (up to 2 h_rms)" in note for note in fast.notes)
+    assert not any("beyond" in note for note in sb.solve(SEAL, rtol=1e-4).notes)
+    gaussian = sb.solve(TRUE.replace(speed="30 mm/s", alpha=1.0, law=sb.GreenwoodTripp()), rtol=1e-4)
+    assert gap(gaussian) > LAW_RANGE[1] and gaussian.notes == ()  # its tail is its own
+
+
+def test_a_heavy_load_is_not_noted_where_the_fluid_carries_it():
+    heavy = TRUE.replace(load=600.0)
+    assert heavy.groups.load > 1
+    touching, free = (sb.solve(heavy.replace(speed=speed), rtol=1e-4) for speed in (0.01, 30.0))
+    assert matters(touching) and any("The load group is" in note for note in touching.notes)
+    assert not matters(free) and not any("law" in note for note in free.notes)
+
+
+# --- hard elastohydrodynamics ---
+
+
+@pytest.mark.parametrize(("part", "noted"), [(0.99, False), (1.01, True)])
+def test_a_hertz_pressure_that_makes_oil_stiff_is_noted_first(part, noted):
+    factor = part * HIGHEST_PRESSURE / TRUE.hertz.pressure
+    contact = TRUE.replace(**{name: factor * getattr(TRUE, name) for name in ("modulus", "load", "viscosity")})
+    solution = sb.solve(contact.replace(speed="20 mm/s"), rtol=1e-4)
+    assert any(note.startswith(HARD) for note in solution.notes) == noted
+    assert len(solution.notes) > 1 and solution.notes[0].startswith(HARD) == noted
+
+
+def test_steel_in_oil_reads_it_in_the_first_line_of_every_command(tmp_path, capsys, no_scans):
+    path, data = tmp_path / "stiff.toml", tmp_path / "lab.csv"
+    path.write_text(case_text(STIFF))
+    rows = np.transpose(exact()).tolist()
+    data.write_text("speed [m/s],friction\n" + "\n".join(f"{u!r},{f!r}" for u, f in rows))
+    commands = (("solve", path), ("curve", path, *FEW), ("regimes", path), ("fit", data, path, "--free", "mu0"))
+    for tokens in commands:
+        answer = call(capsys, *tokens)
+        assert answer.code == 0
+        assert answer.out.startswith("Hard elastohydrodynamics: the Hertz pressure is 102 MPa"), tokens[0]
+        assert answer.out.count(HARD) == 1
+    assert json.loads(call(capsys, "solve", path, "--json").out)["notes"][0].startswith(HARD)
+
+
+def test_over_the_load_the_first_note_is_that_of_the_pressure_too():
+    """At light loads, where a curve begins, other notes come first."""
+    stiff = TRUE.replace(modulus="5.4 GPa", viscosity="100 Pa*s", speed="20 mm/s")
+    curve = sb.stribeck_curve(stiff, load=("4 kN/m", "60 kN/m"), points=5, rtol=1e-4)
+    assert not any(note.startswith(HARD) for note in curve.solutions[0].notes) and curve.solutions[0].notes
+    assert curve.notes[0].startswith(HARD)
+
+
+# --- what can be reached ---
+
+
+@pytest.fixture(scope="module")
+def slow_and_stiff():
+    """Return a contact that would be hydrodynamic at speeds and roughness that there are not, and its distances."""
+    contact = sb.LineContact(
+        radius="20 mm",
+        youngs_modulus="210 GPa",
+        poisson_ratio=0.3,
+        load="202 N/mm",
+        viscosity="1 mPa*s",
+        speed="1 mm/s",
+        roughness="1 um",
+        alpha=2.0,
+        beta=0.02,
+        boundary_friction=0.12,
+    )
+    return contact, transition_distances(contact, rtol=1e-4)
+
+
+def test_no_advice_leaves_what_an_input_can_be(slow_and_stiff):
+    contact, found = slow_and_stiff
+    for distance in found.distances:
+        low, high = physical_bounds(contact, distance.name)
+        assert low <= distance.searched[0] * (1 + 1e-9) and distance.searched[1] <= high * (1 + 1e-9)
+        for mark in (distance.less, distance.more):
+            assert mark is None or low <= mark.value <= high
+    roughness = found.distances[2]
+    assert roughness.searched[1] <= contact.hertz.half_width < 1e-3  # and not 866 mm, 43 times the radius
+
+
+def test_speed_and_viscosity_end_each_where_they_must():
+    """One scan serves both: a speed that there is not may belong to a viscosity that there is."""
+    thin = TRUE.replace(viscosity="1e-8 Pa*s", speed="1 m/s")
+    speed, _, _, viscosity = transition_distances(thin, rtol=1e-4).distances
+    assert speed.more is None and speed.searched[1] == pytest.approx(1e3)
+    assert viscosity.more is not None and viscosity.more.value > 1e-5
+
+
+@pytest.mark.parametrize("name", ["speed", "load", "roughness", "viscosity"])
+def test_a_value_that_is_counts_as_possible(name):
+    low, high = physical_bounds(TRUE, name)
+    assert low < getattr(TRUE, name) < high
+    beyond = TRUE.replace(**{name: 10 * high})
+    assert physical_bounds(beyond, name)[1] >= 10 * high * (1 - 1e-12)
+    if name == "load":
+        assert TRUE.replace(load=high).hertz.half_width == pytest.approx(TRUE.radius)
+
+
+# --- cavitation ---
+
+
+def test_the_note_on_suction_says_what_cavitation_changes():
+    contact = sb.load_case(EXAMPLES / "rod_seal.toml").contact
+    [note] = [note for note in sb.solve(contact, rtol=1e-4).notes if "cavitates" in note]
+    assert "9 to 20 % lower" in note and "boundary lubrication" in note
+
+
+def test_weights_of_groups_alone_are_said():
+    solution = sb.solve(sb.Groups(0.03, 0.1, 1e-3), rtol=1e-4)
+    [note] = solution.notes
+    dry, viscous = solution.contact_load_share, 0.05 * solution.observables.viscous_balanced
+    assert "h_rms at alpha = 2" in note and f"{100 * dry / (dry + viscous):.2g} % of the friction, at mu0 = 1" in note
+    assert math.isfinite(solution.central_gap) and np.isfinite(dry)
