@@ -1,16 +1,18 @@
-"""Make the picture and the tables of contact_laws.md anew: the full law of Persson against the exponential law.
+"""Make the picture and the tables of contact_laws.md anew: Persson's law, that of a simulated surface, the exponential one.
 
 Usage::
 
-    python docs/contact_laws.py
+    python docs/contact_laws.py          # all, about three minutes on one core
+    python docs/contact_laws.py --tail   # the tables about the simulated surface alone, a few seconds
 
-Takes about three minutes on one core.  What stands in the page between marks is replaced, all other text is kept.
+What stands in the page between marks is replaced, all other text is kept.
 """
 
 from __future__ import annotations
 
 import math
 import re
+import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +25,8 @@ from stribeck.numerics.threads import one_blas_thread
 FOLDER = Path(__file__).parent
 PAGE = FOLDER / "contact_laws.md"
 PICTURE = FOLDER / "images" / "contact_laws.png"
+SIMULATED = FOLDER.parent / "examples" / "gfmd_mean_gap.csv"
+DEMO = FOLDER.parent / "examples" / "pdms_cylinder.toml"
 
 KAPPA = 0.01
 """Relative roughness of all states."""
@@ -38,6 +42,14 @@ MARKS = {
     "asperities cause 10% of the friction": "hydrodynamic",
 }
 """The two transitions, by the names that curves give them."""
+
+SURFACE = sb.surfaces.SelfAffine(h_rms=6e-6, q0=1e4, q1=1e6, hurst=0.8)
+"""The surface of the simulation."""
+
+TAIL_LOADS = (0.1, 1.0)
+TAIL_FRICTION = 0.7
+TAIL_SPEEDS = (5e-3, 0.5)
+GAPS = (0.2644, 0.4398, 0.854, 1.1806, 1.883, 2.629)
 
 ROOM = 1e-2
 """Relative difference of friction from which two laws are said to part."""
@@ -118,6 +130,85 @@ def parting(pairs: dict[float, tuple[Pair, Pair]]) -> str:
     return table([*head, "least $\\mu/\\mu_0$, exponential", "Persson"], rows)
 
 
+def simulated(alpha: float, beta: float) -> sb.TableLaw:
+    """Return the law of the simulated surface for a contact with these coefficients."""
+    rows = sb.TableLaw.read(SIMULATED)
+    return sb.TableLaw(
+        alpha * np.array(rows.separation), np.array(rows.pressure) / beta, title="GFMD, one self-affine surface"
+    )
+
+
+def laws_of_surface() -> tuple[sb.surfaces.PerssonLaw, dict[str, sb.surfaces.PerssonLaw | sb.TableLaw | None]]:
+    """Return Persson's law of the simulated surface, and all three laws of it by name."""
+    law = sb.surfaces.persson_law(SURFACE)
+    return law, {"exponential": None, "Persson": law, "GFMD": simulated(law.alpha, law.beta)}
+
+
+def pressures() -> str:
+    """Return the pressures that hold the simulated surface at some gaps, under all three laws."""
+    law, laws = laws_of_surface()
+    rows = []
+    for gap in GAPS:
+        s = np.array([law.alpha * gap])
+        told = {"exponential": -s, "Persson": law.log_pressure(s), "GFMD": laws["GFMD"].log_pressure(s)}
+        found = {name: law.beta * math.exp(float(value[0])) for name, value in told.items()}
+        rows.append(
+            [number(gap, 4), number(found["GFMD"])]
+            + [f"{number(found[name])}, {found[name] / found['GFMD']:.2f} times" for name in ("Persson", "exponential")]
+        )
+    return table(["gap over $h_\\mathrm{rms}$", "$p/E^*$, GFMD", "Persson", "exponential"], rows)
+
+
+def minimum_of(problem: sb.Groups | sb.LineContact, **settings: object) -> tuple[float, float, float, float]:
+    """Return speed, friction, gap over h_rms/alpha, and the asperities' share of the friction at the minimum of a curve."""
+    curve = sb.stribeck_curve(problem, points=41, definition="balanced", **settings)
+    if curve.minimum is None:
+        raise RuntimeError("no minimum")
+    state = curve.minimum.solution
+    friction = state.friction(curve.mu0, curve.beta, "balanced")
+    return curve.minimum.value, curve.minimum.friction, state.lambda_ratio, friction.contact / friction.total
+
+
+def minima() -> str:
+    """Return the minimum of friction under the three laws of the simulated surface, and what each differs from the first."""
+    law, laws = laws_of_surface()
+    rows = []
+    for load in TAIL_LOADS:
+        first = None
+        for name, shape in laws.items():
+            groups = sb.Groups(0.0, load, KAPPA * load, law=shape)
+            speed, friction, ratio, share = minimum_of(groups, speed=TAIL_SPEEDS, mu0=TAIL_FRICTION, beta=law.beta)
+            first = first or (speed, friction)
+            rows.append(
+                [number(load), name, number(speed, 4), _change(speed, first[0]), number(friction, 4)]
+                + [_change(friction, first[1]), f"{ratio / law.alpha:.2f}", f"{100 * share:.2g} %"]
+            )
+    head = ["$F$", "law", "$\\lambda$ at the minimum", "change", "$\\mu$ there", "change", "gap there over $h_\\mathrm{rms}$"]
+    return table([*head, "asperities' share of friction"], rows)
+
+
+def demo() -> str:
+    """Return the minimum of the demonstration case under its own law and under that of the simulated surface."""
+    contact = sb.load_case(DEMO).contact
+    law, _ = laws_of_surface()
+    rows = []
+    first = None
+    for name, shape in (("exponential", None), ("GFMD", simulated(law.alpha, law.beta))):
+        other = contact if shape is None else contact.replace(law=shape)
+        speed, friction, ratio, share = minimum_of(other, speed=("5 mm/s", "0.3 m/s"))
+        first = first or (speed, friction)
+        rows.append(
+            [name, f"{1e3 * speed:.1f} mm/s", _change(speed, first[0]), number(friction, 4), _change(friction, first[1])]
+            + [f"{ratio / contact.alpha:.2f}", f"{100 * share:.2g} %"]
+        )
+    head = ["law", "speed at the minimum", "change", "$\\mu$ there", "change", "gap there over $h_\\mathrm{rms}$"]
+    return table([*head, "asperities' share of friction"], rows)
+
+
+def _change(value: float, reference: float) -> str:
+    return "" if value == reference else f"{100 * (value / reference - 1):+.1f} %"
+
+
 def draw(pairs: dict[float, tuple[Pair, Pair]]) -> None:
     """Draw curves, separation at rest and transitions."""
     import matplotlib.pyplot as plt
@@ -167,16 +258,19 @@ def filled(text: str, blocks: dict[str, str]) -> str:
 
 
 @one_blas_thread
-def main() -> None:
+def main(arguments: Sequence[str] = ()) -> None:
     """Solve, draw, and write the page."""
-    law = persson()
-    pairs = {}
-    for load in LOADS:
-        pairs[load] = solved(load, None, law.beta), solved(load, law, law.beta)
-        print(f"load {load:g} done", flush=True)
-    draw(pairs)
-    PAGE.write_text(filled(PAGE.read_text(), {"comparison": comparison(pairs), "parting": parting(pairs)}))
+    blocks = {"pressures": pressures(), "minima": minima(), "demo": demo()}
+    if "--tail" not in arguments:
+        law = persson()
+        pairs = {}
+        for load in LOADS:
+            pairs[load] = solved(load, None, law.beta), solved(load, law, law.beta)
+            print(f"load {load:g} done", flush=True)
+        draw(pairs)
+        blocks |= {"comparison": comparison(pairs), "parting": parting(pairs)}
+    PAGE.write_text(filled(PAGE.read_text(), blocks))
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

@@ -10,7 +10,9 @@ from stribeck.cli import main
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PDMS = EXAMPLES / "pdms_cylinder.toml"
-WIPER = EXAMPLES / "wiper_blade.toml"
+HEAVY = Path(__file__).parent / "data" / "heavy.toml"
+"""A contact at load group 1.6 under the exponential law, out of its range."""
+
 SWEEP = EXAMPLES / "sweep.toml"
 SCRIPT = Path(sys.executable).with_name("stribeck")
 

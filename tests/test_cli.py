@@ -17,10 +17,10 @@ import xarray as xr
 from command_line import (
     EXAMPLES,
     FEW,
+    HEAVY,
     PDMS,
     SCRIPT,
     SWEEP,
-    WIPER,
     call,
     call_outside,
     case_text,
@@ -257,12 +257,12 @@ def test_where_the_law_is_beyond_its_range_every_output_says_so(capsys, tmp_path
     sentence = "The load group is 1.59, not below 1: the exponential contact law is outside its range"
     range_ = ("--range", "1 m/s", "2 m/s", "--points", "2")
     files = ("-o", tmp_path / "curve.nc", "-o", tmp_path / "curve.csv", "--plot", tmp_path / "curve.svg")
-    assert sentence in call(capsys, "solve", WIPER).out
-    assert sentence in call(capsys, "solve", WIPER, "--json").out
-    assert sentence in call(capsys, "regimes", WIPER).out
-    assert "Persson's law, of a table [surface], goes on from there." in call(capsys, "regimes", WIPER).out
-    assert sentence in call(capsys, "curve", WIPER, *range_, *files).out
-    assert sentence in call(capsys, "curve", WIPER, *range_, "--json").out
+    assert sentence in call(capsys, "solve", HEAVY).out
+    assert sentence in call(capsys, "solve", HEAVY, "--json").out
+    assert sentence in call(capsys, "regimes", HEAVY).out
+    assert "Persson's law, of a table [surface], goes on from there." in call(capsys, "regimes", HEAVY).out
+    assert sentence in call(capsys, "curve", HEAVY, *range_, *files).out
+    assert sentence in call(capsys, "curve", HEAVY, *range_, "--json").out
     assert sentence in opened(tmp_path / "curve.nc").attrs["notes"]
     assert sentence in (tmp_path / "curve.csv").read_text()
     assert b"outside its range" in (tmp_path / "curve.svg").read_bytes()

@@ -8,7 +8,7 @@ import textwrap
 import matplotlib
 import numpy as np
 import pytest
-from command_line import PDMS, WIPER, run_python
+from command_line import HEAVY, PDMS, run_python
 
 import stribeck as sb
 from stribeck.curves.plot import plot_curve, plot_profile
@@ -27,7 +27,7 @@ def curve():
 
 @pytest.fixture(scope="module")
 def heavy():
-    return curve_of(WIPER, speed=("1 mm/s", "100 m/s"), points=5)
+    return curve_of(HEAVY, speed=("1 mm/s", "100 m/s"), points=5)
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ KINDS = {
     "of a smooth contact": lambda: sb.stribeck_curve(load=0.1, roughness=0, speed=(1e-5, 10), points=4),
     "without dry friction": lambda: sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 2), points=2, boundary_friction=0),
     "without any friction": lambda: sb.stribeck_curve(sb.Groups(0, 0.1, 1e-3), load=(0.1, 1), points=2, boundary_friction=0),
-    "beyond the law": lambda: curve_of(WIPER, speed=("1 mm/s", "100 m/s"), points=4),
+    "beyond the law": lambda: curve_of(HEAVY, speed=("1 mm/s", "100 m/s"), points=4),
 }
 
 

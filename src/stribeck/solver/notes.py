@@ -152,7 +152,7 @@ def minimum_note(groups: Groups, contact: LineContact | None, values: Observable
     return (
         f"At the minimum of friction, {where}, the central gap is {ratio:.2g} {measured}, beyond the range of "
         f"{_range(groups)}, while asperities cause {100 * friction:.2g} % of the friction: on a surface with "
-        "fewer high asperities the minimum is lower and at less speed, by a fifth in contact_laws.md."
+        "fewer high asperities the minimum is lower and at less speed, by a tenth to a fifth in contact_laws.md."
     )
 
 
