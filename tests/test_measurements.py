@@ -67,6 +67,14 @@ def test_the_form_of_the_file_does_not_matter(read, text):
     assert found.error is None
 
 
+@pytest.mark.parametrize(
+    "header", ["mean speed [m/s]", "Entrainment speed (m/s)", "entraining velocity [m/s]", "Rolling speed [m/s]"]
+)
+def test_a_mean_speed_is_not_taken_for_the_sum_of_the_surface_speeds(read, header):
+    with pytest.raises(sb.InputError, match="mean of two surface speeds, .* their sum, twice that: double the values"):
+        read(PLAIN.replace("speed [m/s]", header))
+
+
 def test_what_was_left_out_or_assumed_is_said(read):
     assert read(SAME["missing values"]).notes == ("4 rows without a value left out: 6, 7, 8, 9.",)
     assert read(SAME["other columns"]).notes == ("Columns not used: time, remark.",)

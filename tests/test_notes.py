@@ -75,6 +75,23 @@ def test_the_minimum_of_the_demo_says_that_its_gap_is_beyond_the_range(pdms, cap
     assert note in call(capsys, "regimes", PDMS).out
 
 
+def test_a_surface_with_fewer_high_asperities_has_its_minimum_a_fifth_lower():
+    """Loads 0.1 and 1 at relative roughness 0.01, with the gaps of contact_laws.md: the numbers that page states."""
+    law = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=6e-6, q0=1e4, q1=1e6, hurst=0.8))
+    rows = sb.TableLaw.read(EXAMPLES / "gfmd_mean_gap.csv")
+    table = sb.TableLaw(law.alpha * np.array(rows.separation), np.array(rows.pressure) / law.beta)
+
+    def minimum(load, shape):
+        groups = sb.Groups(0.0, load, 0.01 * load, law=shape)
+        speed = (0.01, 0.2)
+        curve = sb.stribeck_curve(groups, speed=speed, points=7, mu0=0.7, beta=law.beta, definition="balanced", rtol=1e-5)
+        return np.array([curve.minimum.value, curve.minimum.friction])
+
+    for load, changes in ((0.1, (-0.207, -0.172)), (1.0, (-0.104, -0.063))):
+        assert minimum(load, table) / minimum(load, None) - 1 == pytest.approx(changes, abs=1e-3)
+    assert minimum(0.1, law) / minimum(0.1, None) == pytest.approx(1, abs=3e-3)  # the same tail
+
+
 def test_the_minimum_of_groups_is_judged_by_the_friction_of_the_curve():
     def minimum(beta):
         return sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1.0), points=13, mu0=0.7, beta=beta, rtol=1e-4)

@@ -65,7 +65,7 @@ def solve_command(
     Parameters
     ----------
     case
-        Case file (TOML).
+        Case file (TOML); its speed is the sum of the surface speeds, twice a mean (entrainment) speed.
     groups
         Groups instead of a case: SPEED LOAD ROUGHNESS.
     boundary_friction
@@ -146,7 +146,8 @@ def curve_command(
     over
         What varies: speed, load or roughness; that of the case or speed if not given.
     range
-        Lowest and highest value of what varies, with units for a case; for speed found if not given.
+        Lowest and highest value of what varies, with units for a case; for speed, the sum of the surface speeds, found if not
+        given.
     points
         Number of points, 2 to 100000; that of the case or 101 if not given.
     rtol

@@ -122,7 +122,8 @@ def fit_command(
     Parameters
     ----------
     data
-        Measured friction (text in columns): friction and speed, viscosity times speed or Hersey number, units in the header.
+        Measured friction (text in columns): friction and speed, viscosity times speed or Hersey number, units in the header;
+        the speed is the sum of the surface speeds, twice a mean (entrainment) speed.
     case
         Case file (TOML) with the contact where the fit begins, and in its table [fit] what is asked.
     free

@@ -35,7 +35,8 @@ class Groups:
     Parameters
     ----------
     speed : float or array_like
-        :math:`\lambda \ge 0` [-]; zero is the contact at rest.
+        :math:`\lambda \ge 0` [-], :math:`U` being the sum of the surface speeds, twice their mean; zero is the contact
+        at rest.
     load : float or array_like
         :math:`\bar F_N > 0` [-]; from one on, the exponential contact law is outside its range.
     roughness : float or array_like
@@ -100,7 +101,7 @@ class Groups:
         Returns
         -------
         float or ndarray
-            Hersey number [-], of the broadcast shape.
+            Hersey number [-], of the broadcast shape; U is the sum of the surface speeds, as in :class:`stribeck.LineContact`.
 
         Raises
         ------

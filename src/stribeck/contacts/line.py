@@ -71,13 +71,14 @@ class LineContact:
     Parameters
     ----------
     radius : str or float
-        Radius :math:`R > 0` of the cylinder [m].
+        Radius :math:`R > 0` of the cylinder [m]; of two curved bodies :math:`1/R = 1/R_1 + 1/R_2`.
     load : str or float
         Normal load per unit length :math:`F_N > 0` [N/m].
     viscosity : str or float
         Viscosity :math:`\eta > 0` of the fluid [Pa s].
     speed : str or float
-        Sliding speed :math:`U \ge 0` [m/s].
+        Sum of the speeds of both surfaces through the contact, :math:`U = u_1 + u_2 \ge 0` [m/s]: with one surface at rest
+        the sliding speed, in general twice the mean (entrainment) speed :math:`(u_1 + u_2)/2` that tribometers report.
     roughness : str or float
         Root-mean-square roughness :math:`h_\mathrm{rms} \ge 0` [m].
     alpha : float
@@ -89,7 +90,8 @@ class LineContact:
     boundary_friction : float
         Friction coefficient :math:`\mu_0 \ge 0` of the solid contact [-].
     modulus : str or float, optional
-        Effective modulus :math:`E^* = E/(1 - \nu^2) > 0` [Pa]; or give the next two.
+        Effective modulus :math:`E^* = E/(1 - \nu^2) > 0` [Pa], of two soft bodies
+        :math:`1/E^* = (1-\nu_1^2)/E_1 + (1-\nu_2^2)/E_2`; or give the next two.
     youngs_modulus : str or float, optional
         Young's modulus :math:`E > 0` of the half-space [Pa].
     poisson_ratio : float, optional
@@ -104,7 +106,7 @@ class LineContact:
     hertz : HertzScales
         The scales with which dimensionless results return to SI.
     hersey_number : float
-        :math:`\eta U/F_N` [-].
+        :math:`\eta U/F_N` [-], with that sum :math:`U`: twice the number that is made with a mean speed.
 
     Raises
     ------
@@ -113,6 +115,9 @@ class LineContact:
 
     Notes
     -----
+    Where both surfaces move, films and load shares are those of :math:`U = u_1 + u_2`; friction is that of pure sliding at
+    :math:`U`, as the shear of the fluid at another sliding speed :math:`u_1 - u_2` is not modelled.
+
     ``modulus`` always holds :math:`E^*` afterwards; ``youngs_modulus`` and ``poisson_ratio`` are not kept.
 
     Source: [Bertin & Pouliquen] Eq. (contact_pressure) for the contact law, Section "Dimensional analysis"
@@ -195,7 +200,7 @@ class LineContact:
 
     @property
     def hersey_number(self) -> float:
-        r"""The Hersey number :math:`\eta U/F_N` [-]."""
+        r"""The Hersey number :math:`\eta U/F_N` [-], :math:`U` being the sum of the surface speeds."""
         return self.viscosity * self.speed / self.load
 
     def replace(self, **changes: Any) -> Self:

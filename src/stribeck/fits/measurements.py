@@ -51,6 +51,9 @@ LARGEST_FRICTION = 10.0
 BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}
 """Units of a friction coefficient."""
 
+_MEAN = re.compile(r"\b(mean|average|entrain\w*|rolling)\b.*\b(speed|velocity)\b", re.IGNORECASE)
+"""Headers of the speed that is half of what the model calls speed."""
+
 _FORCE = re.compile(r"force|kraft|\(m?N\)|\[m?N\]", re.IGNORECASE)
 _HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 
@@ -64,7 +67,7 @@ class Measurements:
     path : str
         The file; empty where there is none.
     abscissa : {"speed", "speed_viscosity", "hersey_number"}
-        What friction was measured against.
+        What friction was measured against; the speed in it is the sum of the surface speeds, twice their mean.
     values : ndarray, shape (n,)
         Its values [m/s, Pa m or 1].
     friction : ndarray, shape (n,)
@@ -106,8 +109,8 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     ----------
     path : str or path-like
         Columns apart by tab, semicolon, comma or spaces, with a header such as ``speed [mm/s];friction [%]``: friction, one of
-        speed, viscosity times speed and Hersey number, and where wanted its standard error, the name of the curve, and inputs
-        of the contact in which curves differ.
+        speed (the sum of both surfaces', twice a mean or entrainment speed), viscosity times speed and Hersey number, and where
+        wanted its standard error, the name of the curve, and inputs of the contact in which curves differ.
     settings : FitSettings, optional
         The ``[fit]`` table of a case: columns in another language, units that no header gives.
 
@@ -292,6 +295,12 @@ def _columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
                 "friction, the friction force over the normal force."
             )
         examples = {"speed": (speeds or unknown)[0], "friction": (bare or unknown)[-1]}
+        means = [name for name in unknown if "speed" in missing and _MEAN.search(name)]
+        if means:
+            raise InputError(
+                f"{table.path}: {show(means[0])} is the mean of two surface speeds, and the speed here is their sum, twice "
+                "that: double the values and call the column speed."
+            )
         raise InputError(
             f"{table.path}: {_listed(table)}, none of which is known as {' or '.join(missing)}; say which in [fit.columns] of "
             f"the case, as in {' and '.join(f'{name} = {show(examples[name])}' for name in missing)}."

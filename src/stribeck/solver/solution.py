@@ -245,7 +245,7 @@ class Solution:
 
     @property
     def hersey_number(self) -> float:
-        """Hersey number eta U/F_N [-]: of the contact, or for beta = 1 where only groups are known."""
+        """Hersey number eta U/F_N [-], U the sum of the surface speeds; for beta = 1 where only groups are known."""
         return float(self.groups.hersey_number() if self.contact is None else self.contact.hersey_number)
 
     @refuse_former

@@ -64,7 +64,7 @@ def columns_of(si: bool, law: LawShape | None = None) -> dict[str, tuple[str, st
         found[f"friction_{definition}"] = ("1", label)
         found[f"friction_{definition}_viscous"] = ("1", f"{label}: part from the fluid")
         found[f"friction_{definition}_error"] = ("1", f"{label}: estimated absolute error")
-    found["hersey_number"] = ("1", "Hersey number, viscosity times speed over load")
+    found["hersey_number"] = ("1", "Hersey number, viscosity times speed (sum of the surface speeds) over load")
     if si:
         found |= FILMS
     if isinstance(law, WithArea):
