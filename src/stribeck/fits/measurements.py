@@ -109,8 +109,8 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     ----------
     path : str or path-like
         Columns apart by tab, semicolon, comma or spaces, with a header such as ``speed [mm/s];friction [%]``: friction, one of
-        speed (the sum of both surfaces', twice a mean or entrainment speed), viscosity times speed and Hersey number, and where
-        wanted its standard error, the name of the curve, and inputs of the contact in which curves differ.
+        speed (the sum of both surfaces', twice a mean or entrainment speed), viscosity times speed and Hersey number, and
+        where wanted its standard error, the name of the curve, and inputs of the contact in which curves differ.
     settings : FitSettings, optional
         The ``[fit]`` table of a case: columns in another language, units that no header gives.
 
