@@ -165,7 +165,7 @@ def minimum_of(problem: sb.Groups | sb.LineContact, **settings: object) -> tuple
     if curve.minimum is None:
         raise RuntimeError("no minimum")
     state = curve.minimum.solution
-    friction = state.friction(curve.mu0, curve.beta, "balanced")
+    friction = state.friction(curve.boundary_friction, curve.beta, "balanced")
     return curve.minimum.value, curve.minimum.friction, state.lambda_ratio, friction.contact / friction.total
 
 
@@ -177,7 +177,9 @@ def minima() -> str:
         first = None
         for name, shape in laws.items():
             groups = sb.Groups(0.0, load, KAPPA * load, law=shape)
-            speed, friction, ratio, share = minimum_of(groups, speed=TAIL_SPEEDS, mu0=TAIL_FRICTION, beta=law.beta)
+            speed, friction, ratio, share = minimum_of(
+                groups, speed=TAIL_SPEEDS, boundary_friction=TAIL_FRICTION, beta=law.beta
+            )
             first = first or (speed, friction)
             rows.append(
                 [number(load), name, number(speed, 4), _change(speed, first[0]), number(friction, 4)]

@@ -84,7 +84,9 @@ def test_a_surface_with_fewer_high_asperities_has_its_minimum_a_fifth_lower():
     def minimum(load, shape):
         groups = sb.Groups(0.0, load, 0.01 * load, law=shape)
         speed = (0.01, 0.2)
-        curve = sb.stribeck_curve(groups, speed=speed, points=7, mu0=0.7, beta=law.beta, definition="balanced", rtol=1e-5)
+        curve = sb.stribeck_curve(
+            groups, speed=speed, points=7, boundary_friction=0.7, beta=law.beta, definition="balanced", rtol=1e-5
+        )
         return np.array([curve.minimum.value, curve.minimum.friction])
 
     for load, changes in ((0.1, (-0.207, -0.172)), (1.0, (-0.104, -0.063))):
@@ -94,7 +96,9 @@ def test_a_surface_with_fewer_high_asperities_has_its_minimum_a_fifth_lower():
 
 def test_the_minimum_of_groups_is_judged_by_the_friction_of_the_curve():
     def minimum(beta):
-        return sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1.0), points=13, mu0=0.7, beta=beta, rtol=1e-4)
+        return sb.stribeck_curve(
+            load=0.1, roughness=1e-3, speed=(1e-3, 1.0), points=13, boundary_friction=0.7, beta=beta, rtol=1e-4
+        )
 
     [note] = minimum(0.06).minimum_notes
     assert "h_rms at alpha = 2" in note
@@ -215,5 +219,7 @@ def test_weights_of_groups_alone_are_said():
     solution = sb.solve(sb.Groups(0.03, 0.1, 1e-3), rtol=1e-4)
     [note] = solution.notes
     dry, viscous = solution.contact_load_share, 0.05 * solution.observables.viscous_balanced
-    assert "h_rms at alpha = 2" in note and f"{100 * dry / (dry + viscous):.2g} % of the friction, at mu0 = 1" in note
+    assert (
+        "h_rms at alpha = 2" in note and f"{100 * dry / (dry + viscous):.2g} % of the friction, at boundary friction 1" in note
+    )
     assert math.isfinite(solution.central_gap) and np.isfinite(dry)

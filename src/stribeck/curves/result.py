@@ -183,7 +183,7 @@ class StribeckCurve:
         if self.minimum is None:
             return ()
         state = self.minimum.solution
-        friction = state.friction(self.mu0, self.beta, self.definition)
+        friction = state.friction(self.boundary_friction, self.beta, self.definition)
         note = minimum_note(
             state.groups,
             state.contact,

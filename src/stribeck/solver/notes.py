@@ -86,7 +86,7 @@ def law_notes(groups: Groups, contact: LineContact | None, values: Observables) 
     groups : Groups
         The groups of the state, with its law.
     contact : LineContact or None
-        The contact; groups alone are weighed with mu0 = 1, alpha = 2 and beta = 0.05.
+        The contact; groups alone are weighed with boundary friction 1, alpha = 2 and beta = 0.05.
     values : Observables
         Those of the state.
 
@@ -166,8 +166,8 @@ def _gap_ratio(groups: Groups, contact: LineContact | None, values: Observables)
 
 def _shares(contact: LineContact | None, values: Observables) -> tuple[float, float]:
     """Return the shares of load and friction that are the asperities'."""
-    mu0, beta = (1.0, USUAL_BETA) if contact is None else (contact.boundary_friction, contact.beta)
-    dry, viscous = mu0 * values.contact_load_share, beta * values.viscous_balanced
+    boundary, beta = (1.0, USUAL_BETA) if contact is None else (contact.boundary_friction, contact.beta)
+    dry, viscous = boundary * values.contact_load_share, beta * values.viscous_balanced
     return values.contact_load_share, dry / (dry + viscous) if dry > 0 else 0.0
 
 
@@ -188,7 +188,7 @@ def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, 
     if ratio <= LAW_RANGE[1] or not _is_limit_of_persson(groups):
         return ()
     load, friction = shares
-    supposed = "" if known else f", at mu0 = 1 and beta = {USUAL_BETA:g}"
+    supposed = "" if known else f", at boundary friction 1 and beta = {USUAL_BETA:g}"
     return (
         f"The central gap is {ratio:.3g} {measured}, beyond the range of {_range(groups)}, while asperities carry "
         f"{100 * load:.2g} % of the load and cause {100 * friction:.2g} % of the friction{supposed}: few of them reach so "
