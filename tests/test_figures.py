@@ -18,7 +18,7 @@ from figure_data import data_of, picture_of
 
 import stribeck as sb
 from stribeck.figures import FIGURES, PaperFigure, figure_names, load_figure, make_figures, making, style
-from stribeck.figures.states import Work, column, dataset
+from stribeck.figures.making import Work, column, dataset
 
 PANELS = {
     "3": "ab",
@@ -216,13 +216,15 @@ def test_data_from_other_sources_are_solved_again(fakes, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("changed", "of_3", "of_4"),
     [
-        ("newton.py", True, True),
-        ("asymptotics/hydrodynamic.py", True, True),
-        ("figures/states.py", True, True),
-        ("figures/figure_3.py", True, False),
-        ("figures/figure_4.py", False, True),
+        ("numerics/newton.py", True, True),
+        ("asymptotics/smooth/hydrodynamic.py", True, True),
+        ("figures/making.py", True, True),
+        ("figures/article/figure_3.py", True, False),
+        ("figures/article/figure_4.py", False, True),
         ("figures/style.py", False, False),
         ("cli/solving.py", False, False),
+        ("curves/plot.py", False, False),
+        ("fits/fit.py", False, False),
     ],
 )
 def test_the_fingerprint_changes_with_every_source_of_the_numbers(tmp_path, monkeypatch, changed, of_3, of_4):
@@ -232,7 +234,8 @@ def test_the_fingerprint_changes_with_every_source_of_the_numbers(tmp_path, monk
     figures = [Fakes().figure(name) for name in ("3", "4")]
     before = [making.fingerprint(figure) for figure in figures]
     assert before[0] != before[1]
-    with (tmp_path / "stribeck" / changed).open("a") as file:
+    with (tmp_path / "stribeck" / changed).open("r+") as file:  # of a source that exists
+        file.seek(0, os.SEEK_END)
         file.write("\n# another word\n")
     after = [making.fingerprint(figure) for figure in figures]
     assert [a != b for a, b in zip(after, before, strict=True)] == [of_3, of_4]
@@ -372,7 +375,7 @@ def test_no_state_is_given_that_did_not_converge(monkeypatch):
     few = {"solutions": whole.solutions[1:], "values": whole.values[1:]}
     for changes in ({"outcome": sb.Outcome.PATH_LOST}, few):
         broken = dataclasses.replace(whole, **changes)
-        monkeypatch.setattr("stribeck.figures.states.stribeck_curve", lambda broken=broken, **arguments: broken)
+        monkeypatch.setattr("stribeck.figures.making.stribeck_curve", lambda broken=broken, **arguments: broken)
         with pytest.raises(sb.SolveError, match="of 3 points"):
             work.curve(load=0.1, roughness=0.01)
     assert (work.done, work.error_estimate) == (0, 0.0)
@@ -396,7 +399,7 @@ def test_a_curve_that_is_lost_because_of_ctrl_c_counts_as_interrupted(monkeypatc
             on_point(1, 3)
         raise sb.SolveError(sb.Outcome.PATH_LOST, None, "lost.")
 
-    monkeypatch.setattr("stribeck.figures.states.stribeck_curve", lost)
+    monkeypatch.setattr("stribeck.figures.making.stribeck_curve", lost)
     with pytest.raises(KeyboardInterrupt):
         Work(report, steps=1).curve(load=0.1, roughness=0.01)
 

@@ -10,6 +10,7 @@ import json
 import subprocess
 import sys
 import textwrap
+import tomllib
 import types
 from enum import Enum
 from pathlib import Path
@@ -99,6 +100,13 @@ def test_a_folder_holds_no_more_modules_than_a_reader_can_keep_in_mind():
     for folder in {path.parent for path in FILES}:
         assert len(list(folder.glob("*.py"))) <= 14, f"{folder.name}: thirteen modules beside __init__ at most"
     assert {path.name for path in PACKAGE.glob("*.py")} == {"__init__.py", "__main__.py", "_types.py"}
+
+
+def test_the_evidence_stays_out_of_the_wheel():
+    settings = tomllib.loads((PACKAGE.parents[1] / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]
+    assert "src/stribeck/evidence" in settings["wheel"]["exclude"]
+    users = {top_of(path) for path in FILES if "evidence" in imported_tops(path)}
+    assert users <= {"evidence"}
 
 
 def test_the_walk_over_imports_sees_every_form(tmp_path, monkeypatch):

@@ -72,8 +72,8 @@ def plot_error_maps(
     Parameters
     ----------
     maps : sequence of (Formula, xarray.Dataset)
-        Formulas, and what :func:`stribeck.validity.error_map` returned for them.  More than three loads make a map of what
-        does not depend on the speed.
+        Formulas, and what :func:`stribeck.evidence.formulas.error_map` returned for them.  More than three loads make a map
+        of what does not depend on the speed.
     path : str or path-like, optional
         Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
     force : bool

@@ -1,4 +1,4 @@
-"""Figures made into a folder: solved where no file beside the picture holds their data, whole or not at all.
+"""Making figures: what they solve, the dataset they make of it, and the files in a folder, whole or not at all.
 
 The NetCDF file of a figure is also its memory. It holds a fingerprint of the sources that its numbers come from, and is
 used again as long as these are the same.
@@ -8,18 +8,25 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
+from stribeck.contacts.line import Groups
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.figures import style
-from stribeck.figures.paper_figure import PaperFigure, figure_names, load_figure
+from stribeck.figures.paper_figure import PaperFigure, Report, figure_names, load_figure
 from stribeck.files.datasets import NETCDF, write_netcdf
 from stribeck.files.writing import MissingExtraError, PathLike, check_output, replacing
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import SolveError, solve
 
 if TYPE_CHECKING:
     import xarray
@@ -29,20 +36,169 @@ PICTURES = (".png", ".svg")
 
 SHOWING = (
     "__main__.py",
-    "app/",
-    "case.py",
+    "cases/",
     "cli/",
-    "fit",
-    "plot_",
-    "plotting.py",
-    "report",
-    "figures/making.py",
+    "evidence/",
+    "explorer/",
     "figures/style.py",
+    "files/pictures.py",
+    "fits/",
+    "sweeps/",
 )
 """How the names of sources begin that change no number of a figure."""
 
+Column = tuple[str | Sequence[str], Any, dict[str, str]]
+
 OnProgress = Callable[[str, int, int], object]
 """``on_progress(name, done, steps)`` is called at the start of each figure and after each step of its work."""
+
+
+@dataclass
+class Work:
+    """The solves of one figure: each is reported when done, and one that fails ends the figure.
+
+    Attributes
+    ----------
+    report : callable
+        As in :class:`PaperFigure`.
+    steps : int
+        Number of calls of :meth:`solve` and :meth:`curve` to come.
+    rtol : float
+        Relative tolerance of each state.
+    done : int
+        Number of calls so far.
+    error_estimate : float
+        Largest estimated relative error of the states so far.
+    """
+
+    report: Report
+    steps: int
+    rtol: float = 1e-7
+    done: int = 0
+    error_estimate: float = 0.0
+
+    def solve(self, speed: float, load: float, roughness: float) -> Solution:
+        """Return one converged state.
+
+        Parameters
+        ----------
+        speed, load, roughness : float
+            The groups [-].
+
+        Returns
+        -------
+        Solution
+            The state.
+
+        Raises
+        ------
+        SolveError
+            If it did not converge.
+        """
+        found = solve(Groups(speed, load, roughness), rtol=self.rtol)
+        self._step(found)
+        return found
+
+    def curve(self, **arguments: Any) -> StribeckCurve:
+        """Return a Stribeck curve of which every point converged.
+
+        Parameters
+        ----------
+        **arguments
+            Those of :func:`stribeck.stribeck_curve`, without ``rtol`` and ``on_point``.
+
+        Returns
+        -------
+        StribeckCurve
+            The curve.
+
+        Raises
+        ------
+        SolveError
+            If points are missing.
+        """
+        interrupted = False
+
+        def report(done: int, points: int) -> None:
+            nonlocal interrupted
+            try:
+                self.report(self.done, self.steps)
+            except KeyboardInterrupt:
+                # The curve takes it as the wish to stop there, and returns or raises something else.
+                interrupted = True
+                raise
+
+        try:
+            found: StribeckCurve = stribeck_curve(rtol=self.rtol, on_point=report, **arguments)
+        except SolveError:
+            if interrupted:
+                raise KeyboardInterrupt from None
+            raise
+        if interrupted or found.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        if not found.outcome.ok or len(found) < found.requested:
+            raise SolveError(found.outcome, None, f"{len(found)} of {found.requested} points: {found.outcome.value}")
+        self._step(*found.solutions)
+        return found
+
+    @property
+    def attributes(self) -> dict[str, float]:
+        """Tolerance and largest estimated error, as attributes of the dataset."""
+        return {"rtol": self.rtol, "error_estimate": self.error_estimate}
+
+    def _step(self, *solutions: Solution) -> None:
+        self.error_estimate = max(self.error_estimate, *(solution.error_estimate for solution in solutions))
+        self.done += 1
+        self.report(self.done, self.steps)
+
+
+def column(dims: str | Sequence[str], values: Any, long_name: str, units: str = "1") -> Column:
+    """Return a variable of a dataset.
+
+    Parameters
+    ----------
+    dims : str or sequence of str
+        Names of its dimensions; empty for one number.
+    values : array_like
+        Its values.
+    long_name : str
+        What it is, in words with its scale.
+    units : str
+        Its unit; ``"1"`` for numbers in Hertz scales.
+
+    Returns
+    -------
+    tuple
+        As xarray takes it.
+    """
+    return dims, np.asarray(values), {"units": units, "long_name": long_name}
+
+
+def dataset(variables: Mapping[str, Column], coords: Mapping[str, Column], **attributes: Any) -> xarray.Dataset:
+    """Return a dataset.
+
+    Parameters
+    ----------
+    variables, coords : mapping of str to tuple
+        What :func:`column` returns, by name.
+    **attributes
+        Of the whole: ``finding``, and what :attr:`Work.attributes` gives.
+
+    Returns
+    -------
+    xarray.Dataset
+        The dataset.
+
+    Raises
+    ------
+    MissingExtraError
+        If xarray is not installed.
+    """
+    try:
+        import xarray
+    except ImportError:
+        raise MissingExtraError("the data of a figure", "data", "xarray") from None
+    return xarray.Dataset(dict(variables), dict(coords), attributes)
 
 
 @dataclass(frozen=True)
@@ -138,8 +294,8 @@ def fingerprint(figure: PaperFigure) -> str:
     found = hashlib.sha256(version("stribeck").encode())
     for path in sorted(package.rglob("*.py")):
         name = path.relative_to(package).as_posix()
-        of_another = name.startswith("figures/figure_") and path.stem != figure.stem
-        if not name.startswith(SHOWING) and not of_another:
+        of_another = name.startswith("figures/article/figure_") and path.stem != figure.stem
+        if not name.startswith(SHOWING) and not name.endswith("/plot.py") and not of_another:
             found.update(name.encode() + b"\0" + path.read_bytes())
     return found.hexdigest()[:16]
 

@@ -84,7 +84,7 @@ class PaperFigure:
 
 def load_figure(name: str) -> PaperFigure:
     """Return a figure by its name in :data:`FIGURES`."""
-    figure = import_module(f".figure_{name.lower()}", __package__).FIGURE
+    figure = import_module(f".article.figure_{name.lower()}", __package__).FIGURE
     assert isinstance(figure, PaperFigure) and figure.name == name
     return figure
 

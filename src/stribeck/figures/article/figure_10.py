@@ -12,8 +12,8 @@ from stribeck.asymptotics.rough import boundary, perturbation
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
 from stribeck.figures.article.stribeck_cases import CASES, case_coords, drawn_cases, over, solved_cases
+from stribeck.figures.making import Work, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
-from stribeck.figures.states import Work, column, dataset
 
 if TYPE_CHECKING:
     import xarray

@@ -10,8 +10,8 @@ import numpy as np
 from stribeck.contacts.line import Groups
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
+from stribeck.figures.making import Work, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
-from stribeck.figures.states import Work, column, dataset
 
 if TYPE_CHECKING:
     import xarray

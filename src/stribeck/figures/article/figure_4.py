@@ -10,8 +10,8 @@ from stribeck._types import Array
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.smooth import film_layers
 from stribeck.figures import style
+from stribeck.figures.making import Work, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
-from stribeck.figures.states import Work, column, dataset
 from stribeck.solids import hertz
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from stribeck.asymptotics.rough import boundary
 from stribeck.asymptotics.smooth import edge_layer
 from stribeck.contacts.line import Groups
 from stribeck.figures import style
+from stribeck.figures.making import Work, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
-from stribeck.figures.states import Work, column, dataset
 from stribeck.solids import hertz
 from stribeck.solver.solution import Solution
 

@@ -24,8 +24,8 @@ from stribeck.figures.article.stribeck_cases import (
     report_variables,
     solved_cases,
 )
+from stribeck.figures.making import Work, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
-from stribeck.figures.states import Work, column, dataset
 
 if TYPE_CHECKING:
     import xarray

@@ -9,8 +9,8 @@ import numpy as np
 from stribeck.asymptotics.rough import boundary
 from stribeck.contacts.line import Groups
 from stribeck.figures import style
+from stribeck.figures.making import Work, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
-from stribeck.figures.states import Work, column, dataset
 from stribeck.solids import hertz
 
 if TYPE_CHECKING:

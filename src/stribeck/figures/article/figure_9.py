@@ -13,8 +13,8 @@ from stribeck.contacts.line import Groups
 from stribeck.curves.landmarks import Landmark
 from stribeck.figures.article.mixed_panels import LARGEST_FILM, LARGEST_KAPPA, LEAST_FILM, draw
 from stribeck.figures.article.stribeck_cases import CASES, LOADS, REPORTED, case_coords, over, report_variables, solved_cases
+from stribeck.figures.making import Work, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
-from stribeck.figures.states import Work, column, dataset
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.solve import SolveError
 

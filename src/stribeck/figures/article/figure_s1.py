@@ -10,8 +10,8 @@ from stribeck._types import Array, Flags
 from stribeck.asymptotics.rough import perturbation
 from stribeck.contacts.line import Groups
 from stribeck.figures import style
+from stribeck.figures.making import Work, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
-from stribeck.figures.states import Work, column, dataset
 from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:

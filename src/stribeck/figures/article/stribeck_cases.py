@@ -10,7 +10,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
-from stribeck.figures.states import Column, Work, column
+from stribeck.figures.making import Column, Work, column
 
 if TYPE_CHECKING:
     import xarray
