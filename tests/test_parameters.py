@@ -251,6 +251,13 @@ def test_parameters_are_frozen_and_survive_copies(frozen):
 # --- groups ---
 
 
+def test_the_contact_of_hertz_is_dry_and_smooth():
+    assert Groups(0.0, 0.1, 0.0).is_hertzian
+    assert Groups(np.zeros(2), 0.1, 0.0).is_hertzian
+    for speed, roughness in ((1e-9, 0.0), (0.0, 1e-9), (np.array([0.0, 1e-9]), 0.0)):
+        assert not Groups(speed, 0.1, roughness).is_hertzian
+
+
 def test_groups_keep_read_only_copies_of_arrays():
     speeds = np.array([1e-3, 1.0])
     groups = Groups(speeds, 0.1, [[0.0], [1e-4]])

@@ -105,8 +105,9 @@ class _Chain:
         """Solve all states."""
         first = 0
         while first < len(self.states):
-            if self.states[first, 0] == self.states[first, 2] == 0:  # the dry smooth contact
-                solution = hertz_solution(self.groups(first), self.contact_of(first), self.rtol)
+            groups = self.groups(first)
+            if groups.is_hertzian:
+                solution = hertz_solution(groups, self.contact_of(first), self.rtol)
                 self.on_state(first, Ended(solution.outcome, solution))
                 first += 1
                 continue

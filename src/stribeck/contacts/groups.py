@@ -83,6 +83,11 @@ class Groups:
         return np.broadcast_shapes(np.shape(self.speed), np.shape(self.load), np.shape(self.roughness))
 
     @property
+    def is_hertzian(self) -> bool:
+        """Whether all states are dry and smooth, speed and roughness zero: the contact of Hertz, in closed form."""
+        return not (np.any(self.speed) or np.any(self.roughness))
+
+    @property
     def relative_roughness(self) -> float | Array:
         r"""Roughness over Hertz indentation, :math:`\kappa = \bar h_\mathrm{rms}/\bar F_N` [-]."""
         with np.errstate(all="ignore"):

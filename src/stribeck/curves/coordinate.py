@@ -102,6 +102,5 @@ def _ends(over: Over, value: Any, si: bool) -> Array:
 def check_inside(coordinate: Coordinate, values: Array) -> None:
     """Refuse a range whose groups cannot be formed."""
     for value in (values[0], values[-1]):
-        groups = coordinate.groups_at(math.log(value))
-        if groups.speed == 0 and groups.roughness == 0:
+        if coordinate.groups_at(math.log(value)).is_hertzian:
             raise InputError("speed and roughness are both zero; the dry smooth contact has no curve, use solve.")

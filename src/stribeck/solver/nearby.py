@@ -68,7 +68,7 @@ class NearSolver:
             If the state cannot be solved from cold either.
         """
         groups, contact = as_groups(problem)
-        if groups.speed == 0 and groups.roughness == 0:
+        if groups.is_hertzian:
             return hertz_solution(groups, contact, self.rtol)
         point = self._from_last(groups)
         if point is None:

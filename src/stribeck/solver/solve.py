@@ -105,7 +105,7 @@ def solve(
     check_rtol(rtol)
     if on_failure not in ("raise", "return"):
         raise InputError(f"on_failure = {show(on_failure)}; it must be 'raise' or 'return'.")
-    if groups.speed == 0 and groups.roughness == 0:
+    if groups.is_hertzian:
         return hertz_solution(groups, contact, rtol)
     return finish(solved_point(groups, rtol), groups, contact, rtol, on_failure)
 
