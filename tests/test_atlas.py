@@ -345,3 +345,17 @@ def test_a_phase_diagram_read_off_it_is_the_solved_one():
             assert np.allclose(read[name], solved[name], rtol=1e-3, equal_nan=True), name
     with pytest.raises(sb.InputError, match="speed has the value"):
         sb.phase_diagram(load=0.1, roughness=1e-3, speed=(1e-9, 1e8), method="atlas")
+
+
+def test_the_atlas_says_which_states_it_covers():
+    speed, load = np.array([0.0, 1e-6, 1e9]), np.array([[1e-3], [2.0]])
+    assert sb.atlas.covers(sb.Groups(speed, load, 1e-4)).tolist() == [[True, True, False], [False, False, False]]
+    assert sb.atlas.covers(sb.Groups(1e-6, 0.1, np.array([0.0, 1e-4, 1e3]))).tolist() == [True, True, False]
+    other = sb.Groups(1e-6, 0.1, np.array([0.0, 1e-4]), law=sb.GreenwoodTripp())
+    assert sb.atlas.covers(other).tolist() == [True, False]
+    for groups in (sb.Groups(1e-6, 0.1, 1e-4), sb.Groups(1e-6, 2.0, 1e-4)):
+        if sb.atlas.covers(groups):
+            assert sb.atlas.friction(groups) > 0
+        else:
+            with pytest.raises(sb.InputError):
+                sb.atlas.friction(groups)

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array
+from stribeck._types import Array, Flags
 from stribeck.atlas.grid import HEAVY, LEAST_LOAD, LEAST_SPEED, NEARLY_SMOOTH, region_at
 from stribeck.atlas.table import TABULATED, Values, load_table, solver_hash
 from stribeck.contact_laws.law import LawShape, is_exponential
@@ -28,6 +28,7 @@ __all__ = [
     "about",
     "central_gap",
     "contact_load_share",
+    "covers",
     "flux_gap",
     "fluid_load_share",
     "friction",
@@ -430,6 +431,27 @@ def holds_for(law: LawShape | None) -> bool:
         True for the exponential law.
     """
     return is_exponential(law)
+
+
+def covers(groups: Groups) -> Flags:
+    """Return whether the atlas holds states: their contact law, and their groups inside :data:`BOX`.
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+
+    Returns
+    -------
+    ndarray of bool
+        Of the shape of the groups. The flux gap of heavy, nearly smooth contacts at rest is missing nevertheless.
+    """
+    found = np.ones(groups.shape, dtype=bool)
+    for name, (low, high) in BOX.items():
+        value = np.asarray(getattr(groups, name))
+        inside = (low * (1 - SLACK) <= value) & (value <= high * (1 + SLACK))
+        found &= inside if name == "load" else inside | (value == 0)
+    return found & (holds_for(groups.law) or np.asarray(groups.roughness) == 0)
 
 
 def check_law(groups: Groups) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -119,10 +119,8 @@ def _speed_group(contact: LineContact) -> float:
 
 
 def in_atlas(contact: LineContact) -> bool:
-    """Tell whether the atlas holds the load and the roughness of a contact."""
-    load, kappa = float(contact.groups.load), float(contact.groups.relative_roughness)
-    low, high = atlas.BOX["relative_roughness"]
-    return atlas.BOX["load"][0] <= load <= atlas.BOX["load"][1] and (kappa == 0 or low <= kappa <= high)
+    """Tell whether the atlas holds the contact law, the load and the roughness of a contact."""
+    return bool(atlas.covers(replace(contact.groups, speed=0.0)))
 
 
 def transition_marks(contact: LineContact, definition: Definition) -> tuple[Transition, ...]:
@@ -199,8 +197,13 @@ def diagram_from_atlas(contact: LineContact, definition: Definition, speeds: tup
     none = np.full(ROWS, math.nan)
     load, unit = float(contact.groups.load), _speed_group(contact)
     least, most = atlas.BOX["load"]
-    if not least <= load <= most:
-        message = f"No phase diagram: the atlas, off which it is read, ends at load group {most:g}; here it is {load:.3g}."
+    message = ""
+    if not atlas.holds_for(contact.law):
+        message = "Regime map unavailable: the lookup table holds the exponential contact law only."
+    elif not least <= load <= most:
+        bound = f"up to {most:g}" if load > most else f"from {least:g}"
+        message = f"Regime map unavailable: the lookup table covers load groups {bound}; here it is {load:.3g}."
+    if message:
         return Diagram(roughness, none, none, none, message)
     h = roughness * float(contact.replace(roughness=1.0).groups.roughness)
     low, high = atlas.BOX["relative_roughness"]
