@@ -433,12 +433,15 @@ def test_functions_that_are_no_law_are_refused(f, slope, sentence):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("", "is empty; the first line must be 'separation, pressure'"),
-        ("0, 1\n1, 0.5\n", "the header is '0, 1'; the first line must be"),
+        ("", "holds no data; the first line must be 'separation, pressure'"),
+        ("0, 1\n1, 0.5\n", "row 1 holds numbers, not names of columns; the first line must be"),
         ("Abstand, Druck\n0, 1\n", "the header is 'Abstand, Druck'"),
-        ("separation, pressure\n0, 1\n1, 0.5\n2; 0.2\n3, 0.1\n", r"line 4: 1 columns"),
+        (
+            "separation, pressure\n0, 1\n1, 0.5\n2; 0.2\n3, 0.1\n",
+            "row 4 has 1 cell where the header has 2: the header is separated by commas and this row by semicolons",
+        ),
         ("separation, pressure\n0, 1\n1, x\n2, 0.2\n3, 0.1\n", "line 3, column 2 is 'x', not a number"),
-        ("separation, pressure\n0, 1\n1, 0.5, 3\n", "line 3: 3 columns where two are expected"),
+        ("separation, pressure\n0, 1\n1, 0.5, 3\n", "row 3 has 3 cells where the header has 2; commas cannot both"),
         ("gap [um], pressure [m]\n0, 1\n", "^pressure = '1 m' is a length"),
         ("gap [um], pressure\n0, 1\n", "the header is 'gap \\[um\\], pressure'"),
         ("separation, pressure\n0, 1\n1, 2\n2, 0.2\n3, 0.1\n", "row 2 of the contact law's table: pressure 2 must be below"),

@@ -26,6 +26,8 @@ SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
 
 LARGEST_TABLE = 20_000_000  # [byte]
 
+EXPECTED = "add a header such as 'speed [mm/s];friction' above rows of numbers"
+
 LOOK_AHEAD = 3
 """Rows below a header among which one must hold numbers."""
 
@@ -69,7 +71,7 @@ class TextTable:
     skipped: int = 0
 
 
-def read_table(path: Path, header_row: int | None = None) -> TextTable:
+def read_table(path: Path, header_row: int | None = None, expected: str = EXPECTED) -> TextTable:
     """Return the cells of a text file of columns with a header.
 
     Parameters
@@ -79,6 +81,8 @@ def read_table(path: Path, header_row: int | None = None) -> TextTable:
     header_row : int, optional
         Row of the names of the columns; by default the first that is no comment, or below other text the only row of names
         that has rows of as many cells with numbers below it.
+    expected : str
+        What to say of a file without a header.
 
     Returns
     -------
@@ -90,7 +94,7 @@ def read_table(path: Path, header_row: int | None = None) -> TextTable:
     InputError
         If the file cannot be read, has no header, or a row has another number of cells than the header.
     """
-    text = text_of(path, LARGEST_TABLE, "a measured curve is a few pages of text", "a text file with measured friction")
+    text = text_of(path, LARGEST_TABLE, "a table is a few pages of text", "a text file of columns")
     filled = _filled(text)
     skipped = 0
     if header_row is not None:
@@ -100,18 +104,20 @@ def read_table(path: Path, header_row: int | None = None) -> TextTable:
                 f"{path}: row {header_row}, where header_row expects the header, is empty, a comment or not there."
             )
     if not filled:
-        raise InputError(f"{path} holds no data; expected a header such as 'speed [mm/s];friction' and rows of numbers.")
+        raise InputError(f"{path} holds no data; {expected}.")
     if header_row is None:
         skipped = _header_at(filled)
         filled = filled[skipped:]
     number, first = filled[0]
     separator = _separator(first)
     header = tuple(cells_of(first, separator, path, number))
-    elsewhere = "" if header_row else "; if the header is not in this row, say header_row = its number in [fit]"
+    elsewhere = (
+        ""
+        if header_row or expected != EXPECTED
+        else "; if the header is not in this row, say header_row = its number in [fit]"
+    )
     if all(_POINT.fullmatch(cell) or _COMMA.fullmatch(cell) for cell in header):
-        raise InputError(
-            f"{path}: row {number} holds numbers, not names of columns; add a header such as 'speed [mm/s];friction' above it."
-        )
+        raise InputError(f"{path}: row {number} holds numbers, not names of columns; {expected}.")
     if len(header) < 2:
         raise InputError(
             f"{path}: row {number} holds one column, {show(header[0])}; "
@@ -149,8 +155,8 @@ def read_two_columns(
     Parameters
     ----------
     path : pathlib.Path
-        A file with a header, two numbers on each line, and comments after ``#``; commas, semicolons or tabs part the numbers,
-        and where that are no commas these may be decimal.
+        A file with a header, two numbers on each line, and comments after ``#``; commas, semicolons, tabs or spaces separate
+        the numbers, whose decimal sign may be a comma if that is no separator.
     plain : tuple of str or None
         Names of the columns where they have no units; None where they need them.
     with_units : dict of str to str
@@ -172,29 +178,18 @@ def read_two_columns(
     advice = f"the first line must be {show(example)}, with the units of the file"
     if plain is not None:
         advice = f"the first line must be {show(', '.join(plain))}, or with units such as {show(example)}"
-    lines = _filled(text_of(path, LARGEST_TABLE, "some hundred rows are enough", "a CSV file"))
-    if not lines:
-        raise InputError(f"{path} is empty; {advice}.")
-    separator = _separator(lines[0][1])
-    header = lines[0][1].split(separator or None)
-    found = [_NAMED.fullmatch(cell) for cell in header]
+    table = read_table(path, expected=advice)
+    found = [_NAMED.fullmatch(cell) for cell in table.header]
     names = tuple(match[1].strip().lower() if match else "" for match in found)
     units = [match[2] for match in found if match]
-    rows, numbers = [], []
-    for i, line in lines[1:]:
-        cells = _row(line, separator, 2, path, i)
-        if len(cells) != 2:
-            raise InputError(f"{path}, line {i}: {len(cells)} columns where two are expected.")
-        rows.append(cells)
-        numbers.append(i)
-    values = values_of(path, rows, numbers, comma=separator != ",", missing=False)
+    values = values_of(path, table.rows, table.numbers, comma=table.decimal_comma, missing=False)
     if names == plain and units == [None, None]:
-        return values.reshape(-1, 2), None
+        return values, None
     if names != tuple(with_units) or not all(units):
-        raise InputError(f"{path}: the header is {show(', '.join(cell.strip() for cell in header))}; {advice}.")
+        raise InputError(f"{path}: the header is {show(', '.join(table.header))}; {advice}.")
     kinds = zip(units, with_units.values(), names, strict=True)
     first, second = (to_si(f"1 {unit}", kind, name) for unit, kind, name in kinds)
-    return values.reshape(-1, 2), (first, second)
+    return values, (first, second)
 
 
 def values_of(
