@@ -70,8 +70,11 @@ def assert_refused(capsys, folder, tokens, *parts):
 BAD_CONTACTS = {
     "unknown key": ({"radios": '"10 mm"'}, "[contact] radios = '10 mm' is not a known key; did you mean radius"),
     "missing key": ({"viscosity": None}, "[contact] viscosity is missing; add a viscosity"),
-    "speed in metres": ({"speed": '"1 m"'}, "speed = '1 m' is a length; a speed such as '0.1 m/s' is wanted"),
-    "load in newtons": ({"load": '"30 N"'}, "load = '30 N' is a force (divide it by the length of the contact)"),
+    "speed in metres": ({"speed": '"1 m"'}, "speed = '1 m' is a length; expected a speed such as '0.1 m/s'"),
+    "load in newtons": (
+        {"load": '"30 N"'},
+        "load = '30 N' is a force; expected a load per unit length such as '50 N/m': divide the force on a cylinder",
+    ),
     "unknown unit": ({"viscosity": '"50 mPaxs"'}, "viscosity = '50 mPaxs' has the unknown unit"),
     "no unit": ({"radius": '"10"'}, "radius = '10' has no unit; add one"),
     "negative radius": ({"radius": '"-10 mm"'}, "radius = '-10 mm' must be positive"),

@@ -128,7 +128,7 @@ def test_a_case_knows_every_quantity(write):
     [
         ({"contact": {"radius": '"-1 mm"'}}, "[contact] radius = '-1 mm' must be positive."),
         ({"contact": {"radius": "0"}}, "[contact] radius = 0 must be positive."),
-        ({"contact": {"speed": '"1 m"'}}, "[contact] speed = '1 m' is a length; a speed such as"),
+        ({"contact": {"speed": '"1 m"'}}, "[contact] speed = '1 m' is a length; expected a speed such as"),
         ({"contact": {"roughness": "nan"}}, "[contact] roughness = nan is not a finite number"),
         ({"contact": {"alpha": '"two"'}}, "[contact] alpha = 'two' is text where a number belongs"),
         (
@@ -137,11 +137,11 @@ def test_a_case_knows_every_quantity(write):
         ),
         (
             {"contact": {"load": None}},
-            '[contact] load is missing; add a load per unit length, for example load = "50',
+            '[contact] load is missing; add a load per unit length, for example load = "30 N/m" (as in examples/',
         ),
         (
             {"contact": {"beta": None}},
-            "[contact] beta is missing; add a bare number, for example beta = 0.5.",
+            "[contact] beta is missing; add a bare number, for example beta = 0.06 (about 1.4 q0 h_rms by Persson's theory",
         ),
         ({"contact": {"modulus": None}}, "[contact] modulus (which is E*) is missing"),
         (
@@ -156,6 +156,23 @@ def test_a_case_knows_every_quantity(write):
             "[contact] friction_coefficient = 0.7 is not a known key; write boundary_friction.",
         ),
         ({"contact": {"Shore_A": "70"}}, "[contact] Shore_A = 70 is not a known key; for S Shore A Gent's relation gives"),
+        (
+            {"contact": {"roughness": None}},
+            '[contact] roughness is missing; add a length, for example roughness = "1 um" (rms height of',
+        ),
+        (
+            {"contact": {"pressure_viscosity": "1e-8"}},
+            "[contact] pressure_viscosity = 1e-08 is not a known key; there is no pressure-viscosity coefficient: the fluid",
+        ),
+        ({"contact": {"pressure_viscosity_coefficient": "1"}}, "[contact] pressure_viscosity_coefficient = 1 is not a known"),
+        (
+            {"contact": {"density": "900"}},
+            "[contact] density = 900 is not a known key; there is no density of the fluid",
+        ),
+        ({"contact": {"shear_modulus": "1"}}, "[contact] shear_modulus = 1 is not a known key; of the solid give modulus"),
+        ({"contact": {"normal_force": "1"}}, "[contact] normal_force = 1 is not a known key; the model is a line contact"),
+        ({"contact": {"surface_speed_ratio": "1"}}, "[contact] surface_speed_ratio = 1 is not a known key; known are radius"),
+        ({"contact": {"deviation": "1"}}, "[contact] deviation = 1 is not a known key; it belongs in the table [asperities]."),
         ({"contact": {"Ra": "1e-6"}}, "[contact] Ra = 1e-06 is not a known key; heights are root mean squares"),
         (
             {"contact": {"rtol": "1"}},

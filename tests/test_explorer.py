@@ -81,7 +81,7 @@ def test_another_unit_keeps_the_value():
     ("name", "text", "sentence"),
     [
         ("load", "-3", "load = '-3 N/m' must be positive."),
-        ("load", "3 mm", "load = '3 mm' is a length; a load per unit length such as '50 N/m' is wanted."),
+        ("load", "3 mm", "load = '3 mm' is a length; expected a load per unit length such as '50 N/m'."),
         ("load", "1,5", "load = '1,5' has a comma; write a decimal point"),
         ("radius", "", "radius = '' does not begin with a number;"),
         ("beta", "x", "beta = 'x' is text where a number belongs; write a bare number"),

@@ -247,7 +247,8 @@ def test_any_text_is_read_or_refused_with_a_sentence(tmp_path_factory, text):
 
 
 TABLES = {
-    "unknown key": ({"fre": ["mu0"]}, "fre", "did you mean free?"),
+    "unknown key": ({"fre": ["mu0"]}, "fre", "did you mean free."),
+    "no such input": ({"free": ["pressure_viscosity"]}, "'pressure_viscosity'", "no pressure-viscosity coefficient"),
     "unknown input": ({"free": ["stiffness"]}, "'stiffness'", "known are"),
     "former name": ({"free": ["friction_coefficient"]}, "'friction_coefficient'", "did you mean boundary_friction?"),
     "speed": ({"free": ["speed"]}, "'speed'", "measured"),

@@ -131,7 +131,7 @@ GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
         (GROUPS + "[contact]\n[vary]\nspeed = [1]\n", "the tables [contact] and [groups] are both given"),
         (
             CONTACT + '[vary]\nload = [30]\nspeed = ["1 s"]\nroughness = [0]\n',
-            "[vary] speed = '1 s' is a time; a speed such as",
+            "[vary] speed = '1 s' is a time; expected a speed such as",
         ),
         (CONTACT + "[vary]\nload = [30]\nspeed = [1]\n", "[contact] roughness is missing; add a length, for example"),
         (

@@ -176,7 +176,7 @@ TEXTS = {
         {"height_unit": "um"},
         "declares its heights in nm, but height_unit = 'um'",
     ),
-    "wrong unit": ("1;2\n2;3\n", {"unit": "kg"}, "a length such as"),
+    "wrong unit": ("1;2\n2;3\n", {"unit": "kg"}, "expected a length such as"),
     "unknown unit in the header": ("x (um);z (foo)\n1;2\n2;3\n", {}, "unit of heights"),
     "ragged": ("1;2\n2;3\n3;4;5\n", {"unit": "um"}, "line 3 has 3 columns where the lines above have 2"),
     "word": ("1;2\n2;oops\n3;4\n", {"unit": "um"}, "line 2, column 2 is 'oops', not a number"),

@@ -54,13 +54,27 @@ def test_a_bare_number_is_taken_as_si(value):
 
 # What is refused, and the words that tell why or what to try.
 REFUSED = [
-    ("3 m", "speed", "is a length; a speed such as '0.1 m/s'"),
+    ("3 m", "speed", "is a length; expected a speed such as '0.1 m/s'."),
     ("3 s", "speed", "is a time"),
-    ("1 cSt", "viscosity", "kinematic viscosity (multiply it by the density)"),
-    ("50 N", "load", "is a force (divide it by the length of the contact)"),
+    ("1 cSt", "viscosity", "is a kinematic viscosity; expected a viscosity such as '10 mPa*s': multiply it by the density."),
+    (
+        "50 N",
+        "load",
+        "divide the force on a cylinder by its length; a ball is a point contact, which this version does not solve.",
+    ),
+    ("50 N", "length", "is a force; expected a length such as '10 mm'."),
+    ("1 rad", "length", "is an angle; expected a length"),
+    ("30 deg", "speed", "is an angle; expected a speed"),
+    ("1 percent", "length", "is a bare number; expected"),
+    (
+        "2 rad/s",
+        "speed",
+        "is a rate; expected a speed such as '0.1 m/s': multiply the angular velocity in rad/s by the radius",
+    ),
+    ("5 kg", "load", "is a mass; expected a load per unit length such as '50 N/m': a mass presses"),
     ("2 MPa", "viscosity", "is a pressure"),
     ("20 degC", "length", "is a temperature"),
-    ("2 m**3", "length", "is of dimension length^3; a length"),
+    ("2 m**3", "length", "is of dimension length^3; expected a length"),
     ("10 mPas", "viscosity", "'mPa*s'"),
     ("10 MPas", "pressure", "'MPa*s'"),
     ("1,5 MPa", "pressure", "decimal point"),

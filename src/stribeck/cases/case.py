@@ -4,7 +4,6 @@ Everything that is wrong with a file is told in one go, a sentence for each prob
 and the key. What a quantity may be is not written here but in :mod:`stribeck.quantities.inputs`.
 """
 
-import difflib
 import functools
 import os
 import tomllib
@@ -15,8 +14,9 @@ from typing import Annotated, Any, Literal
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
 from stribeck.contacts.line import InputError, LineContact
-from stribeck.quantities.inputs import FORMER, QUANTITIES, check_modulus_choice, quantity
-from stribeck.quantities.units import DIMENSIONS, FROM_HARDNESS, show
+from stribeck.quantities.hints import SYMBOLS, advice_on
+from stribeck.quantities.inputs import QUANTITIES, check_modulus_choice, quantity
+from stribeck.quantities.units import DIMENSIONS, show
 
 __all__ = [
     "Case",
@@ -34,24 +34,6 @@ Axis = Literal["speed", "load", "roughness"]
 Definition = Literal["paper", "balanced"]
 
 _LARGEST_FILE = 1_000_000  # [byte]
-
-# The symbols of the paper, which its readers may type.
-_SYMBOLS = {
-    "R": "radius",
-    "F_N": "load",
-    "eta": "viscosity",
-    "U": "speed",
-    "h_rms": "roughness",
-    "mu0": "boundary_friction",
-    "mu_0": "boundary_friction",
-    "E_star": "modulus",
-    "E": "youngs_modulus",
-    "nu": "poisson_ratio",
-}
-
-# What data sheets say, and what to make of it.
-_RMS = "heights are root mean squares, of Gaussian ones about 1.25 Ra: h_rms in [surface], or roughness in [contact]"
-_DATA_SHEET = dict.fromkeys(("shore", "shore_a", "hardness"), FROM_HARDNESS) | dict.fromkeys(("ra", "r_a", "rq", "r_q"), _RMS)
 
 # What Python's parser says of slips that are frequent, and what to do about them.
 _SLIPS = {
@@ -469,23 +451,20 @@ def error_sentence(file: Any, error: Any) -> str:
 
 
 def example_of(key: str) -> str:
-    """Return the advice to add a quantity, with an example of its value."""
-    dimension = DIMENSIONS[QUANTITIES[key].dimension]
-    value = f'"{dimension.example}"' if dimension.unit else dimension.example
-    return f"add {dimension.noun}, for example {key} = {value}"
+    """Return the advice to add a quantity, with a typical value and where it is from."""
+    wanted = QUANTITIES[key]
+    value = f'"{wanted.typical}"' if DIMENSIONS[wanted.dimension].unit else wanted.typical
+    return f"add {DIMENSIONS[wanted.dimension].noun}, for example {key} = {value} ({wanted.source})"
 
 
 def _nearest(file: Any, model: Any, key: str) -> str:
-    if key.lower() in _DATA_SHEET:
-        return _DATA_SHEET[key.lower()]
-    known = list(model.model_fields)
-    meant = _SYMBOLS.get(key, FORMER.get(key, key))
-    if meant in known:
-        return f"write {meant}"
+    known, meant = list(model.model_fields), SYMBOLS.get(key, key)
+    advice = advice_on(key, known)
+    if advice:
+        return advice
     for name, info in file.model_fields.items():
         if model is not info.annotation and meant in getattr(info.annotation, "model_fields", {}):
             return f"it belongs in the table [{name}]"
     if meant in file.model_fields:
         return "it belongs at the top of the file, before the first table"
-    near = difflib.get_close_matches(key.lower(), known, n=1)
-    return f"did you mean {near[0]}" if near else f"known are {', '.join(known)}"
+    return f"known are {', '.join(known)}"

@@ -5,13 +5,13 @@ Only what can be said without the data is checked here; what a column holds is f
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from stribeck.quantities.inputs import FORMER, QUANTITIES, quantity
+from stribeck.quantities.hints import SYMBOLS, advice_on
+from stribeck.quantities.inputs import QUANTITIES, quantity
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["FREE", "FitSettings", "Prior", "check_fit_table", "free_names"]
@@ -22,17 +22,6 @@ FREE = ("boundary_friction", "roughness", "beta", "alpha", "modulus", "viscosity
 """Inputs that may be fitted, in the order of outputs; all of them enter friction through groups, mu0 and beta."""
 
 DEFAULT_FREE = ("boundary_friction", "roughness")
-
-SYMBOLS = {
-    "mu0": "boundary_friction",
-    "mu_0": "boundary_friction",
-    "h_rms": "roughness",
-    "E_star": "modulus",
-    "eta": "viscosity",
-    "F_N": "load",
-    "R": "radius",
-}
-"""Letters of the paper that may stand for names."""
 
 COLUMNS = ("speed", "speed_viscosity", "hersey_number", "friction", "error", "curve")
 """What a column of the data may be, beside the inputs of :data:`FREE`, which tell curves apart."""
@@ -188,9 +177,8 @@ def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
         if meant in ("speed", "U"):
             raise InputError(f"{where} has {show(name)}, which is measured; a common factor on it is that of the viscosity.")
         if meant not in FREE:
-            near = [FORMER[name]] if name in FORMER else difflib.get_close_matches(str(name).lower(), FREE, n=1)
-            hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(FREE)}."
-            raise InputError(f"{where} has {show(name)}, which is no input that can be fitted; {hint}")
+            hint = advice_on(str(name), FREE) or f"known are {', '.join(FREE)}"
+            raise InputError(f"{where} has {show(name)}, which is no input that can be fitted; {hint}.")
         if meant in found:
             raise InputError(f"{where} has {meant} twice; name each input once.")
         found.append(meant)
@@ -268,6 +256,5 @@ def _curve(name: str, entry: Any) -> dict[str, float]:
 
 
 def _unknown(key: str, value: Any, known: tuple[str, ...]) -> str:
-    near = [FORMER[key]] if key in FORMER else difflib.get_close_matches(key.lower(), known, n=1)
-    hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}."
-    return f"{key} = {show(value)} is not a known key; {hint}"
+    hint = advice_on(key, known) or f"known are {', '.join(known)}"
+    return f"{key} = {show(value)} is not a known key; {hint}."

@@ -32,25 +32,32 @@ R = TypeVar("R")
 
 @dataclass(frozen=True)
 class Quantity:
-    """Dimension and lower bound of one input; ``zero`` tells whether the bound zero itself is allowed."""
+    """Dimension and lower bound of one input; ``zero`` tells whether the bound zero itself is allowed.
+
+    ``typical`` is a value of a laboratory's contact, and ``source`` says where that is from.
+    """
 
     dimension: str
+    typical: str
+    source: str
     zero: bool = False
     highest: float = math.inf
 
 
+_PDMS = "as in examples/pdms_cylinder.toml"
+
 QUANTITIES = {
-    "radius": Quantity("length"),
-    "load": Quantity("load"),
-    "viscosity": Quantity("viscosity"),
-    "speed": Quantity("speed", zero=True),
-    "roughness": Quantity("length", zero=True),
-    "alpha": Quantity("number"),
-    "beta": Quantity("number"),
-    "boundary_friction": Quantity("number", zero=True),
-    "modulus": Quantity("pressure"),
-    "youngs_modulus": Quantity("pressure"),
-    "poisson_ratio": Quantity("number", zero=True, highest=0.5),
+    "radius": Quantity("length", "10 mm", _PDMS),
+    "load": Quantity("load", "30 N/m", _PDMS),
+    "viscosity": Quantity("viscosity", "50 mPa*s", "81 % glycerol in water at 25 degrees Celsius"),
+    "speed": Quantity("speed", "1 mm/s", _PDMS, zero=True),
+    "roughness": Quantity("length", "1 um", "rms height of a lightly sandblasted or ground surface", zero=True),
+    "alpha": Quantity("number", "2.0", "Persson's theory gives 1.8 to 2.1"),
+    "beta": Quantity("number", "0.06", "about 1.4 q0 h_rms by Persson's theory: 1 um and 150 um for the longest wave"),
+    "boundary_friction": Quantity("number", "0.7", "dry PDMS, 0.5 to 1", zero=True),
+    "modulus": Quantity("pressure", "2.7 MPa", "E* of PDMS Sylgard 184"),
+    "youngs_modulus": Quantity("pressure", "2.0 MPa", "PDMS Sylgard 184"),
+    "poisson_ratio": Quantity("number", "0.5", "rubber and gels", zero=True, highest=0.5),
 }
 
 FORMER = {"friction_coefficient": "boundary_friction", "mu0": "boundary_friction"}

@@ -74,12 +74,20 @@ _NOUNS = {
     "1/s": "a rate",
     "Pa": "a pressure",
     "Pa*s": "a dynamic viscosity",
-    "m^2/s": "a kinematic viscosity (multiply it by the density)",
+    "m^2/s": "a kinematic viscosity",
     "N/m": "a load per unit length",
-    "N": "a force (divide it by the length of the contact)",
+    "N": "a force",
     "kg": "a mass",
     "K": "a temperature",
     "dimensionless": "a bare number",
+}
+
+# What to do about a unit of another kind: what was found, and the SI unit of what is expected.
+_HINTS = {
+    ("N", "N/m"): "divide the force on a cylinder by its length; a ball is a point contact, which this version does not solve",
+    ("kg", "N/m"): "a mass presses with 9.81 N/kg; divide the force on a cylinder by its length",
+    ("m^2/s", "Pa*s"): "multiply it by the density",
+    ("1/s", "m/s"): "multiply the angular velocity in rad/s by the radius of the shaft or track",
 }
 
 # Bounded, because the number becomes an exact fraction and 1e999999999 would fill the memory.
@@ -305,7 +313,10 @@ def _factor(unit: str, kind: Dimension, received: str) -> Fraction:
     except Exception:  # pint's parser leaks errors of many kinds, and each means the same to the user
         raise InputError(f"{received} has a unit that cannot be read; {_advice(kind)}.") from None
     if base.dimensionality != registry.parse_units(kind.unit).dimensionality:
-        raise InputError(f"{received} is {_noun(base, registry)}; {kind.noun} such as '{kind.example}' is wanted.")
+        found = next((text for text in _NOUNS if base.dimensionality == registry.parse_units(text).dimensionality), None)
+        said = f"{received} is {_noun(found, base)}; expected {kind.noun} such as '{kind.example}'"
+        hint = _HINTS.get((found or "", kind.unit))
+        raise InputError(f"{said}: {hint}." if hint else f"{said}.")
     return Fraction(factor)
 
 
@@ -322,10 +333,11 @@ def _refuse_plural_symbol(symbol: str, registry: Any, received: str) -> None:
         )
 
 
-def _noun(unit: Any, registry: Any) -> str:
-    for text, noun in _NOUNS.items():
-        if unit.dimensionality == registry.parse_units(text).dimensionality:
-            return noun
+def _noun(found: str | None, unit: Any) -> str:
+    if found == "dimensionless" and "radian" in str(unit):
+        return "an angle"
+    if found is not None:
+        return _NOUNS[found]
     powers = (f"{name.strip('[]')}^{float(power):g}" for name, power in unit.dimensionality.items())
     return f"of dimension {' '.join(powers)}"
 

@@ -1,0 +1,113 @@
+"""What to say of a key that the package does not know: a slip of the pen, a symbol, or a quantity that the model has not."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable
+
+from stribeck.quantities.units import FROM_HARDNESS
+
+__all__ = ["SYMBOLS", "advice_on"]
+
+SYMBOLS = {
+    "R": "radius",
+    "F_N": "load",
+    "eta": "viscosity",
+    "U": "speed",
+    "h_rms": "roughness",
+    "mu0": "boundary_friction",
+    "mu_0": "boundary_friction",
+    "E_star": "modulus",
+    "E": "youngs_modulus",
+    "nu": "poisson_ratio",
+    "poisson": "poisson_ratio",
+    "mu": "boundary_friction",
+    "cof": "boundary_friction",
+    "friction_coefficient": "boundary_friction",
+}
+"""Symbols of the article, short names and former names, that readers type."""
+
+ALIKE = 0.8
+"""Least likeness, 0 to 1, of two words of which one is taken for a slip of the other: 0.8 allows one letter in five."""
+
+SHORTEST = 4
+"""Least number of letters of a word that stands for the key that begins with it."""
+
+_RMS = "heights are root mean squares, of Gaussian ones about 1.25 Ra: h_rms in [surface], or roughness in [contact]"
+_FLUID = "the fluid is Newtonian, and its viscosity is the same everywhere: give viscosity at the temperature and pressure"
+_LINE = "the model is a line contact, without ends: divide the force by the length of the cylinder and give load in N/m"
+
+# Whole words of a key, and what the package has instead.  The first that matches is said.
+_ABSENT = (
+    (("shore", "hardness", "irhd"), FROM_HARDNESS),
+    (("ra", "rq", "r_a", "r_q", "sq", "sa"), _RMS),
+    (
+        ("pressure_viscosity", "piezoviscous", "barus", "roelands"),
+        f"there is no pressure-viscosity coefficient: {_FLUID} of the contact",
+    ),
+    (
+        ("temperature", "viscosity_index", "thermal"),
+        f"there is no temperature: {_FLUID} of the contact",
+    ),
+    (
+        ("density", "rho"),
+        "there is no density of the fluid, as its inertia is neglected: of a kinematic viscosity give viscosity = density "
+        "times it; the number of asperities per area is density in [asperities]",
+    ),
+    (
+        ("shear_modulus", "storage_modulus", "loss_modulus", "bulk_modulus"),
+        "of the solid give modulus, which is E*, or youngs_modulus and poisson_ratio; for a shear modulus G and a Poisson "
+        "ratio nu, E* = 2 G/(1 - nu)",
+    ),
+    (("force", "normal_force", "weight", "mass"), _LINE),
+    (("length", "width"), _LINE),
+    (("diameter",), "give radius, half the diameter"),
+    (
+        ("ellipticity", "ball", "sphere"),
+        "a ball is a point contact, and this version solves line contacts only",
+    ),
+    (("slide_to_roll", "srr", "slip"), "one surface is at rest: give its sliding speed as speed"),
+    (
+        ("rpm", "angular_velocity", "rotation"),
+        "give speed: the angular velocity in rad/s times the radius of shaft or track",
+    ),
+)
+
+
+def advice_on(key: str, known: Iterable[str]) -> str | None:
+    """Return what to write in place of an unknown key.
+
+    Parameters
+    ----------
+    key : str
+        The key.
+    known : iterable of str
+        Keys that may stand there.
+
+    Returns
+    -------
+    str or None
+        Advice that completes "... is not a known key; ..."; None where there is none.
+
+    Notes
+    -----
+    Only a slip of the pen is taken for another key: ``pressure_viscosity`` is no viscosity.
+
+    Examples
+    --------
+    >>> advice_on("spede", ["speed", "load"])
+    'did you mean speed'
+    >>> advice_on("diameter", ["radius"])
+    'give radius, half the diameter'
+    """
+    names = list(known)
+    if SYMBOLS.get(key) in names:
+        return f"write {SYMBOLS[key]}"
+    text = "_" + re.sub(r"[^a-z0-9]+", "_", key.lower()).strip("_") + "_"
+    absent = next((said for words, said in _ABSENT if any(f"_{word}_" in text for word in words)), None)
+    if absent is not None:
+        return absent
+    whole = [name for name in names if len(key) >= SHORTEST and name.startswith(key.lower())]
+    near = whole or difflib.get_close_matches(key.lower(), names, n=1, cutoff=ALIKE)
+    return f"did you mean {near[0]}" if near else None
