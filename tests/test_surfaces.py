@@ -161,13 +161,43 @@ def test_noise_of_the_instrument_is_taken_for_noise():
     assert abs(fit.roughness.hurst - 0.8) < 3 * fit.errors["hurst"]
 
 
-def test_errors_of_alpha_and_beta_follow_from_those_of_the_fit():
+def test_intervals_of_alpha_and_beta_follow_from_those_of_the_fit():
     fits = [fitted(ROLLED, (128, 128), seed) for seed in range(500, 508)]
-    limits = np.array([fit.exponential_limit() for fit in fits])
-    alpha, beta = exponential_limit(ROLLED.spectrum.between(ROLLED.q0, math.pi / (2 * STEP)))
-    assert np.mean(np.abs(limits[:, 0] - alpha) < 2 * limits[:, 1]) >= 0.85
-    assert np.mean(np.abs(limits[:, 2] - beta) < 2 * limits[:, 3]) >= 0.85
-    assert np.all(limits[:, 1] < 0.1 * alpha) and np.all(limits[:, 3] < 0.3 * beta)
+    truth = exponential_limit(ROLLED.spectrum.between(ROLLED.q0, math.pi / (2 * STEP)))
+    for i, width in ((0, 0.1), (1, 0.6)):
+        found = [fit.exponential_limit()[i] for fit in fits]
+        assert all(each.low < truth[i] < each.high for each in found)
+        assert all(each.low < each.value < each.high and each.high - each.low < width * truth[i] for each in found)
+
+
+@pytest.mark.parametrize("longest", [1.0, 0.05])
+def test_intervals_of_alpha_and_beta_hold_for_any_longest_wave_beyond_the_scan(longest):
+    surface = SelfAffine(1e-6, longest * FUNDAMENTAL, 3e6, 0.8, 7 * FUNDAMENTAL)
+    inside = []
+    for seed in range(520, 528):
+        fit = fitted(surface, (128, 128), seed)
+        truth = exponential_limit(surface.spectrum.between(surface.q0, fit.roughness.q1))
+        inside += [each.low < true < each.high for each, true in zip(fit.exponential_limit(), truth, strict=True)]
+    assert sum(inside) >= 14
+
+
+def test_without_a_roll_off_beta_is_bounded_from_above_only():
+    surface = SelfAffine(1e-6, FUNDAMENTAL / 4, 3e6, 0.8)
+    for seed in range(3):
+        fit = fitted(surface, (128, 128), seed)
+        assert "roll_off" not in fit.found
+        alpha, beta = fit.exponential_limit()
+        truth = exponential_limit(surface.spectrum.between(surface.q0, fit.roughness.q1))
+        assert alpha.low < truth[0] < alpha.high < 1.5 * alpha.low
+        assert beta.low == 0 and truth[1] < beta.high and beta.interval.startswith("at most ")
+
+
+def test_a_cut_off_that_was_seen_leaves_no_doubt_about_longer_waves():
+    surface = SelfAffine(1e-6, 4 * FUNDAMENTAL, 20 * FUNDAMENTAL, 0.8)
+    fit = fitted(surface, (256, 256), 1)
+    alpha, beta = fit.exponential_limit()
+    assert "q0" in fit.found and beta.low > 0
+    assert math.log(beta.high / beta.value) == pytest.approx(math.log(beta.value / beta.low), rel=1e-9)
 
 
 def test_what_is_not_self_affine_is_said_to_be_so():
@@ -232,7 +262,11 @@ def test_dead_points_change_the_roughness_by_less_than_its_error():
         values = [getattr(fit.roughness, name) for fit in fits]
         assert abs(values[1] - values[0]) < 0.5 * fits[0].fit.errors[name]
     assert any("without a height" in note for note in fits[1].notes)
-    assert any("taken for dead" in note for note in fits[1].notes)
+    assert any("1 point is a spike" in note for note in fits[1].notes)
+    assert fits[1].spikes == 1 and fits[1].height_with_spikes > 1e-3 > 100 * fits[1].rms_height
+    assert any("with its spikes and" in note for note in fits[1].notes)
+    assert any("changed the rms height by" in note and "--keep-spikes" in note for note in fits[1].notes)
+    assert (fits[0].spikes, fits[0].height_with_spikes) == (0, fits[0].rms_height)
 
 
 def test_a_line_and_the_map_that_it_was_cut_from_agree():
@@ -240,10 +274,12 @@ def test_a_line_and_the_map_that_it_was_cut_from_agree():
     whole = synthetic_topography(surface, (512, 128), STEP, 101)
     of_map = analyse(whole).to_dict()
     of_lines = [analyse(Topography(whole.heights[:, j], (STEP,))).to_dict() for j in (10, 60, 110)]
-    for name in ("hurst", "beta", "h_rms"):
+    for name in ("hurst", "h_rms"):
         mean = np.mean([line[name] for line in of_lines])
         error = math.hypot(of_map[f"{name}_error"], np.mean([line[f"{name}_error"] for line in of_lines]))
         assert abs(mean - of_map[name]) < 2 * error
+    for low, high in (line["beta_interval"] for line in of_lines):
+        assert low < of_map["beta"] < high
 
 
 # --- bad arguments ---
@@ -289,8 +325,19 @@ def test_the_command_prints_and_writes_what_analyse_finds(capsys, scan, tmp_path
     assert words.code == 0, words.err
     numbers = json.loads(call(capsys, "surface", scan, "--json").out)
     expected = analyse(sb.surfaces.read_topography(scan)).to_dict()
-    assert numbers["alpha"] == expected["alpha"] and numbers["hurst_error"] == expected["hurst_error"]
-    for text in ("radius of the body", "Hurst exponent", f"alpha                         {expected['alpha']:.3f}"):
+    assert (
+        numbers["alpha"] == expected["alpha"]
+        and numbers["beta_interval"] == expected["beta_interval"]
+        and numbers["hurst_error"] == expected["hurst_error"]
+    )
+    for text in (
+        "radius of the body",
+        "Hurst exponent",
+        "skewness of the heights",
+        "aspect ratio of features",
+        "(95 %)",
+        f"alpha                         {expected['alpha']:.3f}",
+    ):
         assert text in words.out
     table = tomllib.loads(out.read_text())["surface"]
     again = RoughSurface(**table)

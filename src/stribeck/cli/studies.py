@@ -230,7 +230,7 @@ def surface_command(
     gamma
         Reduction of the elastic energy in Persson's theory, 0 to 1; 0.45 if not given.
     keep_spikes
-        Keep points far off all their neighbours; otherwise they count as dead.
+        Keep spikes, single points far above or below all neighbours; otherwise they are replaced.
     plot
         Draw heights, spectrum and contact law to this file (.png, .svg or .pdf).
     out

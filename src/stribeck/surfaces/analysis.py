@@ -7,8 +7,6 @@ r"""From a measured topography to the roughness of a case: rms height, spectrum,
 
 from __future__ import annotations
 
-import math
-import os
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -17,17 +15,16 @@ import numpy as np
 
 from stribeck.contact_laws.persson import GAMMA, PerssonLaw, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
-from stribeck.files.writing import replacing
-from stribeck.quantities.units import InputError, format_si, show, to_si
+from stribeck.quantities.units import InputError, show, to_si
+from stribeck.surfaces.departures import Departures, departure_notes, departures
 from stribeck.surfaces.detrend import Shape, Trend, detrended
+from stribeck.surfaces.fit_result import SelfAffineFit
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, Window, power_spectrum
-from stribeck.surfaces.self_affine_fit import MISFIT, SelfAffineFit, fit_self_affine
+from stribeck.surfaces.notes import fit_notes, spike_notes
+from stribeck.surfaces.self_affine_fit import fit_self_affine
 from stribeck.surfaces.topography import Topography
 
-__all__ = ["Surface", "analyse", "write_surface_table"]
-
-APART = 1.3
-"""Ratio of the rms heights of scan and fit from which a note says that they differ."""
+__all__ = ["Surface", "analyse"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +43,12 @@ class Surface:
         Self-affine spectrum through it.
     gamma : float
         Reduction of the elastic energy in Persson's theory [-].
+    departures : Departures
+        Texture and skewness, which Persson's theory takes as none.
+    spikes : int
+        Number of spikes that were replaced.
+    height_with_spikes : float
+        Rms height of the scan with its spikes [m].
     window : {"hann", "none"}
         Window of the spectrum.
     notes : tuple of str
@@ -57,13 +60,16 @@ class Surface:
     measured: MeasuredSpectrum
     fit: SelfAffineFit
     gamma: float
+    departures: Departures
+    spikes: int
+    height_with_spikes: float
     window: Window = "hann"
     notes: tuple[str, ...] = field(default=())
 
     @property
     def rms_height(self) -> float:
         """Root mean square of the heights of the scan about their trend [m]."""
-        return float(np.sqrt(np.mean(self.topography.heights**2)))
+        return _rms(self.topography)
 
     @property
     def roughness(self) -> SelfAffine:
@@ -103,7 +109,7 @@ class Surface:
             Numbers, None where nothing was found, and text.
         """
         r, errors = self.roughness, self.fit.errors
-        alpha, alpha_error, beta, beta_error = self.fit.exponential_limit(self.gamma)
+        alpha, beta = self.fit.exponential_limit(self.gamma)
         band = exponential_limit(self.spectrum, self.gamma)
         spectrum = r.spectrum
         return {
@@ -117,6 +123,12 @@ class Surface:
             "body_radius_error": self.shape.radius_error(r, self.topography),
             "body_curvatures": list(self.shape.curvatures),
             "scan_rms_height": self.rms_height,
+            "scan_rms_height_with_spikes": self.height_with_spikes,
+            "spikes": self.spikes,
+            "skewness": self.departures.skewness,
+            "skewness_error": self.departures.skewness_error,
+            "aspect_ratio": self.departures.aspect_ratio,
+            "texture_direction": self.departures.direction,
             "h_rms": r.h_rms,
             "h_rms_error": errors["h_rms"],
             "hurst": r.hurst,
@@ -132,10 +144,10 @@ class Surface:
             "noise_density": self.fit.noise,
             "rms_slope": spectrum.rms_slope,
             "rms_curvature": spectrum.rms_curvature,
-            "alpha": alpha,
-            "alpha_error": alpha_error,
-            "beta": beta,
-            "beta_error": beta_error,
+            "alpha": alpha.value,
+            "alpha_interval": [alpha.low, alpha.high],
+            "beta": beta.value,
+            "beta_interval": [beta.low, beta.high],
             "gamma": self.gamma,
             "measured_alpha": band[0],
             "measured_beta": band[1],
@@ -171,7 +183,7 @@ def analyse(
     gamma : float
         Reduction of the elastic energy in Persson's theory [-].
     keep_spikes : bool
-        Whether points far off all their neighbours are kept as roughness.
+        Whether spikes, single points far above or below all neighbours, are kept as roughness.
 
     Returns
     -------
@@ -193,98 +205,22 @@ def analyse(
             raise InputError(
                 f"resolution = {show(resolution)} is not above zero; give the shortest wavelength that is resolved."
             )
-    whole = topography.repaired(keep_spikes=keep_spikes)
+    kept = topography.repaired(keep_spikes=True)
+    whole = kept if keep_spikes else topography.repaired()
     flat, shape = detrended(whole, trend)
     measured = power_spectrum(flat, window, resolution=shortest)
     fit = fit_self_affine(measured)
-    return Surface(flat, shape, measured, fit, gamma, window, (*flat.notes, *_notes(flat, shape, measured, fit)))
+    spikes = int(np.sum(whole.heights != kept.heights))
+    spiked = _rms(detrended(kept, trend)[0] if spikes else flat)
+    found = departures(flat, measured, fit.roughness.hurst)
+    notes = (
+        *flat.notes,
+        *spike_notes(spikes, _rms(flat), spiked),
+        *departure_notes(flat, found),
+        *fit_notes(flat, shape, measured, fit),
+    )
+    return Surface(flat, shape, measured, fit, gamma, found, spikes, spiked, window, notes)
 
 
-def write_surface_table(surface: Surface, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write the fitted roughness as the table ``[surface]`` of a case file.
-
-    Parameters
-    ----------
-    surface : Surface
-        The surface.
-    path : str or path-like
-        File to write, ending in ``.toml``.
-    force : bool
-        Whether an existing file is replaced.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be written, or exists and ``force`` is not given.
-    """
-    with replacing(path, (".toml",), force=force) as temporary:
-        temporary.write_text(surface_table(surface), encoding="utf-8")
-
-
-def surface_table(surface: Surface) -> str:
-    """Return the text of the table ``[surface]``."""
-    r, errors = surface.roughness, surface.fit.errors
-    alpha, alpha_error, beta, beta_error = surface.fit.exponential_limit(surface.gamma)
-
-    def line(name: str, value: str, error: str) -> str:
-        return f"{f'{name} = {value}':<34}# {error}"
-
-    def share(name: str) -> str:
-        values = {"h_rms": r.h_rms, "q0": r.q0, "roll_off": r.roll_off or r.q0, "q1": r.q1, "hurst": r.hurst}
-        return f"standard error {100 * errors[name] / values[name]:.2g} %" if name in errors else "end of the scan"
-
-    rows = [
-        f"# From {surface.topography.source or 'heights in memory'}: alpha = {alpha:.3g} +- {alpha_error:.1g}, "
-        f"beta = {beta:.3g} +- {beta_error:.1g}",
-        "[surface]",
-        line("h_rms", f'"{r.h_rms:.6e} m"', share("h_rms")),
-        line("hurst", f"{r.hurst:.5f}", share("hurst")),
-        line("q0", f'"{r.q0:.6e} 1/m"', share("q0")),
-        line("roll_off", f'"{r.roll_off or r.q0:.6e} 1/m"', share("roll_off") if "roll_off" in errors else "none seen: as q0"),
-        line("q1", f'"{r.q1:.6e} 1/m"', share("q1")),
-        f"gamma = {surface.gamma:g}",
-    ]
-    return "\n".join(rows) + "\n"
-
-
-def _notes(topography: Topography, body: Shape, measured: MeasuredSpectrum, fit: SelfAffineFit) -> list[str]:
-    notes = []
-    if "roll_off" not in fit.found and "q0" not in fit.found:
-        notes.append(
-            "No roll-off within the scan: h_rms, alpha and beta are those of wavelengths up to "
-            f"{format_si(2 * math.pi / fit.roughness.q0, 'length')}, and h_rms and beta hang on it; a larger scan would tell."
-        )
-    if "q1" not in fit.found:
-        notes.append(
-            f"The spectrum goes on beyond {format_si(2 * math.pi / measured.highest, 'length')} ({measured.highest_reason}): "
-            "slope, curvature and contact area would grow with finer steps, alpha and beta hardly."
-        )
-    if "noise" in fit.found:
-        notes.append("The spectrum flattens at short wavelengths as by noise of the instrument, which was taken away.")
-    if fit.deviance > MISFIT:
-        notes.append(
-            f"The spectrum is not self-affine: its deviance is {fit.deviance:.1f} times that of chance, and the errors were "
-            "widened by the root of it; compare alpha and beta with those of the measured spectrum."
-        )
-    H = fit.roughness.hurst
-    if not 0.02 < H < 0.999:
-        shape_of = "flatter" if H < 0.5 else "steeper"
-        notes.append(
-            f"The Hurst exponent is at the end of its range: the spectrum is {shape_of} than that of self-affine roughness."
-        )
-    scan, fitted = float(np.sqrt(np.mean(topography.heights**2))), fit.roughness.h_rms
-    if not 1 / APART < fitted / scan < APART:
-        notes.append(
-            f"The rms height of the scan is {format_si(scan, 'length')}, that of the fit {format_si(fitted, 'length')}: "
-            "noise, waves too long for the fit, or a spectrum of another shape make the difference."
-        )
-    if not topography.is_line:
-        ratio = max(topography.spacing) / min(topography.spacing)
-        if ratio > 2:
-            notes.append(f"Steps along the two axes differ {ratio:.1f} times; the larger one limits the short wavelengths.")
-    radius = body.radius
-    if radius is not None:
-        error = body.radius_error(fit.roughness, topography)
-        if error is not None and error > 0.5 * radius:
-            notes.append("The curvature of the body is within what the roughness makes by chance: the scan is flat.")
-    return notes
+def _rms(topography: Topography) -> float:
+    return float(np.sqrt(np.mean(topography.heights**2)))

@@ -68,6 +68,8 @@ class MeasuredSpectrum:
         What sets these limits.
     mean_square : float
         Mean square of the heights under the window [m^2].
+    texture : complex
+        Second angular harmonic of the spectrum over its ring, the mean of the reliable rings; 0 for a line [-].
     """
 
     wavenumber: Array
@@ -80,6 +82,7 @@ class MeasuredSpectrum:
     lowest_reason: str
     highest_reason: str
     mean_square: float
+    texture: complex = 0.0
 
     @property
     def reliable(self) -> Flags:
@@ -129,7 +132,8 @@ def power_spectrum(
     area = math.prod(topography.size)
     axes = [2 * math.pi * np.fft.fftfreq(n, step) for n, step in zip(z.shape, topography.spacing, strict=True)]
     power = np.abs(np.fft.fftn(z)) ** 2 * (math.prod(topography.spacing) ** 2 / ((2 * math.pi) ** z.ndim * area * square))
-    q = np.sqrt(sum(component**2 for component in np.meshgrid(*axes, indexing="ij")))
+    components = np.meshgrid(*axes, indexing="ij")
+    q = np.sqrt(sum(component**2 for component in components))
     fundamental = 2 * math.pi / min(topography.size)
     largest = math.pi / max(topography.spacing)
     edges = _edges(fundamental, largest)
@@ -150,6 +154,13 @@ def power_spectrum(
     if instrument is not None and 2 * math.pi / instrument < highest:
         highest, highest_reason = 2 * math.pi / instrument, "resolution of the instrument"
     lowest = LONGEST * fundamental
+    texture = 0.0 + 0.0j
+    if not topography.is_line:
+        used = (wavenumber >= lowest) & (wavenumber <= highest)
+        turn = ((components[0] + 1j * components[1])[keep][order] / radius) ** 2
+        # Less one, as the grid's own wave vectors may lie unevenly in a ring.
+        rings = np.add.reduceat((power / np.repeat(density, counts) - 1) * turn, starts)
+        texture = complex(np.sum(rings[used]) / max(np.sum(counts[used]), 1))
     spectrum = MeasuredSpectrum(
         wavenumber=wavenumber,
         density=density,
@@ -161,6 +172,7 @@ def power_spectrum(
         lowest_reason=f"{LONGEST:g} waves in the scan",
         highest_reason=highest_reason,
         mean_square=float(np.mean(z**2) / square),
+        texture=texture,
     )
     if spectrum.reliable.sum() < 6:
         raise InputError(

@@ -166,12 +166,12 @@ def _draw_law(axes: Axes, surface: Surface) -> None:
 def _footer(figure: Figure, surface: Surface) -> None:
     import textwrap
 
-    found = surface.to_dict()
+    found, (alpha, beta) = surface.to_dict(), surface.fit.exponential_limit(surface.gamma)
     parts = [
         rf"$h_\mathrm{{rms}}$ = {format_si(found['h_rms'], 'length')} $\pm$ {error_text(found['h_rms_error'])}",
         rf"$H$ = {found['hurst']:.3f} $\pm$ {found['hurst_error']:.2g}",
-        rf"$\alpha$ = {found['alpha']:.3f} $\pm$ {found['alpha_error']:.2g}",
-        rf"$\beta$ = {found['beta']:.3g} $\pm$ {found['beta_error']:.2g}",
+        rf"$\alpha$ = {alpha.value:.3f} ({alpha.interval})",
+        rf"$\beta$ = {beta.value:.3g} ({beta.interval})",
         f"rms slope {found['rms_slope']:.3g}",
         f"window {surface.window}",
         f"trend {surface.shape.trend}",

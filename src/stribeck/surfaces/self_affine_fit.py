@@ -14,100 +14,28 @@ Source: [Whittle53]; [Schwarz78] for the penalty.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array, Flags
-from stribeck.contact_laws.persson import GAMMA, exponential_limit
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.quantities.units import InputError
+from stribeck.surfaces.fit_result import FitParameters, SelfAffineFit, differences
 from stribeck.surfaces.measured_spectrum import LONGEST, MeasuredSpectrum, line_density
 
-__all__ = ["SelfAffineFit", "fit_self_affine"]
+__all__ = ["fit_self_affine"]
 
 STEP = 0.3
 """Share of the neighbouring spectrum below which the level beyond a cut-off must lie, for it to be one."""
 
 UNSEEN = 0.7
-"""Standard error of the logarithm of a long cut-off beyond the scan: about a factor of two."""
+"""Standard error of the logarithm of a long cut-off beyond the scan, for the error of h_rms: about a factor of two."""
 
 MISFIT = 2.0
 """Deviance over its expectation from which the spectrum is said not to be self-affine."""
-
-
-@dataclass(frozen=True, eq=False)
-class SelfAffineFit:
-    r"""Self-affine spectrum that fits a measured one.
-
-    Attributes
-    ----------
-    roughness : SelfAffine
-        The spectrum; its ends are cut-offs of the surface where they were found, else those of the scan.
-    errors : dict of str to float
-        Standard errors of ``h_rms`` [m], ``q0``, ``roll_off``, ``q1`` [1/m] and ``hurst`` [-]; only of what was found.
-    found : tuple of str
-        Which of ``roll_off``, ``q0``, ``q1`` and ``noise`` the spectrum shows.
-    noise : float
-        Spectrum of the white noise, as that of the measurement; 0 where none was found.
-    deviance : float
-        Deviance over its expectation: near one where the model holds.
-    band : tuple of float
-        Wave numbers that were fitted [1/m].
-    """
-
-    roughness: SelfAffine
-    errors: dict[str, float]
-    found: tuple[str, ...]
-    noise: float
-    deviance: float
-    band: tuple[float, float]
-    _values: Array = field(repr=False)
-    _covariance: Array = field(repr=False)
-
-    def exponential_limit(self, gamma: float = GAMMA) -> tuple[float, float, float, float]:
-        """Return alpha and beta of the contact law, each followed by its standard error.
-
-        Parameters
-        ----------
-        gamma : float
-            Reduction of the elastic energy [-].
-
-        Returns
-        -------
-        tuple of float
-            alpha, its error, beta, its error [-].
-        """
-
-        def limit(values: Array) -> Array:
-            return np.log(exponential_limit(_surface(values), gamma))
-
-        alpha, beta = np.exp(limit(self._values))
-        errors = _spread(limit, self._values, self._covariance)
-        return float(alpha), float(alpha * errors[0]), float(beta), float(beta * errors[1])
-
-    def at(self, wavenumber: Array, *, is_line: bool = False, noise: bool = True) -> Array:
-        """Return the fitted spectrum, as a map or a line shows it.
-
-        Parameters
-        ----------
-        wavenumber : ndarray
-            Wave numbers [1/m].
-        is_line : bool
-            Whether the spectrum along a line is wanted.
-        noise : bool
-            Whether the noise is part of it.
-
-        Returns
-        -------
-        ndarray
-            Spectrum [m^4; m^3 along a line].
-        """
-        q = np.asarray(wavenumber, dtype=float)
-        clean = line_density(q, self.roughness) if is_line else self.roughness.spectrum.at(q)
-        return clean + (self.noise if noise else 0.0)
 
 
 def fit_self_affine(measured: MeasuredSpectrum) -> SelfAffineFit:
@@ -310,7 +238,7 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
     def model(theta: Array) -> Array:
         return np.asarray(np.log(_model(theta, part, centre, trial.roll_off, trial.noise)))
 
-    slopes = _jacobian(model, trial.values)
+    slopes = differences(model, trial.values)
     information = slopes.T @ (part.modes[:, None] * slopes)
     freedom = max(q.size - trial.parameters, 1)
     excess = trial.deviance / freedom
@@ -320,25 +248,14 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
     for place, name, ring in ((-2, "q0", trial.low), (-1, "q1", trial.high)):
         if cuts[name]:
             covariance[place, place] = (max(q[ring] - q[ring - 1], fundamental) / q[ring]) ** 2 / 3
-    if trial.roll_off and not cuts["q0"]:
-        covariance[-2, -2] = UNSEEN**2
     theta = np.concatenate((trial.values, [math.log(q0), math.log(q1)]))
-
-    def physical(theta: Array) -> Array:
-        lowest, H = theta[-2], float(theta[1])
-        corner = max(theta[2], lowest) if trial.roll_off else lowest
-        shape = SelfAffine(1.0, math.exp(lowest), math.exp(theta[-1]), H, math.exp(corner))
-        if measured.is_line:
-            level = float(line_density(np.array(math.exp(centre)), shape))
-        else:
-            level = float(shape.spectrum.density[0]) * math.exp(-2 * (1 + H) * max(centre - corner, 0.0))
-        return np.array([0.5 * (theta[0] - math.log(level)), H, corner, lowest, theta[-1]])
-
-    values = physical(theta)
-    turn = _jacobian(physical, theta)
-    covariance = turn @ covariance @ turn.T
-    sigma = np.sqrt(np.diag(covariance))
-    surface = _surface(values)
+    parameters = FitParameters(theta, covariance, centre, measured.is_line, trial.roll_off, cuts["q0"])
+    values, turn = parameters.physical(theta), differences(parameters.physical, theta)
+    spread = covariance.copy()
+    if trial.roll_off and not cuts["q0"]:
+        spread[-2, -2] = UNSEEN**2
+    sigma = np.sqrt(np.diag(turn @ spread @ turn.T))
+    surface = parameters.surface(theta)
     errors = {"h_rms": surface.h_rms * float(sigma[0]), "hurst": float(sigma[1])}
     if trial.roll_off:
         errors["roll_off"] = math.exp(values[2]) * float(sigma[2])
@@ -351,27 +268,5 @@ def _result(trial: _Trial, data: _Data, measured: MeasuredSpectrum, q: Array) ->
         noise=math.exp(trial.values[-1]) if trial.noise else 0.0,
         deviance=float(excess),
         band=(float(q[trial.low]), float(q[trial.high - 1])),
-        _values=values,
-        _covariance=covariance,
+        _parameters=parameters,
     )
-
-
-def _surface(values: Array) -> SelfAffine:
-    log_h, H, corner, lowest, highest = map(float, values)
-    return SelfAffine(math.exp(log_h), math.exp(lowest), math.exp(highest), H, math.exp(max(corner, lowest)))
-
-
-def _jacobian(function: Callable[[Array], Array], x: Array) -> Array:
-    """Return central differences of a smooth function of parameters of order one."""
-    columns = []
-    for i in range(x.size):
-        step = np.zeros(x.size)
-        step[i] = 1e-5
-        columns.append((function(x + step) - function(x - step)) / 2e-5)
-    return np.stack(columns, axis=1)
-
-
-def _spread(function: Callable[[Array], Array], x: Array, covariance: Array) -> Array:
-    """Return standard errors of the values of a function of parameters with this covariance."""
-    turn = _jacobian(function, x)
-    return np.asarray(np.sqrt(np.diag(turn @ covariance @ turn.T)))

@@ -1,12 +1,14 @@
 r"""Measured heights of a surface: what a map or a line is, dead pixels and spikes, and surfaces made with a known spectrum.
 
-Reading files is in ``topography_text`` and ``topography_files``, their evaluation in ``surfaces``.
+Reading files is in :mod:`stribeck.surfaces.files` and :mod:`stribeck.surfaces.text`, evaluation in
+:mod:`stribeck.surfaces.analysis`.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +25,10 @@ MOST_MISSING = 0.1
 """Largest share of missing points that is filled."""
 
 SPIKE = 12.0
-"""Deviation from the neighbours, over its robust standard deviation, from which a point is dead."""
+"""Deviation from the neighbours, over its robust standard deviation in the whole scan, above which a point may be a spike."""
+
+ISOLATED = 4.0
+"""Deviation from the neighbours, over the range of their own heights, above which a point is a spike."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +108,7 @@ class Topography:
         Parameters
         ----------
         keep_spikes : bool
-            Whether points far off all their neighbours are kept as roughness.
+            Whether spikes are kept as roughness.
 
         Returns
         -------
@@ -113,13 +118,15 @@ class Topography:
         Raises
         ------
         InputError
-            Where too many points are dead.
+            If too many points are missing or spikes.
 
         Notes
         -----
-        A spike is further than 12 robust standard deviations from the median of its 24 neighbours in a map, and from the
-        straight lines through its neighbours in a profile.  Filled heights solve Laplace's equation with the heights around
-        as boundary values; they are smoother than the surface, which lowers short waves by about their share.
+        A spike is a single point whose distance from the median of its 8 neighbours (4 on each side in a profile) is more
+        than 4 times the range of their heights, and more than 12 times the robust standard deviation of that distance in the
+        scan.  A summit, or anything wider than a point, is never one: beside a steep flank the neighbours' own range is
+        large.  Filled heights solve Laplace's equation with the heights around as boundary values; they are smoother than
+        the surface, which lowers the power of short waves by about the share of filled points.
         """
         dead, spikes = np.isnan(self.heights), np.zeros(self.heights.shape, dtype=bool)
         if not keep_spikes:
@@ -128,7 +135,9 @@ class Topography:
         if dead.any():
             notes.append(f"{_count(dead)} without a height, filled from the neighbours.")
         if spikes.any():
-            notes.append(f"{_count(spikes)} taken for dead, as far off all neighbours, and filled from them.")
+            number = int(spikes.sum())
+            what = "1 point is a spike" if number == 1 else f"{number} points are spikes"
+            notes.append(f"{what}, far above or below all neighbours, and replaced by their heights.")
         holes = dead | spikes
         if holes.mean() > MOST_MISSING:
             raise InputError(f"{self.source}: {100 * holes.mean():.0f} % of the points are dead or missing; measure again.")
@@ -197,21 +206,18 @@ def _spikes(heights: Array) -> Flags:
     from scipy import ndimage
 
     dead = np.isnan(heights)
-    z = np.where(dead, np.nanmedian(heights), heights)
-    if z.ndim == 1:
-        # Off the straight lines through the next and the next but one: beside a spike only one of them is spoilt.
-        line = np.pad(z, 2, mode="reflect", reflect_type="odd")
-        next_one, next_but_one = (
-            np.abs(z - 0.5 * (line[2 - i : z.size + 2 - i] + line[2 + i : z.size + 2 + i])) for i in (1, 2)
-        )
-        deviation, usual = np.minimum(next_one, next_but_one), next_one
-    else:
-        around = np.ones((5, 5), dtype=bool)
-        around[2, 2] = False
-        deviation = usual = np.abs(z - ndimage.median_filter(z, footprint=around, mode="nearest"))
-    spread = 1.4826 * float(np.median(usual[~dead]))
-    # Heights in a few steps may have no spread at all; then nothing can be told.
-    return np.asarray(~dead & (deviation > SPIKE * spread)) if spread > 0 else np.zeros(z.shape, dtype=bool)
+    z = _filled(heights, dead)
+    around = np.ones((9,) if z.ndim == 1 else (3, 3), dtype=bool)
+    around[tuple(n // 2 for n in around.shape)] = False
+    # Mirrored about its last points, so that a point at the edge is not its own neighbour.
+    options: dict[str, Any] = {"footprint": around, "mode": "mirror"}
+    deviation = np.abs(z - ndimage.median_filter(z, **options))
+    scatter = ndimage.maximum_filter(z, **options) - ndimage.minimum_filter(z, **options)
+    usual = 1.4826 * float(np.median(deviation[~dead]))
+    # Heights in a few steps may have no scatter at all; then nothing can be told.
+    if usual == 0:
+        return np.zeros(z.shape, dtype=bool)
+    return np.asarray(~dead & (deviation > SPIKE * usual) & (deviation > ISOLATED * scatter))
 
 
 def _filled(heights: Array, holes: Flags) -> Array:

@@ -41,12 +41,26 @@ def surface_lines(surface: Surface) -> list[str]:
     lines = [
         f"{scan.source or 'Heights'}: {kind} of {points} points, {size}",
         "",
-        _row("tilt taken away", ", ".join(f"{1e3 * slope:.3g} mrad" for slope in surface.shape.tilt) or "none", ""),
+        _row("tilt removed", ", ".join(f"{1e3 * slope:.3g} mrad" for slope in surface.shape.tilt) or "none", ""),
     ]
     if found["body_radius"] is not None:
         bulge = "convex" if surface.shape.curvatures[0] < 0 else "concave"
         lines.append(_length("radius of the body", found["body_radius"], found["body_radius_error"], bulge))
     lines.append(_length("rms height of the scan", found["scan_rms_height"], None, "about that shape"))
+    if surface.spikes:
+        number = f"{surface.spikes} spike{'s' * (surface.spikes > 1)}"
+        lines.append(_length(f"  with its {number}", found["scan_rms_height_with_spikes"], None, "replaced above"))
+    lines.append(
+        _row("skewness of the heights", f"{found['skewness']:.2f}", f"+- {found['skewness_error']:.2g}, 0 if Gaussian")
+    )
+    ratio, direction = found["aspect_ratio"], found["texture_direction"]
+    if ratio is not None:
+        at = (
+            "no direction stands out"
+            if direction is None
+            else f"longer at {math.degrees(direction):.0f} degrees to the first axis"
+        )
+        lines.append(_row("aspect ratio of features", f"{ratio:.3g}", at))
     lines += ["", "Self-affine spectrum through it"]
     r = surface.roughness
     lines.append(_length("rms height h_rms", r.h_rms, found["h_rms_error"], ""))
@@ -65,6 +79,7 @@ def surface_lines(surface: Surface) -> list[str]:
                 label, 2 * math.pi / q, None if error is None else 2 * math.pi / q * error / q, end if error is None else ""
             )
         )
+    alpha, beta = surface.fit.exponential_limit(surface.gamma)
     lines += [
         _row("rms slope", f"{found['rms_slope']:.3g}", "grows with q1"),
         _row("rms curvature", format_si(found["rms_curvature"], "wavenumber"), "grows with q1"),
@@ -72,13 +87,13 @@ def surface_lines(surface: Surface) -> list[str]:
         f"Contact law by Persson's theory, gamma = {surface.gamma:g}",
         _row(
             "alpha",
-            f"{found['alpha']:.3f}",
-            f"+- {found['alpha_error']:.2g}; {found['measured_alpha']:.3f} from the measured spectrum",
+            f"{alpha.value:.3f}",
+            f"{alpha.interval} (95 %); {found['measured_alpha']:.3f} from the measured spectrum",
         ),
         _row(
             "beta",
-            f"{found['beta']:.4g}",
-            f"+- {found['beta_error']:.2g}; {found['measured_beta']:.4g} from the measured spectrum",
+            f"{beta.value:.4g}",
+            f"{beta.interval} (95 %); {found['measured_beta']:.4g} from the measured spectrum",
         ),
     ]
     return [*lines, *([""] if surface.notes else []), *surface.notes]

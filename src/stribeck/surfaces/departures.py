@@ -1,0 +1,170 @@
+r"""How a scan departs from the theory's surface, which is isotropic and Gaussian, and from sizes that instruments have.
+
+The texture is told by the second angular harmonic of the spectrum over its ring,
+
+.. math:: A = \frac{\langle C\, e^{2 i \theta} \rangle}{\langle C \rangle}
+
+which is zero on average for an isotropic surface, with a mean square of one over the number of modes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck.quantities.units import format_si
+from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
+from stribeck.surfaces.topography import Topography
+
+__all__ = ["Departures", "departures", "departure_notes"]
+
+SIGNIFICANT = 9.0
+"""``n |A|^2`` above which a texture is not chance: exp(-9), once in 8000 isotropic surfaces."""
+
+STRETCHED = 1.5
+"""Aspect ratio of features above which a note says that the surface is anisotropic."""
+
+MOST_STRETCHED = 1e4
+"""Largest aspect ratio that is told from a groove without end."""
+
+SKEWED = 0.3
+"""Skewness above which a note says that the heights are not Gaussian, if it is also 3 standard errors."""
+
+LARGEST_SCAN, SMALLEST_SCAN = 1.0, 1e-8
+"""Lengths of a scan that instruments reach [m]."""
+
+LARGEST_HEIGHT, SMALLEST_HEIGHT = 1e-3, 1e-11
+"""Rms heights of roughness that instruments meet [m]."""
+
+STEEPEST = 3.0
+"""Rms slope between neighbouring points above which the units of heights and positions do not fit together."""
+
+
+@dataclass(frozen=True)
+class Departures:
+    """Texture and skewness of a scan.
+
+    Attributes
+    ----------
+    aspect_ratio : float or None
+        How many times longer features are along the texture than across it, 1 if isotropic; None for a line, which does
+        not show it.
+    direction : float or None
+        Angle of the texture to the first axis, 0 to pi [rad]; None if it is not significant.
+    skewness : float
+        Third moment of the heights over the cube of their rms; 0 if Gaussian.
+    skewness_error : float
+        Its standard error for Gaussian heights with the correlation of the scan.
+    """
+
+    aspect_ratio: float | None
+    direction: float | None
+    skewness: float
+    skewness_error: float
+
+
+def departures(topography: Topography, measured: MeasuredSpectrum, hurst: float) -> Departures:
+    r"""Return texture and skewness of a scan.
+
+    Parameters
+    ----------
+    topography : Topography
+        Heights without trend and without missing points.
+    measured : MeasuredSpectrum
+        Their spectrum.
+    hurst : float
+        Hurst exponent, which sets how strongly a stretch of the surface shows in A [-].
+
+    Returns
+    -------
+    Departures
+        Both.
+
+    Notes
+    -----
+    The aspect ratio is that of a stretched self-affine surface without a roll-off; with one, the surface is stretched more.
+    The variance of the skewness of correlated Gaussian heights is :math:`6 \sum \rho^3 / N`, with the autocorrelation
+    :math:`\rho` of the scan.  Both are tested on synthetic surfaces (``test_departures.py``).
+    """
+    z = topography.heights - topography.heights.mean()
+    deviation = float(z.std())
+    rho = np.fft.ifftn(np.abs(np.fft.fftn(z)) ** 2).real / (z.size * deviation**2)
+    skewness, error = float(np.mean((z / deviation) ** 3)), math.sqrt(max(6 * float(np.sum(rho**3)) / z.size, 0.0))
+    if measured.is_line:
+        return Departures(None, None, skewness, error)
+    strength, modes = abs(measured.texture), float(measured.modes[measured.reliable].sum())
+    if modes * strength**2 < SIGNIFICANT:
+        return Departures(1.0, None, skewness, error)
+    # Long features along x have their waves, and their power, across x.
+    direction = (0.5 * float(np.angle(measured.texture)) + 0.5 * math.pi) % math.pi
+    return Departures(_aspect_ratio(strength, hurst), direction, skewness, error)
+
+
+def departure_notes(topography: Topography, found: Departures) -> list[str]:
+    """Return a sentence for each departure that spoils the numbers.
+
+    Parameters
+    ----------
+    topography : Topography
+        Heights without trend.
+    found : Departures
+        Its texture and skewness.
+
+    Returns
+    -------
+    list of str
+        The sentences; none for an isotropic Gaussian scan of a plausible size.
+    """
+    notes = _size_notes(topography)
+    if found.aspect_ratio is not None and found.direction is not None and found.aspect_ratio > STRETCHED:
+        times = f"{found.aspect_ratio:.2g} times" if found.aspect_ratio < MOST_STRETCHED else "many times"
+        notes.append(
+            f"The surface is anisotropic: features are about {times} longer at {math.degrees(found.direction):.0f} degrees to "
+            "the first axis than across it. All numbers are averages over directions, and the errors do not include what this "
+            "changes; beta may be off by more than its interval."
+        )
+    if abs(found.skewness) > max(SKEWED, 3 * found.skewness_error):
+        kind = "plateaus with valleys" if found.skewness < 0 else "peaks on a plain"
+        notes.append(
+            f"The heights are not Gaussian: their skewness is {found.skewness:.2f} +- {found.skewness_error:.1g}, as of "
+            f"{kind}. Persson's theory assumes Gaussian heights, and the error of h_rms does too; a contact law "
+            "measured or computed for this surface (law = 'table') is safer."
+        )
+    return notes
+
+
+def _size_notes(topography: Topography) -> list[str]:
+    notes = []
+    longest, height = max(topography.size), float(topography.heights.std())
+    if not SMALLEST_SCAN <= longest <= LARGEST_SCAN:
+        notes.append(
+            f"The scan is {format_si(longest, 'length')} long, which no instrument measures; check the unit of positions."
+        )
+    if not SMALLEST_HEIGHT <= height <= LARGEST_HEIGHT:
+        notes.append(f"The rms height is {format_si(height, 'length')}, which is not plausible; check the unit of heights.")
+    steps = [np.diff(topography.heights, axis=i) / step for i, step in enumerate(topography.spacing)]
+    slope = max(float(np.sqrt(np.mean(step**2))) for step in steps)
+    if slope > STEEPEST:
+        notes.append(
+            f"The rms slope between neighbouring points is {slope:.2g}, steeper than instruments follow; check that heights "
+            "and positions have the units that are declared."
+        )
+    return notes
+
+
+def _aspect_ratio(strength: float, hurst: float) -> float:
+    """Return the stretch of a self-affine surface whose spectrum has the second harmonic ``strength``."""
+    from scipy.optimize import brentq
+
+    angle = (np.arange(20_000) + 0.5) * (math.pi / 20_000)
+
+    def harmonic(log_ratio: float) -> float:
+        ratio = math.exp(log_ratio)
+        log_power = -(1 + hurst) * np.log(ratio * np.cos(angle) ** 2 + np.sin(angle) ** 2 / ratio)
+        power = np.exp(log_power - log_power.max())
+        return float(-np.sum(power * np.cos(2 * angle)) / np.sum(power)) - strength
+
+    most = math.log(MOST_STRETCHED)
+    return math.exp(brentq(harmonic, 0.0, most)) if harmonic(most) > 0 else MOST_STRETCHED

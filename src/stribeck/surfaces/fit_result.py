@@ -1,0 +1,196 @@
+r"""What a fit of a self-affine spectrum says: the spectrum, its standard errors, and intervals of alpha and beta.
+
+A scan does not show waves longer than itself.  So the longest wave of the surface can only be longer than the scan, and an
+interval of alpha or beta holds the values for all longest waves from the scan to far beyond it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contact_laws.persson import GAMMA, exponential_limit
+from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.surfaces.measured_spectrum import line_density
+
+__all__ = ["Estimate", "FitParameters", "SelfAffineFit", "differences"]
+
+NORMAL = 1.959964
+"""Standard errors to each side that hold 95 % of a normal distribution."""
+
+LONGER = (1.0, 0.3, 0.1, 1e-3)
+"""Wave numbers of the longest wave of the surface, over the lowest that was seen; the last is as good as none at all."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with its 95 % interval.
+
+    Attributes
+    ----------
+    value : float
+        The number, for a surface without waves longer than those seen.
+    low, high : float
+        Ends of the interval; ``low`` is 0 for a positive number that is only bounded from above.
+    """
+
+    value: float
+    low: float
+    high: float
+
+    @property
+    def interval(self) -> str:
+        """The interval in words, such as ``"1.76 to 1.83"``."""
+        return f"at most {self.high:.3g}" if self.low == 0 else f"{self.low:.3g} to {self.high:.3g}"
+
+
+@dataclass(frozen=True, eq=False)
+class FitParameters:
+    """Parameters of a fit with their covariance, and the surface that belongs to them.
+
+    Attributes
+    ----------
+    theta : ndarray
+        Logarithm of the spectrum at ``centre``, Hurst exponent, logarithm of the roll-off if there is one, of the noise if
+        there is any, and of q0 and q1.
+    covariance : ndarray
+        Covariance of ``theta``; zero for a longest wave that was not seen.
+    centre : float
+        Logarithm of the wave number in the middle of the fit.
+    is_line : bool
+        Whether the spectrum is that along a line.
+    roll_off, q0_found : bool
+        Whether the spectrum shows a roll-off and its longest wave.
+    """
+
+    theta: Array
+    covariance: Array
+    centre: float
+    is_line: bool
+    roll_off: bool
+    q0_found: bool
+
+    def physical(self, theta: Array, corner: float = 1.0, lowest: float = 1.0) -> Array:
+        """Return ln h_rms, H, ln q_r, ln q_0 and ln q_1, with roll-off and q_0 moved by factors to longer waves."""
+        H, q1 = float(theta[1]), float(theta[-1])
+        q_r = (max(theta[2], theta[-2]) if self.roll_off else theta[-2]) + math.log(corner)
+        q0 = (theta[-2] if self.roll_off else q_r) + math.log(lowest)
+        shape = SelfAffine(1.0, math.exp(q0), math.exp(q1), H, math.exp(q_r))
+        if self.is_line:
+            level = float(line_density(np.array(math.exp(self.centre)), shape))
+        else:
+            level = float(shape.spectrum.density[0]) * math.exp(-2 * (1 + H) * max(self.centre - q_r, 0.0))
+        return np.array([0.5 * (theta[0] - math.log(level)), H, q_r, q0, q1])
+
+    def surface(self, theta: Array, corner: float = 1.0, lowest: float = 1.0) -> SelfAffine:
+        """Return the surface of the parameters, with longer waves if wanted."""
+        log_h, H, q_r, q0, q1 = map(float, self.physical(theta, corner, lowest))
+        return SelfAffine(math.exp(log_h), math.exp(q0), math.exp(q1), H, math.exp(max(q_r, q0)))
+
+    @property
+    def longer(self) -> list[tuple[float, float]]:
+        """Factors on roll-off and q_0 of surfaces with longer waves that the scan cannot tell from this one."""
+        if self.q0_found:
+            return [(1.0, 1.0)]
+        # A power law that is not seen to end may end, or become a plateau, anywhere beyond the scan.
+        return [(1.0, factor) for factor in LONGER] if self.roll_off else list(itertools.product(LONGER, LONGER))
+
+
+@dataclass(frozen=True, eq=False)
+class SelfAffineFit:
+    r"""Self-affine spectrum that fits a measured one.
+
+    Attributes
+    ----------
+    roughness : SelfAffine
+        The spectrum; its ends are cut-offs of the surface where they were found, else those of the scan.
+    errors : dict of str to float
+        Standard errors of ``h_rms`` [m], ``q0``, ``roll_off``, ``q1`` [1/m] and ``hurst`` [-]; only of what was found.
+    found : tuple of str
+        Which of ``roll_off``, ``q0``, ``q1`` and ``noise`` the spectrum shows.
+    noise : float
+        Spectrum of the white noise, as that of the measurement; 0 where none was found.
+    deviance : float
+        Deviance over its expectation: near one where the model holds.
+    band : tuple of float
+        Wave numbers that were fitted [1/m].
+    """
+
+    roughness: SelfAffine
+    errors: dict[str, float]
+    found: tuple[str, ...]
+    noise: float
+    deviance: float
+    band: tuple[float, float]
+    _parameters: FitParameters = field(repr=False)
+
+    def exponential_limit(self, gamma: float = GAMMA) -> tuple[Estimate, Estimate]:
+        """Return alpha and beta of the contact law, each with its 95 % interval.
+
+        Parameters
+        ----------
+        gamma : float
+            Reduction of the elastic energy [-].
+
+        Returns
+        -------
+        tuple of Estimate
+            alpha and beta [-].
+
+        Notes
+        -----
+        The interval is that of a profile over the longest wave of the surface: from the least of ``value - 1.96 standard
+        errors`` to the largest of ``value + 1.96 standard errors``, over longest waves from the scan on.  If neither a
+        roll-off nor the longest wave was seen, ``beta`` has no lower bound, and its interval begins at 0.  How often the
+        intervals hold the truth is in docs/surfaces.md, from ``benchmarks/surface_errors.py``.
+        """
+        known = self._parameters
+
+        def limit(theta: Array, corner: float = 1.0, lowest: float = 1.0) -> Array:
+            return np.log(exponential_limit(known.surface(theta, corner, lowest), gamma))
+
+        best = limit(known.theta)
+        turn = differences(limit, known.theta)
+        error = NORMAL * np.sqrt(np.diag(turn @ known.covariance @ turn.T))
+        profile = np.array([limit(known.theta, *factors) for factors in known.longer])
+        low, high = np.exp(profile.min(axis=0) - error), np.exp(profile.max(axis=0) + error)
+        if not (known.q0_found or known.roll_off):
+            low[1] = 0.0
+        alpha, beta = (Estimate(*map(float, row)) for row in zip(np.exp(best), low, high, strict=True))
+        return alpha, beta
+
+    def at(self, wavenumber: Array, *, is_line: bool = False, noise: bool = True) -> Array:
+        """Return the fitted spectrum, as a map or a line shows it.
+
+        Parameters
+        ----------
+        wavenumber : ndarray
+            Wave numbers [1/m].
+        is_line : bool
+            Whether the spectrum along a line is wanted.
+        noise : bool
+            Whether the noise is part of it.
+
+        Returns
+        -------
+        ndarray
+            Spectrum [m^4; m^3 along a line].
+        """
+        q = np.asarray(wavenumber, dtype=float)
+        clean = line_density(q, self.roughness) if is_line else self.roughness.spectrum.at(q)
+        return clean + (self.noise if noise else 0.0)
+
+
+def differences(function: Callable[[Array], Array], x: Array) -> Array:
+    """Return central differences of a smooth function of parameters of order one."""
+    columns = []
+    for i in range(x.size):
+        step = np.zeros(x.size)
+        step[i] = 1e-5
+        columns.append((function(x + step) - function(x - step)) / 2e-5)
+    return np.stack(columns, axis=1)

@@ -1,0 +1,111 @@
+"""What must be known about a scan before its numbers are used, a sentence each."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stribeck.quantities.units import format_si
+from stribeck.surfaces.detrend import Shape
+from stribeck.surfaces.fit_result import SelfAffineFit
+from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
+from stribeck.surfaces.self_affine_fit import MISFIT
+from stribeck.surfaces.topography import Topography
+
+__all__ = ["fit_notes", "spike_notes"]
+
+APART = 1.3
+"""Ratio of the rms heights of scan and fit from which a note says that they differ."""
+
+REPAIRED = 0.05
+"""Change of the rms height of the scan by the repair of spikes from which a note warns."""
+
+
+def spike_notes(spikes: int, repaired: float, spiked: float) -> list[str]:
+    """Return sentences on the repair of spikes.
+
+    Parameters
+    ----------
+    spikes : int
+        Number of spikes that were replaced.
+    repaired, spiked : float
+        Rms height of the scan without and with them [m].
+
+    Returns
+    -------
+    list of str
+        The sentences; none without spikes.
+    """
+    if spikes == 0:
+        return []
+    change = f"{format_si(spiked, 'length')} with its spikes and {format_si(repaired, 'length')} without"
+    notes = [f"The rms height of the scan is {change}."]
+    if abs(repaired - spiked) > REPAIRED * repaired:
+        notes.append(
+            f"The repair of spikes changed the rms height by {100 * (spiked - repaired) / repaired:.0f} %: look at the scan, "
+            "and keep them (--keep-spikes, keep_spikes=True) if they are asperities or dust that touches."
+        )
+    return notes
+
+
+def fit_notes(topography: Topography, body: Shape, measured: MeasuredSpectrum, fit: SelfAffineFit) -> list[str]:
+    """Return sentences on what the fit does not see, or does not fit.
+
+    Parameters
+    ----------
+    topography : Topography
+        Heights without trend.
+    body : Shape
+        The trend.
+    measured : MeasuredSpectrum
+        Spectrum of the heights.
+    fit : SelfAffineFit
+        Its fit.
+
+    Returns
+    -------
+    list of str
+        The sentences.
+    """
+    notes = []
+    if "roll_off" not in fit.found and "q0" not in fit.found:
+        notes.append(
+            "No roll-off within the scan: h_rms, alpha and beta are for wavelengths up to "
+            f"{format_si(2 * math.pi / fit.roughness.q0, 'length')}, and h_rms and beta depend on the size of the "
+            "scan; measure a larger area."
+        )
+    if "q1" not in fit.found:
+        notes.append(
+            f"The spectrum goes on beyond {format_si(2 * math.pi / measured.highest, 'length')} ({measured.highest_reason}): "
+            "slope, curvature and contact area would grow with finer steps, alpha and beta hardly."
+        )
+    if "noise" in fit.found:
+        notes.append("The spectrum flattens at short wavelengths as by noise of the instrument, which was taken away.")
+    if fit.deviance > MISFIT:
+        notes.append(
+            f"The spectrum is not self-affine: its deviance is {fit.deviance:.1f} times that of chance, and the errors were "
+            "widened by the root of it; compare alpha and beta with those of the measured spectrum."
+        )
+    H = fit.roughness.hurst
+    if not 0.02 < H < 0.999:
+        shape_of = "flatter" if H < 0.5 else "steeper"
+        notes.append(
+            f"The Hurst exponent is at the end of its range: the spectrum is {shape_of} than that of self-affine roughness."
+        )
+    scan, fitted = float(np.sqrt(np.mean(topography.heights**2))), fit.roughness.h_rms
+    if not 1 / APART < fitted / scan < APART:
+        notes.append(
+            f"The rms height of the scan is {format_si(scan, 'length')}, that of the fit {format_si(fitted, 'length')}: "
+            "noise, waves too long for the fit, or a spectrum of another shape make the difference."
+        )
+    if not topography.is_line:
+        ratio = max(topography.spacing) / min(topography.spacing)
+        if ratio > 2:
+            notes.append(f"Steps along the two axes differ {ratio:.1f} times; the larger one limits the short wavelengths.")
+    radius = body.radius
+    if radius is not None:
+        error = body.radius_error(fit.roughness, topography)
+        if error is not None and error > 0.5 * radius:
+            notes.append("The curvature of the body is within what the roughness makes by chance: the scan is flat.")
+    return notes
