@@ -250,7 +250,7 @@ TABLES = {
     "unknown key": ({"fre": ["mu0"]}, "fre", "did you mean free."),
     "no such input": ({"free": ["pressure_viscosity"]}, "'pressure_viscosity'", "no pressure-viscosity coefficient"),
     "unknown input": ({"free": ["stiffness"]}, "'stiffness'", "known are"),
-    "former name": ({"free": ["friction_coefficient"]}, "'friction_coefficient'", "did you mean boundary_friction?"),
+    "former name": ({"free": ["friction_coefficient"]}, "'friction_coefficient'", "write boundary_friction."),
     "speed": ({"free": ["speed"]}, "'speed'", "measured"),
     "twice": ({"free": ["mu0", "boundary_friction"]}, "boundary_friction", "twice"),
     "none": ({"free": []}, "free = []", "list"),

@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
 from stribeck.contacts.line import InputError, LineContact
-from stribeck.quantities.hints import SYMBOLS, advice_on
+from stribeck.quantities.hints import MEANT, advice_on
 from stribeck.quantities.inputs import QUANTITIES, check_modulus_choice, quantity
 from stribeck.quantities.units import DIMENSIONS, show
 
@@ -458,7 +458,7 @@ def example_of(key: str) -> str:
 
 
 def _nearest(file: Any, model: Any, key: str) -> str:
-    known, meant = list(model.model_fields), SYMBOLS.get(key, key)
+    known, meant = list(model.model_fields), MEANT.get(key, key)
     advice = advice_on(key, known)
     if advice:
         return advice

@@ -6,9 +6,10 @@ import difflib
 import re
 from collections.abc import Iterable
 
+from stribeck.quantities.inputs import FORMER
 from stribeck.quantities.units import FROM_HARDNESS
 
-__all__ = ["SYMBOLS", "advice_on"]
+__all__ = ["MEANT", "SYMBOLS", "advice_on"]
 
 SYMBOLS = {
     "R": "radius",
@@ -21,12 +22,11 @@ SYMBOLS = {
     "E_star": "modulus",
     "E": "youngs_modulus",
     "nu": "poisson_ratio",
-    "poisson": "poisson_ratio",
-    "mu": "boundary_friction",
-    "cof": "boundary_friction",
-    "friction_coefficient": "boundary_friction",
 }
-"""Symbols of the article, short names and former names, that readers type."""
+"""Symbols of the article, which readers type."""
+
+MEANT = SYMBOLS | FORMER | {"poisson": "poisson_ratio", "mu": "boundary_friction", "cof": "boundary_friction"}
+"""What symbols, former names and short names stand for."""
 
 ALIKE = 0.8
 """Least likeness, 0 to 1, of two words of which one is taken for a slip of the other: 0.8 allows one letter in five."""
@@ -102,8 +102,8 @@ def advice_on(key: str, known: Iterable[str]) -> str | None:
     'give radius, half the diameter'
     """
     names = list(known)
-    if SYMBOLS.get(key) in names:
-        return f"write {SYMBOLS[key]}"
+    if MEANT.get(key) in names:
+        return f"write {MEANT[key]}"
     text = "_" + re.sub(r"[^a-z0-9]+", "_", key.lower()).strip("_") + "_"
     absent = next((said for words, said in _ABSENT if any(f"_{word}_" in text for word in words)), None)
     if absent is not None:

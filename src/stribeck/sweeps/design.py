@@ -20,7 +20,8 @@ from stribeck.cases.case import Case, contact_inputs, error_sentence, example_of
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
 from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.line import Groups, LineContact
-from stribeck.quantities.inputs import FORMER, INPUTS, QUANTITIES, check_modulus_choice, quantity
+from stribeck.quantities.hints import advice_on
+from stribeck.quantities.inputs import INPUTS, QUANTITIES, check_modulus_choice, quantity
 from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.points import KINDS, RANDOM, Axis, Kind, points_of
 
@@ -273,7 +274,7 @@ def _axis(name: str, entry: Any, kind: Kind, si: bool) -> Axis:
     """Return what one entry of ``[vary]`` says."""
     known = tuple(QUANTITIES) if si else (*GROUPS, *COEFFICIENTS)
     if name not in known:
-        hint = f"write {FORMER[name]}" if name in FORMER else f"known are {', '.join(known)}"
+        hint = advice_on(name, known) or f"known are {', '.join(known)}"
         raise InputError(f"{show(name)} cannot vary; {hint}.")
     check: Callable[[str, Any], float] = quantity if si else _group
     if isinstance(entry, list):
