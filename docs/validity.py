@@ -147,7 +147,12 @@ def uniform_table() -> str:
         for kappa in BOX_KAPPAS.tolist():
             curve = sb.stribeck_curve(load=load, roughness=kappa * load, speed=BOX_SPEEDS, rtol=1e-7)
             for beta in BETAS:
-                right = np.array([state.friction(boundary_friction=1.0, beta=beta).total for state in curve.solutions])
+                right = np.array(
+                    [
+                        state.friction(boundary_friction=1.0, beta=beta, definition="published").total
+                        for state in curve.solutions
+                    ]
+                )
                 off = np.abs(uniform.friction.function(curve.groups, 1.0, beta) / right - 1).tolist()
                 errors[beta] += [(e, load, kappa, speed) for e, speed in zip(off, curve.values.tolist(), strict=True)]
     rows = []

@@ -23,15 +23,15 @@ def balance(state):
     here = state.profile(x)
     step = 1e-6 * np.maximum(1.0, np.abs(x))
     gap_slope = (state.profile(x + step).gap - state.profile(x - step).gap) / (2 * step)
-    paper, balanced = (state.friction(boundary_friction=1, beta=1, definition=d) for d in ("paper", "balanced"))
+    published, balanced = (state.friction(boundary_friction=1, beta=1, definition=d) for d in ("published", "balanced"))
     return {
         "int p w'": relative(weights * here.pressure * (gap_slope - x)),
         "int p_c h'": relative(weights * here.contact_pressure * gap_slope),
-        "paper": paper.viscous,
+        "published": published.viscous,
         "balanced": balanced.viscous,
-        "difference": paper.viscous - balanced.viscous,
+        "difference": published.viscous - balanced.viscous,
         "4 F^(1/2)/pi int p_c x": 4 * LOAD**0.5 / np.pi * (weights @ (here.contact_pressure * x)),
-        "paper, total": paper.total,
+        "published, total": published.total,
         "balanced, total": balanced.total,
     }
 
@@ -46,7 +46,7 @@ def plot(rows):
     from matplotlib.figure import Figure
 
     axes = Figure(layout="constrained").subplots()
-    for name in ("paper", "balanced"):
+    for name in ("published", "balanced"):
         axes.loglog(list(rows), [row[name] for row in rows.values()], "o-", label=name)
     axes.set(xlabel=r"speed group $\lambda$", ylabel="viscous friction for beta = 1")
     return axes.legend().figure

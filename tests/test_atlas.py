@@ -14,7 +14,7 @@ from stribeck.curves.elasticities import friction_elasticities
 from stribeck.evidence import atlas_build
 from stribeck.evidence.atlas_certificate import FRICTIONS, QUANTITIES, certify, compare, solved
 
-DEFINITIONS = ("paper", "balanced")
+DEFINITIONS = ("published", "balanced")
 FUNCTIONS = (
     sb.atlas.contact_load_share,
     sb.atlas.fluid_load_share,

@@ -113,7 +113,7 @@ BAD_TABLES = {
     "unknown coordinate": ({"curve": {"over": '"time"'}}, "over = 'time' must be 'speed', 'load' or 'roughness'"),
     "small rtol": ({"solver": {"rtol": "1e-20"}}, "rtol = 1e-20 must be a number from 1e-11 to 1e-2"),
     "rtol in quotes": ({"solver": {"rtol": '"1e-6"'}}, "rtol = '1e-6' must be a number from 1e-11 to 1e-2"),
-    "definition": ({"solver": {"definition": '"mine"'}}, "definition = 'mine' must be 'paper' or 'balanced'"),
+    "definition": ({"solver": {"definition": '"mine"'}}, "definition = 'mine' must be 'balanced' or 'published'"),
     "unknown table": ({"contacts": {"a": "1"}}, "contacts = {'a': 1} is not a known key; did you mean contact"),
 }
 

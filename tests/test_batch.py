@@ -62,7 +62,7 @@ def test_each_state_has_the_error_it_states(found):
         exact = sb.solve(one(found.groups, i), rtol=1e-9)
         assert_states_its_errors(found, exact, i)
         assert found.minimum_position[i] == pytest.approx(exact.minimum_position, abs=1e-3)
-        for definition in ("paper", "balanced"):
+        for definition in ("published", "balanced"):
             expected = exact.friction(0.5, 0.03, definition).total
             assert found.friction(0.5, 0.03, definition)[i] == pytest.approx(expected, rel=1e-6)
 

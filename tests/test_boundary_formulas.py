@@ -370,7 +370,7 @@ def test_the_printed_fluid_share_is_far_off():
     assert boundary.contact_load_share(groups) == 1 - true
 
 
-@pytest.mark.parametrize("definition", ["paper", "balanced"])
+@pytest.mark.parametrize("definition", ["published", "balanced"])
 def test_the_viscous_friction_is_that_of_each_definition(definition):
     kappas, errors = (1e-3, 1e-4, 1e-5), []
     for kappa in kappas:
@@ -383,16 +383,16 @@ def test_the_viscous_friction_is_that_of_each_definition(definition):
 
 def test_the_printed_viscous_friction_is_larger_by_a_number_over_kappa():
     kappa = 1e-5
-    paper, balanced = (boundary.viscous_friction(slow(0.1, kappa, 1e-6), 0.3, name) for name in ("paper", "balanced"))
-    assert (paper / balanced - 1) * kappa == pytest.approx(0.07015, abs=1e-5)
-    assert paper == pytest.approx(0.3 * boundary.viscous_friction(slow(0.1, kappa, 1e-6)), rel=1e-14)
+    published, balanced = (boundary.viscous_friction(slow(0.1, kappa, 1e-6), 0.3, name) for name in ("published", "balanced"))
+    assert (published / balanced - 1) * kappa == pytest.approx(0.07015, abs=1e-5)
+    assert published == pytest.approx(0.3 * boundary.viscous_friction(slow(0.1, kappa, 1e-6)), rel=1e-14)
 
 
 def test_the_viscous_part_makes_the_friction_right_to_the_next_order():
     groups = slow(0.1, 1e-4, 1e-2)
-    error = {name: abs(relative_error(boundary.friction, groups, viscous=name)) for name in ("paper", "neglected")}
+    error = {name: abs(relative_error(boundary.friction, groups, viscous=name)) for name in ("published", "neglected")}
     assert error["neglected"] > 0.01
-    assert error["paper"] < 2e-4
+    assert error["published"] < 2e-4
     share = boundary.fluid_load_share.function(groups)
     assert boundary.friction.function(groups, 0.2, 5.0, viscous="neglected") == pytest.approx(0.2 * (1 - share), rel=1e-14)
     printed = boundary.friction.function(groups, 0.2, 5.0, printed=True)

@@ -119,10 +119,10 @@ def check_numbers(page, now):
     """Compare all numbers of a page with a cold solve of its contact."""
     shown = page.evaluate(NUMBERS)
     solution = sb.solve(now.contact)
-    friction = {kind: solution.friction(definition=kind) for kind in ("paper", "balanced")}
+    friction = {kind: solution.friction(definition=kind) for kind in ("published", "balanced")}
     chosen = friction[now.definition]
     expected = {
-        "friction_paper": friction["paper"].total,
+        "friction_published": friction["published"].total,
         "friction_balanced": friction["balanced"].total,
         "contact_friction_share": chosen.contact / chosen.total,
         "fluid_load_share": solution.fluid_load_share,

@@ -206,7 +206,7 @@ def test_a_case_knows_every_quantity(write):
             {"solver": {"rtol": '"1e-6"'}},
             "[solver] rtol = '1e-6' must be a number from 1e-11 to 1e-2, without quotes.",
         ),
-        ({"solver": {"definition": '"mine"'}}, "[solver] definition = 'mine' must be 'paper' or 'balanced'."),
+        ({"solver": {"definition": '"mine"'}}, "[solver] definition = 'mine' must be 'balanced' or 'published'."),
         ({"top": '"a\\nb" = 3'}, "'a\\nb' = 3 is not a known key; known are contact, curve,"),
         ({"top": "title = 3"}, "title = 3 must be text in quotes."),
         ({"top": "solver = 3"}, "solver = 3 must be a table, [solver]."),

@@ -80,7 +80,7 @@ def test_the_json_of_a_state_has_exactly_these_keys(capsys):
         "offset",
         "hersey_number",
         "lambda_ratio",
-        "friction_paper",
+        "friction_published",
         "friction_balanced",
         "errors",
         "minimum_position_error",
@@ -92,7 +92,7 @@ def test_the_json_of_a_state_has_exactly_these_keys(capsys):
         "notes",
         "si",
     ]
-    for definition in ("paper", "balanced"):
+    for definition in ("published", "balanced"):
         assert list(found[f"friction_{definition}"]) == ["contact", "viscous", "total", "error"]
     si = found["si"]
     assert si["units"].keys() == si.keys() - {"units"}
@@ -109,7 +109,7 @@ def test_json_knows_no_nan_and_no_infinity(capsys, groups, missing):
 def test_coefficients_given_with_groups_scale_friction_and_hersey_number(capsys):
     plain = strict_json(call(capsys, "solve", *GROUPS, "--json").out)
     scaled = strict_json(call(capsys, "solve", *GROUPS, "--boundary-friction", "0.5", "--beta", "0.1", "--json").out)
-    for definition in ("friction_paper", "friction_balanced"):
+    for definition in ("friction_published", "friction_balanced"):
         assert scaled[definition]["contact"] == pytest.approx(0.5 * plain[definition]["contact"], rel=1e-14)
         assert scaled[definition]["viscous"] == pytest.approx(0.1 * plain[definition]["viscous"], rel=1e-14)
     assert scaled["hersey_number"] == pytest.approx(0.01 * plain["hersey_number"], rel=1e-14)

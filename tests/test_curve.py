@@ -38,7 +38,7 @@ def balanced():
     return sb.stribeck_curve(CONTACT, speed=("5 mm/s", "0.2 m/s"), points=9, definition="balanced")
 
 
-def friction(speed, definition="paper", rtol=1e-9):
+def friction(speed, definition="published", rtol=1e-9):
     """Friction of one state solved from cold."""
     return sb.solve(CONTACT.replace(speed=speed), rtol=rtol).friction(definition=definition).total
 
@@ -144,7 +144,7 @@ def test_progress_counts_every_point_once():
 # --- the automatic range ---
 
 
-@pytest.mark.parametrize("definition", ["paper", "balanced"])
+@pytest.mark.parametrize("definition", ["published", "balanced"])
 def test_the_automatic_range_reaches_from_the_plateau_to_the_hydrodynamic_branch(definition):
     curve = sb.stribeck_curve(CONTACT, points=13, definition=definition)
     assert curve.friction[0] == pytest.approx(0.7, rel=1e-3)
@@ -170,9 +170,9 @@ def test_a_smooth_contact_has_no_plateau_and_covers_ten_decades():
 # --- minimum and transitions ---
 
 
-@pytest.mark.parametrize("definition", ["paper", "balanced"])
+@pytest.mark.parametrize("definition", ["published", "balanced"])
 def test_the_minimum_lies_where_the_slope_of_cold_solves_vanishes(curve, balanced, definition):
-    found = {"paper": curve, "balanced": balanced}[definition].minimum
+    found = {"published": curve, "balanced": balanced}[definition].minimum
     step = 0.02
 
     def slope(s):
@@ -321,7 +321,7 @@ def test_each_kind_of_note_is_told_once(curve):
         ({"load": ("1 N", "2 N")}, "load = '1 N' is a force"),
         ({"speed": (1, 2), "load": (1, 2)}, "speed and load are both ranges"),
         ({"rtol": 1e-20}, "rtol = 1e-20; it must be a number from 1e-11"),
-        ({"definition": "mine"}, "definition = 'mine'; it must be one of 'paper', 'balanced'"),
+        ({"definition": "mine"}, "definition = 'mine'; it must be one of 'balanced', 'published'"),
         ({"boundary_friction": -1}, "boundary_friction = -1 must be zero or positive"),
     ],
 )

@@ -47,7 +47,7 @@ def odd(field):
 
 
 @cache
-def minimum(load, kappa, definition="paper"):
+def minimum(load, kappa, definition="published"):
     """Return the solved friction minimum of a curve."""
     speed = float(transitions.speed_at_minimum(sb.Groups(1.0, load, kappa * load)))
     span = (speed / 4, speed * 4)
@@ -524,9 +524,11 @@ def test_the_viscous_friction_that_is_neglected_is_of_first_order_in_the_speed()
         speed = slow(LOAD, kappa, 1e-6)
         groups = sb.Groups(speed, LOAD, LOAD * kappa)
         scale = groups.hersey_number() / (groups.slope() * kappa)  # eta U a/(F_N h_rms/alpha)
-        balanced, paper = (state(speed, kappa=kappa, rtol=1e-8).friction(definition=d).viscous for d in ("balanced", "paper"))
+        balanced, published = (
+            state(speed, kappa=kappa, rtol=1e-8).friction(definition=d).viscous for d in ("balanced", "published")
+        )
         assert balanced / scale == pytest.approx(perturbation.shear(LOAD), rel=10 * kappa ** (2 / 3))
-        assert (paper / balanced - 1) * kappa == pytest.approx(0.0699, abs=5e-4)
+        assert (published / balanced - 1) * kappa == pytest.approx(0.0699, abs=5e-4)
     # At equal fluid number what is left out does not fade with kappa, and turns the first fall of friction into a rise.
     rises = [state(1.0 * kappa**2, kappa=kappa).friction().total - 1 for kappa in (1e-3, 1e-4)]
     assert rises == pytest.approx([0.00306, 0.00273], abs=1e-5)
@@ -539,10 +541,10 @@ def test_only_with_the_contact_pressure_projected_do_the_forces_balance():
     found = state(1e-6, rtol=1e-8)
     x, weights = found.mesh.nodes, found.mesh.weights
     lean = 4 * LOAD**0.5 / math.pi * weights @ (found.profile(x).contact_pressure * x)
-    paper, balanced = (found.friction(definition=d) for d in ("paper", "balanced"))
-    assert paper.viscous - lean == pytest.approx(balanced.viscous, rel=1e-4)
-    assert paper.viscous / balanced.viscous > 60
-    assert paper.total > 1.003 and balanced.total < 1
+    published, balanced = (found.friction(definition=d) for d in ("published", "balanced"))
+    assert published.viscous - lean == pytest.approx(balanced.viscous, rel=1e-4)
+    assert published.viscous / balanced.viscous > 60
+    assert published.total > 1.003 and balanced.total < 1
 
 
 # --- mixed lubrication ---

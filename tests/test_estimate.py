@@ -88,7 +88,7 @@ def test_rounding_is_not_below_the_scatter_of_equivalent_meshes(speed):
     rounding = np.max([parts["rounding"] for _, parts, _ in found], axis=0)
     scatter = 0.5 * np.ptp(values, axis=0) / found[0][2].scales
     # Shares and offset are known better than the film, the central gap is interpolated: they tell of meshes.
-    films = [NAMES.index(name) for name in ("minimum_gap", "flux_gap", "viscous_paper", "viscous_balanced")]
+    films = [NAMES.index(name) for name in ("minimum_gap", "flux_gap", "viscous_published", "viscous_balanced")]
     assert (scatter <= rounding)[films].all()
     assert scatter[films].max() > 0.01 * rounding.max()
     assert rounding.max() > 1e-9

@@ -105,7 +105,7 @@ def test_an_address_brings_back_the_very_inputs_and_pins():
     moved = inputs.slid(moved, "roughness_group", -2.22)
     assert f"{moved.contact.roughness / 1e-6:.6g}" != repr(moved.contact.roughness / 1e-6)  # no short number
     moved = replace(inputs.in_unit(moved, "radius", "cm"), definition="balanced", abscissa="hersey", title="a & b = ü #1")
-    pins = [url.Pin("load 3 N/m ~ twice", START.contact, "paper"), url.Pin("two", moved.contact, "balanced")]
+    pins = [url.Pin("load 3 N/m ~ twice", START.contact, "published"), url.Pin("two", moved.contact, "balanced")]
     opened = reopened(url.encode(moved, pins))
     assert opened.problems == {}
     assert opened.inputs == moved
@@ -117,7 +117,7 @@ def test_an_address_says_what_is_wrong_with_it_and_takes_the_rest():
     assert opened.inputs.contact == START.contact.replace(speed="2 mm/s", radius="1 mm")
     assert opened.problems["load"] == ("-1 N/m", "load = '-1 N/m' must be positive.")
     assert "colour = 'red' is not a known key" in opened.problems["colour"][1]
-    assert "'paper', 'balanced'" in opened.problems["definition"][1]
+    assert "'balanced', 'published'" in opened.problems["definition"][1]
     assert "pin = '1~2' must hold 9 numbers" in opened.problems["pin"][1]
 
 
@@ -136,7 +136,7 @@ def test_the_numbers_are_those_of_solve_within_their_errors(name):
     rows = {row.key: row for row in table.numbers(model(moved))}
     solution = sb.solve(moved.contact)
     expected = {
-        "friction_paper": solution.friction().total,
+        "friction_published": solution.friction().total,
         "friction_balanced": solution.friction(definition="balanced").total,
         "fluid_load_share": solution.fluid_load_share,
         "contact_load_share": solution.contact_load_share,
@@ -152,7 +152,7 @@ def test_the_numbers_are_those_of_solve_within_their_errors(name):
 
 def test_the_curve_and_its_transitions_are_those_of_the_solver(answer):
     curve = sb.stribeck_curve(START.contact, speed=answer.speeds, points=31)
-    for definition in ("paper", "balanced"):
+    for definition in ("published", "balanced"):
         found = np.exp(np.interp(np.log(curve.values), np.log(answer.curve.speed), np.log(answer.curve.friction[definition])))
         solved = [s.friction(definition=definition).total for s in curve.solutions]
         assert np.allclose(found, solved, rtol=2e-3)
@@ -173,7 +173,7 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
     assert model.settle(heavy) and not model.settle(heavy)
     now = model(heavy)
     assert not now.curve.stale and "solved" in now.curve.source
-    friction = np.exp(np.interp(np.log(heavy.contact.speed), np.log(now.curve.speed), np.log(now.curve.friction["paper"])))
+    friction = np.exp(np.interp(np.log(heavy.contact.speed), np.log(now.curve.speed), np.log(now.curve.friction["published"])))
     assert friction == pytest.approx(sb.solve(heavy.contact).friction().total, rel=0.02)
     heavier = model(inputs.slid(heavy, "load", inputs.position(heavy, "load") + 0.1))
     assert heavier.curve.stale and heavier.curve.transitions == ()
@@ -184,7 +184,7 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
 def test_rest_smooth_and_frictionless_contacts_are_shown(change):
     shown = Model()(replace(START, contact=START.contact.replace(**change)))
     rows = {row.key: row for row in table.numbers(shown)}
-    assert rows["friction_paper"].value == sb.solve(shown.inputs.contact).friction().total
+    assert rows["friction_published"].value == sb.solve(shown.inputs.contact).friction().total
     for palette in (LIGHT, DARK):
         assert set(charts.all_charts(shown, [], [], palette)) == set(charts.CHARTS)
 
@@ -306,7 +306,7 @@ def test_the_csv_holds_the_curve_the_pins_and_the_measured_points(answer):
         "curve": "measured: m.csv",
         "speed [m/s]": "0.01",
         "hersey_number [1]": repr(0.01 * START.contact.viscosity / START.contact.load),
-        "friction_paper [1]": "0.2",
+        "friction_published [1]": "0.2",
         "friction_balanced [1]": "",
         "friction_contact [1]": "",
     }

@@ -38,7 +38,7 @@ def test_friction_falls_between_the_boundary_plateau_and_its_minimum_and_rises_a
     least = float(curve.minimum_hersey)
     assert 4.68e-5 < least < 4.70e-5
     assert round(float(curve.minimum_friction), 5) == 0.02682
-    assert 1 <= curve.friction_paper.values.min() / float(curve.minimum_friction) < 1.001
+    assert 1 <= curve.friction_published.values.min() / float(curve.minimum_friction) < 1.001
     assert (np.diff(friction[x < 0.9 * least]) < 1e-6).all()
     assert (np.diff(friction[x > 1.1 * least]) > 0).all()
 
@@ -50,18 +50,18 @@ def test_lubrication_is_boundary_below_the_hersey_number_that_the_paper_names(cu
 
 
 def test_friction_still_falls_where_the_paper_lets_hydrodynamic_lubrication_begin(curve):
-    at_3e_5 = np.exp(np.interp(np.log(3e-5), np.log(curve.hersey_number), np.log(curve.friction_paper)))
+    at_3e_5 = np.exp(np.interp(np.log(3e-5), np.log(curve.hersey_number), np.log(curve.friction_published)))
     assert 1.2 < at_3e_5 / float(curve.minimum_friction) < 1.3
     assert 4.4e-5 < float(curve.hydrodynamic_begin_hersey) < 4.6e-5
 
 
 def test_only_the_printed_friction_exceeds_that_of_the_dry_contact(curve):
-    assert 0.0031 < curve.friction_paper.values.max() - 1 < 0.0033
+    assert 0.0031 < curve.friction_published.values.max() - 1 < 0.0033
     assert abs(curve.friction_balanced.values.max() - 1) < 1e-6
 
 
 def test_the_printed_friction_of_the_fluid_is_seventy_times_that_of_the_force_balance_until_the_fluid_carries_the_load(curve):
-    ratio = (curve.viscous_paper / curve.viscous_balanced).values
+    ratio = (curve.viscous_published / curve.viscous_balanced).values
     assert abs(ratio[0] - 70.55) < 0.01
     assert (np.diff(ratio) < 1e-6 * ratio[:-1]).all()
     assert abs(ratio[-1] - 1) < 1e-6

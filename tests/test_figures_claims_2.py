@@ -236,8 +236,8 @@ def test_friction_follows_the_formula_only_as_far_as_its_viscous_part_is_small(s
     i = case(slow, 0.1, 1e-4)
     assert 0.0030 < float(slow.excess[i]) < 0.0034
     few = (slow.share_law.values > 1e-5) & (slow.share_law.values < 1e-2)
-    assert (slow.fall_paper.values[few] < slow.share_law.values[few]).all()
-    assert slow.fall_paper.values[few].min() < -0.002
+    assert (slow.fall_published.values[few] < slow.share_law.values[few]).all()
+    assert slow.fall_published.values[few].min() < -0.002
     np.testing.assert_allclose(slow.fall_balanced.values[few][2:], slow.share_law.values[few][2:], rtol=0.25)
 
 

@@ -55,7 +55,7 @@ def test_sensitivities_agree_with_differences(abscissa):
     )
     names = FREE if abscissa == "speed" else ("roughness", "load")
     free = free_inputs(TRUE, data, names, FitSettings(per_curve=("roughness",)))
-    model, parts = FrictionModel(TRUE, data, free), solved_parts("paper", 1e-7)
+    model, parts = FrictionModel(TRUE, data, free), solved_parts("published", 1e-7)
     jacobian = model.predict(np.zeros(len(free)), parts).jacobian
     step = 3e-3
     for i in range(len(free)):
@@ -93,7 +93,9 @@ def test_the_prediction_is_the_friction_of_the_contacts(abscissa):
 def test_atlas_and_solver_give_the_same_prediction():
     data = noisy(1)
     model = FrictionModel(TRUE, data, free_inputs(TRUE, data, FREE, FitSettings()))
-    quick, slow = (model.predict(np.zeros(len(FREE)), parts) for parts in (atlas_parts("paper"), solved_parts("paper", 1e-8)))
+    quick, slow = (
+        model.predict(np.zeros(len(FREE)), parts) for parts in (atlas_parts("published"), solved_parts("published", 1e-8))
+    )
     assert quick.friction == pytest.approx(slow.friction, rel=2.4e-5)
     assert quick.jacobian == pytest.approx(slow.jacobian, abs=1e-4)
 
@@ -147,7 +149,7 @@ def test_covariance_is_that_of_the_linearised_least_squares(fitted):
 def test_an_end_of_an_interval_is_where_the_best_fit_is_worse_by_the_quantile(fitted):
     from scipy.stats import t
 
-    goal = replace(fitted._minimum.objective, parts_of=atlas_parts("paper"))
+    goal = replace(fitted._minimum.objective, parts_of=atlas_parts("published"))
     at = minimise(goal, fitted._minimum.theta)
     for i, each in enumerate(fitted.inputs):
         for level, ends in ((0.682689492137086, each.interval_68), (0.95, each.interval_95)):
@@ -386,7 +388,7 @@ def test_a_fit_stopped_short_of_the_optimum_says_so():
     data = noisy(1)
     goal = objective(
         FrictionModel(TRUE, data, free_inputs(TRUE, data, ("roughness",), FitSettings())),
-        atlas_parts("paper"),
+        atlas_parts("published"),
         FitSettings(),
         False,
     )
@@ -455,7 +457,7 @@ def test_the_band_is_the_spread_of_the_fitted_curve(fitted):
     friction, low, high = fitted.band(0, speeds)
     theta = np.random.default_rng(9).multivariate_normal(fitted._minimum.theta, fitted.covariance, 400)
     model = fitted._minimum.objective.model
-    drawn = np.array([model.predict(t, atlas_parts("paper"), (np.zeros(3, dtype=int), speeds)).friction for t in theta])
+    drawn = np.array([model.predict(t, atlas_parts("published"), (np.zeros(3, dtype=int), speeds)).friction for t in theta])
     spread = np.log(drawn).std(axis=0)
     assert np.log(high / friction) == pytest.approx(math.sqrt(fitted._threshold) * spread, rel=0.15)
     assert low * high == pytest.approx(friction**2)

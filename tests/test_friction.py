@@ -1,9 +1,15 @@
 """The friction of a state: its two parts, and the two definitions of its viscous part."""
 
+import inspect
+
 import pytest
 
 import stribeck as sb
+from stribeck.cases.case import Case
 from stribeck.contacts.friction import DEFINITIONS
+from stribeck.curves.elasticities import friction_elasticities
+from stribeck.explorer.inputs import Inputs
+from stribeck.regimes.distances import transition_distances
 
 MIXED = (1e-5, 0.1, 1e-4)
 
@@ -19,9 +25,9 @@ def test_friction_is_boundary_friction_times_load_share_and_beta_times_the_visco
 
 def test_the_definitions_agree_where_asperities_carry_nothing_and_not_in_the_boundary_regime(solved):
     smooth, rough = solved(1e-4, 0.1, 0.0), solved(1e-8, 0.1, 1e-4)
-    published, balanced = (smooth.friction(definition=d) for d in DEFINITIONS)
+    balanced, published = (smooth.friction(definition=d) for d in DEFINITIONS)
     assert published.viscous == pytest.approx(balanced.viscous, rel=1e-6)
-    published, balanced = (rough.friction(definition=d) for d in DEFINITIONS)
+    balanced, published = (rough.friction(definition=d) for d in DEFINITIONS)
     assert published.viscous == pytest.approx(70.55 * balanced.viscous, rel=1e-4)
 
 
@@ -43,3 +49,21 @@ def test_a_former_name_of_the_boundary_friction_is_refused_with_the_present_one(
 def test_a_state_refuses_the_former_name_too(solved):
     with pytest.raises(sb.InputError, match="write boundary_friction"):
         solved(*MIXED).friction(mu0=0.5)
+
+
+def test_friction_is_balanced_unless_the_published_one_is_asked_for(solved):
+    state = solved(*MIXED)
+    assert state.friction() == state.friction(definition="balanced") != state.friction(definition="published")
+    assert sb.atlas.friction(state.groups) == sb.atlas.friction(state.groups, definition="balanced")
+    batch = sb.solve_batch(sb.Groups([1e-5], 0.1, 1e-4))
+    assert batch.friction() == batch.friction(definition="balanced")
+    defaults = {
+        function.__name__: inspect.signature(function).parameters["definition"].default
+        for function in (sb.stribeck_curve, sb.phase_diagram, transition_distances, friction_elasticities)
+    }
+    assert set(defaults.values()) == {"balanced"} == {Case.definition, Inputs.definition}, defaults
+
+
+def test_the_former_name_of_the_published_friction_is_refused_with_the_present_one(solved):
+    with pytest.raises(sb.InputError, match="The friction of the paper is called 'published'"):
+        solved(*MIXED).friction(definition="paper")

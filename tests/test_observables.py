@@ -55,17 +55,17 @@ def test_the_friction_integrals_of_a_parabola_are_their_closed_forms():
         width = math.sqrt(height)
         mesh = Mesh(base_edges(0.5, 64.0) * max(width, 0.5), 24)
         gap = height + mesh.nodes**2 / 2
-        paper, balanced = mesh.weights @ friction_integrands(mesh.nodes, gap, 4 * height / 3).T
+        published, balanced = mesh.weights @ friction_integrands(mesh.nodes, gap, 4 * height / 3).T
         exact = 2**1.5 * math.pi / width
         assert balanced == pytest.approx(exact, rel=1e-11)
-        assert paper == pytest.approx(exact, rel=1e-11)
+        assert published == pytest.approx(exact, rel=1e-11)
 
 
 def test_the_integrands_are_the_formulas():
     rng = np.random.default_rng(SEED)
     x, h, h_star = rng.normal(size=30), rng.uniform(0.1, 2, 30), 0.7
-    paper, balanced = friction_integrands(x, h, h_star)
-    assert np.allclose(paper, (1 - 3 * (h - h_star) / h + 6 * (h - h_star) / h**2 * x**2 / 2) / h, rtol=1e-13)
+    published, balanced = friction_integrands(x, h, h_star)
+    assert np.allclose(published, (1 - 3 * (h - h_star) / h + 6 * (h - h_star) / h**2 * x**2 / 2) / h, rtol=1e-13)
     assert np.allclose(balanced, (1 + 3 * (h - h_star) / h) / h, rtol=1e-13)
 
 
@@ -115,7 +115,7 @@ def test_the_gradient_of_each_observable_is_its_derivative(case, name):
         difference = (up - down) / (2 * step)
         # The printed friction answers through the moment of the pressure on the panels in x, all but its far
         # end; the least gap answers at the node next to it.
-        allowed = {"viscous_paper": 2e-3, "minimum_gap": 2e-2}.get(name, 1e-5)
+        allowed = {"viscous_published": 2e-3, "minimum_gap": 2e-2}.get(name, 1e-5)
         scale = np.abs(row) @ np.abs(change)
         assert abs(row @ change - difference) <= allowed * scale + 1e-13, name
 
@@ -126,7 +126,7 @@ def test_at_speed_zero_only_contact_has_gradients(solved):
     equations = Equations(Operators(s.mesh), 0.0, contact_law(groups), s.flux_gap**2)
     y = np.concatenate([s.nodal_gap, [s.offset, s.flux_gap]])
     rows = gradients(equations, y, groups.load)
-    for name in ("fluid_load_share", "viscous_paper", "viscous_balanced"):
+    for name in ("fluid_load_share", "viscous_published", "viscous_balanced"):
         assert not rows[NAMES.index(name)].any()
 
 

@@ -51,7 +51,7 @@ def test_the_exponents_are_those_of_the_groups(name):
     np.testing.assert_allclose(slope, EXPONENTS[name], atol=1e-12)
 
 
-@pytest.mark.parametrize(("speed", "definition"), [(1e-3, "paper"), (0.03, "balanced")])
+@pytest.mark.parametrize(("speed", "definition"), [(1e-3, "published"), (0.03, "balanced")])
 def test_elasticities_agree_with_differences_of_cold_solves(speed, definition):
     contact = CONTACT.replace(speed=speed)
     solution, found = friction_elasticities(contact, rtol=1e-9, definition=definition)
@@ -102,7 +102,7 @@ def test_bad_settings_are_refused(arguments):
 # --- the way to the next regime ---
 
 
-def shares(contact, definition="paper"):
+def shares(contact, definition="published"):
     """Return regime, the fluid's share of the load and the asperities' share of the friction."""
     solution = sb.solve(contact, rtol=1e-8)
     friction = solution.friction(definition=definition)
@@ -125,7 +125,7 @@ def mixed():
 
 @pytest.mark.parametrize(
     ("changes", "definition"),
-    [({}, "paper"), ({"speed": 1e-5}, "paper"), ({"load": 2.0, "speed": 1e-2}, "balanced")],
+    [({}, "published"), ({"speed": 1e-5}, "published"), ({"load": 2.0, "speed": 1e-2}, "balanced")],
 )
 def test_at_a_crossing_the_named_regime_begins(changes, definition):
     contact = CONTACT.replace(**changes)

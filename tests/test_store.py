@@ -83,14 +83,14 @@ def test_a_dataset_holds_every_observable_of_every_point(curve, dataset):
         "error_estimate",
         "outcome",
     }
-    for name in names - {"friction_paper", "friction_balanced", "outcome"}:
+    for name in names - {"friction_published", "friction_balanced", "outcome"}:
         np.testing.assert_allclose(dataset[name], [s.to_dict()[name] for s in curve.solutions], rtol=1e-14)
-    for definition in ("paper", "balanced"):
+    for definition in ("published", "balanced"):
         found = [s.friction(definition=definition) for s in curve.solutions]
         np.testing.assert_array_equal(dataset[f"friction_{definition}"], [f.total for f in found])
         np.testing.assert_array_equal(dataset[f"friction_{definition}_viscous"], [f.viscous for f in found])
         np.testing.assert_array_equal(dataset[f"friction_{definition}_error"], [f.error for f in found])
-    np.testing.assert_array_equal(dataset.friction, dataset.friction_paper)
+    np.testing.assert_array_equal(dataset.friction, dataset.friction_published)
     np.testing.assert_allclose(dataset.friction, dataset.friction_contact + dataset.friction_viscous, rtol=1e-14)
     assert dataset.regime.values.tolist() == list(curve.regimes)
     assert set(dataset.outcome.values.tolist()) == {"CONVERGED"}
@@ -124,7 +124,7 @@ def test_the_attributes_tell_settings_landmarks_and_outcome(curve, dataset):
     assert attributes["complete"] == 1
     assert attributes["points"] == attributes["requested_points"] == 7
     assert attributes["contact_law"] == "exponential"
-    assert attributes["definition"] == "paper"
+    assert attributes["definition"] == "published"
     assert attributes["minimum_speed"] == curve.minimum.value
     assert attributes["minimum_friction"] == curve.minimum.friction
     assert attributes["transition_names"].split("; ") == [mark.name for mark in curve.transitions]

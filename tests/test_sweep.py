@@ -39,7 +39,7 @@ def test_scattered_states_are_those_that_solve_gives_from_cold(tmp_path):
         for name in ("contact_load_share", "central_gap", "minimum_gap", "flux_gap"):
             error = float(found[f"{name}_error"][i]) + state.errors[name]
             assert float(found[name][i]) == pytest.approx(getattr(state, name), rel=error, abs=error)
-        for definition in ("paper", "balanced"):
+        for definition in ("published", "balanced"):
             friction = state.friction(definition=definition)
             error = float(found[f"friction_{definition}_error"][i]) + friction.error
             assert float(found[f"friction_{definition}"][i]) == pytest.approx(friction.total, abs=error)
@@ -63,7 +63,7 @@ def test_a_contact_has_its_films_in_si_units_and_its_notes(tmp_path):
         assert contact.speed == speed
         state = sb.solve(contact)
         assert float(found.central_film_thickness[i]) == pytest.approx(state.central_gap * contact.hertz.indentation, rel=2e-6)
-        assert float(found.friction_paper[i]) == pytest.approx(state.friction().total, rel=2e-6)
+        assert float(found.friction_published[i]) == pytest.approx(state.friction().total, rel=2e-6)
         assert found.message[i].item() == "\n".join(state.notes)
 
 
@@ -73,10 +73,10 @@ def test_the_coefficients_scale_friction_on_the_same_states(tmp_path):
     )
     found = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset()
     cube = {
-        name: found[name].values.reshape(2, 2, 2) for name in ("central_gap", "friction_paper_viscous", "friction_contact")
+        name: found[name].values.reshape(2, 2, 2) for name in ("central_gap", "friction_published_viscous", "friction_contact")
     }
     assert np.ptp(cube["central_gap"], axis=(0, 1)).tolist() == [0, 0]
-    assert cube["friction_paper_viscous"][:, 1] == pytest.approx(0.1 * cube["friction_paper_viscous"][:, 0])
+    assert cube["friction_published_viscous"][:, 1] == pytest.approx(0.1 * cube["friction_published_viscous"][:, 0])
     assert cube["friction_contact"][1] == pytest.approx(2 * cube["friction_contact"][0])
 
 
@@ -126,8 +126,8 @@ def test_a_failed_state_keeps_its_outcome_and_costs_no_other(tmp_path, monkeypat
     assert found.failed == hit.sum() == 8
     assert found.outcomes == {"CONVERGED": 60, "PATH_LOST": 8}
     assert set(table.outcome.values[hit]) == {"PATH_LOST"}
-    assert np.isnan(table.friction_paper.values[hit]).all()
-    assert np.isfinite(table.friction_paper.values[~hit]).all()
+    assert np.isnan(table.friction_published.values[hit]).all()
+    assert np.isfinite(table.friction_published.values[~hit]).all()
     assert all(Outcome.PATH_LOST.value in text for text in table.message.values[hit])
 
 
@@ -147,7 +147,7 @@ def test_a_state_that_rounding_bounds_keeps_its_value_with_its_error(tmp_path):
     bounded = found.outcome.values == "ROUNDING"
     assert bounded.any()
     assert (found.error_estimate.values[bounded] > 1e-11).all()
-    assert np.isfinite(found.friction_paper.values[bounded]).all()
+    assert np.isfinite(found.friction_published.values[bounded]).all()
     assert all("Double precision bounds" in text for text in found.message.values[bounded])
 
 
@@ -397,7 +397,7 @@ def right(sweep, step=16):
     found = sweep.to_dataset()
     for i in range(0, len(sweep), step):
         state = sb.solve(sb.Groups(*(float(found[f"{name}_group"][i]) for name in ("speed", "load", "roughness"))))
-        assert float(found.friction_paper[i]) == pytest.approx(state.friction().total, rel=2e-6)
+        assert float(found.friction_published[i]) == pytest.approx(state.friction().total, rel=2e-6)
 
 
 def test_a_killed_worker_process_is_replaced(tmp_path):

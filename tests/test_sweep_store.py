@@ -62,7 +62,7 @@ def test_the_dataset_holds_what_solve_gives(filled):
         state = sb.solve(groups)
         for name in ("contact_load_share", "central_gap", "minimum_gap", "flux_gap", "offset"):
             assert float(found[name][i]) == pytest.approx(getattr(state, name), rel=2e-6, abs=2e-6)
-        for definition in ("paper", "balanced"):
+        for definition in ("published", "balanced"):
             friction = state.friction(0.8, 0.05, definition)
             assert float(found[f"friction_{definition}"][i]) == pytest.approx(friction.total, rel=2e-6)
             assert float(found[f"friction_{definition}_viscous"][i]) == pytest.approx(friction.viscous, rel=2e-6)
@@ -99,7 +99,7 @@ def test_states_not_computed_say_so(copy):
     (store / "done" / "c.4").unlink()
     found = sb.open_sweep(store).to_dataset()
     assert found.outcome.values.tolist() == ["CONVERGED"] * 4 + ["NOT_COMPUTED"] + ["CONVERGED"] * 7
-    assert np.isnan(found.friction_paper[4]) and found.regime[4] == ""
+    assert np.isnan(found.friction_published[4]) and found.regime[4] == ""
     assert found.attrs["complete"] == 0
 
 

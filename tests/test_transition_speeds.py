@@ -13,7 +13,7 @@ NAMES = {
 }
 
 
-@pytest.mark.parametrize("definition", ["paper", "balanced"])
+@pytest.mark.parametrize("definition", ["published", "balanced"])
 @pytest.mark.parametrize(("load", "boundary_friction", "beta"), [(0.098, 0.7, 0.06), (0.003, 1.0, 0.01)])
 def test_they_are_those_of_solved_curves_within_the_stated_error(load, boundary_friction, beta, definition):
     roughness = load * np.array([1e-3, 0.03, 0.2])
@@ -59,7 +59,7 @@ def test_what_holds_at_all_speeds_asked_for_is_at_zero_and_what_never_does_at_in
 
 def test_shares_and_friction_are_those_of_the_single_functions():
     groups = sb.Groups(np.geomspace(1e-9, 1e2, 23), 0.05, 0.002)
-    for definition in ("paper", "balanced"):
+    for definition in ("published", "balanced"):
         found = sb.atlas.shares_and_friction(groups, 0.8, 0.05, definition)
         expected = [
             sb.atlas.fluid_load_share(groups),

@@ -30,7 +30,7 @@ def solved():
 
 
 @pytest.mark.parametrize("beta", [1.0, 0.03])
-@pytest.mark.parametrize("definition", ["paper", "balanced"])
+@pytest.mark.parametrize("definition", ["published", "balanced"])
 def test_friction_is_within_three_percent_in_the_median_and_the_stated_worst(solved, beta, definition):
     groups, solutions = solved
     right = np.array([s.friction(1.0, beta, definition).total for s in solutions])
@@ -115,7 +115,7 @@ def test_slow_contacts_share_the_load_as_the_perturbation_says(load):
 @pytest.mark.quick
 def test_fast_contacts_have_the_friction_of_the_smooth_film():
     groups = sb.Groups([1.0, 10.0, 100.0], 0.1, 1e-4)
-    for definition in ("paper", "balanced"):
+    for definition in ("published", "balanced"):
         assert uniform.friction(groups, definition=definition) == pytest.approx(
             hydrodynamic.friction_uniform(groups), rel=1e-9
         )
@@ -160,7 +160,7 @@ def test_a_share_that_is_none_is_refused(share):
 
 @pytest.mark.parametrize("law", [uniform.friction, uniform.viscous_friction])
 def test_an_unknown_definition_is_refused(law):
-    with pytest.raises(sb.InputError, match="it must be 'paper' or 'balanced'"):
+    with pytest.raises(sb.InputError, match="it must be 'balanced' or 'published'"):
         law(sb.Groups(1e-5, 0.1, 1e-4), definition="printed")
 
 

@@ -58,7 +58,7 @@ Value = float | Array
 
 
 @refuse_former
-def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Value:
+def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced") -> Value:
     r"""Return the friction coefficient.
 
     .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \mu_f
@@ -69,7 +69,7 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
         The states [-]; arrays broadcast.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction, theory.md, section 6.
 
     Returns
@@ -92,7 +92,7 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
     return _shaped(groups, boundary_friction * _contact(odds) + _viscous(flat, viscous, beta))
 
 
-def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition = "paper") -> Value:
+def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition = "balanced") -> Value:
     """Return the part of the friction coefficient that the fluid causes.
 
     Parameters
@@ -101,7 +101,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
         The states [-]; arrays broadcast.
     beta : float
         Coefficient of the contact law [-].
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction, theory.md, section 6.
 
     Returns
@@ -121,7 +121,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
 
 @refuse_former
 def friction_derivatives(
-    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper"
+    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced"
 ) -> Array:
     r"""Return the derivatives of the friction coefficient with respect to the logarithms of the groups.
 
@@ -134,7 +134,7 @@ def friction_derivatives(
         The states [-]; arrays broadcast.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction, theory.md, section 6.
 
     Returns
@@ -156,7 +156,7 @@ def friction_derivatives(
     return boundary_friction * contact_slopes + beta * viscous_slopes
 
 
-def friction_parts(groups: Groups, definition: Definition = "paper") -> tuple[Array, Array, Array]:
+def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple[Array, Array, Array]:
     r"""Return both parts of the friction for boundary_friction = beta = 1, and the derivatives of each.
 
     .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
@@ -165,7 +165,7 @@ def friction_parts(groups: Groups, definition: Definition = "paper") -> tuple[Ar
     ----------
     groups : Groups
         The states [-]; arrays broadcast.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction, theory.md, section 6.
 
     Returns
@@ -202,7 +202,7 @@ def friction_parts(groups: Groups, definition: Definition = "paper") -> tuple[Ar
 
 @refuse_former
 def shares_and_friction(
-    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper"
+    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced"
 ) -> Array:
     """Return at once what tells the regimes apart, at the cost of one of its parts.
 
@@ -212,7 +212,7 @@ def shares_and_friction(
         The states [-]; arrays broadcast.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction, theory.md, section 6.
 
     Returns

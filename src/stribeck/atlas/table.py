@@ -34,7 +34,7 @@ from stribeck.atlas.grid import (
     region_at,
 )
 
-TABULATED = ("log_odds", "viscous_paper", "viscous_balanced", "central_gap", "minimum_gap", "flux_gap", "deflection")
+TABULATED = ("log_odds", "viscous_published", "viscous_balanced", "central_gap", "minimum_gap", "flux_gap", "deflection")
 r"""What is tabulated, in the order of the table: the logarithms of fluid over contact share, of both viscous frictions over
 :math:`\beta \bar F_N^{1/2} \lambda` and of the three gaps, and the offset less the central gap. Below the first speed that
 segments end at, twice the logarithm of the speed is taken off the first."""

@@ -45,7 +45,7 @@ class BatchSolution:
         Where the gap is least [a].
     offset : ndarray
         Height of the apex of the undeformed cylinder [u_Hz].
-    viscous_paper, viscous_balanced : ndarray
+    viscous_published, viscous_balanced : ndarray
         Viscous friction for beta = 1 in its two definitions [-].
     relative_errors : ndarray, shape (8, ...)
         Estimated relative errors of the observables, absolute for the load shares; by name in :attr:`errors`.
@@ -61,7 +61,7 @@ class BatchSolution:
     minimum_position: Array = field(repr=False)
     flux_gap: Array = field(repr=False)
     offset: Array = field(repr=False)
-    viscous_paper: Array = field(repr=False)
+    viscous_published: Array = field(repr=False)
     viscous_balanced: Array = field(repr=False)
     relative_errors: Array = field(repr=False)
 
@@ -80,7 +80,7 @@ class BatchSolution:
         """Estimated relative error of each observable; absolute for the load shares."""
         return dict(zip(NAMES, self.relative_errors, strict=True))
 
-    def friction(self, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Array:
+    def friction(self, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced") -> Array:
         r"""Return the friction coefficients.
 
         .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
@@ -91,7 +91,7 @@ class BatchSolution:
             Friction coefficient of the dry contact [-], >= 0.
         beta : float
             Coefficient of the contact law [-], > 0.
-        definition : {"paper", "balanced"}
+        definition : {"balanced", "published"}
             Definition of the viscous part, theory.md, section 6.
 
         Returns

@@ -31,7 +31,7 @@ __all__ = [
 ]
 
 Axis = Literal["speed", "load", "roughness"]
-Definition = Literal["paper", "balanced"]
+Definition = Literal["balanced", "published"]
 
 _LARGEST_FILE = 1_000_000  # [byte]
 
@@ -77,7 +77,7 @@ class Case:
         The ``[curve]`` table.
     rtol : float
         Relative tolerance asked of the solver, from the ``[solver]`` table.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Which friction force the outputs show, from the ``[solver]`` table.
     title : str
         Headline for outputs; empty where the file has none.
@@ -94,7 +94,7 @@ class Case:
     law: Law = "exponential"
     curve: CurveSettings = field(default_factory=CurveSettings)
     rtol: float = 1e-6
-    definition: Definition = "paper"
+    definition: Definition = "balanced"
     title: str = ""
     notes: str = ""
     fit: FitSettings = field(default_factory=FitSettings)
@@ -360,7 +360,7 @@ def _model() -> Any:
             float,
             Field(strict=True, ge=1e-11, le=1e-2, description="a number from 1e-11 to 1e-2, without quotes"),
         ] = Case.rtol
-        definition: Annotated[Definition, Field(description="'paper' or 'balanced'")] = Case.definition
+        definition: Annotated[Definition, Field(description="'balanced' or 'published'")] = Case.definition
 
     class File(Table):
         contact: Annotated[Contact, Field(description="a table, [contact]")]

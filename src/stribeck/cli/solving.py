@@ -79,7 +79,7 @@ def solve_command(
     plot
         Draw gap and pressure to this file (.png, .svg or .pdf).
     json
-        Print JSON: every observable under its name, friction_paper, friction_balanced; with a case SI values.
+        Print JSON: every observable under its name, friction_published, friction_balanced; with a case SI values.
     force
         Replace an existing file.
     """

@@ -11,10 +11,10 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["DEFINITIONS", "Definition", "Friction", "check_definition", "coefficients"]
 
-Definition = Literal["paper", "balanced"]
+Definition = Literal["balanced", "published"]
 
-DEFINITIONS: tuple[Definition, ...] = ("paper", "balanced")
-"""Definitions of the viscous friction: Eq. (friction) of [BP], and the force on the substrate (theory.md, section 6)."""
+DEFINITIONS: tuple[Definition, ...] = ("balanced", "published")
+"""Definitions of the viscous friction: the force on the substrate, and Eq. (friction) of [BP] (theory.md, section 6)."""
 
 
 @dataclass(frozen=True)
@@ -55,4 +55,5 @@ def check_definition(definition: str) -> Definition:
     for known in DEFINITIONS:
         if definition == known:
             return known
-    raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.")
+    hint = " The friction of the paper is called 'published'." if definition == "paper" else ""
+    raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.{hint}")

@@ -61,7 +61,7 @@ class AtlasCurve:
         The contact.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction.
     """
 

@@ -35,7 +35,7 @@ def friction_elasticities(
     contact: LineContact,
     *,
     rtol: float = 1e-6,
-    definition: Definition = "paper",
+    definition: Definition = "balanced",
     method: Method = "solver",
 ) -> tuple[Solution | None, dict[str, float]]:
     r"""Solve a contact and tell how its friction answers to each input.
@@ -55,7 +55,7 @@ def friction_elasticities(
         The contact.
     rtol : float
         Relative tolerance of the state.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction.
     method : {"solver", "atlas"}
         Whether the state is solved, or read off :mod:`stribeck.atlas`, where nothing but the numbers comes back.

@@ -49,7 +49,7 @@ class StribeckCurve:
         The contact, at its own speed, load and roughness.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of each state.

@@ -79,7 +79,7 @@ def stribeck_curve(
     rtol: float = 1e-6,
     boundary_friction: float | None = None,
     beta: float | None = None,
-    definition: Definition = "paper",
+    definition: Definition = "balanced",
     on_point: Callable[[int, int], object] | None = None,
     law: str | LawShape | None = None,
     method: Method = "solver",
@@ -100,7 +100,7 @@ def stribeck_curve(
         Relative tolerance of each state.
     boundary_friction, beta : float, optional
         Friction coefficient of the dry contact and coefficient of the contact law [-]; those of the contact, or 1.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction, see :meth:`Solution.friction`.
     on_point : callable, optional
         ``on_point(done, points)`` is called after each point, for progress.

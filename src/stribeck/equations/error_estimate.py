@@ -71,7 +71,7 @@ GAP_FLOOR = 1e-3
 
 SHARES = [ROW["contact_load_share"], ROW["fluid_load_share"]]
 GAPS = [ROW["central_gap"], ROW["minimum_gap"]]
-FRICTION = [ROW["viscous_paper"], ROW["viscous_balanced"]]
+FRICTION = [ROW["viscous_published"], ROW["viscous_balanced"]]
 
 
 def _by_highest(s: Array, order: int) -> Array:

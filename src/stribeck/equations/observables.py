@@ -5,7 +5,7 @@ Friction is kept for beta = 1 and in the two definitions of :data:`DEFINITIONS`;
 
 .. math::
 
-    \mu_f^\mathrm{paper} &= C \int \frac1h \left[1 - 3\frac{h-h^*}{h} + 6\frac{h-h^*}{h^2}\frac{x^2}{2}\right] dx \\
+    \mu_f^\mathrm{published} &= C \int \frac1h \left[1 - 3\frac{h-h^*}{h} + 6\frac{h-h^*}{h^2}\frac{x^2}{2}\right] dx \\
     \mu_f^\mathrm{balanced} &= C \int \frac1h \left[1 + 3\frac{h-h^*}{h}\right] dx
 
 The first is Eq. (friction) of [BP], the force on the cylinder with the contact pressure left unprojected.  The second is the
@@ -33,7 +33,7 @@ NAMES = (
     "minimum_gap",
     "flux_gap",
     "offset",
-    "viscous_paper",
+    "viscous_published",
     "viscous_balanced",
 )
 """The observables, in the order of every array of them here."""
@@ -56,7 +56,7 @@ class Observables:
     minimum_position: float
     flux_gap: float
     offset: float
-    viscous_paper: float
+    viscous_published: float
     viscous_balanced: float
 
     def array(self) -> Array:
@@ -151,8 +151,8 @@ def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
         weights, moment = scale * mesh.weights * u * u, -6 * scale * op.moment_of_gradient
         rows["fluid_load_share"][..., of_gap] = of_load * g_h
         rows["fluid_load_share"][..., flux] = (of_load * g_flux).sum(axis=-1)
-        rows["viscous_paper"][..., of_gap] = weights * (2 - 6 * h_star * u) + moment * g_h
-        rows["viscous_paper"][..., flux] = 3 * weights.sum(axis=-1) + (moment * g_flux).sum(axis=-1)
+        rows["viscous_published"][..., of_gap] = weights * (2 - 6 * h_star * u) + moment * g_h
+        rows["viscous_published"][..., flux] = 3 * weights.sum(axis=-1) + (moment * g_flux).sum(axis=-1)
         rows["viscous_balanced"][..., of_gap] = weights * (6 * h_star * u - 4)
         rows["viscous_balanced"][..., flux] = -3 * weights.sum(axis=-1)
     first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order

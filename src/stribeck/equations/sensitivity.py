@@ -15,7 +15,7 @@ from stribeck.equations.observables import friction_integrals, friction_scale, o
 from stribeck.equations.state import State
 
 GROUPS = ("speed", "load", "roughness")
-FRICTIONS = ("viscous_paper", "viscous_balanced")
+FRICTIONS = ("viscous_published", "viscous_balanced")
 
 STEP = 1e-5
 """Relative step of the central differences that carry the change of the unknowns to the friction integrals."""

@@ -65,10 +65,10 @@ def solved(log_speeds: Array, log_load: float, kappa: float, rtol: float) -> Arr
 
 def tabulated(observed: Array, log_speeds: Array, log_load: float) -> Array:
     """Return the functions of :data:`TABULATED` on solved states, shape (states, functions)."""
-    contact, fluid, central, minimum, flux, offset, paper, balanced = observed.T
+    contact, fluid, central, minimum, flux, offset, published, balanced = observed.T
     scale = log_speeds - 0.5 * log_load
     with np.errstate(divide="ignore"):
-        logs = [np.log(fluid) - np.log(contact), np.log(paper) - scale, np.log(balanced) - scale]
+        logs = [np.log(fluid) - np.log(contact), np.log(published) - scale, np.log(balanced) - scale]
     return np.stack([*logs, np.log(central), np.log(minimum), np.log(flux), offset - central], axis=1)
 
 

@@ -35,14 +35,14 @@ SHARED = 0.01
 TRIES = 20
 """States drawn for each in mixed lubrication; about one in nine is."""
 
-FRICTIONS = ((1.0, "paper"), (1.0, "balanced"), (0.01, "paper"), (0.01, "balanced"))
+FRICTIONS = ((1.0, "published"), (1.0, "balanced"), (0.01, "published"), (0.01, "balanced"))
 """Coefficients of the contact law and definitions, at friction coefficient 1 of the dry contact."""
 
 FILMS = ("central_gap", "minimum_gap", "flux_gap")
 
 QUANTITIES = (
     *(f"friction, {definition}, beta = {beta:g}" for beta, definition in FRICTIONS),
-    "viscous friction, paper",
+    "viscous friction, published",
     "viscous friction, balanced",
     *FILMS,
     "offset",
@@ -119,14 +119,17 @@ def certify(states: int, seed: int, workers: int = 1, mixed: bool = False) -> Ce
 def compare(speed: Array, load: Array, kappa: Array, observed: Array) -> Certificate:
     """Return the errors of the atlas on solved states."""
     groups = Groups(speed, load, kappa * load)
-    contact, fluid, central, minimum, flux, offset, paper, balanced = observed.T
-    viscous = {"paper": paper, "balanced": balanced}
+    contact, fluid, central, minimum, flux, offset, published, balanced = observed.T
+    viscous = {"published": published, "balanced": balanced}
     found = [
-        np.abs(atlas.friction(groups, 1.0, beta, "balanced" if definition == "balanced" else "paper"))
+        np.abs(atlas.friction(groups, 1.0, beta, "balanced" if definition == "balanced" else "published"))
         / (contact + beta * viscous[definition])
         for beta, definition in FRICTIONS
     ]
-    found += [atlas.viscous_friction(groups) / paper, atlas.viscous_friction(groups, 1.0, "balanced") / balanced]
+    found += [
+        atlas.viscous_friction(groups, 1.0, "published") / published,
+        atlas.viscous_friction(groups, 1.0, "balanced") / balanced,
+    ]
     found += [atlas.central_gap(groups) / central, atlas.minimum_gap(groups) / minimum, atlas.flux_gap(groups) / flux]
     found += [1 + (atlas.offset(groups) - offset) / np.maximum(np.abs(offset), OFFSET_FLOOR)]
     contact_counts = np.where(contact > LEAST_SHARE, contact, np.nan)

@@ -66,7 +66,7 @@ def _curve(groups: Groups, boundary_friction: float, beta: float, definition: De
 def _coefficients(options: dict[str, Any]) -> dict[str, Any]:
     """Return what the options of a formula ask of the solver: 1 and the definition of the paper, where they do not say."""
     definition = options.get("definition", options.get("viscous"))
-    known = definition if definition in DEFINITIONS else "paper"
+    known = definition if definition in DEFINITIONS else "published"
     return {"boundary_friction": options.get("boundary_friction", 1.0), "beta": options.get("beta", 1.0), "definition": known}
 
 

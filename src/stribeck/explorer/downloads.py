@@ -13,6 +13,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from stribeck.cases.case import Case, load_case
+from stribeck.contacts.friction import DEFINITIONS
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import Curve
 from stribeck.explorer.inputs import FIELDS, Inputs, exact_text
@@ -140,10 +141,16 @@ def curves_text(shown: Shown) -> str:
         file.write(f"# {name}: {found.source}\n")
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(
-        ["curve", "speed [m/s]", "hersey_number [1]", "friction_paper [1]", "friction_balanced [1]", "friction_contact [1]"]
+        [
+            "curve",
+            "speed [m/s]",
+            "hersey_number [1]",
+            *(f"friction_{name} [1]" for name in DEFINITIONS),
+            "friction_contact [1]",
+        ]
     )
     for name, found, factor in (*curves, *shown.pins):
-        columns = (found.speed, found.speed * factor, found.friction["paper"], found.friction["balanced"], found.contact)
+        columns = (found.speed, found.speed * factor, *(found.friction[name] for name in DEFINITIONS), found.contact)
         writer.writerows([name, *map(float, row)] for row in zip(*columns, strict=True))
     for each in shown.measured:
         rows = zip(each.speed, each.speed * hersey, each.friction, strict=True)

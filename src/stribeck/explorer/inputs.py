@@ -92,7 +92,7 @@ class Inputs:
         The contact.
     units : mapping of str to str
         The unit of each field that has one.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         The friction by which curves, regimes and distances go.
     abscissa : {"speed", "hersey"}
         What the curve is drawn over.
@@ -102,7 +102,7 @@ class Inputs:
 
     contact: LineContact
     units: Mapping[str, str] = field(default_factory=dict)
-    definition: Definition = "paper"
+    definition: Definition = "balanced"
     abscissa: Abscissa = "speed"
     title: str = ""
 

@@ -32,7 +32,7 @@ PATIENCE = 2.0
 LARGEST_FILE = 5_000_000
 REJECTED = f"Only .toml, .csv and .txt are read, up to {LARGEST_FILE // 1_000_000} MB."
 
-DEFINITIONS = {"paper": "as printed", "balanced": "balanced"}
+DEFINITIONS = {"balanced": "balanced", "published": "as published"}
 ABSCISSAS = {"speed": "speed", "hersey": "Hersey number"}
 
 

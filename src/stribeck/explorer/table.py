@@ -62,7 +62,7 @@ def numbers(answer: Answer) -> list[Row]:
     solution, contact = answer.solution, answer.inputs.contact
     errors, scales = solution.errors, contact.hertz
     rows = []
-    for definition, name in (("paper", "Friction µ, as printed"), ("balanced", "Friction µ, balanced")):
+    for definition, name in (("balanced", "Friction µ, balanced"), ("published", "Friction µ, as published")):
         friction = solution.friction(definition=definition)  # type: ignore[arg-type]
         rows.append(_row(f"friction_{definition}", name, friction.total, friction.error))
     chosen = solution.friction(definition=answer.inputs.definition)

@@ -29,7 +29,7 @@ class Pin:
         What it is called.
     contact : LineContact
         Its contact.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Its friction.
     """
 

@@ -129,7 +129,7 @@ class Work:
                 raise
 
         try:
-            found: StribeckCurve = stribeck_curve(rtol=self.rtol, on_point=report, **arguments)
+            found: StribeckCurve = stribeck_curve(rtol=self.rtol, on_point=report, **{"definition": "published"} | arguments)
         except SolveError:
             if interrupted:
                 raise KeyboardInterrupt from None

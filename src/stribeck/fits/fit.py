@@ -163,7 +163,7 @@ class _Problem:
 
 def _problem(data: object, case: str | os.PathLike[str] | Case | LineContact) -> _Problem:
     if isinstance(case, LineContact):
-        return _Problem(case, FitSettings(), "paper", Case.rtol)
+        return _Problem(case, FitSettings(), Case.definition, Case.rtol)
     if not isinstance(case, Case):
         if not isinstance(case, str | os.PathLike):
             raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case or a LineContact.")

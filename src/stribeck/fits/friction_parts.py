@@ -64,7 +64,7 @@ def solved_parts(definition: Definition, rtol: float, law: LawShape | None = Non
 
     Parameters
     ----------
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of each state.

@@ -96,7 +96,7 @@ class Fit:
         The fitted contact of each curve.
     data : Measurements
         What was fitted to.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction.
     law : str
         Name of the contact law.

@@ -134,7 +134,7 @@ def transition_distances(
     contact: LineContact,
     *,
     rtol: float = 1e-6,
-    definition: Definition = "paper",
+    definition: Definition = "balanced",
     on_point: Callable[[int, int], object] | None = None,
 ) -> TransitionDistances:
     """Return by which factors of speed, load, roughness and viscosity the lubrication regime of a contact changes.
@@ -145,7 +145,7 @@ def transition_distances(
         The contact; zero speed and zero roughness are ordinary inputs.
     rtol : float
         Relative tolerance of the states that are scanned; the changes are located on finer ones.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction.
     on_point : callable, optional
         ``on_point(done, scans)`` is called after each state, for progress.

@@ -52,7 +52,7 @@ def phase_diagram(
     points: int | Mapping[str, int] | None = None,
     boundary_friction: float | None = None,
     beta: float | None = None,
-    definition: Definition = "paper",
+    definition: Definition = "balanced",
     rtol: float = 1e-4,
     merging: bool = False,
     on_point: Callable[[int, int], object] | None = None,
@@ -73,7 +73,7 @@ def phase_diagram(
         Points of the ranges, for all or by name; 2 loads, 25 roughnesses and 61 speeds where not given.
     boundary_friction, beta : float, optional
         Friction coefficient of the dry contact and coefficient of the contact law [-]; those of the contact, or 1.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of the states of the grid; transitions are located on finer ones.

@@ -58,7 +58,7 @@ def transition_speeds(
     roughness: Array,
     boundary_friction: float = 1.0,
     beta: float = 1.0,
-    definition: Definition = "paper",
+    definition: Definition = "balanced",
     speeds: tuple[float, float] = atlas.BOX["speed"],
     narrowings: int = NARROWINGS,
 ) -> TransitionSpeeds:
@@ -72,7 +72,7 @@ def transition_speeds(
         Roughness groups [-].
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction.
     speeds : tuple of float
         Least and largest speed group between which to look.

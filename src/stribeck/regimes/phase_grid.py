@@ -66,7 +66,7 @@ class Diagram:
         Values of load, roughness and speed, ascending.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of the states.

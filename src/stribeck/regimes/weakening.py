@@ -61,7 +61,7 @@ class Weakening:
     speed : float
         Speed group at which friction falls most steeply, or grows least.
     slope : float
-        d mu/d ln(speed) over the viscous friction (definition "paper") there [-]: negative where friction weakens with speed,
+        d mu/d ln(speed) over the published viscous friction there [-]: negative where friction weakens with speed,
         1 far down on the plateau, 0.4 to 0.7 on the hydrodynamic branch.
     minimum_speed : float
         Speed group of the minimum behind it; nan where there is no weakening.
@@ -100,7 +100,7 @@ class _Slopes:
                 raise SolveError(Outcome.PATH_LOST, None, f"{describe(self.at(s))}: {Outcome.PATH_LOST.value}")
             self.points[s] = point
             slope = float(friction_slopes(point.state, self.boundary_friction, self.beta, self.definition)[0])
-            self.found[s] = slope / (self.beta * point.values.viscous_paper)
+            self.found[s] = slope / (self.beta * point.values.viscous_published)
         return self.found[s]
 
     def friction(self, s: float) -> float:
@@ -117,7 +117,7 @@ def weakening(
     groups: Groups,
     boundary_friction: float | None = None,
     beta: float | None = None,
-    definition: Definition = "paper",
+    definition: Definition = "balanced",
     *,
     rtol: float = 1e-6,
 ) -> Weakening:
@@ -131,7 +131,7 @@ def weakening(
         One state, of which ``load`` and ``roughness`` count [-]; its speed is replaced.
     boundary_friction, beta : float, optional
         Friction coefficient of the dry contact and coefficient of the contact law [-]; 1 if not given.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of the states.
@@ -179,7 +179,7 @@ def merging_roughness(
     load: float,
     boundary_friction: float | None = None,
     beta: float | None = None,
-    definition: Definition = "paper",
+    definition: Definition = "balanced",
     *,
     criterion: Criterion = "slope",
     rtol: float = 1e-6,
@@ -193,7 +193,7 @@ def merging_roughness(
         Load group [-].
     boundary_friction, beta : float, optional
         Friction coefficient of the dry contact and coefficient of the contact law [-]; 1 if not given.  Their quotient counts.
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         Definition of the viscous friction.
     criterion : {"slope", "plateau"}
         ``"slope"``: from here on friction nowhere falls with speed.  ``"plateau"``: from here on the minimum of friction,

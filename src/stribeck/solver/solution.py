@@ -250,7 +250,7 @@ class Solution:
 
     @refuse_former
     def friction(
-        self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "paper"
+        self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
     ) -> Friction:
         r"""Return the friction coefficient.
 
@@ -262,9 +262,9 @@ class Solution:
             Friction coefficient of the dry contact [-], >= 0; that of the contact, or 1, if omitted.
         beta : float, optional
             Coefficient of the contact law [-], > 0; that of the contact, or 1, if omitted.
-        definition : {"paper", "balanced"}
-            Viscous part as the paper prints it, or as the force on the substrate, which balances all forces on the
-            cylinder.  They agree where asperities carry nothing; in boundary lubrication the printed one is larger.
+        definition : {"balanced", "published"}
+            Viscous part as the force on the substrate, which balances all forces on the cylinder, or as published.
+            They agree where asperities carry nothing; in boundary lubrication the published one is larger.
 
         Returns
         -------

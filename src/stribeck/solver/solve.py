@@ -210,7 +210,7 @@ def hertz_solution(groups: Groups, contact: LineContact | None, rtol: float) -> 
         minimum_position=0.0,
         flux_gap=0.0,
         offset=hertz.OFFSET,
-        viscous_paper=0.0,
+        viscous_published=0.0,
         viscous_balanced=0.0,
     )
     return Solution(

@@ -97,7 +97,7 @@ class Sweep:
         columns = {**_columns(self.about["inputs"], self._inputs()), **_columns(self.about["values"], self.rows.values)}
         codes, unit, label = columns.pop("outcome")
         names = [OUTCOMES[int(code)] if done else PENDING for code, done in zip(codes, self.rows.done, strict=True)]
-        columns["regime"] = (self._regimes(columns), "1", "lubrication regime, by the friction of definition paper")
+        columns["regime"] = (self._regimes(columns), "1", "lubrication regime, by the balanced friction")
         columns["outcome"] = (np.array(names, dtype=object), unit, label)
         columns["message"] = (np.array(self.rows.texts, dtype=object), "1", "what to know of the state before using it")
         return xarray.Dataset(
@@ -144,7 +144,7 @@ class Sweep:
     def _regimes(self, columns: dict[str, tuple[Any, str, str]]) -> Any:
         """Return the regime of each state, empty where there is none."""
         found = np.full(len(self), "", dtype=object)
-        numbers = [columns[name][0] for name in ("fluid_load_share", "friction_contact", "friction_paper")]
+        numbers = [columns[name][0] for name in ("fluid_load_share", "friction_contact", "friction_balanced")]
         for i, (fluid, contact, total) in enumerate(zip(*numbers, strict=True)):
             if np.isfinite(total):
                 found[i] = regime_of(float(fluid), float(contact / total) if total > 0 else 0.0)

@@ -40,7 +40,7 @@ __all__ = [
     "viscous_friction",
 ]
 
-Viscous = Literal["paper", "balanced", "neglected"]
+Viscous = Literal["published", "balanced", "neglected"]
 
 SLOW = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Limit("paper_fluid_share", 0, 0.1))
 SLOWER = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01))
@@ -162,13 +162,13 @@ def contact_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bo
     steps=(1e-3, 1e-4, 1e-5),
     source="stribeck.asymptotics.rough.boundary",
 )
-def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "paper") -> Value:
+def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "published") -> Value:
     r"""Return the viscous friction at slow speed.
 
     .. math::
 
         \mu_f^\mathrm{balanced} &= \frac{2 \beta \bar F_N^{1/2}}{3 \pi} \frac{\lambda}{\kappa} S(\bar F_N) \\
-        \mu_f^\mathrm{paper} &= \mu_f^\mathrm{balanced}
+        \mu_f^\mathrm{published} &= \mu_f^\mathrm{balanced}
         + \frac{4 \beta \bar F_N^{1/2}}{\pi} \frac{\lambda}{\kappa^2} M(\bar F_N)
 
     Parameters
@@ -177,7 +177,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "pape
         Uses all three groups [-]; arrays broadcast.
     beta : float
         Coefficient of the contact law [-].
-    viscous : {"paper", "balanced", "neglected"}
+    viscous : {"published", "balanced", "neglected"}
         Definition; or none of it.
 
     Returns
@@ -197,13 +197,13 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "pape
 
     Source: theory.md, section 6; S and M are :func:`stribeck.asymptotics.rough.perturbation.shear` and ``pressure_moment``.
     """
-    if viscous not in ("paper", "balanced", "neglected"):
-        raise InputError(f"viscous = {show(viscous)}; it must be 'paper', 'balanced' or 'neglected'.")
+    if viscous not in ("published", "balanced", "neglected"):
+        raise InputError(f"viscous = {show(viscous)}; it must be 'balanced', 'published' or 'neglected'.")
     F, kappa = groups.load, np.asarray(groups.relative_roughness)
     if viscous == "neglected":
         return np.zeros(groups.shape)
     friction: Value = 2 * beta * F**0.5 / (3 * math.pi) * groups.speed / kappa * shear(F)
-    if viscous == "paper":
+    if viscous == "published":
         friction = friction + 4 * beta * F**0.5 / math.pi * groups.speed / np.square(kappa) * pressure_moment(F)
     return friction
 
@@ -223,7 +223,7 @@ def friction(
     groups: Groups,
     boundary_friction: float = 1.0,
     beta: float = 1.0,
-    viscous: Viscous = "paper",
+    viscous: Viscous = "published",
     form: PhiForm = "quadrature",
     printed: bool = False,
 ) -> Value:
@@ -239,7 +239,7 @@ def friction(
         Friction coefficient of the dry contact [-].
     beta : float
         Coefficient of the contact law [-].
-    viscous : {"paper", "balanced", "neglected"}
+    viscous : {"published", "balanced", "neglected"}
         Definition of the viscous part, as in :func:`viscous_friction`.
     form : {"quadrature", "closed", "asymptote", "power", "printed"}
         As in :func:`fluid_load_share`.

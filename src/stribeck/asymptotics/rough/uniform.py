@@ -21,7 +21,7 @@ from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, show
 
-Definition = Literal["paper", "balanced"]
+Definition = Literal["published", "balanced"]
 
 SHEAR = (0.6179, 8.341, 0.3064, 0.05872)
 FIRST_MOMENT = (0.3524, 0.7752, 0.4341, 1.0889, 4.999)
@@ -37,7 +37,7 @@ it. That of first order is within 1 % of (4/pi) :func:`perturbation.pressure_mom
     worst=0.75,
     source="ours",
 )
-def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition = "paper") -> Value:
+def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition = "published") -> Value:
     r"""Return the part of the friction from the fluid.
 
     .. math::
@@ -54,7 +54,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
         The states [-]; arrays broadcast.
     beta : float
         Coefficient of the contact law [-].
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         As the paper defines it, or without the moment mu_m as the force on the substrate.
 
     Returns
@@ -84,7 +84,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
     worst=0.075,
     source="ours",
 )
-def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "paper") -> Value:
+def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "published") -> Value:
     r"""Return the friction coefficient.
 
     .. math:: \mu = \mu_0 S + \mu_f
@@ -97,7 +97,7 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
         Friction coefficient of the dry contact [-].
     beta : float
         Coefficient of the contact law [-].
-    definition : {"paper", "balanced"}
+    definition : {"balanced", "published"}
         As in :func:`viscous_friction`.
 
     Returns
@@ -124,8 +124,8 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
 
 
 def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition) -> Array:
-    if definition not in ("paper", "balanced"):
-        raise InputError(f"definition = {show(definition)}; it must be 'paper' or 'balanced'.")
+    if definition not in ("published", "balanced"):
+        raise InputError(f"definition = {show(definition)}; it must be 'balanced' or 'published'.")
     a1, a2, a3, a4 = SHEAR
     m1, m2, m3, m4, m5 = FIRST_MOMENT
     b1, b2, b3, b4, b5, b6, b7 = MOMENT

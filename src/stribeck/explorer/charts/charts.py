@@ -67,8 +67,8 @@ def friction_chart(
     scale = 1.0 if inputs.abscissa == "speed" else hersey
     ends = answer.speeds[0] * scale, answer.speeds[1] * scale
     chosen = inputs.definition
-    other: Definition = "balanced" if chosen == "paper" else "paper"
-    names = {"paper": "friction as printed", "balanced": "friction, balanced"}
+    other: Definition = "balanced" if chosen == "published" else "published"
+    names = {"balanced": "friction, balanced", "published": "friction as published"}
     series: list[Options] = []
     heights: list[float] = []
     if curve is not None:

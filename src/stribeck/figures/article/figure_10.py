@@ -82,7 +82,7 @@ def _compute(report: Report) -> xarray.Dataset:
     )
     grid = "case", "speed"
     variables = {
-        "friction": column(grid, friction, "friction coefficient, definition paper"),
+        "friction": column(grid, friction, "friction coefficient, definition published"),
         "hydrodynamic_friction": column(grid, law, "friction of smooth surfaces by the root of squares of the paper"),
         "contact_load_share": column(grid, share, "part of the load on asperities"),
         "boundary_friction": column(grid, boundary_law, "mu_0 (1 - F_f/F_N) with F_f from phi by quadrature"),
@@ -111,7 +111,7 @@ def _taken_apart(curve: StribeckCurve) -> dict[str, Array]:
     balanced = np.array([solution.friction(definition="balanced").total for solution in curve.solutions])
     return {
         "fluid_load_share": curve.observable("fluid_load_share"),
-        "fall_paper": 1 - curve.friction,
+        "fall_published": 1 - curve.friction,
         "fall_balanced": 1 - balanced,
         "share_law": law,
         "share_without_factor": math.pi / 2 * law,
@@ -150,7 +150,7 @@ def _draw_shares(axes: Axes, data: xarray.Dataset) -> None:
     for name, marker, face, label in (
         ("fluid_load_share", "o", style.INK, "load on the fluid, solved"),
         ("fall_balanced", "s", "white", r"$1 - \mu/\mu_0$, balance of forces"),
-        ("fall_paper", "^", "white", r"$1 - \mu/\mu_0$, definition of the paper"),
+        ("fall_published", "^", "white", r"$1 - \mu/\mu_0$, as published"),
     ):
         axes.loglog(
             data.speed[every], data[name].where(data[name] > 0)[every], marker, color=style.INK, mfc=face, ms=4, label=label

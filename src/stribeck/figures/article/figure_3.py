@@ -48,10 +48,10 @@ def _compute(report: Report) -> xarray.Dataset:
     hersey = float(Groups(1.0, LOAD, ROUGHNESS).hersey_number())
     variables = {
         "hersey_number": column(speed, curve.hersey_number, "Hersey number eta U/F_N for beta = 1"),
-        "friction_paper": column(speed, curve.friction, "friction coefficient, definition paper"),
+        "friction_published": column(speed, curve.friction, "friction coefficient, definition published"),
         "friction_balanced": column(speed, balanced.friction, "friction coefficient, definition balanced"),
         "friction_contact": column(speed, curve.friction_contact, "part of the friction coefficient from asperities"),
-        "viscous_paper": column(speed, curve.friction_viscous, "part from the fluid, definition paper"),
+        "viscous_published": column(speed, curve.friction_viscous, "part from the fluid, definition published"),
         "viscous_balanced": column(speed, balanced.friction_viscous, "part from the fluid, definition balanced"),
         "contact_load_share": column(speed, curve.observable("contact_load_share"), "part of the load on asperities"),
     }
@@ -95,7 +95,7 @@ def _draw(data: xarray.Dataset) -> Figure:
 def _draw_curve(axes: Axes, data: xarray.Dataset) -> None:
     style.house_style(axes)
     x = data.hersey_number
-    axes.loglog(x, data.friction_paper, color=style.INK, lw=2.2, label="as printed")
+    axes.loglog(x, data.friction_published, color=style.INK, lw=2.2, label="as published")
     axes.plot(x, data.friction_balanced, color=style.MARK, lw=1.4, ls=style.DASHED, label="by the balance of forces")
     axes.plot(x, data.friction_contact, color=style.CONTACT, lw=1.2, ls=style.DOTTED, label="part from asperities")
     axes.plot(data.minimum_hersey, data.minimum_friction, "o", color=style.INK, ms=7, mec="white", label="least friction")
@@ -112,7 +112,7 @@ def _draw_curve(axes: Axes, data: xarray.Dataset) -> None:
 def _draw_viscous(axes: Axes, data: xarray.Dataset) -> None:
     style.house_style(axes)
     x = data.hersey_number
-    axes.loglog(x, data.viscous_paper, color=style.INK, lw=2.0, label="as printed: without the contact pressure")
+    axes.loglog(x, data.viscous_published, color=style.INK, lw=2.0, label="as published: without the contact pressure")
     axes.plot(x, data.viscous_balanced, color=style.MARK, lw=1.4, ls=style.DASHED, label="by the balance of forces")
     axes.set(xlabel=r"Hersey number $\eta U/F_N$", ylabel=r"fluid part $\mu_f$", ylim=(1e-7, 1))
     style.letter(axes, "+", "the friction of the fluid by both definitions")

@@ -72,7 +72,7 @@ def _compute(report: Report) -> xarray.Dataset:
     grid = "case", "speed"
     variables = {
         "hersey_number": column(grid, hersey, "Hersey number eta U/F_N for beta = 1"),
-        "friction": column(grid, friction, "friction coefficient, definition paper"),
+        "friction": column(grid, friction, "friction coefficient, definition published"),
         "hydrodynamic_friction": column(grid, law, "friction of smooth surfaces by the root of squares of the paper"),
         "uniform_friction": column(grid, uniform, "friction of smooth surfaces by our uniform law"),
         "distance": column(grid, off, "friction over hydrodynamic_friction - 1 where asperities cause < 0.1 % of it"),

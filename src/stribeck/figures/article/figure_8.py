@@ -63,9 +63,11 @@ def _compute(report: Report) -> xarray.Dataset:
     )
     variables = {
         "hersey_number": column("curve_speed", curve.hersey_number, "Hersey number eta U/F_N of the curve for beta = 1"),
-        "friction": column("curve_speed", curve.friction, "friction coefficient, definition paper"),
+        "friction": column("curve_speed", curve.friction, "friction coefficient, definition published"),
         "profile_hersey": column("speed", [state.groups.hersey_number() for state in states], "Hersey number of the profiles"),
-        "profile_friction": column("speed", [state.friction().total for state in states], "friction coefficient there"),
+        "profile_friction": column(
+            "speed", [state.friction(definition="published").total for state in states], "friction coefficient there"
+        ),
         "fluid_load_share": column("speed", shares, "part of the load on the fluid"),
         "central_gap": column("speed", [state.central_gap for state in states], "gap at x = 0 over u_Hz"),
         "gap": column(("speed", "x"), gaps, "gap over u_Hz"),

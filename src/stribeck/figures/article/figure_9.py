@@ -72,7 +72,7 @@ def _compute(report: Report) -> xarray.Dataset:
     grid, map_ = ("case", "speed"), ("minimum_load", "kappa")
     variables = {
         "minimum_roughness": column(map_, at.roughness, "roughness group h_rms"),
-        "friction": column(grid, friction, "friction coefficient, definition paper"),
+        "friction": column(grid, friction, "friction coefficient, definition published"),
         "hydrodynamic_friction": column(
             grid, over(curves, "hydrodynamic_friction"), "friction of smooth surfaces, root of squares"
         ),
