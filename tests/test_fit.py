@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 from command_line import CONTACT, call
 from fit_data import EXAMPLES, TRUE, exact, measured, noisy
+from rich.console import Console
 
 import stribeck as sb
 from stribeck.cases.fit_settings import FREE, FitSettings, Prior
+from stribeck.cli.reports.fit import print_fit
 from stribeck.contact_laws.persson import persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.fits.case_file import write_fitted_case
@@ -206,8 +208,20 @@ def test_an_input_at_its_bound_is_said(tmp_path):
     found = sb.fit(noisy(7), case)
     each = found["roughness"]
     assert found.converged and each.at_bound and each.value == pytest.approx(9e-7, rel=1e-3)
-    assert any("ended at its bound" in note for note in found.notes)
+    assert any("roughness ended at its bound 900 nm: the data would move it further" in note for note in found.notes)
     assert math.isnan(each.standard_error)
+    assert found.outcome is sb.FitOutcome.AT_BOUND and found.to_dict()["outcome"] == "AT_BOUND"
+
+
+def test_a_boundary_friction_that_no_contact_has_is_named(capsys):
+    speeds, friction = exact(contact=TRUE.replace(boundary_friction=6.9))
+    found = sb.fit(measured(speeds, friction), TRUE, free=["boundary_friction"], intervals=False)
+    assert found["boundary_friction"].value == pytest.approx(6.9, rel=1e-3)
+    assert found.outcome is sb.FitOutcome.IMPLAUSIBLE and found.to_dict()["outcome"] == "IMPLAUSIBLE"
+    assert any("boundary_friction 6.9 is larger than any dry friction" in note for note in found.notes)
+    print_fit(Console(), found, "")
+    assert "The fit ended at a boundary friction that no contact has" in capsys.readouterr().out
+    assert sb.fit(measured(*exact()), TRUE, free=["boundary_friction"], intervals=False).outcome is sb.FitOutcome.CONVERGED
 
 
 # --- several curves ---

@@ -31,6 +31,7 @@ from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_e
 from stribeck.fits.residuals import judge_residuals
 from stribeck.fits.result import Fit, FitOutcome, FittedInput, unit_of
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.inputs import si_text
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.notes import pressure_notes
 
@@ -41,6 +42,9 @@ LEVELS = (0.682689492137086, 0.95)
 
 STARTS, BEST_STARTS, START_FACTOR = 64, 4, 10.0
 """Places tried before the least squares, those followed, and how far from the case they lie."""
+
+LARGEST_BOUNDARY_FRICTION = 5.0
+"""Dry friction beyond that of any pair of surfaces; smooth rubber on glass, the largest, stays below it."""
 
 FIRST_NOISE = 0.1
 """Noise with which the search begins where it is not known."""
@@ -327,7 +331,7 @@ def _result(
         )
         for i, free in enumerate(model.free)
     )
-    outcome = FitOutcome.CONVERGED if at.converged else FitOutcome.NOT_AT_OPTIMUM if at.ended else FitOutcome.STEP_LIMIT
+    outcome = _outcome(at, inputs)
     freedom = max(len(data) - effective_parameters(at), 1.0)
     labels = [each.label for each in inputs]
     weak = undetermined(model.free, labels, at.jacobian, at.prediction)
@@ -365,6 +369,18 @@ def _result(
     )
 
 
+def _outcome(at: Minimum, inputs: Sequence[FittedInput]) -> FitOutcome:
+    if not at.converged:
+        return FitOutcome.NOT_AT_OPTIMUM if at.ended else FitOutcome.STEP_LIMIT
+    if any(_implausible(each) for each in inputs):
+        return FitOutcome.IMPLAUSIBLE
+    return FitOutcome.AT_BOUND if any(each.at_bound for each in inputs) else FitOutcome.CONVERGED
+
+
+def _implausible(each: FittedInput) -> bool:
+    return each.name == "boundary_friction" and not each.is_factor and each.value > LARGEST_BOUNDARY_FRICTION
+
+
 def _interval(free: FreeInput, ends: Ends) -> tuple[float, float]:
     low = 0.0 if math.isinf(ends.low) else free.value(ends.low)
     return low, math.inf if math.isinf(ends.high) else free.value(ends.high)
@@ -386,7 +402,16 @@ def _notes(
     notes = []
     for each in inputs:
         if each.at_bound:
-            notes.append(f"{each.label} ended at its bound: its value is that bound's, and it has no standard error.")
+            value = f"{each.value:.4g}" if each.is_factor else si_text(each.value, each.name, 4)
+            notes.append(
+                f"{each.label} ended at its bound {value}: the data would move it further, and it has no standard error. "
+                "Widen the bound, or free fewer inputs."
+            )
+        if _implausible(each):
+            notes.append(
+                f"{each.label} {each.value:.2g} is larger than any dry friction: the data do not reach the boundary plateau, "
+                "or other inputs are wrong. Give it a bound or a prior in [fit], or do not free it."
+            )
     named = {name for each in weak for name in each.names}
     for i in range(len(inputs)):
         for j in range(i):

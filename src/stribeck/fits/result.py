@@ -25,6 +25,8 @@ class FitOutcome(Enum):
     """How a fit ended; the value is a sentence."""
 
     CONVERGED = "The fit converged."
+    AT_BOUND = "The fit ended at a bound of its inputs: what is there is no estimate; see the notes."
+    IMPLAUSIBLE = "The fit ended at a boundary friction that no contact has: its inputs are no estimates; see the notes."
     STEP_LIMIT = "The fit did not converge: the least squares ran out of steps; begin nearer, or free fewer inputs."
     NOT_AT_OPTIMUM = (
         "The fit did not converge: the least squares stopped short of the optimum; begin nearer, or free fewer inputs."
@@ -32,8 +34,8 @@ class FitOutcome(Enum):
 
     @property
     def ok(self) -> bool:
-        """Whether the fit converged."""
-        return self is FitOutcome.CONVERGED
+        """Whether the least squares reached their optimum, be it at a bound or at an implausible value."""
+        return self in (FitOutcome.CONVERGED, FitOutcome.AT_BOUND, FitOutcome.IMPLAUSIBLE)
 
 
 @dataclass(frozen=True)
@@ -153,7 +155,7 @@ class Fit:
 
     @property
     def converged(self) -> bool:
-        """Whether the values are those of the optimum."""
+        """Whether the values are those of the optimum; :attr:`outcome` says whether that may be used."""
         return self.outcome.ok
 
     @property

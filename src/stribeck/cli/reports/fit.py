@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from stribeck.cli.reports.words import print_first
 from stribeck.fits.case_file import format_interval, format_value
 from stribeck.fits.posterior import Posterior
-from stribeck.fits.result import Fit, FittedInput
+from stribeck.fits.result import Fit, FitOutcome, FittedInput
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.units import format_si
 from stribeck.solver.notes import HARD
@@ -52,7 +52,7 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
     data = fit.data
     curves = f", {len(data.curves)} curves" if len(data.curves) > 1 else ""
     say(f"{len(data)} rows{curves} of {data.path or 'measured friction'}; contact law: {fit.law}; friction: {fit.definition}.")
-    say(fit.outcome.value, "" if fit.converged else "bold red")
+    say(fit.outcome.value, "" if fit.outcome is FitOutcome.CONVERGED else "bold red")
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for name in ["input", "fitted", "error", "68 %", "95 %", "case", *(["posterior 95 %"] if posterior else [])]:
         table.add_column(name, no_wrap=True)
