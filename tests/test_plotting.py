@@ -160,7 +160,7 @@ def test_the_footer_holds_inputs_law_tolerance_and_version(curve):
     found = words(plot_curve(curve, title="A title"))
     for part in ("A title", "$R$ = 10 mm", "= 2.7 MPa", "$F_N$ = 30 N/m", "= 50 mPa·s", "exponential contact law"):
         assert part in found
-    for part in ("definition published", "rtol 1e-06", "estimated error", "9 points", "stribeck 0."):
+    for part in ("definition balanced", "rtol 1e-06", "estimated error", "9 points", "stribeck 0."):
         assert part in found
     assert "$U$ =" not in found  # it varies
 

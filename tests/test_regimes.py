@@ -315,7 +315,7 @@ def test_the_command_gives_the_distances_as_json(capsys, tmp_path, mixed):
     ("changes", "sentence"),
     [
         ({"speed": 0.0}, "To reach mixed: speed from zero to 367.9 µm/s; not reachable by load, roughness, viscosity."),
-        ({"roughness": 0.0}, "To reach mixed: roughness from zero to 97.74 nm; not reachable by speed, load, viscosity."),
+        ({"roughness": 0.0}, "To reach mixed: roughness from zero to 97.71 nm; not reachable by speed, load, viscosity."),
         ({"speed": 0.0, "roughness": 0.0}, "To reach hydrodynamic: speed of any size"),
         ({"boundary_friction": 0.0}, "To reach mixed: not reachable by speed, load, roughness, viscosity."),
     ],

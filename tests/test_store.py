@@ -90,7 +90,7 @@ def test_a_dataset_holds_every_observable_of_every_point(curve, dataset):
         np.testing.assert_array_equal(dataset[f"friction_{definition}"], [f.total for f in found])
         np.testing.assert_array_equal(dataset[f"friction_{definition}_viscous"], [f.viscous for f in found])
         np.testing.assert_array_equal(dataset[f"friction_{definition}_error"], [f.error for f in found])
-    np.testing.assert_array_equal(dataset.friction, dataset.friction_published)
+    np.testing.assert_array_equal(dataset.friction, dataset.friction_balanced)
     np.testing.assert_allclose(dataset.friction, dataset.friction_contact + dataset.friction_viscous, rtol=1e-14)
     assert dataset.regime.values.tolist() == list(curve.regimes)
     assert set(dataset.outcome.values.tolist()) == {"CONVERGED"}
@@ -124,7 +124,7 @@ def test_the_attributes_tell_settings_landmarks_and_outcome(curve, dataset):
     assert attributes["complete"] == 1
     assert attributes["points"] == attributes["requested_points"] == 7
     assert attributes["contact_law"] == "exponential"
-    assert attributes["definition"] == "published"
+    assert attributes["definition"] == "balanced"
     assert attributes["minimum_speed"] == curve.minimum.value
     assert attributes["minimum_friction"] == curve.minimum.friction
     assert attributes["transition_names"].split("; ") == [mark.name for mark in curve.transitions]
