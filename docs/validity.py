@@ -2,15 +2,17 @@
 
 Usage::
 
-    python docs/validity.py
+    python docs/validity.py [BLOCK ...]
 
-Takes about two minutes on one core.  What stands in the page between marks is replaced, all other text is kept; a module
+Takes about three minutes on one core; with the names of blocks (``formulas``, ``shares``, ``box``, ``ratios`` or modules of
+formulas) only these are made.  What stands in the page between marks is replaced, all other text is kept; a module
 of formulas that has no section yet gets one.
 """
 
 from __future__ import annotations
 
 import re
+import sys
 import time
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
@@ -21,7 +23,9 @@ import numpy as np
 
 import stribeck as sb
 from stribeck.asymptotics import FORMULAS, Formula
+from stribeck.asymptotics.formula import COEFFICIENTS
 from stribeck.asymptotics.rough import load_sharing, transitions, uniform
+from stribeck.evidence.coefficients import JUDGED, RATIOS, largest_errors
 from stribeck.evidence.formulas import error_map, error_maps, kind_of
 from stribeck.evidence.plot import plot_error_maps
 from stribeck.numerics.threads import one_blas_thread
@@ -45,6 +49,10 @@ BOX_KAPPAS = np.logspace(-4, -1, 7)
 BOX_SPEEDS = np.logspace(-9, 2, 34)
 BETAS = (1.0, 0.1, 0.01)
 """Grid in the box of the uniform laws, and coefficients of the contact law for which the friction is judged."""
+
+
+RATIO_POINTS = (22, 19)
+"""Loads and relative roughnesses at which the errors over beta/mu0 are measured."""
 
 
 def modules() -> list[str]:
@@ -165,6 +173,18 @@ def uniform_table() -> str:
     return table(["beta", "States", "Median error", "within 1 %", "within 3 %", "Worst error", "at"], rows)
 
 
+def ratio_table() -> str:
+    """Return the largest errors of the laws of friction and of its minimum for several beta/mu0; in range bold."""
+    rows = []
+    for name, (formula, _) in JUDGED.items():
+        [limit] = [limit for limit in formula.limits if limit.parameter == COEFFICIENTS]
+        cells = []
+        for ratio, error in zip(RATIOS, largest_errors(name, points=RATIO_POINTS)[0], strict=True):
+            cells.append(f"**{percent(error)}**" if limit.low <= ratio <= limit.high else percent(error))
+        rows.append([f"`{name.partition(',')[0]}`{name.partition(',')[1]}{name.partition(',')[2]}", *cells])
+    return table(["Largest error at beta/mu0 =", *map(short, RATIOS)], rows)
+
+
 def blocks_of(text: str) -> dict[str, str]:
     """Return what stands between the marks of a page, by name."""
     return {
@@ -183,34 +203,44 @@ def filled(text: str, blocks: dict[str, str]) -> str:
 
 
 @one_blas_thread
-def main() -> None:
-    """Solve, draw, and write the page."""
+def main(wanted: Sequence[str] = ()) -> None:
+    """Solve, draw, and write the page, or those of its blocks that are named."""
     start = time.perf_counter()
+    others = ("formulas", "shares", "box", "ratios")
+    if unknown := set(wanted) - {*others, *modules()}:
+        sys.exit(f"no block is called {', '.join(sorted(unknown))}; there are {', '.join((*others, *modules()))}")
+    made = wanted or (*others, *modules())
 
     def say(what: str) -> None:
         print(f"{time.perf_counter() - start:5.0f} s  {what}", flush=True)
 
     maps: dict[str, xarray.Dataset] = {}
     for kind in ABOUT:
-        say(f"formulas about {ABOUT[kind]}")
-        maps |= error_maps([formula for formula in FORMULAS if kind_of(formula) == kind])
-    blocks = {"formulas": formula_table()}
-    for module in modules():
+        if judged := [each for each in FORMULAS if kind_of(each) == kind and each.name.partition(".")[0] in made]:
+            say(f"formulas about {ABOUT[kind]}")
+            maps |= error_maps(judged)
+    blocks = {"formulas": formula_table()} if "formulas" in made else {}
+    for module in (each for each in modules() if each in made):
         say(f"picture of {module}")
         pairs = [(formula, maps[formula.name]) for formula in of_module(module)]
         path = IMAGES / f"validity_{module}.png"
         plot_error_maps(pairs, path, force=True, title=f"Errors of stribeck.asymptotics.{module}")
         blocks[module] = measured_table(module, maps)
-    say("speeds at which the fluid carries a share")
-    shares = share_maps()
-    title = "Speed at which the fluid carries 50 % or 5 % of the load"
-    plot_error_maps(shares, IMAGES / "validity_shares.png", force=True, title=title)
-    blocks["shares"] = share_table(shares)
-    say("friction over the box of the uniform law")
-    blocks["box"] = uniform_table()
+    if "shares" in made:
+        say("speeds at which the fluid carries a share")
+        shares = share_maps()
+        title = "Speed at which the fluid carries 50 % or 5 % of the load"
+        plot_error_maps(shares, IMAGES / "validity_shares.png", force=True, title=title)
+        blocks["shares"] = share_table(shares)
+    if "box" in made:
+        say("friction over the box of the uniform law")
+        blocks["box"] = uniform_table()
+    if "ratios" in made:
+        say("friction over the ratio of its coefficients")
+        blocks["ratios"] = ratio_table()
     PAGE.write_text(filled(PAGE.read_text(), blocks))
     say("done")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

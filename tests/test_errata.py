@@ -2,6 +2,7 @@
 
 import importlib
 import math
+import pkgutil
 import re
 import sys
 from functools import cache
@@ -123,12 +124,15 @@ def test_every_test_of_a_claim_is_named_on_the_page():
     assert own_tests() - set(named_tests(PAGE.read_text())) == about_the_page
 
 
+MODULES = [info.name for info in pkgutil.walk_packages(sb.__path__, "stribeck.")]
+
+
 def test_the_functions_that_the_page_names_exist():
     names = re.findall(r"`([a-z_]+)\.([a-zA-Z_]+)(?:\([^`]*\))?`", PAGE.read_text())
     assert len(names) > 20
     for module, name in names:
-        places = [f"stribeck.asymptotics.{module}", f"stribeck.{module}"]
-        found = [importlib.import_module(place) for place in places if importlib.util.find_spec(place)]
+        places = [place for place in MODULES if place.endswith(f".{module}")]
+        found = [importlib.import_module(place) for place in places]
         assert any(hasattr(place, name) for place in found) or hasattr(getattr(sb, module, None), name), (module, name)
 
 
@@ -473,15 +477,20 @@ def test_the_power_of_phi_is_for_large_logarithms():
 
 def test_the_law_of_slow_speed_reaches_one_where_the_fluid_carries_an_eighth_to_a_half():
     """[BP] Eq. (boundary-to-mixed): where lambda**2 phi/kappa**4 = 1 "the fluid load becomes comparable" to the load."""
-    found = ((1e-3, 0.455, 1.12), (0.01, 0.360, 1.57), (0.1, 0.252, 2.92), (0.3, 0.178, 6.03), (0.5, 0.129, 13.03))
+    row = " ".join(table()[4])
+    found = ((1e-3, 46, 1.1), (0.01, 36, 1.6), (0.1, 25, 3.0), (0.3, 18, 6.6), (0.5, 13, 14.1))
+    for printed in (", ".join(str(share) for _, share, _ in found), ", ".join(str(factor) for *_, factor in found)):
+        assert printed in row
     for load, share, factor in found:
         speed = slow(load, KAPPA, 1.0)
         groups = sb.Groups(speed, load, KAPPA * load)
         assert transitions.speed_boundary_to_mixed(groups) == pytest.approx(speed, rel=1e-12)
-        assert state(speed, load).fluid_load_share == pytest.approx(share, abs=1e-3)
+        assert 100 * state(speed, load).fluid_load_share == pytest.approx(share, abs=0.5)
+        # Solved, not by the law of load sharing, which is 8 % low at load 0.5.
+        ends = [state((factor + end) * speed, load).fluid_load_share for end in (-0.05, 0.05)]
+        assert ends[0] < 0.5 < ends[1]
         half = float(load_sharing.speed_at_fluid_share(groups, 0.5))
-        assert half / speed == pytest.approx(factor, abs=0.01)
-        assert state(half, load).fluid_load_share == pytest.approx(0.5, abs=0.02)
+        assert half / speed == pytest.approx(factor, rel=0.1)
 
 
 def test_the_speed_of_the_criterion_has_one_half_outside_the_power():
@@ -586,13 +595,21 @@ def test_what_the_least_friction_leaves_out_is_larger_than_its_smaller_term():
 
 def test_the_mixed_law_is_a_limit_and_a_tenth_to_a_half_low_at_the_minimum():
     """[BP] Fig. 9(a), (c): "matches the numerical data closely", "compares well"."""
-    errors = []
+    found = {"expansion": [], "exact": []}
     for kappa in (1e-4, 1e-3, 1e-2):
         groups, solved = sb.Groups(1.0, LOAD, LOAD * kappa), minimum(LOAD, kappa).friction
-        errors.append(transitions.friction_at_minimum(groups, form="exact") / solved - 1)
+        L = -math.log(float(transitions.weakening_number(groups, printed=True)))
+        scale = 4 / (3 * math.pi * 0.44 ** (5 / 3)) * groups.roughness ** (2 / 3) * LOAD ** (-1 / 6)
+        as_printed = scale * (2 / 3 * L ** (-1 / 3) + L ** (-2 / 3))
+        assert transitions.friction_at_minimum(groups, printed=True) == pytest.approx(as_printed, rel=1e-12)
+        assert as_printed < 0.13 * solved
+        found["expansion"].append(100 * (1 - scale * (2 / 3 * L ** (-1 / 3) + L ** (2 / 3)) / solved))
+        found["exact"].append(100 * (1 - transitions.friction_at_minimum(groups, form="exact") / solved))
         assert transitions.friction_at_minimum(groups) == pytest.approx(solved, rel=0.0105)
-        assert transitions.friction_at_minimum(groups, printed=True) < 0.13 * solved
-    assert errors == pytest.approx([-0.061, -0.182, -0.403], abs=2e-3)
+    row = " ".join(table()[36])
+    for form, low in {"expansion": (9, 21, 43), "exact": (6, 18, 40)}.items():
+        assert found[form] == pytest.approx(low, abs=0.5), form
+        assert f"{', '.join(map(str, low))} %" in row
 
 
 def test_the_mixed_law_of_the_conclusion_lacks_alpha_and_beta():

@@ -6,6 +6,7 @@ import math
 import socket
 import sys
 from dataclasses import replace
+from types import SimpleNamespace
 from urllib.parse import parse_qsl
 from xml.etree import ElementTree
 
@@ -14,8 +15,8 @@ import pytest
 
 import stribeck as sb
 from stribeck.cli import main
+from stribeck.explorer import carried, inputs, server, table, url
 from stribeck.explorer import downloads as files
-from stribeck.explorer import inputs, server, table, url
 from stribeck.explorer.answer import Model, round_down, round_up, thin_lines
 from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.echarts import data_only, difference
@@ -82,7 +83,13 @@ def test_another_unit_keeps_the_value():
     [
         ("load", "-3", "load = '-3 N/m' must be positive."),
         ("load", "3 mm", "load = '3 mm' is a length; expected a load per unit length such as '50 N/m'."),
-        ("load", "1,5", "load = '1,5' has a comma; write a decimal point"),
+        ("load", "1,500", "load = '1,500' may be 1.500 or 1500; write one of them, without a comma."),
+        ("load", "1,5,0", "has a comma; write a decimal point"),
+        (
+            "boundary_friction",
+            "70",
+            "boundary_friction = 70 is above 10, the largest the explorer takes; write 0.7 for 70 %.",
+        ),
         ("radius", "", "radius = '' does not begin with a number;"),
         ("beta", "x", "beta = 'x' is text where a number belongs; write a bare number"),
         ("alpha", "0", "alpha = 0.0 must be positive."),
@@ -95,6 +102,187 @@ def test_impossible_inputs_are_refused_with_the_sentence_of_the_command_line(nam
     with pytest.raises(sb.InputError) as problem:
         inputs.typed(START, name, text)
     assert sentence in str(problem.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "value"),
+    [
+        ("load", "1,5", 1.5),
+        ("load", "1,5 kN/m", 1500),
+        ("beta", "0,060", 0.06),
+        ("load_group", "2,5e-1", 0.25),
+        ("alpha", ",75", 0.75),
+    ],
+)
+def test_a_decimal_comma_is_read_as_in_files(name, text, value):
+    assert inputs.value_of(inputs.typed(START, name, text), name) == pytest.approx(value, rel=1e-12)
+
+
+# --- all that a case can hold ---
+
+SURFACES = {
+    "numbers": {"h_rms": "1 um", "hurst": 0.8, "longest_wavelength": "150 um", "shortest_wavelength": "1.5 um"},
+    "wave numbers": {"h_rms": 8e-7, "hurst": 0.7, "q0": "5e4 1/m", "q1": 5e6, "roll_off": 6e4, "gamma": 0.5},
+    "spectrum": {"spectrum": "spectrum.csv", "gamma": 0.42},
+}
+FIT = {
+    "free": ["roughness", "beta"],
+    "robust": True,
+    "relative_error": 0.03,
+    "header_row": 3,
+    "columns": {"friction": ["µ 1", 'the "second"']},
+    "units": {"speed": "mm/s"},
+    "bounds": {"roughness": ["0.1 um", "9 um"]},
+    "priors": {"beta": {"value": 0.06, "factor": 1.5}},
+    "curves": {"wet, 20 °C": {"viscosity": "2 mPa*s"}},
+}
+
+
+def some_case(random, kind, folder):
+    """Return a path of a case with everything that a case can hold, at random."""
+    law, surface = kind
+    contact = {
+        "radius": f"{random.uniform(1, 50):.3f} mm",
+        "load": f"{random.uniform(1, 900)!r} N/m",
+        "viscosity": random.uniform(1e-3, 1.0),
+        "speed": random.choice(["0 m/s", "1 mm/s", "0.3 m/s"]).item(),
+        "friction_coefficient": float(random.uniform(0, 9)),
+        "law": law,
+    }
+    contact |= {"modulus": "3.3 MPa"} if random.random() < 0.5 else {"youngs_modulus": "5.5 MPa", "poisson_ratio": 0.49}
+    tables = {}
+    if surface in SURFACES:
+        tables["surface"] = SURFACES[surface]
+    elif surface == "asperities":
+        tables["asperities"] = {"density": "1e10 1/m^2", "radius": "10 um", "deviation": "0.5 um"}
+    if surface is None or surface.startswith("table"):
+        contact |= {"roughness": float(10 ** random.uniform(-7, -5)), "alpha": 2, "beta": float(10 ** random.uniform(-2, 0))}
+    if law == "table":
+        tables["table"] = (
+            {"file": "law.csv"} if surface == "table file" else {"separation": [0, 1, 2, 4.5], "pressure": [1, 0.4, 0.1, 1e-3]}
+        )
+    if random.random() < 0.7:
+        tables["curve"] = {"over": "load", "range": ["1 N/m", "2 kN/m"], "points": 33}
+    if random.random() < 0.7:
+        tables["solver"] = {"rtol": float(10 ** random.uniform(-9, -4)), "definition": "balanced"}
+    if random.random() < 0.7:
+        tables["fit"] = FIT
+    title = random.choice(["", "a & b = ü #1", "x" * 200, 'two\nlines "quoted" \\ \x7f'])
+    path = folder / "some case.toml"
+    head = {"title": str(title), "notes": "first\nsecond # no comment"} if title else {}
+    path.write_text(carried.toml_text({**head, "contact": contact, **tables}), encoding="utf-8")
+    return path
+
+
+KINDS = [
+    ("exponential", None),
+    ("exponential", "numbers"),
+    ("exponential", "spectrum"),
+    ("persson", "numbers"),
+    ("persson", "wave numbers"),
+    ("persson", "spectrum"),
+    ("greenwood-williamson", None),
+    ("greenwood-williamson", "asperities"),
+    ("greenwood-tripp", "asperities"),
+    ("table", "table file"),
+    ("table", "table lists"),
+]
+
+
+def same_contact(one, two):
+    assert one.replace(law=None) == two.replace(law=None)
+    assert (one.law is None) == (two.law is None)
+    if one.law is not None:
+        s = np.geomspace(0.05, 20, 50)
+        assert one.law.name == two.law.name
+        assert (one.law.log_pressure(s) == two.law.log_pressure(s)).all()
+        assert one.law.parameters | {"title": ""} == two.law.parameters | {"title": ""}
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: f"{kind[0]} {kind[1] or ''}")
+def test_all_that_a_case_holds_goes_through_link_and_saved_case(kind, tmp_path):
+    random = np.random.default_rng([72, *map(ord, str(kind))])
+    rows = "\n".join(f"{q!r}, {c!r}" for q, c in [(1e4, 1e-20), (1e5, 9e-22), (1e6, 8e-25), (1e7, 1e-28)])
+    (tmp_path / "spectrum.csv").write_text(f"wavenumber [1/m], density [m^4]\n{rows}\n")
+    (tmp_path / "law.csv").write_text("separation, pressure\n0, 1\n1, 0.4\n2, 0.1\n4.5, 1e-3\n")
+    for _ in range(2 if kind[1] in SURFACES else 10):  # the law of a spectrum takes half a second
+        case = sb.load_case(some_case(random, kind, tmp_path))
+        shown = inputs.from_case(case)
+        same_contact(shown.contact, case.contact)
+        assert (shown.title, shown.rtol, shown.definition) == (case.title, case.rtol, case.definition)
+        pin = url.Pin("kept ~ once", START.contact, "paper"), url.Pin("law", shown.contact, "balanced", shown.law)
+        opened = reopened(url.encode(shown, pin))
+        assert opened.problems == {}
+        assert opened.inputs == shown and opened.pins == pin
+        answer = SimpleNamespace(inputs=opened.inputs, curve=None)
+        saved = files.read_case("saved.toml", files.content("toml", files.Shown(answer)))
+        same_contact(saved.contact, case.contact)
+        for name in ("law", "curve", "rtol", "definition", "title", "notes", "fit"):
+            assert getattr(saved, name) == getattr(case, name), name
+        assert inputs.from_case(saved).law == shown.law
+
+
+def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
+    shown = inputs.from_case(sb.load_case("examples/rod_seal.toml"))
+    answer = Model()(reopened(url.encode(shown)).inputs)
+    expected = sb.solve(sb.load_case("examples/rod_seal.toml").contact)
+    found = {row.key: row for row in table.numbers(answer)}[f"friction_{shown.definition}"]
+    assert abs(found.value - expected.friction(definition=shown.definition).total) <= 2 * found.error
+    assert answer.solution.law == "persson"
+    saved = files.read_case("saved.toml", files.content("toml", files.Shown(answer)))
+    assert sb.solve(saved.contact).friction() == expected.friction()
+    assert "Persson, for the surface with h rms 1 um" in carried.law_words(shown.law)
+    assert "holds the exponential contact law only" in answer.diagram.message
+
+
+@pytest.mark.parametrize(
+    ("query", "sentence"),
+    [
+        ("law=x", "law = 'x' is not JSON as an address of the explorer has it."),
+        ("law=[1]", "must be an object of law, surface, table"),
+        ('law={"law":"table","table":{"file":"/etc/passwd"}}', "a link holds its rows instead"),
+        ('law={"law":"persson","surface":{"spectrum":"x.csv"}}', "a link holds its rows instead"),
+        ('law={"law":"hertz"}', "law = 'hertz' must be one of"),
+        ('rest={"fit":{"free":["x"]}}', "no input that can be fitted"),
+        ('rest={"points":NaN}', "is not JSON"),
+        ("rtol=2", "rtol"),
+        ("pin=x", "pin = 'x' must hold 9 numbers, the definition and a name."),
+        ("pin=", "pin = '' must hold 9 numbers"),
+        ("pin=1~1~1~1~1~1~1~1~1~paper@3~name", "names a contact law that the address does not hold"),
+        ("pinlaw=x", "is not JSON"),
+    ],
+)
+def test_what_an_address_cannot_mean_is_told(query, sentence):
+    opened = reopened(query)
+    assert opened.inputs == START
+    [(_, said)] = opened.problems.values()
+    assert sentence in said
+
+
+def test_what_no_address_can_hold_is_refused_at_load(tmp_path):
+    path = tmp_path / "long.toml"
+    rows = 3000
+    tables = {"separation": [float(i) for i in range(rows)], "pressure": [math.exp(-0.1 * i) for i in range(rows)]}
+    contact = {"law": "table", **{name: getattr(START.contact, name) for name in inputs.FIELDS}}
+    path.write_text(carried.toml_text({"contact": contact, "table": tables}))
+    with pytest.raises(
+        sb.InputError, match=r"would have .* characters, and 60000 are possible; most are those of the contact law"
+    ):
+        url.check_length(inputs.from_case(sb.load_case(path)))
+
+
+def test_an_uploaded_case_that_names_a_file_says_what_to_do(tmp_path):
+    with pytest.raises(sb.InputError, match=r"case.toml: \[table\] file = 'law.csv' is a file that the browser did not send"):
+        files.read_case("C:\\data\\case.toml", b'[table]\nfile = "law.csv"\n')
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [("..", "file"), ("a/..", "file"), ("/x/y.toml", "y.toml"), ("a\0b.toml", "a_b.toml"), ("", "file"), ("a\nb", "a_b")],
+)
+def test_odd_names_of_uploads_become_plain_ones(name, shown):
+    assert files.shown_name(name) == shown
+    assert len(files.shown_name(300 * "x" + ".csv")) <= 80 and files.shown_name(300 * "x" + ".csv").endswith("xxx.csv")
 
 
 # --- addresses ---
@@ -169,7 +357,7 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
     heavy = inputs.from_case(sb.load_case("examples/wiper_blade.toml"))
     model = Model()
     first = model(heavy)
-    assert first.curve is None and "No phase diagram" in first.diagram.message
+    assert first.curve is None and "Regime map unavailable" in first.diagram.message
     assert model.settle(heavy) and not model.settle(heavy)
     now = model(heavy)
     assert not now.curve.stale and "solved" in now.curve.source

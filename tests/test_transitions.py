@@ -159,9 +159,9 @@ def test_our_minimum_is_that_of_the_solver(load, kappa):
 
 def test_our_minimum_is_stationary():
     groups = sb.Groups(1.0, 0.05, np.array([[1e-6], [1e-4]]))
-    speed = transitions.speed_at_minimum(groups, 0.4, 0.7)
+    speed = transitions.speed_at_minimum(groups, 0.7, 0.4)
     assert np.shape(speed) == (2, 1)
-    beside = [mixed.friction.function(sb.Groups(f * speed, 0.05, groups.roughness), 0.4, 0.7) for f in (1 / 1.001, 1, 1.001)]
+    beside = [mixed.friction.function(sb.Groups(f * speed, 0.05, groups.roughness), 0.7, 0.4) for f in (1 / 1.001, 1, 1.001)]
     assert (beside[0] > beside[1]).all() and (beside[2] > beside[1]).all()
 
 

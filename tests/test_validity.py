@@ -15,6 +15,7 @@ from stribeck.asymptotics import FORMULAS, Limit
 from stribeck.asymptotics.dry import hertz, rest
 from stribeck.asymptotics.rough import boundary, load_sharing, transitions, uniform
 from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.evidence.coefficients import JUDGED, RATIOS, largest_errors
 from stribeck.evidence.formulas import AXES, MEASURED, error_map, error_maps, kind_of, relative_error
 
 pytest.importorskip("xarray")
@@ -117,6 +118,21 @@ def test_coefficients_given_to_a_formula_hold_for_the_solver_too():
     assert abs(float(least["error"].values[0, 0])) < 0.01
 
 
+def test_a_map_of_coefficients_outside_the_range_has_no_state_in_it():
+    grid = {"load": 0.1, "relative_roughness": 0.01, "speed": [1e-6, 1e-4]}
+    assert error_map(uniform.friction, **grid, beta=0.1)["valid"].values.all()
+    assert not error_map(uniform.friction, **grid, boundary_friction=0.1, beta=0.7)["valid"].values.any()
+
+
+@pytest.mark.parametrize("name", ["mixed.friction", "friction_at_minimum"])
+def test_the_errors_over_the_coefficients_are_those_on_the_page(name, script, blocks):
+    limit = next(limit for limit in JUDGED[name][0].limits if limit.parameter == "beta/mu0")
+    shown = rows(blocks["ratios"])[name]
+    assert [cell.startswith("**") for cell in shown] == [limit.low <= ratio <= limit.high for ratio in RATIOS]
+    found = largest_errors(name, points=script.RATIO_POINTS)[0]
+    assert [float(cell.strip("*").removesuffix(" %")) / 100 for cell in shown] == pytest.approx(found, rel=0.02)
+
+
 def test_a_formula_that_options_turn_to_another_quantity_is_judged_by_that():
     law = load_sharing.speed_at_fluid_share
     data = error_map(law, load=0.01, relative_roughness=1e-3, share=0.05, predicts="speed_at_5_percent_fluid")
@@ -192,7 +208,7 @@ def test_every_module_of_formulas_has_a_picture_and_a_table_on_the_page(script, 
     for module in script.modules():
         assert f"](images/validity_{module}.png)" in PAGE
         assert set(rows(blocks[module])) == {formula.name for formula in script.of_module(module)}
-    assert set(blocks) == {"formulas", "shares", "box", *script.modules()}
+    assert set(blocks) == {"formulas", "shares", "box", "ratios", *script.modules()}
 
 
 def test_the_pictures_of_the_page_are_small_and_no_others_are_left():

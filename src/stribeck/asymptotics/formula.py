@@ -7,6 +7,7 @@ where it has no value it answers nan, and says so too.
 from __future__ import annotations
 
 import functools
+import inspect
 import math
 import warnings
 from collections.abc import Callable
@@ -61,6 +62,9 @@ r"""Parameters in which ranges and errors are stated: the groups, kappa, the flu
 on the scale of the roughness over Hertz pressure), the fluid's load share at slow speed as [BP] estimate it,
 (lambda**2/kappa**4)/(2 (-ln F)**5), and the film ratio c lambda**(3/5)/kappa (smooth film over h_rms/alpha)."""
 
+COEFFICIENTS = "beta/mu0"
+"""The parameter of a range that is not of the groups: coefficients enter the relative error of friction as this ratio."""
+
 
 @dataclass(frozen=True)
 class Limit:
@@ -69,7 +73,7 @@ class Limit:
     Attributes
     ----------
     parameter : str
-        Key of :data:`PARAMETERS`.
+        Key of :data:`PARAMETERS`, or :data:`COEFFICIENTS`.
     low, high : float
         Ends of the interval.
     """
@@ -78,9 +82,9 @@ class Limit:
     low: float = 0.0
     high: float = math.inf
 
-    def holds(self, groups: Groups) -> Flags:
-        """Return where the parameter lies in the interval."""
-        value = PARAMETERS[self.parameter](groups)
+    def holds(self, groups: Groups, ratio: Value = 1.0) -> Flags:
+        """Return where the parameter lies in the interval, for groups and for coefficients of this ratio beta/mu0."""
+        value = ratio if self.parameter == COEFFICIENTS else PARAMETERS[self.parameter](groups)
         return np.asarray((self.low <= value) & (value <= self.high))
 
     def __str__(self) -> str:
@@ -143,13 +147,22 @@ class Formula(Generic[Arguments]):
         """The range in words."""
         return ", ".join(map(str, self.limits)) or "everywhere"
 
-    def valid(self, groups: Groups) -> Flags:
+    @property
+    def needs_coefficients(self) -> bool:
+        """Whether the range depends on mu0 and beta."""
+        return any(limit.parameter == COEFFICIENTS for limit in self.limits)
+
+    def valid(self, groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0) -> Flags:
         """Return where all limits hold.
 
         Parameters
         ----------
         groups : Groups
             States.
+        boundary_friction : float
+            Friction coefficient of the dry contact [-].
+        beta : float
+            Coefficient of the contact law [-].
 
         Returns
         -------
@@ -158,7 +171,7 @@ class Formula(Generic[Arguments]):
         """
         found = np.ones(groups.shape, dtype=bool)
         for limit in self.limits:
-            found = found & limit.holds(groups)
+            found = found & limit.holds(groups, _ratio(beta, boundary_friction))
         return found
 
     def __call__(self, groups: Groups, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Value:
@@ -168,9 +181,17 @@ class Formula(Generic[Arguments]):
             value = self.function(groups, *args, **kwargs)
         if np.isnan(value).any():
             self._warn("has no value, and is nan,")
-        elif not np.all(self.valid(groups)):
+        elif not np.all(self.valid(groups, **self._coefficients(groups, *args, **kwargs))):
             self._warn("is used")
         return value
+
+    def _coefficients(self, groups: Groups, *args: Arguments.args, **kwargs: Arguments.kwargs) -> dict[str, float]:
+        """Return mu0 and beta of a call where the range depends on them."""
+        if not self.needs_coefficients:
+            return {}
+        call = inspect.signature(self.function).bind(groups, *args, **kwargs)
+        call.apply_defaults()
+        return {name: call.arguments[name] for name in ("boundary_friction", "beta")}
 
     def check_law(self, groups: Groups) -> None:
         """Refuse a contact law for which the formula was not derived; smooth contacts have none.

@@ -273,13 +273,15 @@ def explore_command(
     /,
     *,
     port: Number = None,
+    host: Word = None,
     browser: Annotated[bool, Parameter(negative="--no-browser", show_default=False)] = True,
 ) -> int:
     """Open a page on which the contact is changed by hand and curve, profile, regimes and numbers follow.
 
     Example: stribeck explore examples/pdms_cylinder.toml
 
-    The page is served on this machine only, needs no internet and sends nothing away.  Ctrl-C ends it.
+    The page is served on this machine only, needs no internet and sends nothing away; its address has a token, without which
+    nothing is served.  Ctrl-C ends it.
 
     Parameters
     ----------
@@ -287,6 +289,8 @@ def explore_command(
         Case file (TOML) to begin with; a soft cylinder if not given.
     port
         Port of the page; a free one if not given.
+    host
+        Address of this machine to listen on: 127.0.0.1 (default), ::1 or localhost; no other.
     browser
         Open the page in the browser, or only tell its address.
     """
@@ -294,5 +298,5 @@ def explore_command(
 
     number = None if port is None else as_whole("port", port)
     with suppress(KeyboardInterrupt):  # which is how it ends
-        serve(case, number, browser)
+        serve(case, number, browser, host or "127.0.0.1")
     return 0

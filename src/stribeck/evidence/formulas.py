@@ -339,16 +339,17 @@ def _maps(
             with np.errstate(all="ignore"):
                 values = np.broadcast_to(formula.function(groups, **options), shape)
                 errors[formula.name] = (values - right[formula.predicts]) / right[formula.predicts]
-        valid = np.broadcast_to(_valid(formula, groups), shape)
+        valid = np.broadcast_to(_valid(formula, groups, options), shape)
         found[formula.name] = _dataset(formula, options, axes, errors[formula.name], valid, estimate)
     return found
 
 
-def _valid(formula: Formula[Any], groups: Groups) -> Flags:
+def _valid(formula: Formula[Any], groups: Groups, options: dict[str, Any]) -> Flags:
     """Return where a formula is in its range, to which its ends belong although the grid is rounded."""
     steps = 1 - ROUNDING, 1 + ROUNDING
     near = [replace(groups, speed=groups.speed * i, roughness=groups.roughness * j) for i in steps for j in steps]
-    return np.asarray(np.logical_or.reduce([formula.valid(state) for state in near]))
+    given = {name: options[name] for name in ("boundary_friction", "beta") if name in options}
+    return np.asarray(np.logical_or.reduce([formula.valid(state, **given) for state in near]))
 
 
 def _row(base: Groups, speeds: Array) -> list[tuple[int, Solution]]:

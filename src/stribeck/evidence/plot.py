@@ -203,7 +203,8 @@ def _draw_map(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left: 
     fine_x, fine_y = (_fine(np.asarray(pair)) for pair in ends)
     inside = np.broadcast_to(formula.valid(_states(name, fine_x, fine_y[:, None], load)), (FINE, FINE))
     frame = [np.concatenate([pair[:1], fine, pair[1:]]) for pair, fine in zip(ends, (fine_x, fine_y), strict=True)]
-    if inside.any():
+    # Coefficients of the friction may lie outside the range although the groups do not.
+    if inside.any() and data["valid"].values.any():
         for colour, width in (("white", 3.2), (CONTACT, 1.8)):
             axes.contour(*frame, np.pad(inside.astype(float), 1), [0.5], colors=colour, linewidths=width)
     if name == "speed":
@@ -238,6 +239,7 @@ def _draw_lines(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left
         axes.plot(x, values, color=colour, lw=0.9, alpha=0.75)
         axes.plot(x, np.where(flags, values, np.nan), color=colour, lw=2.0)
     axes.set(xscale="log", yscale="log", xlim=(x[0], x[-1]))
+    valid &= inside.any()
     where = valid.tolist()
     across = axes.get_xaxis_transform()
     axes.fill_between(fine, 0, 1, where=where, transform=across, color=TINTS["hydrodynamic"], lw=0, zorder=0)

@@ -139,6 +139,8 @@ class Model:
             Where the state cannot be solved.
         """
         contact, definition = inputs.contact, inputs.definition
+        if self._solve.rtol != inputs.rtol:
+            self._solve = NearSolver(inputs.rtol)
         solution = self._solve(contact)
         friction = solution.friction(definition=definition)
         part = friction.contact / friction.total if friction.total > 0 else 0.0
@@ -208,9 +210,9 @@ class Model:
         return found
 
 
-def _key(contact: LineContact) -> tuple[float, ...]:
+def _key(contact: LineContact) -> tuple[Any, ...]:
     """Return all inputs but the speed."""
-    return tuple(getattr(contact, name) for name in FIELDS if name != "speed")
+    return (contact.law, *(getattr(contact, name) for name in FIELDS if name != "speed"))
 
 
 def round_up(value: float) -> float:

@@ -6,21 +6,24 @@ import csv
 import io
 import json
 import re
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
-from stribeck.cases.case import Case, load_case
+from stribeck.cases.case import Case, check_case, parse_toml
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.explorer.answer import Answer
+from stribeck.explorer.carried import law_words, toml_text
 from stribeck.explorer.curves import Curve
 from stribeck.explorer.inputs import FIELDS, Inputs, exact_text
 from stribeck.explorer.measured import Measured
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, show
 
-__all__ = ["KINDS", "Shown", "case_text", "content", "name_of", "pin_name", "read_case"]
+__all__ = ["KINDS", "Shown", "case_text", "content", "name_of", "pin_name", "read_case", "shown_name"]
+
+LONGEST_NAME = 80
 
 KINDS = {
     "Picture (PNG)": "png",
@@ -52,15 +55,43 @@ class Shown:
 
 
 def read_case(name: str, content: bytes) -> Case:
-    """Return a case from the content of its file; sentences about it name the file alone."""
-    plain = re.sub(r"[^\w.+-]", "_", Path(name).name)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / plain
-        path.write_bytes(content)
-        try:
-            return load_case(path)
-        except InputError as problem:
-            raise InputError(str(problem).replace(str(path), name)) from None
+    """Return a case from the content of its file.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file, for sentences.
+    content : bytes
+        Its content.
+
+    Returns
+    -------
+    Case
+        The case.
+
+    Raises
+    ------
+    InputError
+        As :func:`stribeck.load_case`; or if the case names a file, which a page cannot read.
+    """
+    path = Path(shown_name(name))
+    tables = parse_toml(content, path)
+    for table, key in (("surface", "spectrum"), ("table", "file")):
+        entries = tables.get(table)
+        if isinstance(entries, dict) and key in entries:
+            raise InputError(
+                f"{path}: [{table}] {key} = {show(entries[key])} is a file that the browser did not send; "
+                f"start with 'stribeck explore {path}', or write its rows into the case."
+            )
+    return check_case(tables, path)
+
+
+def shown_name(name: str) -> str:
+    """Return the name of a file as sentences and legends show it: its last part, in one line, at most 80 characters."""
+    last = name.replace("\\", "/").rstrip("/").rpartition("/")[2]
+    plain = "".join(sign if sign.isprintable() else "_" for sign in last).strip()
+    plain = "file" if plain in ("", ".", "..") else plain
+    return plain if len(plain) <= LONGEST_NAME else f"{plain[: LONGEST_NAME - 20]}...{plain[-17:]}"
 
 
 def name_of(kind: str, title: str) -> str:
@@ -115,18 +146,30 @@ def content(kind: str, shown: Shown) -> bytes:
 
 
 def case_text(shown: Shown) -> str:
-    """Return the case file with exactly the inputs that are shown."""
+    """Return the case file that holds what is shown, and all that the page carries along."""
     inputs, curve = shown.answer.inputs, shown.answer.curve
-    lines = [f"title = {json.dumps(inputs.title, ensure_ascii=False)}"] if inputs.title else []
-    lines.append("\n[contact]")
+    law = json.loads(inputs.law) if inputs.law else {}
+    rest = json.loads(inputs.rest) if inputs.rest else {}
+    contact: dict[str, Any] = {}
     for name, field in FIELDS.items():
         text = exact_text(inputs, name)
-        lines.append(f'{name} = "{text}"' if field.units else f"{name} = {float(text)!r}")
-    if curve is not None and not curve.stale:
-        ends = float(curve.speed[0]), float(curve.speed[-1])
-        lines += ["\n[curve]", 'over = "speed"', f"range = [{ends[0]!r}, {ends[1]!r}]  # m/s", f"points = {len(curve.speed)}"]
-    lines += ["\n[solver]", f"rtol = {shown.answer.solution.rtol!r}", f'definition = "{inputs.definition}"']
-    return "\n".join(lines).lstrip() + "\n"
+        contact[name] = text if field.units else float(text)
+    if "law" in law:
+        contact["law"] = law["law"]
+    tables: dict[str, Any] = {"title": inputs.title} if inputs.title else {}
+    tables |= {"notes": rest["notes"]} if "notes" in rest else {}
+    tables["contact"] = contact
+    if "surface" in law:
+        tables["surface"] = {"shape_only": True, **law["surface"]}  # alpha, beta and roughness stand in [contact]
+    tables |= {"table": law["table"]} if "table" in law else {}
+    if "curve" in rest:
+        tables["curve"] = rest["curve"]
+    elif curve is not None and not curve.stale:
+        ends = [float(curve.speed[0]), float(curve.speed[-1])]
+        tables["curve"] = {"over": "speed", "range": ends, "points": len(curve.speed)}
+    tables["solver"] = {"rtol": inputs.rtol, "definition": inputs.definition}
+    tables |= {"fit": rest["fit"]} if "fit" in rest else {}
+    return toml_text(tables)
 
 
 def curves_text(shown: Shown) -> str:
@@ -182,8 +225,9 @@ def _head(shown: Shown) -> str:
         f"title: {inputs.title}",
         f"source: stribeck {version('stribeck')}",
         *(f"{name}: {exact_text(inputs, name)}" for name in FIELDS),
+        f"contact law: {law_words(inputs.law)}",
         f"definition: {inputs.definition}",
         f"state: rtol {solution.rtol:g}, estimated error {solution.error_estimate:.1e}",
         *(f"note: {note}" for note in solution.notes),
     ]
-    return "".join(f"# {line}\n" for line in lines)
+    return "".join(f"# {' '.join(line.split())}\n" for line in lines)

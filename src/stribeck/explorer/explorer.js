@@ -3,8 +3,41 @@ window.explorerFrame = (frame) => {
   for (const [id, html] of frame.html) document.getElementById(id).innerHTML = html;
   for (const [id, options, settings] of frame.charts) getElement(id)?.chart?.setOption(options, settings);
   for (const [id, now] of frame.knobs) getElement(id)?.show(now);
+  explorerWaits(frame.waits);
   if (frame.moved) getElement(frame.moved)?.free();
   return true;
+};
+
+// What belongs to the contact before is pale until its own is there.
+window.explorerWaits = (words) => {
+  document.querySelector(".more .waits").textContent = words;
+  document.querySelector(".more .ways").classList.toggle("old", words !== "");
+};
+
+const explorerSay = (message) => Quasar.Notify.create({ message, timeout: 6000, closeBtn: "Close" });
+
+window.explorerUpload = async (input, tab) => {
+  const files = [...input.files];
+  input.value = "";
+  for (const file of files) {
+    const answer = await fetch(`/upload/${tab}?name=${encodeURIComponent(file.name.slice(-200))}`, { method: "POST", body: file })
+      .catch(() => null);
+    if (!answer?.ok) explorerSay(answer?.status === 413 ? await answer.text() : `${file.name} could not be sent; reload the page.`);
+  }
+};
+
+window.explorerDownload = async (tab, kind) => {
+  const answer = await fetch(`/download/${tab}/${kind}`).catch(() => null);
+  if (!answer?.ok) {
+    if (answer?.status !== 409) explorerSay("The file could not be made; reload the page.");
+    return;
+  }
+  const anchor = document.createElement("a");
+  anchor.href = URL.createObjectURL(await answer.blob());
+  anchor.download = decodeURIComponent(answer.headers.get("x-file-name"));
+  anchor.click();
+  // At once would be too early: the browser may not have begun to read it.
+  setTimeout(() => URL.revokeObjectURL(anchor.href), 60000);
 };
 
 window.explorerCopy = () => {

@@ -10,13 +10,16 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from decimal import Context
+from fractions import Fraction
 from typing import Any, Literal
 
 from stribeck.cases.case import Case
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import LineContact
+from stribeck.explorer.carried import law_of_case, rest_of_case, shape_of
 from stribeck.quantities.inputs import QUANTITIES, quantity
-from stribeck.quantities.units import format_si, read_number, to_si
+from stribeck.quantities.units import DIMENSIONS, InputError, format_si, read_number, show, to_si
 
 __all__ = [
     "FIELDS",
@@ -58,6 +61,10 @@ class Field:
     units: tuple[str, ...] = ()
 
 
+FRICTION = "boundary_friction"
+LARGEST_FRICTION = 10.0
+"""Friction coefficient above which per cent are suspected."""
+
 FIELDS = {
     "speed": Field("Speed", "U", 1e-8, 10.0, ("µm/s", "mm/s", "m/s")),
     "load": Field("Load", "F<sub>N</sub>", 0.1, 1e5, ("N/m", "kN/m", "N/mm")),
@@ -98,6 +105,10 @@ class Inputs:
         What the curve is drawn over.
     title : str
         Headline.
+    rtol : float
+        Relative tolerance of the states.
+    law, rest : str
+        The contact law of the contact, and what the page carries along, as in :mod:`stribeck.explorer.carried`.
     """
 
     contact: LineContact
@@ -105,11 +116,44 @@ class Inputs:
     definition: Definition = "balanced"
     abscissa: Abscissa = "speed"
     title: str = ""
+    rtol: float = 1e-6
+    law: str = ""
+    rest: str = ""
 
 
 def from_case(case: Case) -> Inputs:
-    """Return the inputs of a case, each in the unit in which it reads best."""
-    return Inputs(case.contact, units_of(case.contact), case.definition, title=case.title)
+    """Return the inputs of a case, each in the unit in which it reads best.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    Inputs
+        All that the case holds.
+
+    Raises
+    ------
+    InputError
+        If the case holds something that the page cannot show.
+    """
+    law = law_of_case(case)
+    contact = case.contact.replace(law=shape_of(law))
+    check_friction(FRICTION, getattr(contact, FRICTION))
+    return Inputs(
+        contact, units_of(contact), case.definition, title=case.title, rtol=case.rtol, law=law, rest=rest_of_case(case)
+    )
+
+
+def check_friction(name: str, value: float) -> None:
+    """Refuse a friction coefficient that looks like per cent."""
+    if value > LARGEST_FRICTION:
+        raise InputError(
+            f"{name} = {value:g} is above {LARGEST_FRICTION:g}, the largest the explorer takes; "
+            f"write {value / 100:g} for {value:g} %."
+        )
 
 
 def units_of(contact: LineContact) -> dict[str, str]:
@@ -151,11 +195,14 @@ def typed(inputs: Inputs, name: str, text: str) -> Inputs:
     InputError
         The sentence that the command line prints for such a value.
     """
-    text = text.strip()
+    text = _with_point(name, text.strip())
     if name in GROUP_FIELDS:
         return _with_group(inputs, name, read_number(name.removesuffix("_group"), text))
     if not FIELDS[name].units:
-        return replace(inputs, contact=inputs.contact.replace(**{name: _bare(text)}))
+        contact = inputs.contact.replace(**{name: _bare(text)})
+        if name == FRICTION:
+            check_friction(name, getattr(contact, name))
+        return replace(inputs, contact=contact)
     unit = inputs.units[name]
     if isinstance(_bare(text), float):
         text = f"{text} {unit}"
@@ -198,14 +245,19 @@ def exact_text(inputs: Inputs, name: str) -> str:
     """Return the shortest text that gives back the very value, with its unit."""
     value = float(getattr(inputs.contact, name))
     unit = inputs.units.get(name, "")
-    for digits in range(3, 18):
-        text = f"{value / _factor(inputs, name):.{digits}g} {unit}".rstrip()
-        if (quantity(name, text) if unit else float(text)) == value:
+    if not unit:
+        return repr(value)
+    # Through exact numbers, because the quotient of two doubles may not lead back in any number of digits.
+    quotient = Fraction(value) / Fraction(repr(_unit_factor(name, unit)))
+    for digits in range(3, 30):
+        number = Context(prec=digits).divide(quotient.numerator, quotient.denominator).normalize()
+        text = f"{number:f} {unit}" if -6 < number.adjusted() < 16 else f"{number} {unit}"
+        if quantity(name, text) == value:
             return text
-    return f"{value!r} {QUANTITIES_SI[name]}"
+    return f"{value!r} {DIMENSIONS[QUANTITIES[name].dimension].unit}"
 
 
-QUANTITIES_SI = {"speed": "m/s", "load": "N/m", "viscosity": "Pa*s", "roughness": "m", "radius": "m", "modulus": "Pa"}
+_COMMA = re.compile(r"([-+\N{MINUS SIGN}]?[0-9]{0,40}),([0-9]{1,40})((?:[eE][-+]?[0-9]+)?(?:\s.*|[^0-9.,].*)?)", re.DOTALL)
 
 
 def _with_group(inputs: Inputs, name: str, value: float) -> Inputs:
@@ -215,6 +267,18 @@ def _with_group(inputs: Inputs, name: str, value: float) -> Inputs:
     kept = ("radius", "modulus", "viscosity", "alpha", "beta", "boundary_friction")
     moved = LineContact.from_groups(groups, **{key: getattr(contact, key) for key in kept})
     return replace(inputs, contact=moved)
+
+
+def _with_point(name: str, text: str) -> str:
+    """Return text with a decimal point for its decimal comma; refuse a comma that may part thousands."""
+    found = _COMMA.fullmatch(text)
+    if not found:
+        return text
+    whole, part, rest = found.groups()
+    if len(part) == 3 and whole.lstrip("+-\N{MINUS SIGN}0"):
+        number = f"{whole}{part}"
+        raise InputError(f"{name} = {show(text)} may be {whole}.{part} or {number}; write one of them, without a comma.")
+    return f"{whole or 0}.{part}{rest}"
 
 
 def _bare(text: str) -> float | str:

@@ -57,9 +57,8 @@ def read_measured(name: str, content: bytes, contact: LineContact) -> list[Measu
     InputError
         Where the file cannot be read; the sentence names row and column.
     """
-    plain = Path(name.replace("\\", "/")).name or "curve"
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / plain
+    with tempfile.TemporaryDirectory(prefix="stribeck-") as folder:
+        path = Path(folder) / "curve.csv"  # never under the name that came with it
         path.write_bytes(content)
         try:
             data = read_measurements(path)

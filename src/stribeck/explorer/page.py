@@ -16,6 +16,7 @@ from nicegui.json import dumps
 from stribeck.explorer import downloads as files
 from stribeck.explorer import inputs, table
 from stribeck.explorer.answer import Answer
+from stribeck.explorer.carried import law_words
 from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
@@ -26,11 +27,11 @@ from stribeck.explorer.url import Pin
 
 __all__ = ["Page"]
 
+UPDATING = "Updating ..."
+"""What stands where something is still being computed."""
+
 PATIENCE = 2.0
 """Seconds after which a browser that does not answer gets the next picture all the same."""
-
-LARGEST_FILE = 5_000_000
-REJECTED = f"Only .toml, .csv and .txt are read, up to {LARGEST_FILE // 1_000_000} MB."
 
 DEFINITIONS = {"balanced": "balanced", "published": "as published"}
 ABSCISSAS = {"speed": "speed", "hersey": "Hersey number"}
@@ -74,6 +75,8 @@ class Page:
 
     def __init__(self, now: Inputs) -> None:
         self.client = ui.context.client
+        self.client_name = dumps(self.client.id)
+        self.ways_of: Inputs | None = None
         self.moved: int | None = None
         self.knobs: dict[str, Knob] = {}
         self.charts: dict[str, ui.echart] = {}
@@ -104,8 +107,9 @@ class Page:
                     self.status = ui.label().classes("status").props('role="status"')
                     self.numbers = ui.html("", sanitize=False)
                 with ui.element("section").classes("card more").props('aria-label="Distances"'):
-                    ui.html("<h2>To the next regimes, by each input</h2>", sanitize=False)
-                    self.distances = ui.html('<p class="caption">solved when the sliders rest</p>', sanitize=False)
+                    head = f"To the next regimes, by each input <span class='caption waits'>{UPDATING}</span>"
+                    ui.html(f"<h2>{head}</h2>", sanitize=False)
+                    self.distances = ui.html(f'<p class="caption">{UPDATING}</p>', sanitize=False).classes("ways")
                 with ui.element("section").classes("card diagram").props('aria-label="Phase diagram"'):
                     self.diagram_head = ui.html("<h2>Regimes</h2>", sanitize=False)
                     self.chart("diagram", "Regimes over speed and roughness")
@@ -116,19 +120,18 @@ class Page:
         with ui.element("header").classes("bar"):
             self.title = ui.html("", sanitize=True, tag="h1")
             self.upload = (
-                ui.upload(auto_upload=True, multiple=True, max_file_size=LARGEST_FILE)
-                .on(
-                    "rejected",
-                    lambda: self.complain(REJECTED),
-                )
-                .props('accept=".toml,.csv,.txt" aria-hidden="true"')
+                ui.element("input")
+                .props('type=file multiple accept=".toml,.csv,.txt" aria-hidden="true" tabindex=-1')
                 .classes("hidden-upload")
+                .on("change", js_handler=f"event => explorerUpload(event.target, {self.client_name})")
             )
             with button("Load", "upload_file", "Load a case (TOML) or a measured curve (CSV)") as load:
-                load.on("click", js_handler=f"() => getElement({self.upload.id}).pickFiles()")
+                load.on("click", js_handler=f"() => getHtmlElement({self.upload.id}).click()")
             with button("Save", "download", "Download what is shown"):
                 with ui.menu():
-                    self.save_items = {kind: ui.menu_item(label) for label, kind in files.KINDS.items()}
+                    for label, kind in files.KINDS.items():
+                        send = f"() => explorerDownload({self.client_name}, {dumps(kind)})"
+                        ui.menu_item(label).on("click", js_handler=send)
             self.pin_button = button("Pin", "push_pin", "Keep this curve to compare (p)")
             button("Link", "link", "Copy the address of this state (l)").on("click", js_handler="() => explorerCopy()")
             self.theme_button = button("", "contrast", "Light or dark (t)").props("aria-label='Light or dark'")
@@ -139,6 +142,7 @@ class Page:
         ui.html("<h2>Contact</h2>", sanitize=False)
         for name in FIELDS:
             self.knobs[name] = Knob(name, knob_state(now, name))
+        self.law = ui.html("", sanitize=False).classes("caption law")
         ui.html("<h2>Dimensionless groups</h2>", sanitize=False)
         for name in GROUP_FIELDS:
             self.knobs[name] = Knob(name, knob_state(now, name))
@@ -220,9 +224,12 @@ class Page:
 
     def complain(self, text: str) -> None:
         """Show sentences about a file until they are read."""
-        with self.client, ui.dialog(value=True), ui.card():
+        with self.client, ui.dialog(value=True) as dialog, ui.card():
             for line in text.splitlines():
                 ui.label(line)
+            ui.button("Close", on_click=dialog.close).props("flat no-caps autofocus")
+        # Closed ones are removed, or each would stay with its page.
+        dialog.on("hide", dialog.delete)
 
     def options(self, seen: Shown) -> dict[str, dict[str, Any]]:
         """Return what all charts show."""
@@ -240,17 +247,31 @@ class Page:
     def words(self, answer: Answer) -> list[tuple[ui.html, str]]:
         """Return the numbers, and the lines that go with the charts."""
         waits = answer.curve is None or answer.curve.stale
-        source = "solved when the sliders rest" if answer.curve is None or waits else answer.curve.source
+        source = UPDATING if answer.curve is None or waits else answer.curve.source
         load = f"{float(answer.inputs.contact.groups.load):.3g}"
         return [
             (self.numbers, table.numbers_html(answer, table.numbers(answer))),
             (self.source, source),
+            (self.law, f"Contact law: {escape(law_words(answer.inputs.law))}"),
             (self.diagram_head, f"<h2>Regimes <span class='caption'>at this load (group {load})</span></h2>"),
         ]
+
+    def show_distances(self, content: str, now: Inputs) -> None:
+        """Show the distances of inputs to the next regimes."""
+        self.ways_of = now
+        self.distances.content = content
+        self.client.run_javascript("explorerWaits('')")
+
+    def ways_words(self, now: Inputs) -> str:
+        """Return what stands beside the distances: whether they belong to what is shown."""
+        shown = self.ways_of
+        same = shown is not None and (shown.contact, shown.definition) == (now.contact, now.definition)
+        return "" if same else UPDATING
 
     async def draw(self, now: Inputs, seen: Shown) -> None:
         """Send what changed, and wait until the browser has drawn it."""
         frame: dict[str, Any] = {"html": [], "charts": [], "knobs": [], "moved": self.moved}
+        frame["waits"] = self.ways_words(now)
         self.moved = None
         for element, content in self.words(seen.answer):
             if self.shown.get(element.html_id) != content:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import secrets
 import socket
 import sys
 from pathlib import Path
+from urllib.parse import quote
 
 from stribeck.cases.case import load_case
 from stribeck.contacts.line import LineContact
+from stribeck.explorer.downloads import KINDS, name_of, shown_name
+from stribeck.explorer.guard import Guard, check_host
 from stribeck.explorer.inputs import Inputs, from_case, units_of
+from stribeck.explorer.url import LONGEST, check_length
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
 
@@ -18,11 +23,20 @@ HOST = "127.0.0.1"
 PORTS = range(8765, 8815)
 """Ports that are tried where none is asked for."""
 
+OPENING = 120.0
+"""Seconds that a page may wait for its first answer, behind those of other pages."""
+
+RECONNECT = 30.0
+"""Seconds after which a page without browser is forgotten."""
+
+MOST_RESENT = 20
+"""Messages that are kept for a browser whose connection was interrupted; each may hold all charts."""
+
 ICON = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 32 32"><rect width="32" height="32" rx="7" fill="#0072b2"/>
 <path d="M5 9h6c6 0 6 13 10 13 3 0 4-5 6-10" fill="none" stroke="#fff" stroke-width="2.6" stroke-linecap="round"/></svg>"""
 
 
-def serve(case: Path | None = None, port: int | None = None, browser: bool = True) -> None:
+def serve(case: Path | None = None, port: int | None = None, browser: bool = True, host: str = HOST) -> None:
     """Serve the page until Ctrl-C.
 
     Parameters
@@ -33,54 +47,97 @@ def serve(case: Path | None = None, port: int | None = None, browser: bool = Tru
         Port; a free one if not given.
     browser : bool
         Whether to open the page in the browser.
+    host : str
+        Address of this machine to listen on: 127.0.0.1, ::1 or localhost.
 
     Raises
     ------
     InputError
-        If the case is wrong, or the port is not free.
+        If the case is wrong or too large for an address, the port is not free, or others reach the host.
     MissingExtraError
         If NiceGUI is not installed.
     """
+    check_host(host)
     start = example() if case is None else from_case(load_case(case))
+    check_length(start)
     try:
         import nicegui
     except ImportError:
         raise MissingExtraError("the explorer", "app", "nicegui") from None
-    from starlette.middleware.trustedhost import TrustedHostMiddleware
     from threadpoolctl import threadpool_limits
 
-    from stribeck.explorer.tab import Tab
-    from stribeck.explorer.url import decode
-
     threadpool_limits(1, user_api="blas")
-    chosen = free_port(port)
-    app, ui = nicegui.app, nicegui.ui
-    # A page of another name that points here would else be served too.
-    app.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
-    style, script = ((Path(__file__).parent / f"explorer.{kind}").read_text(encoding="utf-8") for kind in ("css", "js"))
-
-    @ui.page("/", title="stribeck explorer")
-    async def index() -> None:
-        request = ui.context.client.request
-        ui.add_css(style)
-        ui.add_head_html(f"<script>{script}</script>")
-        ui.colors(primary="#0072b2")
-        tab = Tab(decode(request.query_params.multi_items(), start), start)
-        await tab.open()
-
-    app.on_startup(lambda: print(f"stribeck explorer: http://{HOST}:{chosen} (Ctrl-C ends it)", flush=True))
-    ui.run(
-        host=HOST,
+    chosen = free_port(port, host)
+    token = secrets.token_urlsafe(24)
+    address = f"http://{f'[{host}]' if ':' in host else host}:{chosen}/?token={token}"
+    build(start, chosen, token)
+    nicegui.app.on_startup(lambda: print(f"stribeck explorer: {address} (Ctrl-C ends it)", flush=True))
+    nicegui.ui.run(
+        host=host,
         port=chosen,
-        show=browser,
+        show=f"/?token={token}" if browser else False,
         reload=False,
         dark=None,
         tailwind=False,
         favicon=ICON,
         title="stribeck explorer",
         show_welcome_message=False,
-        reconnect_timeout=30.0,
+        reconnect_timeout=RECONNECT,
+        message_history_length=MOST_RESENT,
+        h11_max_incomplete_event_size=4 * LONGEST,
+        ws_max_size=1_000_000,
     )
+
+
+def build(start: Inputs, port: int, token: str) -> None:
+    """Give NiceGUI's application its page, its routes for files, and the guard before them.
+
+    Parameters
+    ----------
+    start : Inputs
+        What is shown where an address says nothing.
+    port : int
+        The port.
+    token : str
+        What a browser must know.
+    """
+    from nicegui import app, ui
+    from starlette.requests import Request
+    from starlette.responses import Response
+
+    from stribeck.explorer.tab import TABS, Tab, opening
+
+    app.add_middleware(Guard, token=token, port=port)
+    style, script = ((Path(__file__).parent / f"explorer.{kind}").read_text(encoding="utf-8") for kind in ("css", "js"))
+
+    @ui.page("/", title="stribeck explorer", response_timeout=OPENING)
+    async def index() -> None:
+        request = ui.context.client.request
+        opened, answer = await opening(request.query_params.multi_items(), start)
+        ui.add_css(style)
+        ui.add_head_html(f"<script>{script}</script>")
+        ui.colors(primary="#0072b2")
+        await Tab(opened, start, answer).open()
+
+    async def upload(request: Request) -> Response:
+        tab = TABS.get(request.path_params["tab"])
+        if tab is None:
+            return Response(status_code=404)
+        await tab.take_file(shown_name(request.query_params.get("name", "")), await request.body())
+        return Response(status_code=204)
+
+    async def download(request: Request) -> Response:
+        tab, kind = TABS.get(request.path_params["tab"]), request.path_params["kind"]
+        if tab is None or kind not in KINDS.values():
+            return Response(status_code=404)
+        content = await tab.content(kind)
+        if content is None:
+            return Response(status_code=409)
+        name = quote(name_of(kind, tab.inputs.title))
+        return Response(content, media_type="application/octet-stream", headers={"x-file-name": name})
+
+    app.add_route("/upload/{tab}", upload, methods=["POST"])
+    app.add_route("/download/{tab}/{kind}", download, methods=["GET"])
 
 
 def example() -> Inputs:
@@ -99,13 +156,15 @@ def example() -> Inputs:
     return Inputs(contact, units_of(contact), title="PDMS cylinder in glycerol-water")
 
 
-def free_port(wanted: int | None) -> int:
+def free_port(wanted: int | None, host: str = HOST) -> int:
     """Return a port of this machine that nobody listens on.
 
     Parameters
     ----------
     wanted : int or None
         The port that must be free; one of :data:`PORTS` where None.
+    host : str
+        The address.
 
     Returns
     -------
@@ -120,11 +179,11 @@ def free_port(wanted: int | None) -> int:
     if wanted is not None and not 1 <= wanted <= 65535:
         raise InputError(f"port = {wanted} must be a whole number from 1 to 65535.")
     for port in PORTS if wanted is None else (wanted,):
-        with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
+        with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM) as probe:
             if sys.platform != "win32":
                 probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             try:
-                probe.bind((HOST, port))
+                probe.bind((host, port))
             except OSError:
                 continue
             return port

@@ -7,7 +7,10 @@ fewer pictures instead of late ones.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+import re
+import threading
+import weakref
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from html import escape
@@ -17,32 +20,88 @@ from nicegui import background_tasks, events, ui
 
 from stribeck.explorer import downloads as files
 from stribeck.explorer import inputs, table, url
-from stribeck.explorer.answer import Model
+from stribeck.explorer.answer import Answer, Model
 from stribeck.explorer.charts.palette import LIGHT
 from stribeck.explorer.curves import Curve
 from stribeck.explorer.downloads import Shown
 from stribeck.explorer.inputs import Inputs
-from stribeck.explorer.measured import Measured, read_measured
+from stribeck.explorer.measured import Measured
 from stribeck.explorer.page import Page
+from stribeck.explorer.reading import read_file
 from stribeck.explorer.url import Pin
+from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
 from stribeck.regimes.distances import TransitionDistances, transition_distances
 from stribeck.solver.solve import SolveError
 
-__all__ = ["Tab"]
+__all__ = ["TABS", "Tab", "opening"]
 
 REST = 0.4
 """Seconds after the last change from which what takes longer is done."""
 
 LIVE = ThreadPoolExecutor(2, "explorer")
 SLOW = ThreadPoolExecutor(1, "explorer-slow")
-"""Threads of what follows the slider, and of what comes when it rests."""
+FILES = ThreadPoolExecutor(2, "explorer-files")
+"""Threads of what follows the slider, of what comes when it rests, and of files that are read."""
+
+MOST_OPENED = 4
+OPENED: dict[str, Answer] = {}
+OPENED_LOCK = threading.Lock()
+"""Answers to the last inputs with which pages opened."""
+
+TABS: weakref.WeakValueDictionary[str, Tab] = weakref.WeakValueDictionary()
+"""Open pages, by the names of their clients; a page that is closed drops out."""
 
 MOST_MEASURED = 3
 
 
+def without_rtol(sentence: str) -> str:
+    """Return a sentence about a failure without advice on the tolerance, which the page does not offer."""
+    return re.sub(r"[;,]? *(?:ask for|or) [^.;]*rtol[^.;]*", "", sentence)
+
+
 class Superseded(Exception):  # noqa: N818
     """The inputs changed while something slow was computed for them."""
+
+
+def answer_of(now: Inputs) -> Answer:
+    """Return the answer to the inputs with which a page opens; many pages open with the same ones."""
+    key = url.encode(now)
+    with OPENED_LOCK:
+        found = OPENED.get(key)
+        if found is None:
+            found = OPENED[key] = Model()(now)
+            while len(OPENED) > MOST_OPENED:
+                del OPENED[next(iter(OPENED))]
+        return found
+
+
+async def opening(items: list[tuple[str, str]], start: Inputs) -> tuple[url.Opened, Answer]:
+    """Return what an address asks for and its answer, computed beside the event loop.
+
+    Parameters
+    ----------
+    items : list of (str, str)
+        Keys and values of the address.
+    start : Inputs
+        What the command was started with.
+
+    Returns
+    -------
+    Opened, Answer
+        The inputs, and their answer; that of the start where they cannot be solved.
+    """
+
+    def prepare() -> tuple[url.Opened, Answer]:
+        opened = url.decode(items, start)
+        try:
+            return opened, answer_of(opened.inputs)
+        except (InputError, SolveError) as problem:
+            told = url.Opened(opened.inputs, opened.pins, {**opened.problems, "state": ("", str(problem))})
+            return told, answer_of(start)
+
+    opened, answer = await Tab.run(LIVE, prepare)
+    return opened, answer
 
 
 class Tab:
@@ -54,9 +113,11 @@ class Tab:
         What its address asks for.
     start : Inputs
         What the command was started with.
+    answer : Answer
+        The answer to the inputs of the address.
     """
 
-    def __init__(self, opened: url.Opened, start: Inputs) -> None:
+    def __init__(self, opened: url.Opened, start: Inputs, answer: Answer) -> None:
         self.inputs, self.pins = opened.inputs, list(opened.pins)
         self.start = start
         self.measured: list[Measured] = []
@@ -64,11 +125,11 @@ class Tab:
         self.asked = False
         self.working = False
         self.resting: asyncio.Task[Any] | None = None
-        try:
-            self.answer = self.model(self.inputs)
-        except (InputError, SolveError):
-            self.answer = self.model(self.start)
+        self.closed = False
+        self.answer = answer
+        self.pinned: list[tuple[str, Curve, float]] = []
         self.page = Page(self.inputs)
+        TABS[self.page.client.id] = self
         self.connect()
         self.page.draw_all(self.inputs, self.seen())
         self.problems = opened.problems
@@ -82,9 +143,7 @@ class Tab:
             knob.on("unit", lambda event, name=name: self.choose_unit(name, event.args))
         for name, toggle in page.toggles.items():
             toggle.on_value_change(lambda event, name=name: self.choose(name, event.value))
-        for kind, item in page.save_items.items():
-            item.on_click(lambda kind=kind: background_tasks.create(self.save(kind)))
-        page.upload.on_upload(self.on_upload)
+        page.client.on_delete(self.close)
         page.pin_button.on("click", self.pin)
         page.theme_button.on("click", self.toggle_theme)
         page.keyboard.on_key(self.on_key)
@@ -151,7 +210,7 @@ class Tab:
             ui.notify(f"Up to {url.MOST_PINS} curves can be pinned; remove one first.")
             return
         name = files.pin_name(self.inputs, self.start, [pin.name for pin in self.pins])
-        self.pins.append(Pin(name, self.inputs.contact, self.inputs.definition))
+        self.pins.append(Pin(name, self.inputs.contact, self.inputs.definition, self.inputs.law))
         self.show_chips()
         self.ask()
 
@@ -171,34 +230,38 @@ class Tab:
         self.show_chips()
         self.ask()
 
-    async def on_upload(self, event: events.UploadEventArguments) -> None:
-        """Take a case or a measured curve."""
-        name, content = event.file.name, await event.file.read()
-        self.page.upload.reset()
+    async def take_file(self, name: str, content: bytes) -> None:
+        """Take a case or a measured curve that the browser sent."""
+        kind = "case" if name.lower().endswith(".toml") else "measured"
         try:
-            if name.lower().endswith(".toml"):
-                case = await self.run(LIVE, files.read_case, name, content)
-                self.page.status.text = ""
-                self.start = inputs.from_case(case)
-                self.change(replace(self.start, abscissa=self.inputs.abscissa))
+            found = await self.run(FILES, read_file, kind, name, content, self.inputs.contact)
+        except InputError as problem:
+            self.page.complain(str(problem))
+            return
+        with self.page.client:
+            if kind == "case":
+                self.start = found
+                self.change(replace(found, abscissa=self.inputs.abscissa))
                 self.page.show_title(self.inputs)
             else:
-                found = await self.run(LIVE, read_measured, name, content, self.inputs.contact)
                 self.measured = [*self.measured, *found][-MOST_MEASURED:]
                 self.show_chips()
                 self.ask()
-        except InputError as problem:
-            self.page.complain(str(problem))
 
-    async def save(self, kind: str) -> None:
-        """Offer a file of what is shown."""
-        with self.page.client:
-            try:
-                content = await self.run(SLOW, files.content, kind, self.seen())
-            except (InputError, SolveError) as problem:
-                self.page.complain(str(problem))
-                return
-            ui.download.content(content, files.name_of(kind, self.inputs.title))
+    async def content(self, kind: str) -> bytes | None:
+        """Return a file of what is shown, or None after saying why there is none."""
+        try:
+            found: bytes = await self.run(SLOW, files.content, kind, self.seen())
+        except (InputError, SolveError, MissingExtraError) as problem:
+            self.page.complain(str(problem))
+            return None
+        return found
+
+    def close(self) -> None:
+        """Stop what runs for a page that is gone."""
+        self.closed = True
+        if self.resting is not None:
+            self.resting.cancel()
 
     # --- the answer ---
 
@@ -212,13 +275,13 @@ class Tab:
     async def work(self) -> None:
         """Answer until nothing is asked any more, the last inputs last."""
         try:
-            while self.asked:
+            while self.asked and not self.closed:
                 self.asked = False
                 now = self.inputs
                 try:
-                    self.answer = await self.run(LIVE, self.model, now)
+                    self.answer, self.pinned = await self.run(LIVE, self.compute, now, tuple(self.pins))
                 except (InputError, SolveError) as problem:
-                    self.page.status.text = f"{problem} The last picture stays."
+                    self.page.status.text = f"{without_rtol(str(problem))} The last picture stays."
                 except Exception as problem:  # a page that silently no longer follows would be worse
                     self.page.status.text = f"Something went wrong that should not ({problem!r}). The last picture stays."
                 else:
@@ -233,23 +296,26 @@ class Tab:
         """Return what a function gives, computed in a thread."""
         return await asyncio.get_running_loop().run_in_executor(pool, function, *arguments)
 
-    def pinned(self) -> list[tuple[str, Curve, float]]:
-        """Return the pinned curves as far as they are known, over the speeds of the axis."""
+    def compute(self, now: Inputs, pins: Sequence[Pin]) -> tuple[Answer, list[tuple[str, Curve, float]]]:
+        """Return the answer, and the pinned curves as far as they are known, over the speeds of its axis."""
+        answer = self.model(now)
         found = []
-        for pin in self.pins:
-            curve = self.model.curve(pin.contact, pin.definition, self.answer.speeds)
+        for pin in pins:
+            curve = self.model.curve(pin.contact, pin.definition, answer.speeds)
             if curve is not None:
                 found.append((pin.name, curve, pin.contact.viscosity / pin.contact.load))
-        return found
+        return answer, found
 
     def seen(self) -> Shown:
         """Return the answer, and the curves that are shown with it."""
-        return Shown(self.answer, self.pinned(), tuple(self.measured))
+        return Shown(self.answer, self.pinned, tuple(self.measured))
 
     # --- when the sliders rest ---
 
     def rest(self) -> None:
         """Wait for a while without change, then do what takes longer."""
+        if self.closed:
+            return
         if self.resting is not None:
             self.resting.cancel()
         self.resting = background_tasks.create(self.settle(), name="explorer rests")
@@ -265,14 +331,13 @@ class Tab:
                 return
             found = await self.run(SLOW, self.ways, now)
             if found is not None and self.inputs is now:
-                content = found if isinstance(found, str) else table.distances_html(found)
-                self.page.distances.content = content
+                self.page.show_distances(found if isinstance(found, str) else table.distances_html(found), now)
 
     def ways(self, now: Inputs) -> TransitionDistances | str | None:
         """Return the distances of a contact, the reason why there are none, or None where it is no longer shown."""
 
         def go_on(done: int, scans: int) -> None:
-            if self.inputs is not now or self.page.client._deleted:
+            if self.inputs is not now or self.closed:
                 raise Superseded
 
         try:
@@ -280,7 +345,7 @@ class Tab:
         except Superseded:
             return None
         except (InputError, SolveError) as problem:
-            return f'<p class="note">{escape(str(problem))}</p>'
+            return f'<p class="note">{escape(without_rtol(str(problem)))}</p>'
 
     async def open(self) -> None:
         """Do what needs the browser: its theme, and what comes at rest."""

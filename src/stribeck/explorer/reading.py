@@ -1,0 +1,121 @@
+"""Files that the browser sends, read in a process of their own, which may fail or take too long without harm to the page.
+
+Run as a program it reads one file from its standard input; :func:`read_file` starts that program.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+from typing import Any, Literal
+
+from stribeck.contacts.line import LineContact
+from stribeck.explorer.downloads import read_case
+from stribeck.explorer.inputs import from_case
+from stribeck.explorer.measured import read_measured
+from stribeck.explorer.url import check_length
+from stribeck.quantities.units import InputError
+
+__all__ = ["LONGEST_TIME", "read_file"]
+
+Kind = Literal["case", "measured"]
+
+LONGEST_TIME = 20.0
+"""Seconds after which a file is given up."""
+
+MOST_MEMORY = 4_000_000_000
+"""Bytes that the program may address, where the system can limit it."""
+
+
+def read_file(kind: Kind, name: str, content: bytes, contact: LineContact, seconds: float = LONGEST_TIME) -> Any:
+    """Return what a file holds.
+
+    Parameters
+    ----------
+    kind : {"case", "measured"}
+        What it is.
+    name : str
+        Its name, for sentences.
+    content : bytes
+        Its content.
+    contact : LineContact
+        The contact over which measured curves are drawn.
+    seconds : float
+        Time after which it is given up.
+
+    Returns
+    -------
+    Inputs, or list of Measured
+        What it holds.
+
+    Raises
+    ------
+    InputError
+        If it cannot be used, or takes too long.
+    """
+    # Of the contact only what measured curves need: not every law can be sent.
+    task = pickle.dumps((kind, name, content, contact.replace(law=None), seconds))
+    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    command = [sys.executable, "-m", "stribeck.explorer.reading"]
+    try:
+        # The program keeps its time itself, so that it can remove what it wrote; the limit here is for one that hangs.
+        done = subprocess.run(command, input=task, capture_output=True, timeout=seconds + 20, env=environment, check=False)
+        if done.returncode == 0:
+            good, found = pickle.loads(done.stdout)  # noqa: S301 - from our own program
+            if good:
+                return found
+            raise InputError(found)
+    except subprocess.TimeoutExpired:
+        pass
+    raise InputError(
+        f"{name} could not be read within {seconds:g} s; it should be a page of TOML, or some columns of numbers."
+    )
+
+
+def main() -> None:
+    """Read a task from the standard input and write what was found, or the sentence about it, to the standard output."""
+    kind, name, content, contact, seconds = pickle.load(sys.stdin.buffer)  # noqa: S301 - from our own program
+    signal.signal(signal.SIGTERM, _stop)
+    _limit_memory()
+    # A signal, so that temporary folders are removed on the way out.
+    watch = threading.Timer(seconds, lambda: os.kill(os.getpid(), signal.SIGTERM))
+    watch.daemon = True
+    watch.start()
+    found: Any
+    try:
+        if kind == "case":
+            found = from_case(read_case(name, content))
+            check_length(found)
+        else:
+            found = read_measured(name, content, contact)
+        answer = True, found
+    except InputError as problem:
+        answer = False, str(problem)
+    except (MemoryError, RecursionError):
+        answer = False, f"{name} needs more memory than a file of a laboratory should."
+    sys.stdout.buffer.write(pickle.dumps(answer))
+
+
+def _stop(*_: Any) -> None:
+    raise SystemExit(3)
+
+
+def _limit_memory() -> None:
+    try:
+        import resource
+    except ImportError:  # Windows
+        return
+    _, most = resource.getrlimit(resource.RLIMIT_AS)
+    limit = MOST_MEMORY if most == resource.RLIM_INFINITY else min(MOST_MEMORY, most)
+    try:
+        resource.setrlimit(resource.RLIMIT_AS, (limit, most))
+    except (OSError, ValueError):  # macOS has the name and not the limit
+        return
+
+
+if __name__ == "__main__":
+    main()
