@@ -4,6 +4,7 @@ import csv
 import io
 import os
 import re
+import stat
 import sys
 import textwrap
 
@@ -18,6 +19,7 @@ from hypothesis import strategies as st
 
 import stribeck as sb
 from stribeck.curves.table import curve_dataset
+from stribeck.files import writing
 from stribeck.files.datasets import write_csv, write_data, write_netcdf
 from stribeck.files.writing import MissingExtraError, check_output, replacing
 
@@ -370,9 +372,46 @@ def test_a_full_disk_leaves_the_old_file_and_a_sentence(tmp_path, ending):
     path.write_text("precious")
     answer = run_python(FULL, path)
     assert answer.code == 0, answer.err
-    assert re.fullmatch(r".*could not be written \(.+\); it is as it was before\.\n", answer.out)
+    assert re.fullmatch(r".*could not be written \(File too large\); it is as it was before\.\n", answer.out)
     assert path.read_text() == "precious"
     assert os.listdir(tmp_path) == [path.name]
+
+
+def test_a_full_disk_is_not_called_a_lack_of_permission(dataset, tmp_path, monkeypatch):
+    """HDF5 says "Permission denied" where a disk takes no more."""
+
+    def denied(self, path, **options):
+        monkeypatch.setattr(writing.os, "fsync", full)
+        raise PermissionError(13, "Permission denied")
+
+    def full(number):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", denied)
+    with pytest.raises(sb.InputError, match=r"curve\.nc could not be written \(No space left on device\)"):
+        write_data(dataset, tmp_path / "curve.nc")
+    assert os.listdir(tmp_path) == []
+    monkeypatch.undo()
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", lambda self, path, **options: os.open("/no/such/file", os.O_RDONLY))
+    with pytest.raises(sb.InputError, match=r"curve\.nc could not be written \(No such file or directory\)"):
+        write_data(dataset, tmp_path / "curve.nc")
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_file_is_on_the_disk_before_it_has_its_name_and_its_folder_after(tmp_path, monkeypatch):
+    done = []
+    for name in ("fsync", "replace"):
+        whole = getattr(os, name)
+
+        def noted(*arguments, name=name, whole=whole):
+            is_folder = name == "fsync" and stat.S_ISDIR(os.fstat(arguments[0]).st_mode)
+            done.append("folder" if is_folder else name)
+            whole(*arguments)
+
+        monkeypatch.setattr(writing.os, name, noted)
+    with replacing(tmp_path / "curve.csv", (".csv",)) as temporary:
+        temporary.write_text("ours")
+    assert done == ["fsync", "replace", "folder"]
 
 
 KILLED = """

@@ -2,24 +2,26 @@
 
 import json
 import os
+import re
 import shutil
-import socket
 import struct
 import subprocess
 import sys
+import threading
+import time
 
 import numpy as np
 import pytest
 import xarray as xr
 import zarr
+from filelock import SoftFileLock
 from sweep_files import GRID, chunks, done_rows, write
 
 import stribeck as sb
 from stribeck.files.writing import MissingExtraError
-from stribeck.sweeps import lock as sweep_lock
 from stribeck.sweeps import store as sweep_store
 from stribeck.sweeps.columns import OUTCOMES, columns_of
-from stribeck.sweeps.lock import LOCK
+from stribeck.sweeps.lock import LOCK, locked
 
 SMALL = GRID.replace("17", "3")
 
@@ -266,10 +268,14 @@ def test_a_number_of_workers_that_is_none_is_refused(tmp_path, workers):
 # --- the lock ---
 
 
-def lock_of(store, **changes):
-    """Write the lock of a process into a store."""
-    holder = {"host": socket.gethostname(), "pid": os.getpid(), "born": sweep_lock._born(os.getpid()), "token": "x"} | changes
-    (store / LOCK).write_text(json.dumps(holder))
+def lock_of(store, process=None, host=None, born=None):
+    """Write the lock of a process into a store, as filelock does."""
+    with SoftFileLock(str(store / LOCK)):
+        record = (store / LOCK).read_text().splitlines()
+    for place, value in enumerate((process, host, born)):
+        if value is not None:
+            record[place] = str(value)
+    (store / LOCK).write_text("\n".join(record) + "\n")
 
 
 def test_a_store_that_a_living_process_sweeps_on_is_refused(copy):
@@ -282,7 +288,7 @@ def test_a_store_that_a_living_process_sweeps_on_is_refused(copy):
 
 def test_the_lock_of_another_machine_is_refused_with_what_to_do(copy):
     store, file = copy
-    lock_of(store, host="node17", pid=4711)
+    lock_of(store, host="node17", process=4711)
     with pytest.raises(sb.InputError, match=r"in use by process 4711 on node17, .*; if it does not, delete that file and run"):
         sb.sweep(file, store)
     (store / LOCK).unlink()
@@ -295,37 +301,56 @@ def dead_process():
     return process.pid
 
 
-@pytest.mark.parametrize("how", ["ended", "number used again", "torn"])
+@pytest.mark.parametrize("how", ["ended", "number used again"])
 def test_the_lock_of_a_dead_process_is_taken_over_with_a_note(copy, how):
     store, file = copy
-    if how == "ended":
-        lock_of(store, pid=dead_process())
-    elif how == "number used again":
-        lock_of(store, born="another boot 17")
-    else:
-        (store / LOCK).write_text("{")
-    if how == "torn":  # written whole or not at all: somebody else's
-        with pytest.raises(sb.InputError, match="delete that file and run again"):
-            sb.sweep(file, store)
-        return
+    lock_of(store, **({"process": dead_process()} if how == "ended" else {"born": 17}))
     found = sb.sweep(file, store)
-    assert "An earlier sweep on this store" in found.note
+    assert re.fullmatch(r"An earlier sweep on this store \(process \d+\) ended without a word; its .* over\.", found.note)
     assert not list(store.glob(f"*{LOCK}*"))
 
 
-def test_a_lock_that_changes_hands_while_it_is_judged_is_left_alone(copy, monkeypatch):
+@pytest.mark.parametrize("odd", ["torn", "empty", "of another program", "not text", "huge", "a folder", "a pipe"])
+def test_a_lock_that_no_sweep_has_written_is_refused_with_what_to_do(copy, odd):
     store, file = copy
-    lock_of(store, pid=dead_process())
-    rename = os.rename
-
-    def too_late(a, b):
-        lock_of(store)  # somebody else took it over first
-        rename(a, b)
-
-    monkeypatch.setattr(sweep_lock.os, "rename", too_late)
-    with pytest.raises(sb.InputError, match="is in use: process"):
+    lock = store / LOCK
+    if odd == "a folder":
+        lock.mkdir()
+    elif odd == "a pipe":
+        os.mkfifo(lock)
+    else:
+        content = {"torn": b"12", "empty": b"", "not text": b"\xff\n\xfe\n", "huge": b"9" * 10_000 + b"\nhere\n"}
+        lock.write_bytes(content.get(odd, b'{"host": "here"}'))
+    long_ago = time.time() - 3600
+    os.utime(lock, (long_ago, long_ago))
+    with pytest.raises(sb.InputError, match="sweep.lock is not what a sweep writes .*, delete that file and run again"):
         sb.sweep(file, store)
-    assert json.loads((store / LOCK).read_text())["pid"] == os.getpid()
+    assert lock.exists()
+
+
+def test_of_many_who_want_a_dead_lock_one_has_it_at_a_time(copy):
+    store, _ = copy
+    lock_of(store, process=dead_process())
+    inside, most, held = [], [], []
+
+    def contend(number):
+        for _ in range(20):
+            try:
+                with locked(store):
+                    inside.append(number)
+                    most.append(len(inside))
+                    held.append(number)
+                    inside.remove(number)
+            except sb.InputError as problem:
+                assert re.search(r"in use|is not what a sweep writes", str(problem))
+
+    threads = [threading.Thread(target=contend, args=(k,)) for k in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert held and max(most) == 1
+    assert not list(store.glob(f"*{LOCK}*"))
 
 
 def test_the_lock_is_gone_after_success_failure_and_interruption(tmp_path):

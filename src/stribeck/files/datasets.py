@@ -52,7 +52,7 @@ def write_netcdf(dataset: xarray.Dataset, path: PathLike, *, force: bool = False
         try:
             dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
         except RuntimeError as problem:  # of the HDF5 library, as on a full disk
-            raise InputError(f"{path} could not be written ({problem}); it is as it was before.") from None
+            raise OSError(str(problem)) from None
 
 
 def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import secrets
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from stribeck.quantities.units import InputError
 
-__all__ = ["MissingExtraError", "PathLike", "check_output", "replacing"]
+__all__ = ["MissingExtraError", "PathLike", "check_output", "reason_of", "replacing", "sync_folder"]
 
 PathLike = str | os.PathLike[str]
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""Errors of a disk, a quota or a limit that takes no more."""
+
+PROBE = 65536  # [byte]
 
 
 class MissingExtraError(InputError, ImportError):
@@ -72,7 +78,7 @@ def check_output(path: PathLike, suffixes: Collection[str], *, force: bool = Fal
     except (OSError, RuntimeError, ValueError) as problem:
         if isinstance(problem, InputError):
             raise
-        raise InputError(f"{given} cannot be written ({_reason(problem)}); choose another place.") from None
+        raise InputError(f"{given} cannot be written ({reason_of(problem)}); choose another place.") from None
     return target
 
 
@@ -109,8 +115,9 @@ def replacing(path: PathLike, suffixes: Collection[str], *, force: bool = False)
             os.fsync(file.fileno())
         check_output(path, suffixes, force=force)  # the file may have come to exist meanwhile
         os.replace(temporary, target)
+        sync_folder(target.parent)
     except OSError as problem:
-        raise InputError(f"{path} could not be written ({_reason(problem)}); it is as it was before.") from None
+        raise InputError(f"{path} could not be written ({reason_of(problem, temporary)}); it is as it was before.") from None
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -120,5 +127,48 @@ def _beside(target: Path) -> Path:
     return target.with_name(f".stribeck-{secrets.token_hex(6)}{target.suffix}")
 
 
-def _reason(problem: BaseException) -> str:
-    return getattr(problem, "strerror", None) or str(problem)
+def sync_folder(folder: Path) -> None:
+    """Write a folder to the disk, so that a file that was moved there is found after a power cut."""
+    try:
+        number = os.open(folder, os.O_RDONLY)
+    except OSError:  # Windows opens no folders, and needs none of this
+        return
+    try:
+        os.fsync(number)
+    except OSError as problem:
+        if problem.errno not in (errno.EINVAL, errno.ENOTSUP, errno.EBADF):  # some file systems of networks cannot
+            raise
+    finally:
+        os.close(number)
+
+
+def reason_of(problem: BaseException, file: Path | None = None) -> str:
+    """Return what was wrong with a file, in the words of the system.
+
+    Parameters
+    ----------
+    problem : BaseException
+        What was raised.
+    file : pathlib.Path, optional
+        File that could not be written.  Some libraries say "Permission denied" of a full disk: whether it is full is tried
+        out beside it.
+
+    Returns
+    -------
+    str
+        A few words.
+    """
+    if file is not None and getattr(problem, "errno", None) not in FULL:
+        trial = _beside(file)
+        try:
+            with trial.open("wb") as stream:
+                stream.write(bytes(PROBE))
+                stream.flush()
+                os.fsync(stream.fileno())
+        except OSError as found:
+            if found.errno in FULL:
+                problem = found
+        finally:
+            with suppress(OSError):
+                trial.unlink(missing_ok=True)
+    return getattr(problem, "strerror", None) or " ".join(str(problem).split()) or type(problem).__name__
