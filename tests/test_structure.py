@@ -50,6 +50,7 @@ HEAVY = {
     "dask",
     "distributed",
     "emcee",
+    "filelock",
     "matplotlib",
     "netCDF4",
     "nicegui",

@@ -14,14 +14,17 @@ import numpy as np
 import pytest
 import xarray as xr
 import zarr
+from command_line import call
 from filelock import SoftFileLock
 from sweep_files import GRID, chunks, done_rows, write
 
 import stribeck as sb
 from stribeck.files.writing import MissingExtraError
+from stribeck.sweeps import rows as sweep_rows
 from stribeck.sweeps import store as sweep_store
 from stribeck.sweeps.columns import OUTCOMES, columns_of
 from stribeck.sweeps.lock import LOCK, locked
+from stribeck.sweeps.seal import SEALED, SUMS
 
 SMALL = GRID.replace("17", "3")
 
@@ -162,7 +165,7 @@ def test_data_come_before_the_flag(tmp_path, monkeypatch):
             order.append(b.parent.name)
         replace(a, b)
 
-    monkeypatch.setattr(sweep_store.os, "replace", noted)
+    monkeypatch.setattr(sweep_rows.os, "replace", noted)
     sb.sweep(write(tmp_path, SMALL), tmp_path / "store")
     states = "".join(name[0] for name in order).split("d")
     assert len(states) == 13
@@ -170,7 +173,7 @@ def test_data_come_before_the_flag(tmp_path, monkeypatch):
 
 
 def test_a_long_text_is_cut_at_a_letter(tmp_path):
-    cut = sweep_store._text("µ" * 2000)
+    cut = sweep_rows._text("µ" * 2000)
     assert len(cut) == sweep_store.TEXT
     assert cut.rstrip(b"\0").decode().endswith("µ...")
 
@@ -191,6 +194,163 @@ def test_each_run_is_noted(copy):
     assert [run["run"] for run in runs] == [1, 1, 2, 2]
     assert (runs[0]["done"], runs[1]["computed"], runs[1]["outcome"]) == (0, 12, "FINISHED")
     assert (runs[2]["done"], runs[3]["computed"], runs[2]["pid"]) == (11, 1, os.getpid())
+
+
+# --- damage ---
+
+
+def as_told(path):
+    """Return what a store exports, or the sentence that refuses it."""
+    try:
+        return sb.open_sweep(path).to_dataset()
+    except sb.InputError as problem:
+        assert re.fullmatch(r"[^\n]+\.", str(problem))
+        return str(problem)
+
+
+def assert_right(found, good):
+    """Check that an export holds what was computed; a state that is not whole counts as not computed."""
+    there = found.outcome.values != "NOT_COMPUTED"
+    for name in good:
+        rows = slice(None) if name in INPUTS else there
+        assert found[name].values[rows].tolist() == good[name].values[rows].tolist(), name
+        assert found[name].attrs == good[name].attrs
+    changing = {"finished", "complete"}
+    assert {k: v for k, v in found.attrs.items() if k not in changing} == {
+        k: v for k, v in good.attrs.items() if k not in changing
+    }
+    return int(there.sum())
+
+
+INPUTS = ("mu0", "beta", "speed_group", "load_group", "roughness_group")
+
+
+def damages(content, other):
+    """Yield what can become of a file: single bits flipped, cut off, empty, zeros, another file, more at its end."""
+    for at in sorted({0, len(content) // 3, len(content) // 2, 2 * len(content) // 3, len(content) - 1}):
+        for bit in (1, 64):
+            yield content[:at] + bytes([content[at] ^ bit]) + content[at + 1 :]
+    yield from (content[: len(content) // 2], content[:-1], b"", bytes(len(content)), other, content + b"\0")
+
+
+def test_whatever_happens_to_a_file_of_a_store_its_export_is_right_or_refused(copy, filled):
+    """Every file that is read, a text and the chunks of two states among them."""
+    store, _ = copy
+    good = filled.to_dataset()
+    said = next(row for row, text in enumerate(filled.rows.texts) if text)
+    names = [*SEALED, SUMS, "values/c.3.0", "done/c.3", f"text/c.{said}.0", f"values/c.{said}.0", f"done/c.{said}"]
+    refused = incomplete = 0
+    for name in names:
+        file = store / name
+        content = file.read_bytes()
+        kind = name.partition("/")[0]
+        other = (store / {"values": "values/c.4.0", "done": "done/c.4"}.get(kind, "text/zarr.json")).read_bytes()
+        for bad in damages(content, other):
+            if bad == content:
+                continue
+            file.write_bytes(bad)
+            found = as_told(store)
+            if isinstance(found, str):
+                refused += 1
+            else:
+                assert assert_right(found, good) == (12 if name == SUMS else 11), name  # more lines are no matter there
+                incomplete += 1
+        file.unlink()
+        for odd in ("missing", "folder", "pipe"):
+            if odd == "folder":
+                file.mkdir()
+            elif odd == "pipe":
+                os.mkfifo(file)
+            found = as_told(store)
+            assert isinstance(found, str) or assert_right(found, good) >= 11, (name, odd)
+            if file.is_dir():
+                file.rmdir()
+            else:
+                file.unlink(missing_ok=True)
+        file.write_bytes(content)
+    assert refused > 100
+    assert incomplete > 50
+    assert assert_right(as_told(store), good) == 12
+
+
+def test_a_flipped_bit_in_the_inputs_is_told_by_the_command_and_at_resume(copy, tmp_path, capsys):
+    store, file = copy
+    inputs = store / "inputs" / "c" / "0" / "0"
+    content = bytearray(inputs.read_bytes())
+    content[7] ^= 16
+    inputs.write_bytes(content)
+    found = call(capsys, "sweep", file, "--out", store, "--export", tmp_path / "sweep.nc")
+    assert (found.code, found.out) == (2, "")
+    assert found.err == (
+        f"stribeck: {store} is damaged: inputs/c/0/0 in it is not what was written; take it from a copy, or run the sweep "
+        "again into a new store.\n"
+    )
+    assert not (tmp_path / "sweep.nc").exists()
+
+
+def test_sha256sum_checks_a_store(filled):
+    if shutil.which("sha256sum") is None:
+        pytest.skip("there is no sha256sum here")
+    run = subprocess.run(["sha256sum", "--check", SUMS], cwd=filled.path, capture_output=True, text=True)
+    assert run.stdout.splitlines() == [f"{name}: OK" for name in SEALED]
+
+
+def test_chunks_of_two_states_that_changed_places_are_not_done(copy):
+    store, _ = copy
+    for array, ending in (("values", ".0"), ("done", "")):
+        one, other = (store / array / f"c.{row}{ending}" for row in (1, 5))
+        (store / "between").write_bytes(one.read_bytes())
+        one.write_bytes(other.read_bytes())
+        other.write_bytes((store / "between").read_bytes())
+    assert not sb.open_sweep(store).rows.done[[1, 5]].any()
+
+
+@pytest.mark.parametrize("array", ["values", "text", "done"])
+@pytest.mark.parametrize("name", ["c.x", "c.12{}", "c.-1{}", "c.3 (copy){}", "c.03{}", "c.1.2.3", "c.9999999999999{}"])
+def test_a_stray_chunk_is_a_sentence(copy, array, name):
+    store, file = copy
+    stray = store / array / name.format("" if array == "done" else ".0")
+    stray.write_bytes(b"what")
+    with pytest.raises(sb.InputError, match=r"belongs to no state of this sweep, which has 12; move it elsewhere\.") as caught:
+        sb.sweep(file, store)
+    assert str(stray) in str(caught.value)
+    stray.rename(store / array / ".DS_Store")  # what systems leave is no matter
+    assert sb.sweep(file, store).finished == 12
+
+
+def test_a_chunk_that_cannot_be_removed_or_read_is_a_sentence(copy):
+    store, file = copy
+    (store / "done" / "c.7").unlink()
+    (store / "values" / "c.7.0").unlink()
+    (store / "values" / "c.7.0").mkdir()
+    with pytest.raises(sb.InputError, match=r"cannot be cleared: .*values/c\.7\.0: .*; mend that, or choose a new store\."):
+        sb.sweep(file, store)
+    (store / "done" / "c.7").write_bytes(b"1234")
+    with pytest.raises(sb.InputError, match=r"cannot be read: .*values/c\.7\.0: Is a directory; mend that, or choose"):
+        sb.open_sweep(store)
+
+
+@pytest.mark.parametrize("odd", ["5\n[]\nnull\n", "[" * 100_000, "\udcff", "a folder", "a pipe"])
+def test_an_odd_log_of_runs_stops_nothing(copy, odd):
+    store, file = copy
+    log = store / "runs.jsonl"
+    log.unlink()
+    if odd == "a folder":
+        log.mkdir()
+    elif odd == "a pipe":
+        os.mkfifo(log)
+    else:
+        log.write_bytes(odd.encode(errors="surrogateescape"))
+    assert sb.sweep(file, store).finished == 12
+
+
+def test_outcomes_are_those_that_the_store_names(copy, monkeypatch):
+    """Another version may know more of them, in another order."""
+    store, _ = copy
+    found = sb.open_sweep(store)
+    found.about["outcomes"] = ["FINE", *found.about["outcomes"][1:]]
+    assert found.outcomes == {"FINE": 12}
+    assert set(found.to_dataset().outcome.values) == {"FINE"}
 
 
 # --- what is refused ---

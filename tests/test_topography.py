@@ -1,6 +1,7 @@
 """Heights from files: real formats, plain text as laboratories write it, dead points, and what is refused."""
 
 import math
+import zipfile
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from topography_files import write_gwy, write_sdf, write_x3p
 
 import stribeck as sb
 from stribeck.surfaces import SelfAffine, Topography, read_topography, synthetic_topography
+from stribeck.surfaces import files as scan_files
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +79,30 @@ def test_a_spoilt_part_of_an_archive_is_named(tmp_path, heights):
     spoilt[len(spoilt) // 2] ^= 0xFF
     (tmp_path / "a.x3p").write_bytes(spoilt)
     with pytest.raises(sb.InputError, match="a.x3p is damaged: bindata/data.bin in it is not what was written"):
+        read_topography(tmp_path / "a.x3p")
+
+
+def test_a_zip_archive_is_not_unpacked_where_it_would_fill_the_memory(tmp_path, monkeypatch):
+    """3 MB may become 10 GB."""
+    bomb = tmp_path / "bomb.x3p"
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in ("bindata/data.bin", "more.bin"):
+            archive.writestr(name, bytes(600_000))
+    assert bomb.stat().st_size < 3000
+    monkeypatch.setattr(scan_files, "LARGEST_FILE", 1_000_000)
+    monkeypatch.setattr(zipfile.ZipFile, "open", lambda *arguments, **options: pytest.fail("it was unpacked"))
+    with pytest.raises(sb.InputError, match=r"bomb\.x3p would be 0\.0012 GB unpacked, more than 0 GB; cut out a part"):
+        read_topography(bomb)
+    large = tmp_path / "large.opd"
+    large.write_bytes(b"x" * 1_000_001)
+    with pytest.raises(sb.InputError, match=r"large\.opd has more than 0 GB; cut out a part of the scan"):
+        read_topography(large)
+
+
+def test_a_scan_of_too_many_points_is_refused_before_they_are_read(tmp_path, heights, monkeypatch):
+    write_x3p(tmp_path / "a.x3p", heights, 1e-6, 1e-6)
+    monkeypatch.setattr(scan_files, "MOST_POINTS", heights.size - 1)
+    with pytest.raises(sb.InputError, match=rf"a\.x3p has \d+ x \d+ points, more than {heights.size - 1}; cut out a part"):
         read_topography(tmp_path / "a.x3p")
 
 

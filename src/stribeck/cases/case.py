@@ -6,6 +6,7 @@ and the key. What a quantity may be is not written here but in :mod:`stribeck.qu
 
 import functools
 import os
+import re
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,6 +15,7 @@ from typing import Annotated, Any, Literal
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
 from stribeck.contacts.line import InputError, LineContact
+from stribeck.files.reading import read_bounded
 from stribeck.quantities.hints import MEANT, advice_on
 from stribeck.quantities.inputs import QUANTITIES, check_modulus_choice, quantity
 from stribeck.quantities.units import DIMENSIONS, show
@@ -34,6 +36,14 @@ Axis = Literal["speed", "load", "roughness"]
 Definition = Literal["balanced", "published"]
 
 _LARGEST_FILE = 1_000_000  # [byte]
+
+_DEEPEST = 16
+_MOST_PARTS = 64
+
+# For 20 000 parts Python's parser takes half a minute, so that these are looked for before it sees the text.  Texts may
+# hold a few that look like it.
+_PART = r"""(?:[A-Za-z0-9_-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
+_DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_PARTS}}}")
 
 # What Python's parser says of slips that are frequent, and what to do about them.
 _SLIPS = {
@@ -269,8 +279,7 @@ def read_toml(path: Path, kind: str = "case file", needed: str = "[contact]") ->
         Where the file cannot be read, is too large, empty or no TOML.
     """
     try:
-        with path.open("rb") as file:
-            content = file.read(_LARGEST_FILE + 1)
+        content = read_bounded(path, _LARGEST_FILE)
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", problem)
         received = f"{path} is a directory" if path.is_dir() else f"{path} cannot be read ({reason})"
@@ -304,7 +313,12 @@ def parse_toml(content: bytes, path: Path, kind: str = "case file", needed: str 
         raise InputError(f"{path} has more than {_LARGEST_FILE} bytes; a {kind} is a page of TOML.")
     try:
         # Some editors write a byte-order mark, which TOML does not know.
-        table = tomllib.loads(content.decode("utf-8-sig"))
+        text = content.decode("utf-8-sig")
+        if _DEEP_KEY.search(text):
+            raise ValueError(f"a key has more than {_MOST_PARTS} parts")
+        table = tomllib.loads(text)
+        if _depth(table) > _DEEPEST:
+            raise ValueError(f"tables or lists lie more than {_DEEPEST} deep in each other")
     except UnicodeDecodeError as problem:
         raise InputError(f"{path} is not text (byte {problem.start} is not UTF-8); a {kind} is a page of TOML.") from None
     except (ValueError, RecursionError) as problem:
@@ -314,6 +328,16 @@ def parse_toml(content: bytes, path: Path, kind: str = "case file", needed: str 
     if not table:
         raise InputError(f"{path} is empty; a {kind} needs at least the table {needed}.")
     return table
+
+
+def _depth(table: Any) -> int:
+    """Return how deep tables and lists lie in each other."""
+    depth, level = 0, [table]
+    while level:
+        depth += 1
+        inner = [value.values() if isinstance(value, dict) else value for value in level]
+        level = [value for values in inner for value in values if isinstance(value, dict | list)]
+    return depth
 
 
 @functools.cache

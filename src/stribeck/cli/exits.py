@@ -1,15 +1,87 @@
-"""Exit codes, and sentences on stderr."""
+"""Exit codes, sentences on stderr, and streams that take no more."""
 
 from __future__ import annotations
 
+import io
+import os
+import signal
 import sys
+from contextlib import suppress
+from types import FrameType
+from typing import Any, TextIO
 
-FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
-"""Exit codes besides 0."""
+from stribeck.files.writing import reason_of
+
+FAILED, BAD_INPUT, INTERRUPTED, NOBODY_READS = 1, 2, 130, 141
+"""Exit codes besides 0; the last two are what a shell gives to processes that end by SIGINT and SIGPIPE."""
 
 
 def complain(text: str, code: int) -> int:
-    """Print sentences on stderr and return the exit code."""
-    for line in text.splitlines():
-        print(f"stribeck: {line}", file=sys.stderr)
+    """Print sentences on stderr, if anybody hears them, and return the exit code."""
+    if sys.stderr is None:
+        return code
+    try:
+        for line in text.splitlines():
+            print(f"stribeck: {line}", file=sys.stderr)
+        sys.stderr.flush()
+    except OSError:
+        silence(sys.stderr)
     return code
+
+
+def silence(stream: TextIO) -> None:
+    """Let a stream that takes no more lead nowhere, so that the interpreter does not stumble over it at its end."""
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
+
+
+class OutputError(Exception):
+    """What was to be printed could not be."""
+
+
+class _Stdout(io.FileIO):
+    """Stdout that tells its own errors from those of files."""
+
+    def write(self, content: Any, /) -> int:
+        """Write bytes."""
+        try:
+            return super().write(content)
+        except BrokenPipeError:
+            raise
+        except OSError as problem:
+            raise OutputError(reason_of(problem)) from None
+
+
+def prepare_streams() -> None:
+    """Give a process of our own streams that are open, take any letter, and tell what is wrong with stdout.
+
+    If stdout is closed, text for it then fails as on a full disk, and is not lost without a word.  Otherwise the first file
+    that is opened would take its number, and get the text of libraries.
+    """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDONLY if number < 2 else os.O_WRONLY)  # takes the lowest number that is free
+    if sys.stderr is None:
+        sys.stderr = open(2, "w", closefd=False)
+    if sys.stdout is None or not sys.stdout.isatty():
+        encoding = None if sys.stdout is None else sys.stdout.encoding
+        sys.stdout = io.TextIOWrapper(io.BufferedWriter(_Stdout(1, "w", closefd=False)), encoding)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+class Interrupted:
+    """Whether Ctrl-C was pressed: libraries that are loaded just then make another error of it."""
+
+    def __init__(self) -> None:
+        self.pressed = False
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        """Handle Ctrl-C."""
+        self.pressed = True
+        signal.default_int_handler(number, frame)

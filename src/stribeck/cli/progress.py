@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
+from stribeck.cli.exits import Interrupted
 from stribeck.solver.solve import SolveError
 
 if TYPE_CHECKING:
@@ -20,7 +21,12 @@ def stdout_console() -> Console:
     """Return the console that tables go to."""
     from rich.console import Console
 
-    return Console(file=sys.stdout)
+    class Table(Console):
+        def on_broken_pipe(self) -> None:
+            """Let the command know, instead of ending the process as rich does."""
+            raise BrokenPipeError
+
+    return Table(file=sys.stdout)
 
 
 class Progress:
@@ -56,7 +62,8 @@ def interruptible(sigterm: bool = False) -> Iterator[Progress]:
     progress = Progress()
     main = threading.current_thread() is threading.main_thread()
     # A shell makes background jobs ignore Ctrl-C; that stays so.
-    handles = main and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    before_int = signal.getsignal(signal.SIGINT)
+    handles = main and (before_int is signal.default_int_handler or isinstance(before_int, Interrupted))
     if handles:
         signal.signal(signal.SIGINT, progress.interrupt)
     before = signal.signal(signal.SIGTERM, progress.interrupt) if sigterm and main else None
@@ -70,7 +77,7 @@ def interruptible(sigterm: bool = False) -> Iterator[Progress]:
         raise
     finally:
         if handles:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
+            signal.signal(signal.SIGINT, before_int)
         if before is not None:
             signal.signal(signal.SIGTERM, before)
 

@@ -3,14 +3,27 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
+import threading
 import warnings
 from collections.abc import Sequence
 from importlib.metadata import version
 
 from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionError, UnusedCliTokensError
 
-from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain
+from stribeck.cli.exits import (
+    BAD_INPUT,
+    FAILED,
+    INTERRUPTED,
+    NOBODY_READS,
+    Interrupted,
+    OutputError,
+    complain,
+    prepare_streams,
+    silence,
+)
+from stribeck.cli.progress import stdout_console
 from stribeck.cli.solving import curve_command, figures_command, regimes_command, solve_command
 from stribeck.cli.studies import explore_command, fit_command, surface_command, sweep_command
 from stribeck.quantities.outcome import Outcome
@@ -22,7 +35,11 @@ HELP = """Friction and film thickness of lubricated rough line contacts, from a 
 
 Example: stribeck curve examples/pdms_cylinder.toml -o curve.nc --plot curve.png
 
-Exit codes: 0 done, 1 the solve failed, 2 bad input, 130 interrupted."""
+Exit codes: 0 done, 1 the solve failed or the output could not be written, 2 bad input, 130 interrupted."""
+
+
+NARROWEST = 20
+"""Fewest columns of a terminal that are believed."""
 
 
 def main(tokens: Sequence[str] | None = None) -> int:
@@ -36,14 +53,30 @@ def main(tokens: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 done, 1 the solve failed, 2 bad input, 130 interrupted.
+        0 done, 1 the solve failed or the output could not be written, 2 bad input, 130 interrupted, 141 nobody reads the
+        output any more.
     """
     if tokens is None:
         tokens = sys.argv[1:]
         _adapt_process()
+    interrupted = Interrupted()
+    heeds = (
+        threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    )
+    if heeds:
+        signal.signal(signal.SIGINT, interrupted)
+    try:
+        return _run(list(tokens), interrupted)
+    finally:
+        if heeds:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _run(tokens: list[str], interrupted: Interrupted) -> int:
+    """Run the command and make sentences of what is raised."""
     try:
         result = make_app()(
-            list(tokens),
+            tokens,
             print_error=False,
             exit_on_error=False,
             help_on_error=False,
@@ -64,11 +97,16 @@ def main(tokens: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return complain("Interrupted; nothing was written.", INTERRUPTED)
     except BrokenPipeError:  # the reader, such as head, had enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FAILED
+        silence(sys.stdout)
+        return NOBODY_READS
+    except OutputError as problem:
+        silence(sys.stdout)
+        return complain(f"What was to be printed could not be ({problem}); files that were asked for are written.", FAILED)
     except MemoryError:
         return complain("The memory of this machine does not suffice; ask for fewer points or a larger rtol.", FAILED)
     except Exception as problem:
+        if interrupted.pressed:
+            return complain("Interrupted; nothing was written.", INTERRUPTED)
         if os.environ.get("STRIBECK_DEBUG"):
             raise
         return complain(
@@ -86,6 +124,7 @@ def make_app() -> App:
         version=version("stribeck"),
         help_format="plaintext",
         suppress_keyboard_interrupt=False,
+        console=stdout_console(),
     )
     for command in (
         solve_command,
@@ -128,8 +167,11 @@ def _command(tokens: Sequence[str]) -> str:
 
 def _adapt_process() -> None:
     """Set what belongs to a process of our own: letters that any terminal takes, warnings only on demand."""
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="replace")
+    prepare_streams()
+    if not os.environ.get("COLUMNS", "80").isdecimal() or int(os.environ.get("COLUMNS", "80")) < NARROWEST:
+        del os.environ["COLUMNS"]  # in no columns nothing is shown, and the help never ends
+    os.environ["MPLBACKEND"] = (
+        "agg"  # pictures need no display; matplotlib refuses to be imported with a name that it does not know
+    )
     if not sys.warnoptions and not os.environ.get("STRIBECK_DEBUG"):
         warnings.simplefilter("ignore")

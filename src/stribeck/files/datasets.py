@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.files.writing import MissingExtraError, PathLike, replacing
-from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
     import xarray

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError, PathLike, replacing
+from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,6 +51,8 @@ def new_figure(
         from matplotlib.figure import Figure
     except ImportError:
         raise MissingExtraError("a picture", "plot", "matplotlib") from None
+    except ValueError as problem:  # of the environment variable MPLBACKEND, or of a file of settings
+        raise InputError(f"matplotlib cannot be loaded ({' '.join(str(problem).split())}).") from None
     width, height = size
     height += LINE * len(footer) + LEGEND
     figure = Figure(figsize=(width, height), dpi=150, facecolor="white")

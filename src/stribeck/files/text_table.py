@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.files.reading import read_bounded
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
 __all__ = ["MISSING", "TextTable", "cells_of", "number_of", "read_table", "read_two_columns", "text_of", "values_of"]
@@ -225,8 +226,7 @@ def number_of(cell: str, decimal: str = ".") -> tuple[float, str] | None:
 def text_of(path: Path, largest: int, advice: str, kind: str) -> str:
     """Return the text of a file of at most ``largest`` bytes in UTF-8, UTF-16 or Windows-1252; ``kind`` is what to give."""
     try:
-        with path.open("rb") as file:
-            content = file.read(largest + 1)
+        content = read_bounded(path, largest)
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", problem)
         received = f"{path} is a directory" if path.is_dir() else f"{path} cannot be read ({reason})"

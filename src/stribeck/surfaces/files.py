@@ -15,7 +15,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.surfaces.text import TEXT, read_text
+from stribeck.surfaces.text import LARGEST_FILE, TEXT, read_text
 from stribeck.surfaces.topography import Topography
 
 __all__ = ["read_topography"]
@@ -25,6 +25,9 @@ AMBIGUOUS = (".dat", ".xyz")
 
 UNSIGNED = {"asc", "hgt", "xyz"}
 """Formats of SurfaceTopography that begin with no mark of their own, so that it takes much for them that is something else."""
+
+MOST_POINTS = LARGEST_FILE // 8
+"""Points whose heights fill as much memory as the largest file."""
 
 
 def read_topography(
@@ -110,15 +113,27 @@ def _is_binary(path: Path) -> bool:
 
 
 def _check_whole(path: Path) -> None:
-    """Refuse a file that is empty, and a zip archive, as .x3p and .plux are, that is cut off or spoilt."""
-    if path.stat().st_size == 0:
+    """Refuse a file that is empty or too large, and a zip archive, as .x3p and .plux are, that is cut off or spoilt."""
+    size = path.stat().st_size
+    if size == 0:
         raise InputError(f"{path} is empty; copy it from the instrument again.")
+    if size > LARGEST_FILE:
+        raise InputError(f"{path} has more than {LARGEST_FILE // 10**9} GB; cut out a part of the scan.")
     with path.open("rb") as stream:
         if stream.read(4) != b"PK\x03\x04":
             return
     try:
         with zipfile.ZipFile(path) as archive:
+            # What a part says of its size holds: no more of it is unpacked.
+            size = sum(part.file_size for part in archive.infolist())
+            if size > LARGEST_FILE:
+                raise InputError(
+                    f"{path} would be {size / 1e9:.3g} GB unpacked, more than {LARGEST_FILE // 10**9} GB; "
+                    "cut out a part of the scan."
+                )
             spoilt = archive.testzip()
+    except InputError:
+        raise
     except (zipfile.BadZipFile, OSError, ValueError):
         raise InputError(
             f"{path} is cut off or damaged: it begins as a zip archive and has no list of its parts at the end; "
@@ -167,6 +182,10 @@ def _from_channel(
 ) -> Topography:
     format_name = reader.format()
     shape, declared, sizes = tuple(channel.nb_grid_pts), channel.unit, channel.physical_sizes
+    if math.prod(shape) > MOST_POINTS:
+        raise InputError(
+            f"{path} has {' x '.join(map(str, shape))} points, more than {MOST_POINTS}; cut out a part of the scan."
+        )
     if declared is None and unit is None:
         raise InputError(
             f"{path} does not say its unit; add --unit um, and --height-unit nm where heights have another one "

@@ -14,8 +14,8 @@ from stribeck.curves.regime import regime_of
 from stribeck.files.datasets import write_netcdf
 from stribeck.files.writing import MissingExtraError, PathLike
 from stribeck.quantities.outcome import Outcome
-from stribeck.sweeps.columns import OUTCOMES
-from stribeck.sweeps.store import Rows, describe_store, read_rows
+from stribeck.sweeps.rows import Rows, read_rows
+from stribeck.sweeps.store import describe_store, read_inputs
 
 if TYPE_CHECKING:
     import xarray
@@ -73,7 +73,7 @@ class Sweep:
     @property
     def outcomes(self) -> dict[str, int]:
         """Number of finished states by outcome, the most frequent first."""
-        names = (OUTCOMES[int(code)] for code in self.rows.values[self.rows.done, -1])
+        names = (self.about["outcomes"][int(code)] for code in self.rows.values[self.rows.done, -1])
         return dict(Counter(names).most_common())
 
     def to_dataset(self) -> xarray.Dataset:
@@ -87,6 +87,8 @@ class Sweep:
 
         Raises
         ------
+        InputError
+            If the store is not what was written.
         MissingExtraError
             If xarray is not installed.
         """
@@ -94,11 +96,14 @@ class Sweep:
             import xarray
         except ImportError:
             raise MissingExtraError("a dataset", "data", "xarray") from None
-        columns = {**_columns(self.about["inputs"], self._inputs()), **_columns(self.about["values"], self.rows.values)}
+        names = self.about["inputs"]["columns"]
+        inputs = read_inputs(self.path, (len(self), len(names)))
+        columns = {**_columns(self.about["inputs"], inputs), **_columns(self.about["values"], self.rows.values)}
         codes, unit, label = columns.pop("outcome")
-        names = [OUTCOMES[int(code)] if done else PENDING for code, done in zip(codes, self.rows.done, strict=True)]
+        outcomes = self.about["outcomes"]
+        ends = [outcomes[int(code)] if done else PENDING for code, done in zip(codes, self.rows.done, strict=True)]
         columns["regime"] = (self._regimes(columns), "1", "lubrication regime, by the balanced friction")
-        columns["outcome"] = (np.array(names, dtype=object), unit, label)
+        columns["outcome"] = (np.array(ends, dtype=object), unit, label)
         columns["message"] = (np.array(self.rows.texts, dtype=object), "1", "what to know of the state before using it")
         return xarray.Dataset(
             {name: ("state", values, {"units": unit, "long_name": label}) for name, (values, unit, label) in columns.items()},
@@ -137,10 +142,6 @@ class Sweep:
         """
         write_netcdf(self.to_dataset(), path, force=force)
 
-    def _inputs(self) -> Array:
-        shape = len(self), len(self.about["inputs"]["columns"])
-        return np.frombuffer((self.path / "inputs" / "c" / "0" / "0").read_bytes(), dtype="<f8").reshape(shape)
-
     def _regimes(self, columns: dict[str, tuple[Any, str, str]]) -> Any:
         """Return the regime of each state, empty where there is none."""
         found = np.full(len(self), "", dtype=object)
@@ -173,7 +174,7 @@ def open_sweep(path: PathLike) -> Sweep:
     Raises
     ------
     InputError
-        If this is no store of a sweep.
+        If this is no store of a sweep, or it is damaged.
     """
     store = Path(path)
     return Sweep(store, describe_store(store), read_rows(store))

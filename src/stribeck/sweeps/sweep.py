@@ -19,7 +19,9 @@ from stribeck.sweeps.chain import Chain
 from stribeck.sweeps.dataset import Sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
 from stribeck.sweeps.lock import locked
-from stribeck.sweeps.store import SweepError, clean, create_or_open, describe_store, log_run, read_rows
+from stribeck.sweeps.rows import clean, read_rows
+from stribeck.sweeps.runs import log_run
+from stribeck.sweeps.store import SweepError, create_or_open, describe_store
 
 __all__ = ["SweepProgress", "sweep"]
 

@@ -30,7 +30,8 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
 from stribeck.sweeps.chain import Chain, solve_chain
 from stribeck.sweeps.columns import OUTCOMES
-from stribeck.sweeps.store import SweepError, Writer
+from stribeck.sweeps.rows import Writer
+from stribeck.sweeps.store import SweepError
 
 __all__ = ["in_this_process", "on_cluster", "on_processes"]
 

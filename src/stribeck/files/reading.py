@@ -1,0 +1,55 @@
+"""Input files, bounded before they are read: no pipe is waited for, no device and no enormous file fills the memory."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+
+from stribeck.files.writing import PathLike
+
+__all__ = ["read_bounded"]
+
+KINDS = {stat.S_IFIFO: "a pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket"}
+
+
+def read_bounded(path: PathLike, largest: int) -> bytes:
+    """Return the content of an ordinary file, or its beginning if it is too large.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    largest : int
+        Most bytes that are wanted.
+
+    Returns
+    -------
+    bytes
+        All of it; of a larger file ``largest + 1`` bytes, by which the caller sees that it is.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read, or is a directory, a pipe, a socket or a device.
+    """
+    # Without O_NONBLOCK, a pipe that nobody writes to would be waited for in `open`.
+    number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    try:
+        about = os.fstat(number)
+        if stat.S_ISDIR(about.st_mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        if not stat.S_ISREG(about.st_mode):
+            kind = KINDS.get(stat.S_IFMT(about.st_mode), "something else")
+            raise OSError(errno.EINVAL, f"it is {kind}, not an ordinary file", str(path))
+        content = bytearray()
+        while len(content) <= largest:
+            # The size is 0 for some files of the system, and may change meanwhile.
+            expected = min(about.st_size, largest) - len(content)
+            part = os.read(number, max(expected + 1, 4096))
+            if not part:
+                break
+            content += part
+        return bytes(content[: largest + 1])
+    finally:
+        os.close(number)

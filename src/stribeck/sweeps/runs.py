@@ -1,0 +1,60 @@
+"""The log of a store: when its runs began and ended.  It is no result, so that nothing depends on what it holds."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from stribeck.files.reading import read_bounded
+
+__all__ = ["RUNS", "log_run"]
+
+RUNS = "runs.jsonl"
+"""Name of the file in the store."""
+
+LARGEST_LOG = 10_000_000  # [byte]
+
+
+@contextmanager
+def log_run(path: Path, **facts: Any) -> Iterator[dict[str, Any]]:
+    """Note in the store when a run begins and ends; what is put into the dictionary is noted at the end."""
+    number = 1 + sum("began" in line for line in _lines(path / RUNS))
+    _note(path, {"run": number, "began": _now(), **facts})
+    ending: dict[str, Any] = {}
+    try:
+        yield ending
+    finally:
+        _note(path, {"run": number, "ended": _now(), **ending})
+
+
+def _lines(path: Path) -> Iterator[dict[str, Any]]:
+    try:
+        text = read_bounded(path, LARGEST_LOG).decode("utf-8", errors="replace")
+    except OSError:
+        return
+    for line in text.splitlines():
+        try:
+            found = json.loads(line)
+        except (ValueError, RecursionError):  # torn by the end of its run
+            continue
+        if isinstance(found, dict):
+            yield found
+
+
+def _note(path: Path, facts: dict[str, Any]) -> None:
+    file = path / RUNS
+    if file.exists() and not file.is_file():  # a pipe would be waited for
+        return
+    try:
+        with file.open("a", encoding="utf-8") as stream:
+            stream.write(json.dumps(facts) + "\n")
+    except OSError:  # a full disk, which the states tell of
+        pass
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")

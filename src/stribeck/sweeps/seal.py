@@ -1,0 +1,75 @@
+"""Checksums of what a store is made with: its description and the inputs of its states.
+
+They are in a file that ``sha256sum --check`` reads too.  The states, which come later, have checksums of their own.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from pathlib import Path
+
+from stribeck.files.reading import read_bounded
+from stribeck.files.writing import reason_of
+from stribeck.quantities.units import InputError
+
+__all__ = ["SEALED", "SUMS", "read_sealed", "seal"]
+
+SUMS = "SHA256SUMS"
+"""Name of the file in the store."""
+
+SEALED = ("zarr.json", "inputs/zarr.json", "inputs/c/0/0", "values/zarr.json", "text/zarr.json", "done/zarr.json")
+"""What has a checksum there."""
+
+LARGEST_SUMS = 10_000
+LARGEST = 2**40
+"""Sizes that are certainly wrong [byte]."""
+
+ADVICE = "take it from a copy, or run the sweep again into a new store"
+
+
+def seal(store: Path) -> None:
+    """Write the checksums of a store that has been made."""
+    lines = [f"{_sum((store / name).read_bytes())}  {name}\n" for name in SEALED]
+    (store / SUMS).write_bytes("".join(lines).encode())
+
+
+def read_sealed(store: Path, name: str) -> bytes:
+    """Return the content of a file of a store, verified.
+
+    Parameters
+    ----------
+    store : pathlib.Path
+        The store.
+    name : str
+        One of :data:`SEALED`.
+
+    Returns
+    -------
+    bytes
+        What was written there when the store was made.
+
+    Raises
+    ------
+    InputError
+        If the file or its checksum cannot be read, or do not fit each other.
+    """
+    sums = _read(store, SUMS, LARGEST_SUMS)
+    found = re.search(rf"^([0-9a-f]{{64}})  {re.escape(name)}$", sums.decode("ascii", errors="replace"), re.MULTILINE)
+    content = _read(store, name, LARGEST)
+    if found is None or found[1] != _sum(content):
+        raise InputError(f"{store} is damaged: {name} in it is not what was written; {ADVICE}.")
+    return content
+
+
+def _read(store: Path, name: str, largest: int) -> bytes:
+    try:
+        return read_bounded(store / name, largest)
+    except (FileNotFoundError, NotADirectoryError):
+        raise InputError(f"{store} is damaged: {name} in it is missing; {ADVICE}.") from None
+    except OSError as problem:
+        raise InputError(f"{store} cannot be read: {name} in it: {reason_of(problem)}; {ADVICE}.") from None
+
+
+def _sum(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

@@ -1,0 +1,223 @@
+"""What surrounds the command: streams that take no more, odd environments, Ctrl-C at any time, too little memory, odd files."""
+
+import os
+import re
+import resource
+import signal
+import socket
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from command_line import PDMS, call, environment
+
+import stribeck as sb
+from stribeck.cases.case import read_toml
+from stribeck.cli import solving
+from stribeck.cli.exits import complain
+from stribeck.files import pictures
+from stribeck.files.reading import read_bounded
+
+COMMAND = (sys.executable, "-m", "stribeck_command")
+SOLVE = (*COMMAND, "solve", "--groups", "1e-4", "0.1", "1e-3")
+
+
+def heed():
+    """Begin as a shell's foreground job, in which Ctrl-C is not ignored."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def run(*tokens, prepare=heed, stdout=subprocess.PIPE, **extra):
+    found = subprocess.run(
+        tokens, stdout=stdout, stderr=subprocess.PIPE, preexec_fn=prepare, env=environment(**extra), text=True, timeout=60
+    )
+    return found.returncode, found.stdout, found.stderr
+
+
+def test_the_installed_command_is_the_one_that_is_tested_here():
+    project = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())
+    assert project["project"]["scripts"] == {"stribeck": "stribeck_command:main"}
+    assert project["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"] == ["src/stribeck", "src/stribeck_command"]
+
+
+# --- streams ---
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device here")
+@pytest.mark.parametrize("options", [(), ("--json",)])
+def test_what_a_full_disk_does_not_take_is_told(options):
+    with open("/dev/full", "w") as full:
+        code, _, err = run(*SOLVE, *options, stdout=full)
+    reason = "No space left on device"
+    assert (code, err) == (
+        1,
+        f"stribeck: What was to be printed could not be ({reason}); files that were asked for are written.\n",
+    )
+
+
+def test_a_closed_stdout_is_told_and_its_number_given_to_no_file(tmp_path):
+    picture = tmp_path / "a.svg"
+    code, _, err = run(*SOLVE, "--plot", picture, stdout=None, prepare=lambda: os.close(1), MPLBACKEND="nonsense")
+    assert (code, err[:39]) == (1, "stribeck: What was to be printed could ")
+    assert err.endswith("not be (Bad file descriptor); files that were asked for are written.\n")
+    assert picture.read_text().rstrip().endswith("</svg>")
+
+
+def test_a_stderr_that_takes_nothing_changes_no_exit_code(monkeypatch):
+    class Full:
+        def write(self, text):
+            raise OSError(28, "No space left on device")
+
+        def fileno(self):
+            raise ValueError
+
+        flush = write
+
+    for stream in (Full(), None):
+        monkeypatch.setattr(sys, "stderr", stream)
+        assert complain("what\nis wrong", 2) == 2
+
+
+def test_a_terminal_without_columns_gets_the_help():
+    """It never ended."""
+    code, out, err = run(*COMMAND, "solve", "--help", COLUMNS="0")
+    assert (code, err) == (0, "")
+    assert "Example: stribeck solve" in out
+
+
+def test_a_backend_that_matplotlib_does_not_know_is_a_sentence_in_python(monkeypatch):
+    def unknown(name, *arguments, **options):
+        if name.startswith("matplotlib"):
+            raise ValueError("Key backend: 'nonsense' is not a valid value")
+        return whole(name, *arguments, **options)
+
+    whole = __builtins__["__import__"] if isinstance(__builtins__, dict) else __builtins__.__import__
+    monkeypatch.setattr("builtins.__import__", unknown)
+    with pytest.raises(sb.InputError, match=r"matplotlib cannot be loaded \(Key backend: 'nonsense' is not a valid value\)\."):
+        pictures.new_figure((4, 3), [], title="")
+
+
+# --- Ctrl-C ---
+
+PRESSED = """
+import os, runpy, signal, sys
+class Press:
+    def find_spec(self, name, path=None, target=None):
+        if name == {library!r}:
+            os.kill(os.getpid(), signal.SIGINT)
+            raise ImportError("as a library may say that was interrupted")
+sys.meta_path.insert(0, Press())
+sys.argv[0] = "stribeck"
+runpy.run_module("stribeck_command", run_name="__main__")
+"""
+
+
+@pytest.mark.parametrize("library", ["mmap", "numpy", "pydantic"])
+def test_ctrl_c_while_libraries_are_loaded_is_a_sentence_and_130(library):
+    """The last is loaded by the command itself, the others before there is one."""
+    if library == "mmap":
+        library = "stribeck"
+    code, out, err = run(sys.executable, "-c", PRESSED.format(library=library), "solve", PDMS)
+    assert (code, out, err) == (130, "", "stribeck: Interrupted; nothing was written.\n")
+
+
+def test_ctrl_c_that_a_library_turns_into_another_error_is_an_interruption(capsys, monkeypatch):
+    def solve(*arguments, **options):
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+        except KeyboardInterrupt:
+            raise ImportError("cannot import name") from None
+
+    monkeypatch.setattr(solving, "solve", solve)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        answer = call(capsys, "solve", "--groups", "1e-4", "0.1", "1e-3")
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert (answer.code, answer.err) == (130, "stribeck: Interrupted; nothing was written.\n")
+
+
+# --- memory ---
+
+
+def test_too_little_memory_is_told_before_libraries_crash():
+    def limit():
+        resource.setrlimit(resource.RLIMIT_AS, (300_000_000, 300_000_000))
+
+    code, out, err = run(*SOLVE, prepare=limit)
+    assert (code, out) == (1, "")
+    assert re.fullmatch(r"stribeck: The memory that this process may take does not suffice: 0\.5 GB are needed; .*\n", err)
+
+
+# --- files ---
+
+
+@pytest.fixture(params=["pipe", "device", "socket"])
+def odd(request, tmp_path):
+    """Return a file that is none, and what it is."""
+    place = tmp_path / "odd.toml"
+    if request.param == "pipe":
+        os.mkfifo(place)
+    elif request.param == "device":
+        place.symlink_to("/dev/zero")
+    else:
+        with socket.socket(socket.AF_UNIX) as made:
+            made.bind(os.path.relpath(place))
+    return place, request.param
+
+
+@pytest.mark.parametrize("command", ["solve", "sweep", "fit", "surface"])
+def test_what_is_no_ordinary_file_is_refused_and_not_waited_for(capsys, odd, command, tmp_path):
+    place, kind = odd
+    tokens = {"sweep": ("--out", tmp_path / "store"), "fit": (PDMS,)}.get(command, ())
+    answer = call(capsys, command, place, *tokens)
+    assert answer.code == 2
+    said = (
+        "is no file; check the name"
+        if command == "surface"
+        else rf"cannot be read \(it is a {kind}, not an ordinary file\); give"
+    )
+    if kind == "socket" and command != "surface":
+        said = r"cannot be read \((No such device or address|it is a socket, not an ordinary file)\); give"
+    assert re.fullmatch(rf"stribeck: {place} {said}.*\n", answer.err)
+
+
+def test_a_file_is_read_whole_or_one_byte_beyond_its_bound(tmp_path):
+    file = tmp_path / "file"
+    file.write_bytes(bytes(range(256)) * 40)
+    assert read_bounded(file, 10_240) == file.read_bytes()
+    assert len(read_bounded(file, 10_239)) == 10_240
+    assert len(read_bounded(file, 10)) == 11
+    if Path("/proc/self/status").exists():
+        assert read_bounded("/proc/self/status", 100_000).startswith(b"Name:")
+
+
+DEEP = {
+    "dotted key": "a" + ".a" * 200_000 + " = 1",
+    "dotted key in quotes": '"a"' + ' . "a"' * 100_000 + " = 1",
+    "dotted table": "[a" + ".a" * 200_000 + "]",
+    "inline table": "x = { a" + ".a" * 200_000 + " = 1 }",
+    "lists": "x = " + "[" * 200 + "]" * 200,
+    "more lists": "x = " + "[" * 100_000,
+    "inline tables": "x = " + "{a=" * 100 + "1" + "}" * 100,
+}
+
+
+@pytest.mark.parametrize("text", DEEP.values(), ids=DEEP)
+def test_a_case_file_that_is_too_deep_is_refused_before_it_takes_minutes(capsys, tmp_path, text):
+    file = tmp_path / "deep.toml"
+    file.write_text(text)
+    answer = call(capsys, "solve", file)
+    assert answer.code == 2
+    assert re.fullmatch(
+        r"stribeck: .*deep.toml is not valid TOML: (a key has|tables or lists lie|maximum recursion) .*\.\n", answer.err
+    )
+
+
+def test_a_long_text_with_points_is_no_deep_key(tmp_path):
+    file = tmp_path / "case.toml"
+    file.write_text(PDMS.read_text().replace("[contact]", f'notes = "{"e.g. " * 30}..."\n[contact]', 1))
+    assert "notes" in read_toml(file)
