@@ -1,4 +1,4 @@
-"""What surrounds the command: streams that take no more, odd environments, Ctrl-C at any time, too little memory, odd files."""
+"""What surrounds the command: streams that take no more, Ctrl-C at any time, too little memory, odd files."""
 
 import os
 import re
