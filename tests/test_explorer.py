@@ -146,7 +146,7 @@ def some_case(random, kind, folder):
         "load": f"{random.uniform(1, 900)!r} N/m",
         "viscosity": random.uniform(1e-3, 1.0),
         "speed": random.choice(["0 m/s", "1 mm/s", "0.3 m/s"]).item(),
-        "friction_coefficient": float(random.uniform(0, 9)),
+        "boundary_friction": float(random.uniform(0, 9)),
         "law": law,
     }
     contact |= {"modulus": "3.3 MPa"} if random.random() < 0.5 else {"youngs_modulus": "5.5 MPa", "poisson_ratio": 0.49}
@@ -210,7 +210,7 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(kind, tmp_path):
         shown = inputs.from_case(case)
         same_contact(shown.contact, case.contact)
         assert (shown.title, shown.rtol, shown.definition) == (case.title, case.rtol, case.definition)
-        pin = url.Pin("kept ~ once", START.contact, "paper"), url.Pin("law", shown.contact, "balanced", shown.law)
+        pin = url.Pin("kept ~ once", START.contact, "published"), url.Pin("law", shown.contact, "balanced", shown.law)
         opened = reopened(url.encode(shown, pin))
         assert opened.problems == {}
         assert opened.inputs == shown and opened.pins == pin
@@ -248,7 +248,7 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
         ("rtol=2", "rtol"),
         ("pin=x", "pin = 'x' must hold 9 numbers, the definition and a name."),
         ("pin=", "pin = '' must hold 9 numbers"),
-        ("pin=1~1~1~1~1~1~1~1~1~paper@3~name", "names a contact law that the address does not hold"),
+        ("pin=1~1~1~1~1~1~1~1~1~balanced@3~name", "names a contact law that the address does not hold"),
         ("pinlaw=x", "is not JSON"),
     ],
 )
@@ -361,8 +361,12 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
     assert model.settle(heavy) and not model.settle(heavy)
     now = model(heavy)
     assert not now.curve.stale and "solved" in now.curve.source
-    friction = np.exp(np.interp(np.log(heavy.contact.speed), np.log(now.curve.speed), np.log(now.curve.friction["balanced"])))
-    assert friction == pytest.approx(sb.solve(heavy.contact).friction().total, rel=0.02)
+    steps = np.diff(np.log(now.curve.friction[heavy.definition]))
+    bottom = int(np.argmin(now.curve.friction[heavy.definition]))
+    assert np.abs(steps[bottom - 1 : bottom + 1]).max() < 0.03  # no kink where friction turns
+    default = np.log(now.curve.friction[heavy.definition])
+    friction = np.exp(np.interp(np.log(heavy.contact.speed), np.log(now.curve.speed), default))
+    assert friction == pytest.approx(sb.solve(heavy.contact).friction(definition=heavy.definition).total, rel=0.02)
     heavier = model(inputs.slid(heavy, "load", inputs.position(heavy, "load") + 0.1))
     assert heavier.curve.stale and heavier.curve.transitions == ()
     assert charts.friction_chart(heavier, [], [], LIGHT)["series"][0]["lineStyle"]["opacity"] < 1
@@ -630,3 +634,32 @@ def test_ctrl_c_ends_it_with_exit_code_0(monkeypatch, capsys):
     monkeypatch.setattr("stribeck.explorer.server.serve", interrupted)
     assert main(["explore"]) == 0
     assert capsys.readouterr().err == ""
+
+
+def test_present_point_minimum_and_measured_points_have_colours_of_their_own(answer):
+    [measured] = read_measured("m.csv", b"speed [mm/s], friction\n1, 0.5\n10, 0.2\n", answer.inputs.contact)
+    for palette in (LIGHT, DARK):
+        series = {s["id"]: s for s in charts.friction_chart(answer, [], [measured], palette)["series"]}
+        assert series["point"]["itemStyle"]["color"] != series["minimum"]["color"] == palette.mark
+        assert palette.mark not in series["measured0"]["itemStyle"].values()
+        assert series["other"]["color"] != series["friction"]["color"]
+
+
+def test_an_empty_map_says_why_in_its_place():
+    shown = Model()(inputs.typed(START, "load_group", "3"))
+    said = charts.diagram_chart(shown, LIGHT)["title"]["text"]
+    assert said == "Regime map unavailable: the lookup table covers load groups up to 1; here it is 3."
+    assert charts.diagram_chart(Model()(START), LIGHT)["title"]["text"] == ""
+
+
+def test_a_refused_value_is_told_in_the_unit_of_its_field():
+    with pytest.raises(sb.InputError, match=r"or a bare number in mm/s\.$"):
+        inputs.typed(START, "speed", "fast")
+
+
+def test_advice_on_a_tolerance_that_the_page_does_not_offer_is_left_out():
+    from stribeck.explorer.tab import without_rtol
+
+    for outcome in sb.Outcome:
+        assert "rtol" not in without_rtol(outcome.value)
+    assert without_rtol("Refining came to its end; ask for a larger rtol.") == "Refining came to its end."

@@ -5,7 +5,7 @@ import asyncio
 import pytest
 
 import stribeck as sb
-from stribeck.explorer.guard import LARGEST_REQUEST, Guard, check_host
+from stribeck.explorer.serving.guard import LARGEST_REQUEST, Guard, check_host
 
 TOKEN = "0123abcd"
 OWN = {"host": "127.0.0.1:8765", "cookie": f"stribeck-explorer-8765={TOKEN}"}

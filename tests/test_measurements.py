@@ -1,5 +1,7 @@
 """Measured friction as laboratories write it: read alike whatever its form, or refused with row and column."""
 
+import time
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -288,3 +290,15 @@ def test_all_problems_of_a_fit_table_are_told_at_once(tmp_path):
 
 def test_a_curve_that_is_not_there_is_refused(read):
     assert "no curve is called 'b'" in refused(read, PLAIN, curves={"b": {"roughness": 1e-6}})
+
+
+@pytest.mark.parametrize(
+    "text", [",".join(f"c{i}" for i in range(60_000)), "a,b\n" + 60_000 * "1" + "x,2\n"], ids=["columns", "digits"]
+)
+def test_a_hostile_file_is_read_in_time_that_grows_with_its_length(text, tmp_path):
+    path = tmp_path / "hostile.csv"
+    path.write_text(text + "\n")
+    began = time.process_time()
+    with pytest.raises(sb.InputError):
+        sb.read_measurements(path)
+    assert time.process_time() - began < 3  # a tenth of a second; with the square of the length, half a minute

@@ -19,6 +19,7 @@ from stribeck.curves.atlas_curve import ERROR
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.regimes.phase_from_atlas import transition_speeds
+from stribeck.solver.nearby import NearSolver
 from stribeck.solver.solve import SolveError
 
 __all__ = [
@@ -38,6 +39,11 @@ POINTS = 121
 SOLVED_POINTS = 41
 ROWS = 31
 """Points of a curve, of one that is solved, and roughnesses of a diagram."""
+
+
+SOLVED_RTOL = 1e-4
+AROUND, AROUND_POINTS = 2.0, 13
+"""Factor of the speed around a solved minimum within which the curve has more points, and how many."""
 
 
 @dataclass(frozen=True)
@@ -160,10 +166,19 @@ def curve_from_atlas(contact: LineContact, speeds: tuple[float, float], marks: t
 
 def solved_curve(contact: LineContact, definition: Definition) -> Curve:
     """Return a curve of solved states, with the transitions located on them."""
-    found = stribeck_curve(contact, points=SOLVED_POINTS, rtol=1e-4, definition=definition)
+    found = stribeck_curve(contact, points=SOLVED_POINTS, rtol=SOLVED_RTOL, definition=definition)
     if len(found) < 2:
         raise SolveError(found.outcome, None, found.outcome.value)
-    friction = {kind: np.array([s.friction(definition=kind).total for s in found.solutions]) for kind in DEFINITIONS}
+    states = dict(zip(map(float, found.values), found.solutions, strict=True))
+    if found.minimum is not None:
+        # Straight lines between the points of the curve would end in a kink where friction turns.
+        solve = NearSolver(SOLVED_RTOL)
+        for speed in found.minimum.value * np.geomspace(1 / AROUND, AROUND, AROUND_POINTS):
+            if found.values[0] < speed < found.values[-1]:
+                states[float(speed)] = solve(contact.replace(speed=float(speed)))
+    speeds = np.array(sorted(states))
+    parts = {kind: [states[float(speed)].friction(definition=kind) for speed in speeds] for kind in DEFINITIONS}
+    friction = {kind: np.array([part.total for part in parts[kind]]) for kind in DEFINITIONS}
     names = {
         f"{BOUNDARY_FLUID_SHARE:.0%} of the load": "boundary",
         f"{HYDRODYNAMIC_CONTACT_SHARE:.0%} of the friction": "hydrodynamic",
@@ -175,7 +190,7 @@ def solved_curve(contact: LineContact, definition: Definition) -> Curve:
         if name and (name != "boundary" or " 5%" in mark.name):
             marks.append(Transition(name, mark.value, math.nan))
     source = f"solved, beyond the atlas; estimated error {_power(found.error_estimate)}"
-    return Curve(found.values, friction, found.friction_contact, tuple(marks), source)
+    return Curve(speeds, friction, np.array([part.contact for part in parts[definition]]), tuple(marks), source)
 
 
 def _power(error: float) -> str:

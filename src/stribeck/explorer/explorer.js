@@ -4,6 +4,7 @@ window.explorerFrame = (frame) => {
   for (const [id, options, settings] of frame.charts) getElement(id)?.chart?.setOption(options, settings);
   for (const [id, now] of frame.knobs) getElement(id)?.show(now);
   explorerWaits(frame.waits);
+  window.explorerUnits = frame.units;
   if (frame.moved) getElement(frame.moved)?.free();
   return true;
 };

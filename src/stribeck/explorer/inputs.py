@@ -73,8 +73,8 @@ FIELDS = {
     "radius": Field("Radius", "R", 1e-4, 1.0, ("mm", "cm", "m")),
     "modulus": Field("Modulus", "E*", 1e4, 1e12, ("kPa", "MPa", "GPa")),
     "boundary_friction": Field("Dry friction", "µ<sub>0</sub>", 0.01, 2.0),
-    "alpha": Field("Law decay", "α", 0.5, 5.0),
-    "beta": Field("Law strength", "β", 1e-3, 2.0),
+    "alpha": Field("Contact-law alpha", "α", 0.5, 5.0),
+    "beta": Field("Contact-law beta", "β", 1e-3, 2.0),
 }
 """The inputs of a contact, those first that one changes most."""
 
@@ -206,7 +206,14 @@ def typed(inputs: Inputs, name: str, text: str) -> Inputs:
     unit = inputs.units[name]
     if isinstance(_bare(text), float):
         text = f"{text} {unit}"
-    value = quantity(name, text)
+    try:
+        value = quantity(name, text)
+    except InputError as problem:
+        si = DIMENSIONS[QUANTITIES[name].dimension].unit
+        said = str(problem)
+        if said.endswith(f"or a bare number in {si}."):
+            said = f"{said.removesuffix(f'{si}.')}{unit}."
+        raise InputError(said) from None
     unit = re.sub(r"^[-+\N{MINUS SIGN}0-9.]+([eE][-+]?[0-9]+)?\s*", "", text)
     return replace(inputs, contact=inputs.contact.replace(**{name: value}), units={**inputs.units, name: unit})
 

@@ -219,7 +219,7 @@ class Page:
                 chip.style(f"--curve: {self.palette.pins[i % 6]}")
                 chip.on("remove", lambda pin=pin: unpin(pin))
             for found in measured:
-                chip = ui.chip(found.name, icon="scatter_plot", removable=True).style(f"--curve: {self.palette.mark}")
+                chip = ui.chip(found.name, icon="scatter_plot", removable=True).style(f"--curve: {self.palette.ink}")
                 chip.on("remove", lambda found=found: forget(found))
 
     def complain(self, text: str) -> None:
@@ -272,6 +272,7 @@ class Page:
         """Send what changed, and wait until the browser has drawn it."""
         frame: dict[str, Any] = {"html": [], "charts": [], "knobs": [], "moved": self.moved}
         frame["waits"] = self.ways_words(now)
+        frame["units"] = {}
         self.moved = None
         for element, content in self.words(seen.answer):
             if self.shown.get(element.html_id) != content:
@@ -279,6 +280,7 @@ class Page:
                 frame["html"].append([element.html_id, content])
         for name, whole in self.options(seen).items():
             options = data_only(whole)
+            frame["units"][name] = options["xAxis"]["name"].partition("(")[2].partition(")")[0].strip("–")
             changed = difference(self.shown[f"chart-{name}"], options)
             self.shown[f"chart-{name}"] = options
             if changed is not None:

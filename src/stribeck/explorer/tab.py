@@ -28,6 +28,7 @@ from stribeck.explorer.inputs import Inputs
 from stribeck.explorer.measured import Measured
 from stribeck.explorer.page import Page
 from stribeck.explorer.reading import read_file
+from stribeck.explorer.serving.tidy import tidy_soon
 from stribeck.explorer.url import Pin
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
@@ -260,6 +261,7 @@ class Tab:
     def close(self) -> None:
         """Stop what runs for a page that is gone."""
         self.closed = True
+        tidy_soon()
         if self.resting is not None:
             self.resting.cancel()
 
@@ -349,7 +351,12 @@ class Tab:
 
     async def open(self) -> None:
         """Do what needs the browser: its theme, and what comes at rest."""
-        await self.page.client.connected(timeout=30)
+        try:
+            await self.page.client.connected(timeout=30)
+        except TimeoutError:  # the browser went away at once
+            if not self.closed:
+                self.page.client.delete()
+            return
         with self.page.client:
             for name, (text, sentence) in self.problems.items():
                 self.page.mark(name, text, sentence)

@@ -15,7 +15,7 @@ from stribeck.regimes.distances import TransitionDistances
 
 __all__ = ["Row", "distances_html", "numbers", "numbers_html"]
 
-MOST_DIGITS = 6
+MOST_DIGITS = 4
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def numbers(answer: Answer) -> list[Row]:
         rows.append(_share(key, name, getattr(solution, key), errors[key]))
     for key, name, gap in (
         ("central_film_thickness", "Central film h(0)", solution.central_gap),
-        ("minimum_film_thickness", "Least film", solution.minimum_gap),
+        ("minimum_film_thickness", "Minimum film thickness", solution.minimum_gap),
     ):
         error = errors[key.replace("film_thickness", "gap")]
         rows.append(_row(key, name, gap * scales.indentation, abs(gap) * scales.indentation * error, "length"))
@@ -89,7 +89,7 @@ def _transition_rows(answer: Answer) -> list[Row]:
     names = {
         "boundary": "Boundary ends at speed",
         "hydrodynamic": "Hydrodynamic from speed",
-        "minimum": "Least friction at speed",
+        "minimum": "Speed of minimum friction",
     }
     rows = []
     for name, label in names.items():

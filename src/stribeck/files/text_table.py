@@ -8,6 +8,7 @@ from __future__ import annotations
 import codecs
 import csv
 import re
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,7 +33,7 @@ EXPECTED = "add a header such as 'speed [mm/s];friction' above rows of numbers"
 LOOK_AHEAD = 3
 """Rows below a header among which one must hold numbers."""
 
-_POINT = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+_POINT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 _COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
 _WITH_UNIT = re.compile(r"([+-]?[0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)\s*([A-Za-zµμ%°].*)")
 _NAMED = re.compile(r"\s*([^\[\](),;]*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
@@ -124,8 +125,8 @@ def read_table(path: Path, header_row: int | None = None, expected: str = EXPECT
             f"{path}: row {number} holds one column, {show(header[0])}; "
             f"separate the columns by semicolons, tabs or commas{elsewhere}."
         )
-    for name in header:
-        if name and header.count(name) > 1:
+    for name, times in Counter(header).items():
+        if name and times > 1:
             raise InputError(
                 f"{path}: row {number} has the column {show(name)} twice; give each column its own name{elsewhere}."
             )

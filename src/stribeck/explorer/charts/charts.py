@@ -10,7 +10,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.friction import Definition
 from stribeck.explorer.answer import Answer, round_down, round_up
-from stribeck.explorer.charts.echarts import Options, chart, legend, line, linear_axis, log_axis, marker, pairs
+from stribeck.explorer.charts.echarts import Options, chart, legend, line, linear_axis, log_axis, marker, pairs, with_unit
 from stribeck.explorer.charts.palette import PIN_DASHES, Palette
 from stribeck.explorer.curves import Curve
 from stribeck.explorer.measured import Measured
@@ -76,7 +76,7 @@ def friction_chart(
         solid, viscous = curve.contact, curve.friction[chosen] - curve.contact
         heights += [*_range(curve.friction[chosen]), *_range(curve.friction[other])]
         series += [
-            line("other", names[other], x, curve.friction[other], palette.ink, 1.0, [3, 3]),
+            line("other", names[other], x, curve.friction[other], palette.grey, 1.2, [3, 3]),
             line("contact", "from asperities", x, solid, palette.contact, 1.4, [7, 3]),
             line("viscous", "from the fluid", x, viscous, palette.fluid, 1.4, [9, 3, 2, 3]),
             line("friction", names[chosen], x, curve.friction[chosen], palette.ink, 2.4),
@@ -93,7 +93,7 @@ def friction_chart(
     for i, found in enumerate(measured):
         heights += _range(found.friction)
         points = pairs(found.speed * scale, found.friction)
-        look = {"color": "transparent", "borderColor": palette.mark, "borderWidth": 1.6}
+        look = {"color": "transparent", "borderColor": palette.ink, "borderWidth": 1.6}
         series.append(
             {
                 "id": f"measured{i}",
@@ -112,11 +112,16 @@ def friction_chart(
     minimum = None if curve is None else curve.transition("minimum")
     if minimum is not None:
         x = np.full(2, minimum.speed * scale)
-        series.append(line("minimum", "least friction", x, np.array([low, high]), palette.mark, 1.4, [2, 3]))
+        series.append(line("minimum", "minimum friction", x, np.array([low, high]), palette.mark, 1.4, [2, 3]))
     point = [contact.speed * scale if contact.speed > 0 else ends[0], friction]
     series.append(marker("point", point, palette))
     unit = "sliding speed U (m/s)" if inputs.abscissa == "speed" else "Hersey number ηU/F (–)"
-    options = chart(palette, log_axis(unit, *ends, palette), log_axis("friction coefficient µ", low, high, palette), series)
+    options = chart(
+        palette,
+        with_unit("friction", log_axis(unit, *ends, palette)),
+        log_axis("friction coefficient µ", low, high, palette),
+        series,
+    )
     listed = [names[chosen], names[other], "from asperities", "from the fluid"] if curve is not None else []
     listed += [s["name"] for s in series if s["id"].startswith(("pin", "measured", "minimum"))]
     return options | {"legend": legend(palette, listed, [found.name for found in measured])}
@@ -140,7 +145,8 @@ def gap_chart(answer: Answer, palette: Palette) -> Options:
     series += _thin_series(answer, ("gap",), x_scale, scale, palette)
     low, high = round_down(min(shown) * scale), round_up(max(shown) * scale)
     y = log_axis(f"gap ({u_unit})", low, high, palette)
-    options = chart(palette, linear_axis(f"position x ({x_unit})", -x_end, x_end, palette), y, series)
+    axis = with_unit("gap", linear_axis(f"position x ({x_unit})", -x_end, x_end, palette))
+    options = chart(palette, axis, y, series)
     return options | {"legend": legend(palette, [s["name"] for s in series])}
 
 
@@ -164,7 +170,8 @@ def pressure_chart(answer: Answer, palette: Palette) -> Options:
     high = round_up(1.02 * most)
     low = 0.0 if least > -0.01 * high else -round_up(-1.02 * least)
     y = linear_axis(f"pressure ({name})", low, high, palette)
-    options = chart(palette, linear_axis(f"position x ({x_unit}); fluid enters left", -x_end, x_end, palette), y, series)
+    axis = with_unit("pressure", linear_axis(f"position x ({x_unit}); fluid enters left", -x_end, x_end, palette))
+    options = chart(palette, axis, y, series)
     return options | {"legend": legend(palette, [s["name"] for s in series])}
 
 
@@ -172,7 +179,7 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
     """Return the regimes over speed and roughness at the present load, with the present point and the path of the speed."""
     diagram, contact = answer.diagram, answer.inputs.contact
     low, high = answer.speeds
-    roughness = diagram.roughness
+    roughness = 1e6 * diagram.roughness
     known = ~np.isnan(diagram.boundary)
     begin = np.clip(diagram.hydrodynamic, low, high)
     end = np.minimum(np.clip(diagram.boundary, low, high), begin)
@@ -206,15 +213,21 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
         series.append(line("begin", "hydrodynamic begins", np.where(inside, h, np.nan), rows, palette.fluid, 1.8))
         least = diagram.minimum[known]
         least = np.where((least > low) & (least < high), least, np.nan)
-        series.append(line("minimum", "least friction", least, rows, palette.mark, 1.6, [2, 3]))
-    height = min(max(contact.roughness, float(roughness[0])), float(roughness[-1]))
+        series.append(line("minimum", "minimum friction", least, rows, palette.mark, 1.6, [2, 3]))
+    height = min(max(1e6 * contact.roughness, float(roughness[0])), float(roughness[-1]))
     series.append(line("path", "path of the speed", np.array([low, high]), np.full(2, height), palette.grey, 1.0, [4, 4]))
     series.append(marker("point", [min(max(contact.speed, low), high), height], palette))
-    x = log_axis("sliding speed U (m/s)", low, high, palette)
-    y = log_axis("roughness (m)", float(roughness[0]), float(roughness[-1]), palette)
+    x = with_unit("diagram", log_axis("sliding speed U (m/s)", low, high, palette))
+    y = log_axis("roughness (µm)", float(roughness[0]), float(roughness[-1]), palette)
     options = chart(palette, x, y, series)
-    listed = ["boundary ends", "hydrodynamic begins", "least friction"]
-    return options | {"legend": legend(palette, [name for name in listed if any(s["name"] == name for s in series)])}
+    listed = ["boundary ends", "hydrodynamic begins", "minimum friction"]
+    why = {"text": diagram.message, "left": "center", "top": "middle", "textStyle": _words(palette)}
+    names = [name for name in listed if any(s["name"] == name for s in series)]
+    return options | {"title": why, "legend": legend(palette, names)}
+
+
+def _words(palette: Palette) -> Options:
+    return {"color": palette.ink, "fontSize": 13, "fontWeight": "normal", "width": 230, "overflow": "break", "lineHeight": 18}
 
 
 def _region_name(name: str, one: Array, two: Array, rows: Array, palette: Palette) -> Options:

@@ -15,7 +15,19 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.explorer.charts.palette import Palette
 
-__all__ = ["Options", "chart", "data_only", "difference", "legend", "line", "linear_axis", "log_axis", "marker", "pairs"]
+__all__ = [
+    "Options",
+    "chart",
+    "data_only",
+    "difference",
+    "legend",
+    "line",
+    "linear_axis",
+    "log_axis",
+    "marker",
+    "pairs",
+    "with_unit",
+]
 
 Options = dict[str, Any]
 
@@ -103,6 +115,15 @@ def _axis(name: str, low: float, high: float, palette: Palette) -> Options:
     }
 
 
+POINTED = """p => Number(p.value.toPrecision(3)) + ' ' + ((window.explorerUnits || {})['CHART'] || '')"""
+"""Headline of a tooltip: the place along an axis with its unit, of which the page keeps what it is at the moment."""
+
+
+def with_unit(chart: str, axis: Options) -> Options:
+    """Return an axis along which a tooltip tells the place with its unit."""
+    return axis | {"axisPointer": {"label": {":formatter": POINTED.replace("CHART", chart)}}}
+
+
 def log_axis(name: str, low: float, high: float, palette: Palette) -> Options:
     """Return a logarithmic axis with a name, between two ends."""
     axis = _axis(name, low, high, palette) | {"type": "log", "minorTick": {"show": True, "splitNumber": 9}}
@@ -139,7 +160,7 @@ def marker(key: str, place: Sequence[float], palette: Palette) -> Options:
         "type": "scatter",
         "data": [list(place)],
         "symbolSize": 13,
-        "itemStyle": {"color": palette.mark, "borderColor": palette.card, "borderWidth": 2},
+        "itemStyle": {"color": palette.point, "borderColor": palette.ink, "borderWidth": 2},
         "z": 6,
     }
 

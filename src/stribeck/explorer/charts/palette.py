@@ -17,8 +17,8 @@ class Palette:
     ----------
     ink, grey, grid, card : str
         Of lines and text, of what stands back, of grids, of the ground.
-    contact, fluid, mark, thin : str
-        Of what asperities cause, of what the fluid causes, of marks, of formulas.
+    contact, fluid, mark, point, thin : str
+        Of what asperities cause, of what the fluid causes, of the minimum, of the present point, of formulas.
     tints : dict of str to str
         Ground of each regime.
     pins : tuple of str
@@ -32,6 +32,7 @@ class Palette:
     contact: str
     fluid: str
     mark: str
+    point: str
     thin: str
     tints: dict[str, str]
     pins: tuple[str, ...]
@@ -45,6 +46,7 @@ LIGHT = Palette(
     contact=CONTACT,
     fluid=FLUID,
     mark=MARK,
+    point="#e69f00",
     thin="#009e73",
     tints=TINTS,
     pins=("#009e73", "#a6761d", "#7b52ab", "#5e7c99", "#b2457d", "#4d4d4d"),
@@ -58,6 +60,7 @@ DARK = Palette(
     contact="#ff8c52",
     fluid="#5ab4f0",
     mark="#e59fc4",
+    point="#f0b429",
     thin="#35c9a0",
     tints={"boundary": "#33251f", "mixed": "#2b2920", "hydrodynamic": "#1a2a38"},
     pins=("#35c9a0", "#d6a54c", "#b491e0", "#9db4cc", "#ea8fbd", "#bdbdbd"),

@@ -1,0 +1,1 @@
+"""What the server of the page needs that is no page: its door, and the memory of pages that closed."""

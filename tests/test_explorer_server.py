@@ -1,0 +1,203 @@
+"""The explorer's real server without a browser: what it answers, what it refuses, what it keeps.
+
+The server is started once, which takes some seconds; everything else is quick.
+"""
+
+import asyncio
+import gc
+import http.client
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+import weakref
+from contextlib import closing
+from urllib.parse import quote
+
+import pytest
+
+pytest.importorskip("nicegui")
+
+
+def start(folder):
+    environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "NICEGUI"))}
+    return subprocess.Popen(
+        [sys.executable, "-m", "stribeck", "explore", "--no-browser"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment | {"TMPDIR": str(folder)},
+    )
+
+
+def address_of(process):
+    """Return port and token that a server printed, once it listens."""
+    line = process.stdout.readline()
+    found = re.fullmatch(r"stribeck explorer: http://127\.0\.0\.1:(\d+)/\?token=(\S+) \(Ctrl-C ends it\)\n", line)
+    server = int(found[1]), found[2]
+    deadline = time.monotonic() + 30
+    while time.monotonic() < deadline:
+        try:
+            socket.create_connection(("127.0.0.1", server[0]), timeout=3).close()
+            break
+        except OSError:
+            time.sleep(0.1)
+    return server
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("temporary")
+
+
+@pytest.fixture(scope="module")
+def server(folder):
+    with start(folder) as process:
+        yield address_of(process)
+        assert process.poll() is None, "the server died"
+        process.send_signal(signal.SIGTERM)
+        said = process.communicate(timeout=30)
+    assert "Traceback" not in said[1]
+    assert list(folder.iterdir()) == [], "temporary files are left"
+
+
+def ask(server, path="/", method="GET", body=None, token=True, **headers):
+    """Return status, headers and text of an answer."""
+    port, secret = server
+    own = {"Cookie": f"stribeck-explorer-{port}={secret}"} if token else {}
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+    with closing(connection):
+        connection.request(method, path, body, own | headers)
+        with connection.getresponse() as answer:
+            return answer.status, dict(answer.getheaders()), answer.read().decode("utf-8", "replace")
+
+
+@pytest.fixture(scope="module")
+def page(server):
+    """Return the name of a page that was opened."""
+    return client_of(ask(server)[2])
+
+
+def client_of(text):
+    return re.search(r"client_id[^0-9a-f]+([0-9a-f-]{36})", text)[1]
+
+
+def test_a_page_comes_with_its_protection(server):
+    status, headers, text = ask(server)
+    assert status == 200 and "stribeck explorer" in text
+    assert headers["x-frame-options"] == "DENY" and "frame-ancestors 'none'" in headers["content-security-policy"]
+
+
+def test_any_other_host_origin_or_token_is_refused_by_the_server_itself(server):
+    socket_path = "/_nicegui_ws/socket.io/?EIO=4&transport=polling"
+    for path in ("/", socket_path):
+        assert ask(server, path, Host="elsewhere.example")[0] == 400
+        assert ask(server, path, Origin="http://elsewhere.example")[0] == 403
+        assert ask(server, path, token=False)[0] == 403
+    own = f"http://127.0.0.1:{server[0]}"
+    status, headers, _ = ask(server, socket_path, Origin=own)
+    assert status == 200 and headers.get("access-control-allow-origin") in (None, own)
+
+
+def test_it_listens_on_this_machine_alone(server):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.connect(("192.0.2.1", 9))  # sends nothing; tells our address towards the outside
+        outside = probe.getsockname()[0]
+    if outside == "127.0.0.1":
+        pytest.skip("this machine has no other address")
+    with pytest.raises(OSError):
+        socket.create_connection((outside, server[0]), timeout=3).close()
+
+
+@pytest.mark.parametrize(
+    "query", ["pin=x", "pin=", "pinlaw=x", "law=[", "rest=1", "load=%00", "=&&=", "speed=1e999+m%2Fs", "rtol=nan"]
+)
+def test_no_address_brings_the_server_down(server, query):
+    assert ask(server, f"/?{query}")[0] == 200
+
+
+@pytest.mark.parametrize("name", ["..", "a\0b.csv", 300 * "x" + ".toml", "../../x.toml", "\n.csv", ""])
+def test_no_name_of_an_upload_brings_the_server_down(server, page, name):
+    assert ask(server, f"/upload/{page}?name={quote(name)}", "POST", b"speed,force\n1,2\n")[0] == 204
+
+
+def test_an_upload_is_limited_by_the_server(server, page):
+    assert ask(server, f"/upload/{page}?name=a.csv", "POST", b"x" * 5_000_001)[0] in (413, 400)
+
+
+def test_files_are_for_open_pages_only(server, page):
+    assert ask(server, "/upload/nobody?name=a.csv", "POST", b"x")[0] == 404
+    assert ask(server, "/download/nobody/toml")[0] == 404
+    assert ask(server, f"/download/{page}/exe")[0] == 404
+    status, headers, text = ask(server, f"/download/{page}/toml")
+    assert status == 200 and "[contact]" in text
+    assert headers["x-file-name"] == "pdms-cylinder-in-glycerol-water.toml"
+
+
+def test_a_file_of_many_columns_does_not_keep_other_pages_waiting(server, page):
+    header = ",".join(f"c{i}" for i in range(400_000))
+    began = time.monotonic()
+    assert ask(server, f"/upload/{page}?name=wide.csv", "POST", f"{header}\n".encode())[0] == 204
+    assert time.monotonic() - began < 19, "it was given up"  # a busy machine; 0.3 s of it reads the header
+
+
+def test_a_tab_that_is_closed_is_collected():
+    from nicegui import core, ui
+    from nicegui.client import Client
+
+    from stribeck.explorer import server, tab
+
+    async def open_and_close():
+        core.loop = asyncio.get_running_loop()
+        start = server.example()
+        opened, answer = await tab.opening([], start)
+        client = Client(ui.page("/"))
+        with client:
+            made = tab.Tab(opened, start, answer)
+        kept = [weakref.ref(each) for each in (client, made, made.page, made.model)]
+        client.delete()
+        await asyncio.sleep(0)
+        return kept, client.outbox
+
+    kept, _ = asyncio.run(open_and_close())
+    gc.collect()
+    assert [each() for each in kept] == [None] * 4
+    assert len(tab.TABS) == 0
+
+
+@pytest.mark.slow  # a minute on a busy machine: it fills the time limit of a file
+def test_a_sigterm_during_an_upload_leaves_no_folder(tmp_path):
+    with start(tmp_path) as process:
+        server = address_of(process)
+        page = client_of(ask(server)[2])
+        rows = "speed [m/s],friction\n" + "".join(f"{i + 1},0.5\n" for i in range(300_000))
+        sender = subprocess.Popen([sys.executable, "-c", SEND, json.dumps([*server, page])], stdin=subprocess.PIPE, text=True)
+        sender.stdin.write(rows)
+        sender.stdin.close()
+        deadline = time.monotonic() + 30
+        while not list(tmp_path.glob("stribeck-*")) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        assert list(tmp_path.glob("stribeck-*")), "the file was never read"
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+        sender.wait(60)
+    deadline = time.monotonic() + 30
+    while list(tmp_path.iterdir()) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert list(tmp_path.iterdir()) == []
+
+
+SEND = """
+import http.client, json, sys
+port, token, page = json.loads(sys.argv[1])
+connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+try:
+    connection.request("POST", f"/upload/{page}?name=a.csv", sys.stdin.read(), {"Cookie": f"stribeck-explorer-{port}={token}"})
+    connection.getresponse()
+except OSError:
+    pass
+"""
