@@ -498,9 +498,10 @@ def test_the_csv_holds_the_curve_the_pins_and_the_measured_points(answer):
         "curve": "measured: m.csv",
         "speed [m/s]": "0.01",
         "hersey_number [1]": repr(0.01 * START.contact.viscosity / START.contact.load),
-        "friction_published [1]": "0.2",
+        "friction_published [1]": "",
         "friction_balanced [1]": "",
         "friction_contact [1]": "",
+        "friction_measured [1]": "0.2",
     }
     assert f"# load: {inputs.exact_text(START, 'load')}\n" in files.content("csv", shown).decode()
 

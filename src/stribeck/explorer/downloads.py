@@ -190,14 +190,15 @@ def curves_text(shown: Shown) -> str:
             "hersey_number [1]",
             *(f"friction_{name} [1]" for name in DEFINITIONS),
             "friction_contact [1]",
+            "friction_measured [1]",
         ]
     )
     for name, found, factor in (*curves, *shown.pins):
         columns = (found.speed, found.speed * factor, *(found.friction[name] for name in DEFINITIONS), found.contact)
-        writer.writerows([name, *map(float, row)] for row in zip(*columns, strict=True))
+        writer.writerows([name, *map(float, row), ""] for row in zip(*columns, strict=True))
     for each in shown.measured:
         rows = zip(each.speed, each.speed * hersey, each.friction, strict=True)
-        writer.writerows([f"measured: {each.name}", float(speed), float(h), float(mu), "", ""] for speed, h, mu in rows)
+        writer.writerows([f"measured: {each.name}", float(speed), float(h), "", "", "", float(mu)] for speed, h, mu in rows)
     return file.getvalue()
 
 
