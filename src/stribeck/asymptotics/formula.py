@@ -12,18 +12,27 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Concatenate, Generic, Literal, ParamSpec
+from typing import Any, Concatenate, Generic, Literal, ParamSpec
 
 import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.contact_laws.law import LawShape, is_exponential
-from stribeck.contacts.line import Groups, InputError
+from stribeck.contacts.line import Groups
+from stribeck.quantities.units import InputError, real_array, show
 
 Value = float | Array
 Arguments = ParamSpec("Arguments")
 Plane = Literal["smooth", "rest", "mixed"]
+
+
+def coefficient(name: str, value: Any) -> float:
+    """Return a coefficient of the friction; refuse what is no finite number from zero on."""
+    found = real_array(name, value)
+    if found.ndim != 0 or not 0 <= found < math.inf:
+        raise InputError(f"{name} = {show(value)}; it must be one finite number, zero or positive.")
+    return float(found)
 
 
 class OutOfRangeWarning(UserWarning):
@@ -176,22 +185,27 @@ class Formula(Generic[Arguments]):
 
     def __call__(self, groups: Groups, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Value:
         """Return the value, and warn where it is outside the range or missing; refuse another law than the exponential one."""
+        if not isinstance(groups, Groups):
+            raise InputError(f"groups = {show(groups)}; give Groups(speed, load, roughness), or contact.groups.")
         self.check_law(groups)
+        call = self._signature.bind(groups, *args, **kwargs)
+        for name, value in call.arguments.items():
+            if name in ("boundary_friction", "beta"):
+                call.arguments[name] = coefficient(name, value)
+            elif name in ("x", "share"):
+                call.arguments[name] = real_array(name, value)[()]
         with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
-            value = self.function(groups, *args, **kwargs)
+            value = self.function(*call.args, **call.kwargs)
+        given = {name: call.arguments[name] for name in ("boundary_friction", "beta") if name in call.arguments}
         if np.isnan(value).any():
             self._warn("has no value, and is nan,")
-        elif not np.all(self.valid(groups, **self._coefficients(groups, *args, **kwargs))):
+        elif not np.all(self.valid(groups, **given)):
             self._warn("is used")
         return value
 
-    def _coefficients(self, groups: Groups, *args: Arguments.args, **kwargs: Arguments.kwargs) -> dict[str, float]:
-        """Return mu0 and beta of a call where the range depends on them."""
-        if not self.needs_coefficients:
-            return {}
-        call = inspect.signature(self.function).bind(groups, *args, **kwargs)
-        call.apply_defaults()
-        return {name: call.arguments[name] for name in ("boundary_friction", "beta")}
+    @functools.cached_property
+    def _signature(self) -> inspect.Signature:
+        return inspect.signature(self.function)
 
     def check_law(self, groups: Groups) -> None:
         """Refuse a contact law for which the formula was not derived; smooth contacts have none.

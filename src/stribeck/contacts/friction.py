@@ -53,7 +53,7 @@ def coefficients(contact: LineContact | None, boundary_friction: float | None, b
 def check_definition(definition: str) -> Definition:
     """Return ``definition`` if it names one of :data:`DEFINITIONS`."""
     for known in DEFINITIONS:
-        if definition == known:
+        if isinstance(definition, str) and definition == known:
             return known
     hint = " The friction of the paper is called 'published'." if definition == "paper" else ""
     raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.{hint}")

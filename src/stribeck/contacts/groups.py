@@ -19,7 +19,14 @@ from stribeck.contact_laws.scaled import ScaledLaw
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["Groups"]
+__all__ = ["LARGEST", "SMALLEST", "Groups"]
+
+
+SMALLEST, LARGEST = 1e-200, 1e200
+"""Bounds of what is not zero, far beyond any contact: products and squares of the groups stay in double precision."""
+
+SLACK = 1e-9
+"""By how much a group may exceed its bound, as the exponential of its logarithm does."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -36,11 +43,11 @@ class Groups:
     ----------
     speed : float or array_like
         :math:`\lambda \ge 0` [-], :math:`U` being the sum of the surface speeds, twice their mean; zero is the contact
-        at rest.
+        at rest, else 1e-200 to 1e200.
     load : float or array_like
-        :math:`\bar F_N > 0` [-]; from one on, the exponential contact law is outside its range.
+        :math:`\bar F_N > 0` [-]; 1e-200 to 1e200.  From one on, the exponential contact law is outside its range.
     roughness : float or array_like
-        :math:`\bar h_\mathrm{rms} \ge 0` [-]; zero is the smooth contact.
+        :math:`\bar h_\mathrm{rms} \ge 0` [-]; zero is the smooth contact, else 1e-200 to 1e200, as its ratio to the load.
     law : LawShape, optional
         Contact law :math:`\Phi`, the pressure over :math:`\beta E^*` at the separation :math:`\alpha h/h_\mathrm{rms}`; the
         exponential law of the paper by default.
@@ -48,7 +55,8 @@ class Groups:
     Raises
     ------
     InputError
-        Where a group is no real number, not finite or out of range, or the three shapes do not broadcast, or the law is none.
+        Where a group or the relative roughness is no real number, not finite or out of range, or the three shapes do not
+        broadcast, or the law is none.
 
     Notes
     -----
@@ -74,6 +82,7 @@ class Groups:
         except ValueError:
             shapes = ", ".join(f"{name} {np.shape(getattr(self, name))}" for name in ("speed", "load", "roughness"))
             raise InputError(f"the shapes of the groups do not broadcast: {shapes}.") from None
+        _check_ratio(self.roughness, self.load)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -159,7 +168,7 @@ class Groups:
 
 
 def _group(name: str, value: Any, positive: bool) -> float | Array:
-    if type(value) is float and (0.0 < value < math.inf or (value == 0.0 and not positive)):
+    if type(value) is float and (SMALLEST <= value <= LARGEST or (value == 0.0 and not positive)):
         return value + 0.0
     try:
         raw = np.asarray(value)
@@ -178,6 +187,11 @@ def _group(name: str, value: Any, positive: bool) -> float | Array:
         received = f"= {show(value)}" if array.ndim == 0 else f"has the value {array[wrong].flat[0]:g} and"
         allowed = "positive" if positive else "zero or positive"
         raise InputError(f"{name} {received} must be finite and {allowed}.")
+    wrong = (array != 0) & ((array < SMALLEST * (1 - SLACK)) | (array > LARGEST * (1 + SLACK)))
+    if np.any(wrong):
+        received = f"= {show(value)}" if array.ndim == 0 else f"has the value {array[wrong].flat[0]:g} and"
+        zero = "" if positive else "zero or "
+        raise InputError(f"{name} {received} must be {zero}from {SMALLEST:g} to {LARGEST:g}; check the units of the inputs.")
     if array.ndim == 0:
         return float(array)
     array.setflags(write=False)
@@ -194,3 +208,18 @@ def contact_law(groups: Groups) -> ContactLaw:
     if groups.law is None or has_constant_decay(groups.law):
         return ExponentialLaw(groups.load, groups.relative_roughness)
     return ScaledLaw(groups.law, groups.load, groups.relative_roughness)
+
+
+def _check_ratio(roughness: float | Array, load: float | Array) -> None:
+    """Refuse a relative roughness that double precision loses although roughness and load are in their ranges."""
+    if isinstance(roughness, float) and isinstance(load, float):
+        if roughness == 0.0 or SMALLEST <= roughness / load <= LARGEST:
+            return
+    with np.errstate(all="ignore"):
+        ratio = np.asarray(roughness) / np.asarray(load)
+    wrong = np.not_equal(roughness, 0) & ((ratio < SMALLEST * (1 - SLACK)) | (ratio > LARGEST * (1 + SLACK)))
+    if np.any(wrong):
+        raise InputError(
+            f"the relative roughness, roughness over load, has the value {ratio[wrong].flat[0]:g} and must be zero or "
+            f"from {SMALLEST:g} to {LARGEST:g}; check the units of the inputs."
+        )

@@ -60,7 +60,7 @@ def read_problem(
     problem: LineContact | Groups | None, given: dict[Over, Any]
 ) -> tuple[LineContact | Groups, Over, Array | None]:
     """Return what stays fixed, what varies, and its ends or points; None where they are to be found."""
-    ranges = [name for name, value in given.items() if value is not None and np.ndim(value) > 0]
+    ranges = [name for name, value in given.items() if value is not None and _dimensions(name, value) > 0]
     if len(ranges) > 1:
         raise InputError(f"{' and '.join(ranges)} are both ranges; a curve varies one of speed, load and roughness.")
     over: Over = ranges[0] if ranges else "speed"
@@ -69,8 +69,8 @@ def read_problem(
         missing = [name for name in GROUPS if name != over and name not in fixed]
         if missing:
             raise InputError(f"{' and '.join(missing)} missing; give a LineContact, or the groups that do not vary.")
-        low = 1.0 if not ranges else float(np.asarray(given[over], dtype=float).ravel()[0])
-        base: LineContact | Groups = Groups(**{**fixed, over: low})
+        low = 1.0 if not ranges else float(_ends(over, given[over], si=False)[0])
+        base: LineContact | Groups = Groups(**{over: low, **fixed})
     elif isinstance(problem, LineContact):
         base = problem.replace(**fixed) if fixed else problem
     else:
@@ -79,6 +79,17 @@ def read_problem(
     if not ranges:
         return base, over, None
     return base, over, _ends(over, given[over], isinstance(base, LineContact))
+
+
+def _dimensions(name: str, value: Any) -> int:
+    """Return 0 for a number and 1 for a range; refuse ragged and nested lists, and what is no number at all."""
+    try:
+        found = np.ndim(value)
+    except ValueError:  # ragged lists
+        found = 2
+    if found > 1 or isinstance(value, dict | set):
+        raise InputError(f"{name} = {show(value)}; give a number, a range (low, high), or a list of numbers that ascend.")
+    return found
 
 
 def _ends(over: Over, value: Any, si: bool) -> Array:

@@ -44,6 +44,6 @@ def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:
 def check_method(method: str) -> Method:
     """Return ``method`` if it is one of the two."""
     for known in METHODS:
-        if method == known:
+        if isinstance(method, str) and method == known:
             return known
     raise InputError(f"method = {show(method)}; it must be {' or '.join(map(repr, METHODS))}.")

@@ -19,6 +19,7 @@ from stribeck.numerics.continuation import Steps, march
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.cold_start import MESH_TOLERANCE, NEWTON_TOLERANCE, ORDER, rigid_guess
+from stribeck.solver.solve import SolveError, describe
 
 FASTEST = 1e3
 """Speed group from which the branch is looked for; its film is the rigid one."""
@@ -45,12 +46,14 @@ def automatic_speeds(groups: Groups, boundary_friction: float, beta: float, defi
     kappa = float(groups.relative_roughness)
     if kappa == 0:
         return 1e-9, 10.0
-    top = math.log(max(FASTEST, (30 * kappa) ** 1.5 * math.sqrt(24)))
+    top = math.log(max(FASTEST, (30 * min(kappa, 1e100)) ** 1.5 * math.sqrt(24)))
     plateau = False
 
     def correct(s: float, history: Sequence[tuple[float, State]]) -> State | None:
         here = replace(groups, speed=math.exp(-s))
-        guess: Guess = rigid_guess(here) if not history else extrapolate(history, s)
+        guess: Guess | None = rigid_guess(here) if not history else extrapolate(history, s)
+        if guess is None:
+            return None
         try:
             mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
         except MeshTooLargeError:
@@ -79,6 +82,10 @@ def automatic_speeds(groups: Groups, boundary_friction: float, beta: float, defi
     )
     if path.outcome is Outcome.INTERRUPTED:
         raise KeyboardInterrupt
+    if not shares:
+        raise SolveError(
+            path.outcome, None, f"{describe(groups)}: no speed was found from which a curve can begin; give a range of speeds."
+        )
     low = max(LEAST_SPEED, math.exp(shares[-1][0]) / MARGIN)
     contact_part = np.array([part for _, _, part in shares])
     on_branch = np.nonzero(contact_part < BRANCH)[0]

@@ -15,7 +15,20 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-__all__ = ["DIMENSIONS", "Dimension", "InputError", "format_bound", "format_share", "format_si", "read_number", "to_si"]
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "DIMENSIONS",
+    "Dimension",
+    "InputError",
+    "format_bound",
+    "format_share",
+    "format_si",
+    "read_number",
+    "real_array",
+    "to_si",
+]
 
 
 class InputError(ValueError):
@@ -168,6 +181,35 @@ def read_number(name: str, text: str) -> float:
         return float(text)
     except ValueError:
         raise InputError(f"{name} = {show(text)} is not a number; write it as 0.001 or 1e-3.") from None
+
+
+def real_array(name: str, value: Any) -> NDArray[np.float64]:
+    """Return numbers or arrays of numbers as float64; refuse text, truth values, complex numbers and ragged lists.
+
+    Parameters
+    ----------
+    name : str
+        What the numbers are, for the message.
+    value : array_like
+        The numbers.
+
+    Returns
+    -------
+    ndarray
+        Of the shape given, zero-dimensional for a number.
+
+    Raises
+    ------
+    InputError
+        If ``value`` is not made of real numbers.
+    """
+    try:
+        found = np.asarray(value)
+    except ValueError:  # ragged lists
+        found = np.asarray(None)
+    if found.size and found.dtype.kind not in "iuf":
+        raise InputError(f"{name} = {show(value)} is not made of real numbers; give a number or an array of them.")
+    return found.astype(np.float64)
 
 
 def format_si(value: float, dimension: str, digits: int = 3) -> str:

@@ -26,6 +26,7 @@ from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.units import InputError
 
 RIGID_SPEED = 30.0
 """Speed group above which the rigid film starts Newton's iteration safely."""
@@ -36,6 +37,12 @@ RIGID_ROUGHNESS = 30.0
 SATURATED_LOAD = 0.5
 """Load group above which the contact pressure nears its largest value: the path then comes down in speed, as loading
 at low speed would cross the sudden hand-over from asperities to film."""
+
+HEIGHTS = (80.0, 400.0)
+"""Logarithms of the largest height of a rigid film, and of one over the smallest: of contacts, then of double precision."""
+
+MAX_NEWTON_STEPS = 600
+"""Newton steps after which a path is given up; no state of the box of :mod:`stribeck.solver.solve` takes more than 300."""
 
 ORDER = 10
 MESH_TOLERANCE = 1e-3
@@ -72,13 +79,15 @@ class RigidGuess:
         """Return the logarithm of the gap at ``x``: the fluid pressure is left to its gradient."""
         b = math.sqrt(2 * self.offset)
         deflection = -2 * self.speed / 3 * x / b / (x * x + b * b)
-        return np.asarray(np.log(self.offset + x * x / 2 + deflection)[None, :])
+        parabola = self.offset + x * x / 2
+        # Where asperities carry nearly all of a heavy load, the film's deflection may exceed the height.
+        return np.asarray(np.log(np.maximum(parabola + deflection, 0.1 * parabola))[None, :])
 
 
 def unloaded(groups: Groups, log_factor: float) -> Groups:
     """Return the groups at the load divided by ``exp(log_factor)``, all else being held."""
     factor = math.exp(log_factor)
-    return Groups(groups.speed * factor**2, groups.load / factor, groups.roughness, law=groups.law)
+    return Groups(groups.speed * factor * factor, groups.load / factor, groups.roughness, law=groups.law)
 
 
 def faster(groups: Groups, log_factor: float) -> Groups:
@@ -86,8 +95,8 @@ def faster(groups: Groups, log_factor: float) -> Groups:
     return Groups(groups.speed * math.exp(2 * log_factor), groups.load, groups.roughness, law=groups.law)
 
 
-def rigid_guess(groups: Groups) -> RigidGuess:
-    r"""Return the rigid parabola whose film and contact carry the load.
+def rigid_guess(groups: Groups) -> RigidGuess | None:
+    r"""Return the rigid parabola whose film and contact carry the load, None where double precision holds none.
 
     .. math:: \frac{\pi}{48} \frac{\lambda^2}{h_0^3}
               + \int p_c(h_0 + x^2/2) \, dx = \frac{\pi}{2}
@@ -100,10 +109,14 @@ def rigid_guess(groups: Groups) -> RigidGuess:
         height = math.exp(log_height)
         with np.errstate(over="ignore"):
             contact = float(law.pressure(height + x * x / 2).sum() * dx)
-        return min(math.pi / 48 * speed**2 / height**3 + contact, 1e9) - LOAD
+        film = min(speed / (height * math.sqrt(height)), 1e6)
+        return min(math.pi / 48 * film * film + contact, 1e9) - LOAD
 
-    height = math.exp(brentq(excess, -80.0, 80.0, xtol=1e-6))
-    return RigidGuess(speed, height, 4 * height / 3)
+    for end in HEIGHTS:
+        if excess(-end) > 0 > excess(end):
+            height = math.exp(brentq(excess, -end, end, xtol=1e-6))
+            return RigidGuess(speed, height, 4 * height / 3)
+    return None
 
 
 def cold_start(groups: Groups) -> Path[State]:
@@ -128,15 +141,27 @@ def cold_start(groups: Groups) -> Path[State]:
     if kappa > 0 and not by_speed:
         factors.append(math.log(RIGID_ROUGHNESS / kappa))
     top = max(0.0, min(factors))
+    steps = 0
 
     def correct(log_factor: float, history: Sequence[tuple[float, State]]) -> State | None:
-        here = along(groups, log_factor)
-        guess: Guess = rigid_guess(here) if top - log_factor < 0.7 and len(history) < 3 else extrapolate(history, log_factor)
+        nonlocal steps
+        if steps > MAX_NEWTON_STEPS:
+            return None
+        try:
+            here = along(groups, log_factor)
+        except InputError:  # lifted out of the range of groups
+            return None
+        rigid = top - log_factor < 0.7 and len(history) < 3
+        guess: Guess | None = rigid_guess(here) if rigid else extrapolate(history, log_factor)
+        if guess is None:
+            return None
         try:
             mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
         except MeshTooLargeError:
             return None
-        return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
+        state = solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
+        steps += state.root.steps
+        return state
 
     first = correct(top, ())
     known = [] if first is None or not first.outcome.ok else [(top, first)]

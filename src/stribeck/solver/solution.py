@@ -19,7 +19,7 @@ from stribeck.equations.observables import NAMES, Observables
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, real_array, show
 
 __all__ = ["Friction", "Profile", "Solution"]
 
@@ -311,7 +311,7 @@ class Solution:
         (``test_solve.py::test_the_profile_is_the_elastic_gap_of_its_pressure``), and to about 1e-4 on the points of a
         curve, whose meshes are made for the observables.
         """
-        points = np.atleast_1d(np.asarray(x, dtype=float))
+        points = np.atleast_1d(real_array("x", x))
         if points.ndim != 1 or not np.isfinite(points).all():
             raise InputError(f"x = {show(x)}; positions must be finite numbers in one dimension.")
         pressures = np.stack(self._pressures)

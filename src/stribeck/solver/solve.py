@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from typing import Literal
@@ -36,6 +37,10 @@ LEAST_ESTIMATE = 0.03
 
 SURE_ESTIMATE = 1e-10
 """Error from which estimates are sure also where the tolerance is smaller."""
+
+
+TESTED = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
+"""Where every state is solved (``tests/test_solve_random.py``), besides speed zero and roughness zero; beyond, many are."""
 
 
 class SolveError(RuntimeError):
@@ -103,7 +108,7 @@ def solve(
     """
     groups, contact = as_groups(with_law(problem, law))
     check_rtol(rtol)
-    if on_failure not in ("raise", "return"):
+    if not isinstance(on_failure, str) or on_failure not in ("raise", "return"):
         raise InputError(f"on_failure = {show(on_failure)}; it must be 'raise' or 'return'.")
     if groups.is_hertzian:
         return hertz_solution(groups, contact, rtol)
@@ -112,10 +117,17 @@ def solve(
 
 def solved_point(groups: Groups, rtol: float) -> Point:
     """Return the refined state of ``groups`` from cold; raise where no path leads there."""
-    path = first_path(groups if groups.speed > 0 else with_positive_gap(groups)[0])
-    if not path.outcome.ok:
-        raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
-    return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+    far = untested(groups)
+    # Where double precision ends, a guess may overflow: Newton's iteration refuses it, and that is the outcome.
+    with np.errstate(all="ignore") if far else nullcontext():
+        try:
+            base = groups if groups.speed > 0 else with_positive_gap(groups)[0]
+        except InputError:  # its roughness leaves the range of groups
+            raise SolveError(Outcome.PATH_LOST, None, f"{describe(groups)}: {Outcome.PATH_LOST.value}{far}") from None
+        path = first_path(base)
+        if not path.outcome.ok:
+            raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}{far}")
+        return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
 
 
 def with_law(problem: Groups | LineContact, law: str | LawShape | None) -> Groups | LineContact:
@@ -151,13 +163,23 @@ def describe(groups: Groups) -> str:
     return f"speed {float(groups.speed):.6g}, load {float(groups.load):.6g}, roughness {float(groups.roughness):.6g}"
 
 
+def untested(groups: Groups) -> str:
+    """Return a sentence on groups outside of what was tested, to end a message of failure; empty for others."""
+    outside = []
+    for name, (low, high) in TESTED.items():
+        value = float(getattr(groups, name))
+        if value != 0 and not low <= value <= high:
+            outside.append(f"{name.replace('_', ' ')} {value:.4g} (tested: {low:g} to {high:g})")
+    return f" The solver was not tested for {', '.join(outside)}; check the inputs." if outside else ""
+
+
 def finish(point: Point, groups: Groups, contact: LineContact | None, rtol: float, on_failure: str = "raise") -> Solution:
     """Return the solution that a refined state is, or raise what its outcome asks for."""
     solution = solution_of(point, contact, rtol)
     if solution is not None and (point.outcome.ok or on_failure == "return"):
         return solution
     reached = "" if solution is None else f" Reached: {solution.error_estimate:.1e}, asked: {rtol:.1e}."
-    raise SolveError(point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}")
+    raise SolveError(point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}{untested(groups)}")
 
 
 def least_estimate(rtol: float) -> float:

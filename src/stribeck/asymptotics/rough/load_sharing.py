@@ -29,7 +29,7 @@ from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.asymptotics.rough.perturbation import phi_of
 from stribeck.asymptotics.smooth.hydrodynamic import GAP_SLOPE
 from stribeck.contacts.line import Groups
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, real_array, show
 
 BOX = (Limit("speed", 1e-9, 1e2), Limit("load", 1e-4, 0.7), Limit("relative_roughness", 1e-4, 1e-1))
 """Range of the states that the coefficients were fitted to."""
@@ -94,7 +94,7 @@ def speed_at_fluid_share(groups: Groups, share: float = 0.5) -> Value:
 
     Source: this module; the letters are :data:`WEDGE`, :data:`EDGE`, :data:`PROFILE` and :data:`SUM`.
     """
-    wanted = np.asarray(share, dtype=float)
+    wanted = real_array("share", share)
     if not ((wanted > 0) & (wanted < 1)).all():
         raise InputError(f"share = {show(share)}; a part of the load lies between 0 and 1, both excluded.")
     found = _speed(np.log(wanted / (1 - wanted)), np.asarray(groups.load), np.asarray(groups.relative_roughness))

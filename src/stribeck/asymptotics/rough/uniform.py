@@ -125,7 +125,7 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
 
 
 def _viscous(groups: Groups, odds: Array, beta: float, definition: Definition) -> Array:
-    if definition not in ("published", "balanced"):
+    if not isinstance(definition, str) or definition not in ("published", "balanced"):
         raise InputError(f"definition = {show(definition)}; it must be 'balanced' or 'published'.")
     a1, a2, a3, a4 = SHEAR
     m1, m2, m3, m4, m5 = FIRST_MOMENT

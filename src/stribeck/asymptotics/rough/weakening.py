@@ -16,7 +16,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import FILM_CONSTANT, PRINTED_FILM_CONSTANT
-from stribeck.asymptotics.formula import Value
+from stribeck.asymptotics.formula import Value, coefficient
 from stribeck.asymptotics.rough import mixed
 from stribeck.asymptotics.rough.mixed import lambert_w
 from stribeck.asymptotics.rough.perturbation import phi_of
@@ -67,6 +67,7 @@ def weakening_number(groups: Groups, boundary_friction: float = 1.0, beta: float
     -----
     Source: [BP] Eq. (Lambda_solution).
     """
+    boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
     c = PRINTED_FILM_CONSTANT if printed else FILM_CONSTANT
     with np.errstate(divide="ignore"):
         scale = np.divide(2 * beta, 9 * c ** (5 / 3) * boundary_friction)
@@ -107,6 +108,7 @@ def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.
 
     Source: [BP] Eq. (Lambda_solution), whose condition is not stated there.
     """
+    boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
     if checked_form(form) == "uniform":
         return np.isfinite(film_ratio_at_minimum(groups, boundary_friction, beta))
     return np.asarray(weakening_number(groups, boundary_friction, beta) < LARGEST_WEAKENING)
@@ -172,6 +174,7 @@ def merging_roughness(
     """
     if criterion not in get_args(Criterion):
         raise InputError(f"criterion = {show(criterion)}; it must be 'uniform', 'plateau', 'lines' or 'weakening'.")
+    boundary_friction, beta = coefficient("boundary_friction", boundary_friction), coefficient("beta", beta)
     F = np.asarray(Groups(0.0, load, 0.0).load)
     if criterion == "uniform":
         return _uniform_merging(F, boundary_friction, beta)

@@ -1,0 +1,197 @@
+"""Odd values end in a result, an outcome or one sentence: never in an exception from the depths, and in bounded time."""
+
+import math
+import re
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import stribeck as sb
+from stribeck import asymptotics
+from stribeck.contacts.groups import LARGEST, SMALLEST
+
+NO_NUMBERS = [
+    *(None, True, "1", "x", "", b"1", [], {}, {"a": 1}, 1j, object(), math.nan, math.inf, -math.inf, -1.0, 10**400),
+    *(np.bool_(True), np.array([]), np.array(["a"]), [[1], [1, 2]], [1e-3, math.nan]),
+]
+EXTREMES = [1e-320, 1e-300, 1e-200, 1e-30, 1e-12, 0.0, -0.0, 1e-3, 1.0, 1e6, 1e30, 1e200, 1e308]
+GROUPS = sb.Groups(1e-4, 0.1, 1e-4)
+NAMES = pytest.mark.parametrize("value", NO_NUMBERS, ids=lambda value: repr(value)[:20])
+
+
+def says_why(error):
+    """Tell whether a message is one sentence or a few, and none of the depths."""
+    return re.fullmatch(r"[^\n]{20,600}[.]", str(error)) and "signs" not in str(error)
+
+
+# --- groups ---
+
+
+@NAMES
+@pytest.mark.parametrize("name", ["speed", "load", "roughness"])
+def test_a_group_that_is_no_number_is_refused_by_its_name(name, value):
+    if isinstance(value, list | np.ndarray) and len(value) == 0:
+        return  # no states at all: an array as any other
+    with pytest.raises(sb.InputError, match=f"^{name} ") as caught:
+        sb.Groups(**({"speed": 1e-4, "load": 0.1, "roughness": 1e-4} | {name: value}))
+    assert says_why(caught.value)
+
+
+@pytest.mark.parametrize("value", [1e-201, 1e201, np.array([0.1, 1e-320])])
+@pytest.mark.parametrize("name", ["speed", "load", "roughness"])
+def test_groups_beyond_every_contact_are_refused_with_the_range(name, value):
+    with pytest.raises(sb.InputError, match=f"^{name} .* from 1e-200 to 1e[+]200; check the units") as caught:
+        sb.Groups(**({"speed": 1e-4, "load": 0.1, "roughness": 1e-4} | {name: value}))
+    assert says_why(caught.value)
+
+
+def test_the_relative_roughness_has_that_range_too_and_pairs_of_arrays_are_judged_as_pairs():
+    with pytest.raises(sb.InputError, match="relative roughness, roughness over load, has the value 1e-230"):
+        sb.Groups(1.0, 1e100, 1e-130)
+    with pytest.raises(sb.InputError, match="has the value 1e[+]250"):
+        sb.Groups(1.0, np.array([1.0, 1e-150]), np.array([0.0, 1e100]))
+    sb.Groups(1.0, np.array([1e-150, 1e100]), np.array([1e-150, 1e100]))
+
+
+@pytest.mark.parametrize("value", [SMALLEST, LARGEST])
+def test_the_ends_of_the_range_are_in_it_also_as_exponentials_of_logarithms(value):
+    assert sb.Groups(value, 1.0, 0.0).speed == value
+    found = math.exp(math.log(value))
+    assert sb.Groups(found, 1.0, 0.0).speed == found
+
+
+# --- states ---
+
+
+@pytest.mark.parametrize(
+    ("speed", "load", "roughness"),
+    [
+        (1e200, 1e-3, 1e-4),
+        (1e30, 1e-2, 1e-5),
+        (1e-200, 1e-8, 1e92),
+        (1.0, 1e-12, 1e30),
+        (1e200, 1e100, 0.0),
+        (0.0, 1.0, 1e-200),
+        (1e200, 1e-200, 1e-200),
+    ],
+)
+def test_a_state_far_from_any_contact_ends_in_a_result_or_in_words(speed, load, roughness):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            solution = sb.solve(sb.Groups(speed, load, roughness))
+        except sb.SolveError as error:
+            assert not error.outcome.ok
+            assert says_why(error)
+            assert "The solver was not tested for" in str(error)
+        else:
+            assert solution.outcome.ok and math.isfinite(solution.central_gap)
+
+
+@pytest.mark.parametrize(("speed", "load", "roughness"), [(1e-200, 1e-3, 1e-6), (1e6, 1e60, 0.0), (1e14, 1e-8, 1e-11)])
+def test_what_converged_far_beyond_the_tested_box_still_does(speed, load, roughness):
+    assert sb.solve(sb.Groups(speed, load, roughness)).outcome.ok
+
+
+def test_a_path_that_leads_nowhere_is_given_up_after_a_bounded_number_of_steps(monkeypatch):
+    from stribeck.solver import cold_start
+
+    taken = []
+    original = cold_start.solve_state
+
+    def counted(*args, **kwargs):
+        state = original(*args, **kwargs)
+        taken.append(state.root.steps)
+        return state
+
+    monkeypatch.setattr(cold_start, "solve_state", counted)
+    monkeypatch.setattr(cold_start, "MAX_NEWTON_STEPS", 20)
+    with pytest.raises(sb.SolveError, match="speed 1e-12, load 0.1, roughness 1e-07: .*path"):
+        sb.solve(sb.Groups(1e-12, 0.1, 1e-7))
+    assert 20 < sum(taken) <= 60
+
+
+@given(st.sampled_from(EXTREMES), st.sampled_from(EXTREMES), st.sampled_from(EXTREMES))
+@settings(max_examples=40, deadline=None, derandomize=True)
+def test_any_groups_are_accepted_or_refused_in_a_sentence(speed, load, roughness):
+    try:
+        groups = sb.Groups(speed, load, roughness)
+    except sb.InputError as error:
+        assert says_why(error)
+    else:
+        assert math.isfinite(groups.relative_roughness)
+
+
+# --- curves ---
+
+BAD_RANGES = [
+    *((1e-3, 1e-3), (1e-2, 1e-3), (1e-3, math.nan), (1e-3, math.inf), (0.0, 1.0), (-1.0, 1.0), [], [1e-3], np.array([])),
+    *(np.array(["a"]), [[1e-3, 1e-2]], [[1], [1, 2]], (1e-300, 1.0), (1e-3, 1e300), "x", {"a": 1}, (1e-3, None)),
+]
+
+
+@pytest.mark.parametrize("value", BAD_RANGES, ids=lambda value: repr(value)[:24])
+@pytest.mark.parametrize("over", ["speed", "load", "roughness"])
+def test_a_range_that_is_none_is_refused_by_its_name(over, value):
+    with pytest.raises(sb.InputError, match=over) as caught:
+        sb.stribeck_curve(**({"speed": 1e-4, "load": 0.1, "roughness": 1e-4} | {over: value}), points=3)
+    assert says_why(caught.value)
+
+
+@pytest.mark.parametrize("points", [0, 1, -3, 2.5, math.nan, "3", None, True, np.array([])])
+def test_a_number_of_points_that_is_none_is_refused(points):
+    with pytest.raises(sb.InputError, match="^points = "):
+        sb.stribeck_curve(load=0.1, roughness=1e-4, speed=(1e-4, 1e-3), points=points)
+
+
+@pytest.mark.parametrize(("load", "roughness"), [(1e-100, 1e100), (1e-200, 1.0)])
+def test_a_curve_without_a_range_where_none_is_found_asks_for_one(load, roughness):
+    with pytest.raises(sb.SolveError, match="give a range of speeds"):
+        sb.stribeck_curve(load=load, roughness=roughness)
+
+
+# --- choices, coefficients, positions ---
+
+SOLUTION = sb.solve(GROUPS)
+
+
+@pytest.mark.parametrize("value", [None, 1, "x", np.array([]), [], math.nan])
+def test_a_choice_that_is_none_of_the_words_is_refused(value):
+    for call in (
+        lambda: SOLUTION.friction(definition=value),
+        lambda: sb.solve(GROUPS, on_failure=value),
+        lambda: sb.stribeck_curve(load=0.1, roughness=1e-4, speed=(1e-4, 1e-3), points=2, method=value),
+        lambda: asymptotics.uniform.friction(GROUPS, definition=value),
+    ):
+        with pytest.raises(sb.InputError, match="must be"):
+            call()
+
+
+@NAMES
+def test_a_coefficient_that_is_no_number_is_refused_by_every_law_of_friction(value):
+    for law in (asymptotics.uniform.friction, asymptotics.mixed.friction, asymptotics.transitions.speed_at_minimum):
+        for name in ("boundary_friction", "beta"):
+            with pytest.raises(sb.InputError, match=f"^{name} = ") as caught:
+                law(GROUPS, **{name: value})
+            assert says_why(caught.value)
+
+
+@pytest.mark.parametrize("value", ["x", "", None, {}, 1j, object(), [[1], [1, 2]], np.array(["a"]), 10**400])
+def test_positions_and_shares_that_are_no_numbers_are_refused(value):
+    for call in (
+        lambda: asymptotics.hertz.pressure(sb.Groups(0.0, 0.1, 1e-7), value),
+        lambda: asymptotics.load_sharing.speed_at_fluid_share(GROUPS, value),
+        *((lambda: SOLUTION.profile(value),) if value is not None else ()),
+    ):
+        with pytest.raises(sb.InputError, match="not made of real numbers"):
+            call()
+
+
+@pytest.mark.parametrize("formula", asymptotics.FORMULAS, ids=lambda formula: formula.name)
+@pytest.mark.parametrize("value", [0.1, None, "x", (1.0, 1.0, 1.0), sb.Groups])
+def test_a_formula_asks_for_groups(formula, value):
+    with pytest.raises(sb.InputError, match=r"^groups = .*give Groups\(speed, load, roughness\)"):
+        formula(value)
