@@ -55,5 +55,5 @@ def check_definition(definition: str) -> Definition:
     for known in DEFINITIONS:
         if isinstance(definition, str) and definition == known:
             return known
-    hint = " The friction of the paper is called 'published'." if definition == "paper" else ""
+    hint = " The friction of the paper is called 'published'." if isinstance(definition, str) and definition == "paper" else ""
     raise InputError(f"definition = {show(definition)}; it must be one of {', '.join(map(repr, DEFINITIONS))}.{hint}")
