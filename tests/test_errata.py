@@ -253,7 +253,7 @@ def test_smoothness_is_roughness_over_indentation_and_not_over_radius():
         sb.Groups(1.0, 1e-3, 1e-4), radius=0.01, modulus=1e6, viscosity=0.01, alpha=2.0, beta=0.05, boundary_friction=1.0
     )
     assert rough.roughness / rough.radius < 3e-6
-    curve = sb.stribeck_curve(load=1e-3, roughness=1e-4, speed=(0.3, 20.0), points=7)
+    curve = sb.stribeck_curve(load=1e-3, roughness=1e-4, speed=(0.3, 20.0), points=7, definition="published")
     assert curve.minimum.value == pytest.approx(2.25, abs=0.01)
     assert hydrodynamic.friction_large(sb.Groups(2.25, 1e-3, 0.0)) < 0.3 * curve.minimum.solution.friction().viscous
     smooth = minimum(LOAD, 1e-4)
@@ -539,7 +539,7 @@ def test_the_viscous_friction_that_is_neglected_is_of_first_order_in_the_speed()
         assert balanced / scale == pytest.approx(perturbation.shear(LOAD), rel=10 * kappa ** (2 / 3))
         assert (published / balanced - 1) * kappa == pytest.approx(0.0699, abs=5e-4)
     # At equal fluid number what is left out does not fade with kappa, and turns the first fall of friction into a rise.
-    rises = [state(1.0 * kappa**2, kappa=kappa).friction().total - 1 for kappa in (1e-3, 1e-4)]
+    rises = [state(1.0 * kappa**2, kappa=kappa).friction(definition="published").total - 1 for kappa in (1e-3, 1e-4)]
     assert rises == pytest.approx([0.00306, 0.00273], abs=1e-5)
     assert state(1e-6).friction(definition="balanced").total < 0.9955
     assert boundary.friction(sb.Groups(1e-8, LOAD, 1e-5)) - 1 == pytest.approx(rises[1], abs=2e-4)
@@ -640,7 +640,7 @@ def test_lambda_is_a_function_of_k_in_the_limit_of_small_roughness_only():
     # On the same k, at load 1e-3, there is no minimum.
     lightest = sb.Groups(1.0, 1e-3, 1e-3)
     assert transitions.weakening_number(lightest) == pytest.approx(k[0], rel=1e-12)
-    assert not weakening(lightest).present
+    assert not weakening(lightest, definition="published").present
     # The parameter holds beta/boundary_friction too.
     groups = sb.Groups(1.0, LOAD, LOAD * KAPPA)
     assert transitions.weakening_number(groups, 0.1, 0.5) == pytest.approx(5 * k[1], rel=1e-12)
@@ -655,17 +655,17 @@ def test_the_branch_of_lambda_ends_at_k_one_half_and_the_minimum_long_before():
     rough = sb.Groups(1.0, LOAD, 0.165 * LOAD)
     assert transitions.weakening_number(rough) < 0.026
     assert transitions.has_minimum(rough, form="exact") and not transitions.has_minimum(rough)
-    assert not weakening(rough).present
+    assert not weakening(rough, definition="published").present
 
 
 def test_a_minimum_above_the_dry_friction_still_weakens_with_speed():
     """[BP] Conclusion: the minimum exceeds mu_0, the lines merge and the branch disappears, as one event."""
-    between = weakening(sb.Groups(1.0, LOAD, 0.14 * LOAD))
+    between = weakening(sb.Groups(1.0, LOAD, 0.14 * LOAD), definition="published")
     assert between.present and between.slope < -0.09
     assert between.minimum_friction == pytest.approx(1.09, abs=0.005)
-    lower, higher = (weakening(sb.Groups(1.0, LOAD, kappa * LOAD)) for kappa in (0.1215, 0.1225))
+    lower, higher = (weakening(sb.Groups(1.0, LOAD, kappa * LOAD), definition="published") for kappa in (0.1215, 0.1225))
     assert lower.minimum_friction < 1 < higher.minimum_friction
-    lower, higher = (weakening(sb.Groups(1.0, LOAD, kappa * LOAD)) for kappa in (0.1595, 0.1605))
+    lower, higher = (weakening(sb.Groups(1.0, LOAD, kappa * LOAD), definition="published") for kappa in (0.1595, 0.1605))
     assert lower.present and not higher.present
     by_formulas = [transitions.merging_roughness(LOAD, criterion=name) / LOAD for name in ("plateau", "lines", "weakening")]
     assert by_formulas == pytest.approx([0.645, 1.59, 14.0], rel=0.01)
@@ -675,7 +675,7 @@ def test_friction_falls_until_a_hersey_number_of_five_in_a_hundred_thousand():
     """[BP] Section "Dimensional analysis", Fig. 3(a): hydrodynamic lubrication from eta U/F_N = 3e-5 on (beta = 1)."""
     least = minimum(LOAD, KAPPA)
     assert least.solution.groups.hersey_number() == pytest.approx(4.69e-5, abs=1e-7)
-    at_3e_5 = state(3e-5 * 3 * math.pi / (4 * LOAD)).friction().total
+    at_3e_5 = state(3e-5 * 3 * math.pi / (4 * LOAD)).friction(definition="published").total
     assert at_3e_5 / least.friction == pytest.approx(1.258, abs=2e-3)
 
 

@@ -22,7 +22,7 @@ from stribeck.quantities.units import InputError, show
 __all__ = ["LARGEST", "SMALLEST", "Groups"]
 
 
-SMALLEST, LARGEST = 1e-200, 1e200
+SMALLEST, LARGEST = 1e-300, 1e300
 """Bounds of what is not zero, far beyond any contact: products and squares of the groups stay in double precision."""
 
 SLACK = 1e-9
@@ -43,11 +43,11 @@ class Groups:
     ----------
     speed : float or array_like
         :math:`\lambda \ge 0` [-], :math:`U` being the sum of the surface speeds, twice their mean; zero is the contact
-        at rest, else 1e-200 to 1e200.
+        at rest, else 1e-300 to 1e300.
     load : float or array_like
-        :math:`\bar F_N > 0` [-]; 1e-200 to 1e200.  From one on, the exponential contact law is outside its range.
+        :math:`\bar F_N > 0` [-]; 1e-300 to 1e300.  From one on, the exponential contact law is outside its range.
     roughness : float or array_like
-        :math:`\bar h_\mathrm{rms} \ge 0` [-]; zero is the smooth contact, else 1e-200 to 1e200, as its ratio to the load.
+        :math:`\bar h_\mathrm{rms} \ge 0` [-]; zero is the smooth contact, else 1e-300 to 1e300, as its ratio to the load.
     law : LawShape, optional
         Contact law :math:`\Phi`, the pressure over :math:`\beta E^*` at the separation :math:`\alpha h/h_\mathrm{rms}`; the
         exponential law of the paper by default.
