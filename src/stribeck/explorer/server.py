@@ -113,11 +113,11 @@ def build(start: Inputs, port: int, token: str) -> None:
     @ui.page("/", title="stribeck explorer", response_timeout=OPENING)
     async def index() -> None:
         request = ui.context.client.request
-        opened, answer = await opening(request.query_params.multi_items(), start)
+        opened, shown = await opening(request.query_params.multi_items(), start)
         ui.add_css(style)
         ui.add_head_html(f"<script>{script}</script>")
         ui.colors(primary="#0072b2")
-        await Tab(opened, start, answer).open()
+        await Tab(opened, start, shown).open()
 
     async def upload(request: Request) -> Response:
         tab = TABS.get(request.path_params["tab"])

@@ -77,7 +77,17 @@ def answer_of(now: Inputs) -> Answer:
         return found
 
 
-async def opening(items: list[tuple[str, str]], start: Inputs) -> tuple[url.Opened, Answer]:
+def curves_of(model: Model, pins: Sequence[Pin], answer: Answer) -> list[tuple[str, Curve, float]]:
+    """Return the pinned curves as far as they are known, over the speeds of the axis of an answer."""
+    found = []
+    for pin in pins:
+        curve = model.curve(pin.contact, pin.definition, answer.speeds)
+        if curve is not None:
+            found.append((pin.name, curve, pin.contact.viscosity / pin.contact.load))
+    return found
+
+
+async def opening(items: list[tuple[str, str]], start: Inputs) -> tuple[url.Opened, Shown]:
     """Return what an address asks for and its answer, computed beside the event loop.
 
     Parameters
@@ -89,20 +99,21 @@ async def opening(items: list[tuple[str, str]], start: Inputs) -> tuple[url.Open
 
     Returns
     -------
-    Opened, Answer
-        The inputs, and their answer; that of the start where they cannot be solved.
+    Opened, Shown
+        The inputs, and their answer with the pinned curves; that of the start where they cannot be solved.
     """
 
-    def prepare() -> tuple[url.Opened, Answer]:
+    def prepare() -> tuple[url.Opened, Shown]:
         opened = url.decode(items, start)
         try:
-            return opened, answer_of(opened.inputs)
+            answer = answer_of(opened.inputs)
+            return opened, Shown(answer, curves_of(Model(), opened.pins, answer))
         except (InputError, SolveError) as problem:
             told = url.Opened(opened.inputs, opened.pins, {**opened.problems, "state": ("", str(problem))})
-            return told, answer_of(start)
+            return told, Shown(answer_of(start))
 
-    opened, answer = await Tab.run(LIVE, prepare)
-    return opened, answer
+    opened, shown = await Tab.run(LIVE, prepare)
+    return opened, shown
 
 
 class Tab:
@@ -114,11 +125,11 @@ class Tab:
         What its address asks for.
     start : Inputs
         What the command was started with.
-    answer : Answer
-        The answer to the inputs of the address.
+    shown : Shown
+        The answer to the inputs of the address, with the pinned curves.
     """
 
-    def __init__(self, opened: url.Opened, start: Inputs, answer: Answer) -> None:
+    def __init__(self, opened: url.Opened, start: Inputs, shown: Shown) -> None:
         self.inputs, self.pins = opened.inputs, list(opened.pins)
         self.start = start
         self.measured: list[Measured] = []
@@ -127,8 +138,7 @@ class Tab:
         self.working = False
         self.resting: asyncio.Task[Any] | None = None
         self.closed = False
-        self.answer = answer
-        self.pinned: list[tuple[str, Curve, float]] = []
+        self.answer, self.pinned = shown.answer, list(shown.pins)
         self.page = Page(self.inputs)
         TABS[self.page.client.id] = self
         self.connect()
@@ -301,12 +311,7 @@ class Tab:
     def compute(self, now: Inputs, pins: Sequence[Pin]) -> tuple[Answer, list[tuple[str, Curve, float]]]:
         """Return the answer, and the pinned curves as far as they are known, over the speeds of its axis."""
         answer = self.model(now)
-        found = []
-        for pin in pins:
-            curve = self.model.curve(pin.contact, pin.definition, answer.speeds)
-            if curve is not None:
-                found.append((pin.name, curve, pin.contact.viscosity / pin.contact.load))
-        return answer, found
+        return answer, curves_of(self.model, pins, answer)
 
     def seen(self) -> Shown:
         """Return the answer, and the curves that are shown with it."""
