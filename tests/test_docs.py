@@ -1,5 +1,6 @@
 """The documentation is true: its code runs, its links lead somewhere, its names are all there."""
 
+import ast
 import dataclasses
 import re
 import shlex
@@ -169,3 +170,27 @@ def test_the_shown_formulas_are_numbered_as_docstrings_cite_them():
         for number in re.findall(r"theory\.md,? section (\d+)", path.read_text())
     }
     assert cited <= set(map(int, re.findall(r"^## (\d+)\.", theory, re.M)))
+
+
+def test_the_tree_for_developers_is_the_folders_with_their_first_lines():
+    """A folder that is new, gone or described anew: enter it in the tree of docs/for_developers.md."""
+    (tree,) = re.findall(r"^src/stribeck/\n(.*?)^```", TEXT[ROOT / "docs" / "for_developers.md"], re.DOTALL | re.MULTILINE)
+    shown, parent = {}, ""
+    for indent, name, sentence in re.findall(r"^( +)(\w+)/ +(.*)$", tree, re.MULTILINE):
+        parent = parent if len(indent) > 2 else name
+        shown[name if parent == name else f"{parent}/{name}"] = sentence
+    package = ROOT / "src" / "stribeck"
+    found = {
+        path.parent.relative_to(package).as_posix(): ast.get_docstring(ast.parse(path.read_text())).split("\n")[0]
+        for path in package.rglob("*/__init__.py")
+    }
+    assert shown == found
+
+
+@pytest.mark.parametrize("page", ["docs/for_developers.md", "CONTRIBUTING.md"])
+def test_a_page_for_developers_names_files_that_exist(page):
+    named = set(re.findall(r"\b(?:\w+/)+\w+\.py\b", TEXT[ROOT / page]))
+    assert len(named) > 5
+    assert {
+        name for name in named if not any((folder / name).exists() for folder in (ROOT, ROOT / "src" / "stribeck"))
+    } == set()
