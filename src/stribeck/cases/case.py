@@ -17,7 +17,7 @@ from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, La
 from stribeck.contacts.line import InputError, LineContact
 from stribeck.files.reading import read_bounded
 from stribeck.quantities.hints import MEANT, advice_on
-from stribeck.quantities.inputs import QUANTITIES, check_modulus_choice, quantity
+from stribeck.quantities.inputs import ALTERNATIVES, QUANTITIES, ROWS, check_alternatives, quantity
 from stribeck.quantities.units import DIMENSIONS, show
 
 __all__ = [
@@ -343,7 +343,7 @@ def _depth(table: Any) -> int:
 @functools.cache
 def _model() -> Any:
     """Return the pydantic model of a case file, made on first use because pydantic is slow to import."""
-    from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
+    from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, create_model
 
     def check_quantity(value: Any, info: ValidationInfo) -> float:
         return quantity(str(info.field_name), value)
@@ -358,19 +358,10 @@ def _model() -> Any:
     class Table(BaseModel):
         model_config = ConfigDict(extra="forbid")
 
-    class Contact(Table):
-        radius: number
-        load: number
-        viscosity: number
-        speed: number
-        roughness: number | None = None
-        alpha: number | None = None
-        beta: number | None = None
-        boundary_friction: number
-        modulus: number | None = None
-        youngs_modulus: number | None = None
-        poisson_ratio: number | None = None
-        law: Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")] = Case.law
+    optional = {name for other in ALTERNATIVES for name in (other.of, *other.inputs)} | set(FROM_TABLES)
+    keys: dict[str, Any] = {row.name: (number | None, None) if row.name in optional else (number, ...) for row in ROWS}
+    keys["law"] = (Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")], Case.law)
+    contact_table = create_model("Contact", __base__=Table, **keys)
 
     class Curve(Table):
         over: Annotated[Axis, Field(description="'speed', 'load' or 'roughness'")] = CurveSettings.over
@@ -387,7 +378,7 @@ def _model() -> Any:
         definition: Annotated[Definition, Field(description="'balanced' or 'published'")] = Case.definition
 
     class File(Table):
-        contact: Annotated[Contact, Field(description="a table, [contact]")]
+        contact: Annotated[contact_table, Field(description="a table, [contact]")]  # type: ignore[valid-type]
         curve: Annotated[Curve, Field(description="a table, [curve]", default_factory=Curve)]
         solver: Annotated[Solver, Field(description="a table, [solver]", default_factory=Solver)]
         surface: Annotated[surface_table(SURFACE), Field(description="a table, [surface]")] = None  # type: ignore[valid-type]
@@ -441,7 +432,7 @@ def _elasticity_problem(contact: Any) -> list[str]:
     if not isinstance(contact, dict):
         return []
     try:
-        check_modulus_choice(*(contact.get(key) for key in ("modulus", "youngs_modulus", "poisson_ratio")))
+        check_alternatives(contact)
     except InputError as problem:
         return [f"[contact] {problem}"]
     return []

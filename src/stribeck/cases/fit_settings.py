@@ -10,16 +10,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from stribeck.quantities.hints import SYMBOLS, advice_on
-from stribeck.quantities.inputs import QUANTITIES, quantity
+from stribeck.quantities.hints import advice_on
+from stribeck.quantities.inputs import LETTERS, QUANTITIES, ROWS, quantity
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["FREE", "FitSettings", "Prior", "check_fit_table", "free_names"]
 
 Noise = Literal["relative", "absolute"]
 
-FREE = ("boundary_friction", "roughness", "beta", "alpha", "modulus", "viscosity", "load", "radius")
-"""Inputs that may be fitted, in the order of outputs; all of them enter friction through groups, mu0 and beta."""
+FREE = tuple(row.name for row in reversed(ROWS) if not row.derived and row.name != "speed")
+"""Inputs that may be fitted; all of them enter friction through groups, boundary friction and beta."""
 
 DEFAULT_FREE = ("boundary_friction", "roughness")
 
@@ -173,7 +173,7 @@ def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
     """
     found = []
     for name in names:
-        meant = SYMBOLS.get(name, name) if isinstance(name, str) else name
+        meant = LETTERS.get(name, name) if isinstance(name, str) else name
         if meant in ("speed", "U"):
             raise InputError(f"{where} has {show(name)}, which is measured; a common factor on it is that of the viscosity.")
         if meant not in FREE:
@@ -213,7 +213,7 @@ def _entry(table: str, name: str, value: Any) -> tuple[str, Any]:
         [meant] = free_names([name], f"[fit.{table}]")
         return meant, _bounds(meant, value) if table == "bounds" else _prior(meant, value)
     known = (*COLUMNS, *(each for each in FREE if each != "boundary_friction"))
-    meant = SYMBOLS.get(name, name)
+    meant = LETTERS.get(name, name)
     if meant not in known:
         raise InputError(_unknown(name, value, known))
     texts = value if table == "columns" and name == "friction" and isinstance(value, list) else [value]
@@ -248,7 +248,7 @@ def _curve(name: str, entry: Any) -> dict[str, float]:
         raise InputError(f"{name} = {show(entry)} must be a table of inputs, [fit.curves.{name}].")
     found = {}
     for key, value in entry.items():
-        meant = SYMBOLS.get(key, key)
+        meant = LETTERS.get(key, key)
         if meant not in FREE or meant not in QUANTITIES:
             raise InputError(f"{name}: {_unknown(key, value, FREE)}")
         found[meant] = quantity(meant, value)

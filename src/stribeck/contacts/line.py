@@ -8,30 +8,27 @@ Source: [Bertin & Pouliquen] Eq. (Hertz_scales).
 
 from __future__ import annotations
 
+import inspect
 import math
-from dataclasses import dataclass
-from typing import Any, Self
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Self
 
 from stribeck.contact_laws.law import LawShape, check_law
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.inputs import INPUTS, SYMBOLS, check_modulus_choice, quantity, refuse_former, si_text
+from stribeck.quantities.inputs import (
+    INPUTS,
+    ROWS,
+    SYMBOLS,
+    contact_values,
+    quantity,
+    refuse_former,
+    replaced,
+    si_text,
+    signature_of,
+)
 from stribeck.quantities.units import InputError
 
 __all__ = ["Groups", "HertzScales", "InputError", "LineContact"]
-
-
-EXPONENTS = {
-    "speed": (1, 0, 0),
-    "load": (-2, 1, 0),
-    "viscosity": (1, 0, 0),
-    "modulus": (1, -1, 0),
-    "radius": (1, -1, -1),
-    "roughness": (0, 0, 1),
-    "alpha": (0, 0, -1),
-    "beta": (0, -2, -2),
-    "boundary_friction": (0, 0, 0),
-}
-"""Exponents with which each input enters the groups of speed, load and roughness."""
 
 
 @dataclass(frozen=True)
@@ -76,9 +73,10 @@ class LineContact:
         Normal load per unit length :math:`F_N > 0` [N/m].
     viscosity : str or float
         Viscosity :math:`\eta > 0` of the fluid [Pa s].
-    speed : str or float
+    speed : str or float, optional
         Sum of the speeds of both surfaces through the contact, :math:`U = u_1 + u_2 \ge 0` [m/s]: with one surface at rest
-        the sliding speed, in general twice the mean (entrainment) speed :math:`(u_1 + u_2)/2` that tribometers report.
+        the sliding speed, in general twice the mean (entrainment) speed :math:`(u_1 + u_2)/2` that tribometers report; or
+        give that as ``entrainment_speed``.
     roughness : str or float
         Root-mean-square roughness :math:`h_\mathrm{rms} \ge 0` [m].
     alpha : float
@@ -143,39 +141,12 @@ class LineContact:
     modulus: float
     law: LawShape | None
 
+    __signature__: ClassVar[inspect.Signature] = signature_of(ROWS)
+
     @refuse_former
-    def __init__(
-        self,
-        *,
-        radius: str | float,
-        load: str | float,
-        viscosity: str | float,
-        speed: str | float,
-        roughness: str | float,
-        alpha: float,
-        beta: float,
-        boundary_friction: float,
-        modulus: str | float | None = None,
-        youngs_modulus: str | float | None = None,
-        poisson_ratio: float | None = None,
-        law: LawShape | None = None,
-    ) -> None:
-        check_modulus_choice(modulus, youngs_modulus, poisson_ratio)
-        if modulus is None:
-            modulus = quantity("youngs_modulus", youngs_modulus) / (1 - quantity("poisson_ratio", poisson_ratio) ** 2)
-        given = {
-            "radius": radius,
-            "load": load,
-            "viscosity": viscosity,
-            "speed": speed,
-            "roughness": roughness,
-            "alpha": alpha,
-            "beta": beta,
-            "boundary_friction": boundary_friction,
-            "modulus": modulus,
-        }
-        for name, value in given.items():
-            object.__setattr__(self, name, quantity(name, value))
+    def __init__(self, *, law: LawShape | None = None, **inputs: str | float | None) -> None:
+        for name, value in contact_values(inputs).items():
+            object.__setattr__(self, name, value)
         object.__setattr__(self, "law", check_law(law))
         self._check_scales()
 
@@ -210,7 +181,7 @@ class LineContact:
         ----------
         **changes : str or float
             Arguments of :class:`LineContact`; ``youngs_modulus`` and ``poisson_ratio`` together replace the
-            modulus.
+            modulus, ``entrainment_speed`` the speed.
 
         Returns
         -------
@@ -222,10 +193,8 @@ class LineContact:
         InputError
             Where a value is impossible, as in :class:`LineContact`.
         """
-        kept: dict[str, Any] = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        if "youngs_modulus" in changes or "poisson_ratio" in changes:
-            del kept["modulus"]
-        return type(self)(**(kept | changes))
+        kept = {field.name: getattr(self, field.name) for field in fields(self)}
+        return type(self)(**replaced(kept, changes))
 
     @classmethod
     @refuse_former

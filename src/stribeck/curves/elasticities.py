@@ -10,10 +10,11 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.line import EXPONENTS, LineContact
+from stribeck.contacts.line import LineContact
 from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.inputs import EXPONENTS
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
 
@@ -46,7 +47,7 @@ def friction_elasticities(
         = \frac{1}{\mu} \left[ \sum_G n_{GX} \frac{\partial \mu}{\partial \ln G}
         + \left.\frac{\partial \mu}{\partial \ln X}\right|_G \right]
 
-    with G the three groups and n their exponents, :data:`stribeck.contacts.line.EXPONENTS`. The last term is the contact
+    with G the three groups and n their exponents, :data:`stribeck.quantities.inputs.EXPONENTS`. The last term is the contact
     part of the friction for the friction coefficient and the viscous part for beta.
 
     Parameters

@@ -11,8 +11,8 @@ import numpy as np
 from stribeck.contact_laws.law import WithArea, law_attributes
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.files.writing import MissingExtraError
-from stribeck.quantities.inputs import unit_of
-from stribeck.quantities.outputs import AREA, GROUPS, INPUTS, OBSERVABLES
+from stribeck.quantities.inputs import INPUTS, unit_of
+from stribeck.quantities.outputs import AREA, GROUPS, OBSERVABLES
 from stribeck.solver.solution import si_films
 
 if TYPE_CHECKING:

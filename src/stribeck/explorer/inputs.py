@@ -18,7 +18,7 @@ from stribeck.cases.case import Case
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import LineContact
 from stribeck.explorer.carried import law_of_case, rest_of_case, shape_of
-from stribeck.quantities.inputs import QUANTITIES, quantity
+from stribeck.quantities.inputs import INPUTS, QUANTITIES, quantity
 from stribeck.quantities.units import DIMENSIONS, InputError, format_si, read_number, show, to_si
 
 __all__ = [
@@ -38,6 +38,8 @@ __all__ = [
 ]
 
 Abscissa = Literal["speed", "hersey"]
+
+GREEK = {"eta": "η", "alpha": "α", "beta": "β", "mu": "µ"}
 
 
 @dataclass(frozen=True)
@@ -65,16 +67,20 @@ FRICTION = "boundary_friction"
 LARGEST_FRICTION = 10.0
 """Friction coefficient above which per cent are suspected."""
 
+
+def _html(symbol: str) -> str:
+    """Return a symbol of TeX, a letter with at most one index, as HTML."""
+    letter, _, index = re.sub(r"\\(eta|alpha|beta|mu)", lambda m: GREEK[m[1]], symbol.strip("$")).partition("_")
+    index = re.sub(r"\\mathrm|[{}]", "", index)
+    return letter.replace("^*", "*") + (f"<sub>{index}</sub>" if index else "")
+
+
+MOST_CHANGED = ("speed", "load", "viscosity", "roughness")
+"""The inputs that one changes most, which stand first."""
+
 FIELDS = {
-    "speed": Field("Speed", "U", 1e-8, 10.0, ("µm/s", "mm/s", "m/s")),
-    "load": Field("Load", "F<sub>N</sub>", 0.1, 1e5, ("N/m", "kN/m", "N/mm")),
-    "viscosity": Field("Viscosity", "η", 1e-4, 1e3, ("mPa*s", "Pa*s", "cP")),
-    "roughness": Field("Roughness", "h<sub>rms</sub>", 1e-9, 1e-4, ("nm", "µm", "mm")),
-    "radius": Field("Radius", "R", 1e-4, 1.0, ("mm", "cm", "m")),
-    "modulus": Field("Modulus", "E*", 1e4, 1e12, ("kPa", "MPa", "GPa")),
-    "boundary_friction": Field("Dry friction", "µ<sub>0</sub>", 0.01, 2.0),
-    "alpha": Field("Contact-law alpha", "α", 0.5, 5.0),
-    "beta": Field("Contact-law beta", "β", 1e-3, 2.0),
+    name: Field(row.label[0].upper() + row.label[1:], _html(row.symbol), *row.usual, row.units)
+    for name, row in ((name, QUANTITIES[name]) for name in dict.fromkeys((*MOST_CHANGED, *INPUTS)))
 }
 """The inputs of a contact, those first that one changes most."""
 
@@ -271,7 +277,7 @@ def _with_group(inputs: Inputs, name: str, value: float) -> Inputs:
     contact = inputs.contact
     change: dict[str, Any] = {name.removesuffix("_group"): value}
     groups = replace(contact.groups, **change)
-    kept = ("radius", "modulus", "viscosity", "alpha", "beta", "boundary_friction")
+    kept = [input_name for input_name in INPUTS if input_name not in ("load", "speed", "roughness")]
     moved = LineContact.from_groups(groups, **{key: getattr(contact, key) for key in kept})
     return replace(inputs, contact=moved)
 

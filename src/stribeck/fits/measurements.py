@@ -17,7 +17,7 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.text_table import MISSING, TextTable, number_of, read_table
-from stribeck.quantities.inputs import QUANTITIES, quantity
+from stribeck.quantities.inputs import QUANTITIES, ROWS, quantity
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Measurements", "read_measurements"]
@@ -35,13 +35,10 @@ WORDS = {
     "friction": {"friction", "friction coefficient", "coefficient of friction", "cof", "mu", "µ", "μ"},
     "error": {"error", "friction error", "mu error", "uncertainty", "standard error", "standard deviation", "std", "sigma"},
     "curve": {"curve", "series", "sample"},
-    "roughness": {"roughness", "h rms"},
-    "beta": {"beta"},
-    "alpha": {"alpha"},
-    "modulus": {"modulus", "e star"},
-    "viscosity": {"viscosity", "eta"},
-    "load": {"load", "f n"},
-    "radius": {"radius"},
+} | {
+    row.name: {row.name.replace("_", " "), *row.headers}
+    for row in ROWS
+    if not row.derived and row.name not in ("speed", "boundary_friction")
 }
 """Headers that say what a column is, in lower case; in other languages [fit.columns] says it."""
 

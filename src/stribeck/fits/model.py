@@ -8,7 +8,7 @@ A free input is the common factor :math:`e^\theta` on what the case or the curve
     \frac{\partial \mu_i}{\partial \theta} = A_{c(i)} \frac{\partial \mu_i}
     {\partial \ln (\lambda, \bar F_N, \bar h_\mathrm{rms}, \mu_0, \beta)}
 
-with a constant matrix A of exponents for each curve c, :data:`stribeck.contacts.line.EXPONENTS`.
+with a constant matrix A of exponents for each curve c, :data:`stribeck.quantities.inputs.EXPONENTS`.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.contacts.line import EXPONENTS, Groups, LineContact
+from stribeck.contacts.line import Groups, LineContact
 from stribeck.fits.friction_parts import Parts, PartsOf
 from stribeck.fits.measurements import Measurements
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import EXPONENTS, QUANTITIES
 from stribeck.quantities.units import InputError, format_si
 
 __all__ = ["FreeInput", "FrictionModel", "Prediction", "free_inputs"]

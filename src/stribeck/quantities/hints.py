@@ -6,26 +6,12 @@ import difflib
 import re
 from collections.abc import Iterable
 
-from stribeck.quantities.inputs import FORMER
+from stribeck.quantities.inputs import FORMER, LETTERS
 from stribeck.quantities.units import FROM_HARDNESS
 
-__all__ = ["MEANT", "SYMBOLS", "advice_on"]
+__all__ = ["MEANT", "advice_on"]
 
-SYMBOLS = {
-    "R": "radius",
-    "F_N": "load",
-    "eta": "viscosity",
-    "U": "speed",
-    "h_rms": "roughness",
-    "mu0": "boundary_friction",
-    "mu_0": "boundary_friction",
-    "E_star": "modulus",
-    "E": "youngs_modulus",
-    "nu": "poisson_ratio",
-}
-"""Symbols of the article, which readers type."""
-
-MEANT = SYMBOLS | FORMER | {"poisson": "poisson_ratio", "mu": "boundary_friction", "cof": "boundary_friction"}
+MEANT = LETTERS | FORMER | {"poisson": "poisson_ratio", "mu": "boundary_friction", "cof": "boundary_friction"}
 """What symbols, former names and short names stand for."""
 
 ALIKE = 0.8
@@ -67,7 +53,10 @@ _ABSENT = (
         ("ellipticity", "ball", "sphere"),
         "a ball is a point contact, and this version solves line contacts only",
     ),
-    (("slide_to_roll", "srr", "slip"), "one surface is at rest: give its sliding speed as speed"),
+    (
+        ("slide_to_roll", "srr", "slip"),
+        "friction is that of one surface at rest: give the sum of both speeds as speed, or their mean as entrainment_speed",
+    ),
     (
         ("rpm", "angular_velocity", "rotation"),
         "give speed: the angular velocity in rad/s times the radius of shaft or track",

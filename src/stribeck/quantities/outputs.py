@@ -1,19 +1,6 @@
-"""What a solved state holds, for files and tables: the unit and the meaning of each number, and the order of the inputs."""
+"""What a solved state holds, for files and tables: the unit and the meaning of each number."""
 
 from __future__ import annotations
-
-INPUTS = (
-    "radius",
-    "modulus",
-    "load",
-    "viscosity",
-    "speed",
-    "roughness",
-    "alpha",
-    "beta",
-    "boundary_friction",
-)
-"""What a contact is made of, in the order in which outputs name it."""
 
 GROUPS = ("speed", "load", "roughness")
 

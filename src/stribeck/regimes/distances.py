@@ -11,12 +11,13 @@ import numpy as np
 
 from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.line import EXPONENTS, LineContact
+from stribeck.contacts.line import LineContact
 from stribeck.curves.coordinate import Over
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.inputs import EXPONENTS
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solution import Solution

@@ -12,8 +12,8 @@ from stribeck.contact_laws.law import law_attributes
 from stribeck.contacts.line import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE
 from stribeck.files.writing import MissingExtraError
-from stribeck.quantities.inputs import unit_of
-from stribeck.quantities.outputs import GROUPS, INPUTS, OBSERVABLES
+from stribeck.quantities.inputs import INPUTS, unit_of
+from stribeck.quantities.outputs import GROUPS, OBSERVABLES
 from stribeck.regimes.phase_grid import AXES, MARKS, REGIMES, Diagram
 
 if TYPE_CHECKING:

@@ -82,11 +82,7 @@ def input_columns(names: tuple[str, ...]) -> dict[str, tuple[str, str]]:
         if name in ("speed_group", "load_group", "roughness_group"):
             found[name] = ("1", name.replace("_", " "))
         else:
-            unit = unit_of(name) if name in QUANTITIES else "1"
-            found[name] = (
-                unit,
-                "friction coefficient of the dry contact" if name == "boundary_friction" else name.replace("_", " "),
-            )
+            found[name] = (unit_of(name), QUANTITIES[name].label)
     return found
 
 

@@ -21,7 +21,7 @@ from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TA
 from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.quantities.hints import advice_on
-from stribeck.quantities.inputs import INPUTS, QUANTITIES, check_modulus_choice, quantity
+from stribeck.quantities.inputs import ALTERNATIVES, INPUTS, QUANTITIES, ROWS, check_alternatives, quantity
 from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.points import KINDS, RANDOM, Axis, Kind, points_of
 
@@ -33,7 +33,8 @@ GROUPS = ("speed", "load", "roughness")
 COEFFICIENTS = ("boundary_friction", "beta")
 """What friction needs beside groups."""
 
-ELASTICITY = ("modulus", "youngs_modulus", "poisson_ratio")
+CHOICES = {name for other in ALTERNATIVES for name in (other.of, *other.inputs)}
+"""Inputs of which another may take the place."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -341,10 +342,10 @@ def _missing(fixed: dict[str, Any], varied: dict[str, Any], si: bool, by_tables:
     if not si:
         return problems + [f"[groups] {name} is missing; add it there or to [vary]." for name in GROUPS if name not in given]
     for name in INPUTS:
-        if name not in given and name not in ELASTICITY and name not in by_tables:
+        if name not in given and name not in CHOICES and name not in by_tables:
             problems.append(f"[contact] {name} is missing; {example_of(name)}, or let it vary in [vary].")
     try:
-        check_modulus_choice(*(given.get(name) for name in ELASTICITY))
+        check_alternatives(given)
     except InputError as problem:
         problems.append(f"[contact] {problem}")
     return problems
@@ -371,7 +372,7 @@ def _contacts(fixed: dict[str, Any], varying: dict[str, Array]) -> tuple[dict[st
         except InputError as problem:
             raise InputError(f"state {i}: {problem}") from None
     inputs = {name: np.array([getattr(contact, name) for contact in contacts]) for name in INPUTS}
-    for name in ELASTICITY[1:]:
+    for name in (row.name for row in ROWS if row.derived):
         if name in varying or name in fixed:
             inputs[name] = varying.get(name, np.full(len(contacts), fixed.get(name, math.nan)))
     return inputs, np.array([[getattr(contact.groups, name) for name in GROUPS] for contact in contacts])

@@ -14,8 +14,8 @@ from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.line import LineContact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
-from stribeck.quantities.inputs import unit_of
-from stribeck.quantities.outputs import GROUPS, INPUTS
+from stribeck.quantities.inputs import INPUTS, unit_of
+from stribeck.quantities.outputs import GROUPS
 from stribeck.regimes.distances import Crossing, Distance, TransitionDistances
 from stribeck.solver.solution import Solution, si_films
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from stribeck.cli.reports.words import (
-    LABELS,
     Elasticities,
     contact_part,
     part_error,
@@ -84,14 +83,14 @@ def print_regimes(
     for name in sorted(elasticities, key=lambda name: -abs(elasticities[name])):
         value, slope = getattr(contact, name), elasticities[name]
         text = format_si(value, QUANTITIES[name].dimension)
-        table.add_row(LABELS.get(name, name), text, f"{slope:+.3f}", f"{100 * _change(1.1, slope):+.2g} % friction")
+        table.add_row(QUANTITIES[name].label, text, f"{slope:+.3f}", f"{100 * _change(1.1, slope):+.2g} % friction")
     console.print(table)
     most = strongest(elasticities)
     if most is not None:
         slope = elasticities[most]
         factor = 0.9 if slope > 0 else 1.1
         way, gain = "less" if slope > 0 else "more", f"{-100 * _change(factor, slope):.3g} %"
-        name = LABELS.get(most, most)
+        name = QUANTITIES[most].label
         say(
             console,
             f"The {name} moves friction most: 10 % {way} of it lowers friction by {gain}, all else kept.",

@@ -13,8 +13,8 @@ from stribeck.contacts.friction import Definition, Friction
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
-from stribeck.quantities.inputs import QUANTITIES
-from stribeck.quantities.outputs import GROUPS, INPUTS
+from stribeck.quantities.inputs import INPUTS, QUANTITIES, ROWS
+from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import format_bound, format_si
 from stribeck.solver.notes import HARD
 from stribeck.solver.solution import Solution
@@ -22,14 +22,7 @@ from stribeck.solver.solution import Solution
 if TYPE_CHECKING:
     from rich.console import Console
 
-LABELS = {
-    "boundary_friction": "dry friction coefficient",
-    "alpha": "alpha of the contact law",
-    "beta": "beta of the contact law",
-}
-"""Names of inputs that are not words by themselves."""
-
-HANDS_ON = ("speed", "load", "viscosity", "modulus", "radius", "roughness", "boundary_friction")
+HANDS_ON = tuple(row.name for row in ROWS if not row.derived and not row.follows_surface)
 """Inputs that one may change; alpha and beta follow from the surface."""
 
 Elasticities = dict[str, float]
@@ -115,7 +108,7 @@ def print_head(
         console.print(title, style="bold", markup=False, highlight=False)
     if contact is not None:
         shown = [
-            f"{LABELS.get(name, name)} {format_si(getattr(contact, name), QUANTITIES[name].dimension, 4)}"
+            f"{QUANTITIES[name].label} {format_si(getattr(contact, name), QUANTITIES[name].dimension, 4)}"
             for name in INPUTS
             if name != over
         ]
