@@ -116,7 +116,7 @@ def test_a_byte_order_mark_is_read_over(write):
 
 def test_a_case_knows_every_quantity(write):
     pair = {"modulus": None, "youngs_modulus": '"2 MPa"', "poisson_ratio": "0.5"}
-    assert set(QUANTITIES) == set(CONTACT) | set(pair)
+    assert set(QUANTITIES) == set(CONTACT) | set(pair) | {"entrainment_speed"}
     assert load_case(write(toml(contact=pair))).contact.modulus > 2e6
 
 
@@ -179,7 +179,7 @@ def test_a_case_knows_every_quantity(write):
             "[contact] rtol = 1 is not a known key; it belongs in the table [solver].",
         ),
         ({"contact": {"title": "1"}}, "[contact] title = 1 is not a known key; it belongs at the top"),
-        ({"contact": {"zzz": "1"}}, "[contact] zzz = 1 is not a known key; known are radius, load,"),
+        ({"contact": {"zzz": "1"}}, "[contact] zzz = 1 is not a known key; known are radius, modulus, load,"),
         (
             {"contact": {"beta": "1e-200"}},
             "[contact] the dimensionless groups of this contact leave the range",
@@ -342,3 +342,10 @@ def test_every_quantity_of_an_example_has_a_comment_above(path):
         if "=" in line and line.split(" =")[0] in QUANTITIES and "poisson" not in line:
             assert above.startswith("#"), line
         above = line
+
+
+def test_a_case_takes_the_entrainment_speed_in_place_of_the_speed(write, problems):
+    mean = toml(contact={"speed": None, "entrainment_speed": '"5 mm/s"'})
+    assert load_case(write(mean)).contact.speed == 0.01
+    [both] = problems(toml(contact={"entrainment_speed": '"5 mm/s"'}))
+    assert "are given; give either speed, or entrainment_speed" in both

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stribeck.contacts.line import Groups, InputError, LineContact
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import EXPONENTS, QUANTITIES
 
 INPUTS = {
     "radius": "10 mm",
@@ -205,7 +205,39 @@ def test_elasticity_is_given_once_and_possible(changes, words):
 def test_an_impossible_value_is_refused_by_name(name, value):
     with pytest.raises(InputError) as caught:
         contact(**{name: value})
-    assert str(caught.value).startswith(f"{name} = {value!r} ")
+    missing = value is None and name == "speed"  # of which the entrainment speed may take the place
+    assert str(caught.value).startswith("speed (the sum of" if missing else f"{name} = {value!r} ")
+
+
+# --- the table of inputs ---
+
+
+def test_the_entrainment_speed_is_half_the_speed_and_stands_in_its_place():
+    assert contact(speed=None, entrainment_speed="5 mm/s").speed == 0.01
+    assert contact().replace(entrainment_speed=0.002).speed == 0.004
+    with pytest.raises(InputError, match=r"speed = .*twice their mean.*entrainment_speed = .*give either speed, or"):
+        contact(entrainment_speed="5 mm/s")
+    with pytest.raises(InputError, match="entrainment_speed = '-5 mm/s' must be zero or positive"):
+        contact(speed=None, entrainment_speed="-5 mm/s")
+
+
+def test_an_unknown_input_is_answered_with_the_nearest_name():
+    with pytest.raises(InputError, match="viscosty = 1.0 is not an input of a contact; did you mean viscosity"):
+        contact(viscosty=1.0)
+
+
+def test_the_signature_of_a_contact_names_every_input():
+    assert list(inspect.signature(LineContact).parameters) == [*QUANTITIES, "law"]
+    assert set(INPUTS) == {field.name for field in dataclasses.fields(LineContact)} - {"law"}
+
+
+def test_the_exponents_of_an_input_are_those_of_the_groups():
+    base = contact()
+    for name, exponents in EXPONENTS.items():
+        doubled = base.replace(**{name: 2 * getattr(base, name)})
+        for group, exponent in zip(("speed", "load", "roughness"), exponents, strict=True):
+            ratio = getattr(doubled.groups, group) / getattr(base.groups, group)
+            assert ratio == pytest.approx(2.0**exponent, rel=1e-12)
 
 
 @pytest.mark.parametrize("name", INPUTS)

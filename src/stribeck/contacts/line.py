@@ -69,6 +69,9 @@ class LineContact:
     ----------
     radius : str or float
         Radius :math:`R > 0` of the cylinder [m]; of two curved bodies :math:`1/R = 1/R_1 + 1/R_2`.
+    modulus : str or float, optional
+        Effective modulus :math:`E^* = E/(1 - \nu^2) > 0` [Pa], of two soft bodies
+        :math:`1/E^* = (1-\nu_1^2)/E_1 + (1-\nu_2^2)/E_2`; or give the next two.
     load : str or float
         Normal load per unit length :math:`F_N > 0` [N/m].
     viscosity : str or float
@@ -87,13 +90,12 @@ class LineContact:
         times :math:`h_\mathrm{rms}`, so 1e-3 to 1e-1 for real surfaces.
     boundary_friction : float
         Friction coefficient :math:`\mu_0 \ge 0` of the solid contact [-].
-    modulus : str or float, optional
-        Effective modulus :math:`E^* = E/(1 - \nu^2) > 0` [Pa], of two soft bodies
-        :math:`1/E^* = (1-\nu_1^2)/E_1 + (1-\nu_2^2)/E_2`; or give the next two.
     youngs_modulus : str or float, optional
         Young's modulus :math:`E > 0` of the half-space [Pa].
     poisson_ratio : float, optional
         Poisson ratio :math:`0 \le \nu \le 1/2` of the half-space [-].
+    entrainment_speed : str or float, optional
+        Mean of both surface speeds, in place of ``speed`` [m/s].
     law : LawShape, optional
         Contact law :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
 

@@ -346,7 +346,8 @@ def contact_values(given: Mapping[str, Any]) -> dict[str, float]:
     Parameters
     ----------
     given : mapping
-        Inputs of :data:`ROWS` by name, text with a unit or numbers in SI units; None counts as not given.
+        Inputs of :data:`ROWS` by name, text with a unit or numbers in SI units; None counts as not given if
+        another may take its place.
 
     Returns
     -------
@@ -358,7 +359,8 @@ def contact_values(given: Mapping[str, Any]) -> dict[str, float]:
     InputError
         If one is unknown, missing, given twice or impossible.
     """
-    values = {name: value for name, value in given.items() if value is not None}
+    choices = {name for other in ALTERNATIVES for name in (other.of, *other.inputs)}
+    values = {name: value for name, value in given.items() if value is not None or name not in choices}
     for name in values:
         if name not in QUANTITIES:
             near = difflib.get_close_matches(name, QUANTITIES, n=1)
@@ -378,9 +380,9 @@ def signature_of(table: Sequence[Input]) -> inspect.Signature:
     """Return the signature of a contact that takes the inputs of a table, and a contact law."""
     others = {name for other in ALTERNATIVES for name in (other.of, *other.inputs)}
     keyword = inspect.Parameter.KEYWORD_ONLY
-    required = [inspect.Parameter(row.name, keyword) for row in table if row.name not in others]
-    optional = [inspect.Parameter(row.name, keyword, default=None) for row in table if row.name in others]
-    return inspect.Signature([*required, *optional, inspect.Parameter("law", keyword, default=None)])
+    default = {name: None for name in others}
+    inputs = [inspect.Parameter(row.name, keyword, default=default.get(row.name, inspect.Parameter.empty)) for row in table]
+    return inspect.Signature([*inputs, inspect.Parameter("law", keyword, default=None)])
 
 
 def check_alternatives(given: Mapping[str, Any]) -> None:
