@@ -238,8 +238,10 @@ class Page:
     def draw_all(self, now: Inputs, seen: Shown) -> None:
         """Put whole charts and all numbers into a page that is being made."""
         for name, options in self.options(seen).items():
-            self.charts[name].options.update(options)
-            self.shown[f"chart-{name}"] = data_only(options)
+            # Points come with the first frame: here each would be kept as an object of its own, 2 MB in all.
+            bare = options | {"series": [series | {"data": []} for series in options["series"]]}
+            self.charts[name].options.update(bare)
+            self.shown[f"chart-{name}"] = data_only(bare)
         for element, content in self.words(seen.answer):
             element.content = content
         self.shown |= {name: knob_state(now, name) for name in self.knobs}
