@@ -1,7 +1,7 @@
 """The explorer: memory that closed pages and moves of sliders leave in the server.
 
-Pages are asked for and left, as by a browser that goes away at once; the server forgets them after half a minute. Moves are those
-of a slider in headless Chromium and need the extra ``browser`` and Debian's ``chromium`` (or CHROMIUM=/path/to/it). Linux:
+Pages are asked for and left, as by a browser that goes away at once; the server forgets them after half a minute. Moves are
+those of a slider in headless Chromium and need the extra ``browser`` and Debian's ``chromium`` (or CHROMIUM=PATH). Linux:
 the memory is what /proc says.
 """
 

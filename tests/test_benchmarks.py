@@ -20,9 +20,9 @@ ARGUMENTS = {
     "surface_errors": ["--number", "1"],
     "sweep_rate": ["--number", "4", "--workers", "1"],
 }
-"""Scripts, and what makes them small; explorer_latency needs a browser, instructions valgrind: they are tested apart."""
+"""Scripts, and what makes them small; those of the explorer need a browser, instructions valgrind: they are tested apart."""
 
-APART = {"walk", "explorer_latency", "instructions"}
+APART = {"walk", "explorer_latency", "explorer_memory", "instructions"}
 NO_SCRIPTS = {"textbook"}
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
 
