@@ -24,11 +24,12 @@ import numpy as np
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import NAMES, ROW, observables
+from stribeck.equations.observables import ROW, observables
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.quantities.outputs import NAMES
 from stribeck.solver.cold_start import cold_start
 
 SIDES = {"both infinities": False, "the left infinity": True}

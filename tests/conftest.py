@@ -14,10 +14,11 @@ import stribeck as sb
 from stribeck.contact_laws.scaled import ShiftedShape
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import NAMES, observables
+from stribeck.equations.observables import observables
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
+from stribeck.quantities.outputs import NAMES
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 

@@ -5,8 +5,8 @@ import pytest
 
 import stribeck as sb
 from stribeck.batches import chain
-from stribeck.equations.observables import NAMES
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import NAMES
 from stribeck.solver import cold_start
 
 SHARES = ("contact_load_share", "fluid_load_share")

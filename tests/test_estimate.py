@@ -8,9 +8,9 @@ import pytest
 import stribeck as sb
 from stribeck.equations.error_estimate import FineOperators
 from stribeck.equations.line import Operators
-from stribeck.equations.observables import NAMES
 from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.panels import Mesh
+from stribeck.quantities.outputs import NAMES
 from stribeck.solver.cold_start import cold_start
 from stribeck.solver.refinement import judge
 

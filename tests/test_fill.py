@@ -6,8 +6,9 @@ import pytest
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import NAMES, gradients, observables, observables_of_rows
+from stribeck.equations.observables import gradients, observables, observables_of_rows
 from stribeck.numerics.panels import Mesh, base_edges
+from stribeck.quantities.outputs import NAMES
 from stribeck.solids.half_plane import (
     Blocks,
     _beside_panel,

@@ -10,15 +10,9 @@ from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.gap import gap_at, least_gap
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import (
-    NAMES,
-    friction_integrals,
-    friction_integrands,
-    friction_scale,
-    gradients,
-    observables,
-)
+from stribeck.equations.observables import friction_integrals, friction_integrands, friction_scale, gradients, observables
 from stribeck.numerics.panels import Mesh, base_edges
+from stribeck.quantities.outputs import NAMES
 
 pytestmark = pytest.mark.quick
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.equations.observables import NAMES
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import NAMES
 
 SEED = 27_644_437
 

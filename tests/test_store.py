@@ -133,7 +133,7 @@ def test_the_attributes_tell_settings_landmarks_and_outcome(curve, dataset):
     assert attributes["transition_speed"].tolist() == [mark.value for mark in curve.transitions]
     assert attributes["load_group"] == curve.groups.load[0]
     assert "speed_group" not in attributes
-    assert "of its range" in attributes["notes"]
+    assert "beyond the range of the exponential contact law" in attributes["notes"]
 
 
 def test_without_a_contact_the_coordinate_is_a_group_and_nothing_is_in_metres(dimensionless):

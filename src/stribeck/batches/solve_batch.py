@@ -14,9 +14,10 @@ from stribeck.batches.chain import Ended, solve_in_order
 from stribeck.batches.order import chains_of
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.groups import Groups
-from stribeck.equations.observables import NAMES, Observables
+from stribeck.equations.observables import Observables
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import NAMES
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solve import check_rtol
 

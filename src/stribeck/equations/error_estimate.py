@@ -30,6 +30,7 @@ from stribeck.equations.state import Rows
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
 from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.quantities.outputs import ABSOLUTE
 from stribeck.solids.half_plane import (
     Blocks,
     log_moments,
@@ -69,7 +70,7 @@ OFFSET_FLOOR = 1e-3
 GAP_FLOOR = 1e-3
 """At speed zero the gap crosses zero too: its error is relative to it where it exceeds this part of kappa."""
 
-SHARES = [ROW["contact_load_share"], ROW["fluid_load_share"]]
+SHARES = [ROW[name] for name in ABSOLUTE]
 GAPS = [ROW["central_gap"], ROW["minimum_gap"]]
 FRICTION = [ROW["viscous_published"], ROW["viscous_balanced"]]
 

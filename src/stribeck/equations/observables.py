@@ -25,18 +25,7 @@ from stribeck.equations.gap import central_gap, far_gap, least_gap
 from stribeck.equations.line import LOAD, Equations
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import Mesh, reference
-
-NAMES = (
-    "contact_load_share",
-    "fluid_load_share",
-    "central_gap",
-    "minimum_gap",
-    "flux_gap",
-    "offset",
-    "viscous_published",
-    "viscous_balanced",
-)
-"""The observables, in the order of every array of them here."""
+from stribeck.quantities.outputs import NAMES
 
 ROW = {name: row for row, name in enumerate(NAMES)}
 """Where each is in such an array."""

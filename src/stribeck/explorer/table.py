@@ -10,6 +10,7 @@ from html import escape
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import Transition
 from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.outputs import ROWS
 from stribeck.quantities.units import format_si
 from stribeck.regimes.distances import TransitionDistances
 
@@ -69,14 +70,11 @@ def numbers(answer: Answer) -> list[Row]:
     if chosen.total > 0:
         part = chosen.contact / chosen.total
         rows.append(_share("contact_friction_share", "Friction from asperities", part, chosen.error / chosen.total))
-    for key, name in (("fluid_load_share", "Load on the fluid"), ("contact_load_share", "Load on asperities")):
-        rows.append(_share(key, name, getattr(solution, key), errors[key]))
-    for key, name, gap in (
-        ("central_film_thickness", "Central film h(0)", solution.central_gap),
-        ("minimum_film_thickness", "Minimum film thickness", solution.minimum_gap),
-    ):
-        error = errors[key.replace("film_thickness", "gap")]
-        rows.append(_row(key, name, gap * scales.indentation, abs(gap) * scales.indentation * error, "length"))
+    for each in (each for each in ROWS[::-1] if each.error == "absolute"):
+        rows.append(_share(each.name, each.label.capitalize(), getattr(solution, each.name), errors[each.name]))
+    for each in (each for each in ROWS if each.film and each.scale == "gap"):
+        film, error = getattr(solution, each.name) * scales.indentation, errors[each.name]
+        rows.append(_row(each.film, each.label.capitalize(), film, abs(film) * error, "length"))
     ratio = solution.lambda_ratio
     rows.append(_row("lambda_ratio", "Lambda ratio α h(0)/h<sub>rms</sub>", ratio, abs(ratio) * errors["central_gap"]))
     rows.append(_row("hersey_number", "Hersey number ηU/F<sub>N</sub>", contact.hersey_number, 0.0))

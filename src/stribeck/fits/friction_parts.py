@@ -16,8 +16,8 @@ from stribeck.contact_laws.law import LawShape
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups, InputError
 from stribeck.curves.stribeck_curve import stribeck_curve
-from stribeck.equations.observables import NAMES
 from stribeck.equations.sensitivity import log_derivatives
+from stribeck.quantities.outputs import NAMES
 from stribeck.solver.solve import SolveError
 
 __all__ = ["Parts", "PartsOf", "atlas_parts", "atlas_or_solved_parts", "solved_parts"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Literal
 
@@ -15,11 +15,15 @@ from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.gap import gap_at
-from stribeck.equations.observables import NAMES, Observables
+from stribeck.equations.observables import Observables
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import FILMS, HERTZ, NAMES
+from stribeck.quantities.outputs import ROWS as OUTPUTS
 from stribeck.quantities.units import InputError, real_array, show
+
+_OWN = frozenset(field.name for field in fields(Observables))
 
 __all__ = ["Friction", "Profile", "Solution"]
 
@@ -165,40 +169,15 @@ class Solution:
         """Total pressure at :attr:`x` [p_Hz]."""
         return self.contact_pressure + self.fluid_pressure
 
-    @property
-    def contact_load_share(self) -> float:
-        """Part of the load that asperities carry [-]."""
-        return self.observables.contact_load_share
+    def __getattr__(self, name: str) -> float:
+        """Return an observable under its own name."""
+        if name in _OWN:
+            return float(getattr(self.observables, name))
+        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
 
-    @property
-    def fluid_load_share(self) -> float:
-        """Part of the load that the fluid carries [-]."""
-        return self.observables.fluid_load_share
-
-    @property
-    def central_gap(self) -> float:
-        """Gap at x = 0 [u_Hz]."""
-        return self.observables.central_gap
-
-    @property
-    def minimum_gap(self) -> float:
-        """Least gap [u_Hz]."""
-        return self.observables.minimum_gap
-
-    @property
-    def minimum_position(self) -> float:
-        """Position of the minimum gap [a], to :attr:`minimum_position_error`."""
-        return self.observables.minimum_position
-
-    @property
-    def flux_gap(self) -> float:
-        """Flux gap h*: the fluid flux over U/2 [u_Hz]; nan where the gap is negative (see :attr:`notes`)."""
-        return self.observables.flux_gap
-
-    @property
-    def offset(self) -> float:
-        """Height z0 of the apex of the undeformed cylinder over the undeformed surface, in the gauge ln(abs(x-y)/a) [u_Hz]."""
-        return self.observables.offset
+    def __dir__(self) -> list[str]:
+        """Return the names of attributes, observables among them."""
+        return [*super().__dir__(), *_OWN]
 
     @property
     def lambda_ratio(self) -> float:
@@ -365,7 +344,6 @@ class Solution:
         dict
             Numbers, text, lists and dictionaries of these; nan or infinity where a quantity does not exist.
         """
-        names = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "minimum_position", "flux_gap")
         result: dict[str, object] = {
             "speed": float(self.groups.speed),
             "load": float(self.groups.load),
@@ -373,7 +351,8 @@ class Solution:
             "contact_law": self.law,
             "contact_law_parameters": self.law_parameters,
         }
-        result |= {name: getattr(self, name) for name in (*names, "offset", "hersey_number", "lambda_ratio")}
+        result |= {row.name: getattr(self, row.name) for row in OUTPUTS if row.listed}
+        result["hersey_number"] = self.hersey_number
         if isinstance(self.groups.law, WithArea):
             result["central_area_fraction"] = self.central_area_fraction
             result["central_area_fraction_error"] = self.central_area_fraction_error
@@ -382,7 +361,6 @@ class Solution:
             parts = {"contact": f.contact, "viscous": f.viscous, "total": f.total, "error": f.error}
             result[f"friction_{definition}"] = parts
         result["errors"] = self.errors
-        result["minimum_position_error"] = self.minimum_position_error
         result |= {"error_estimate": self.error_estimate, "rtol": self.rtol, "nodes": self.nodes}
         result |= {"outcome": self.outcome.name, "message": self.outcome.value, "notes": list(self.notes)}
         return result
@@ -403,19 +381,8 @@ def si_films(solution: Solution) -> dict[str, tuple[float, str, str]]:
     """
     if solution.contact is None:
         return {}
-    scales = solution.contact.hertz
-    a, u = scales.half_width, scales.indentation
-    return {
-        "central_film_thickness": (solution.central_gap * u, "m", "gap at the centre"),
-        "minimum_film_thickness": (solution.minimum_gap * u, "m", "least gap"),
-        "minimum_film_position": (solution.minimum_position * a, "m", "position of the least gap"),
-        "minimum_film_position_error": (
-            solution.minimum_position_error * a,
-            "m",
-            "estimated absolute error of minimum_film_position",
-        ),
-        "flux_film_thickness": (solution.flux_gap * u, "m", "fluid flux over half the speed"),
-        "hertz_half_width": (a, "m", "half-width a of the dry smooth contact"),
-        "hertz_indentation": (u, "m", "indentation u_Hz of the dry smooth contact"),
-        "hertz_pressure": (scales.pressure, "Pa", "largest pressure p_Hz of the dry smooth contact"),
-    }
+    hertz = solution.contact.hertz
+    scales = {"gap": hertz.indentation, "width": hertz.half_width}
+    values = {row.film: getattr(solution, row.name) * scales[row.scale] for row in OUTPUTS if row.film}
+    values |= zip(HERTZ, (hertz.half_width, hertz.indentation, hertz.pressure), strict=True)
+    return {name: (values[name], *about) for name, about in FILMS.items()}

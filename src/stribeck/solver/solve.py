@@ -14,10 +14,11 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import LawShape
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.line import Groups, LineContact
-from stribeck.equations.observables import NAMES, Observables
+from stribeck.equations.observables import Observables
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import NAMES
 from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
 from stribeck.solver.at_rest import with_positive_gap

@@ -10,10 +10,9 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import LawShape, WithArea
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.line import LineContact
-from stribeck.equations.observables import NAMES
 from stribeck.quantities.inputs import QUANTITIES, unit_of
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import AREA, OBSERVABLES
+from stribeck.quantities.outputs import ABSOLUTE, AREA, FILMS, NAMES, OBSERVABLES
 from stribeck.solver.solution import Solution, si_films
 
 __all__ = ["OUTCOMES", "columns_of", "failed_row", "input_columns", "row_of"]
@@ -23,19 +22,6 @@ ERROR = "ERROR"
 
 OUTCOMES = (*(outcome.name for outcome in Outcome), ERROR)
 """The outcomes; a row holds the place of its own in here."""
-
-ABSOLUTE = ("contact_load_share", "fluid_load_share")
-
-FILMS = {
-    "central_film_thickness": ("m", "gap at the centre"),
-    "minimum_film_thickness": ("m", "least gap"),
-    "minimum_film_position": ("m", "position of the least gap"),
-    "minimum_film_position_error": ("m", "estimated absolute error of minimum_film_position"),
-    "flux_film_thickness": ("m", "fluid flux over half the speed"),
-    "hertz_half_width": ("m", "half-width a of the dry smooth contact"),
-    "hertz_indentation": ("m", "indentation u_Hz of the dry smooth contact"),
-    "hertz_pressure": ("Pa", "largest pressure p_Hz of the dry smooth contact"),
-}
 
 
 def columns_of(si: bool, law: LawShape | None = None) -> dict[str, tuple[str, str]]:

@@ -15,7 +15,7 @@ from stribeck.contacts.line import LineContact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import INPUTS, unit_of
-from stribeck.quantities.outputs import GROUPS
+from stribeck.quantities.outputs import GROUPS, OBSERVABLES
 from stribeck.regimes.distances import Crossing, Distance, TransitionDistances
 from stribeck.solver.solution import Solution, si_films
 
@@ -94,14 +94,7 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[s
     dict
         Ready for :func:`dump`.
     """
-    names = (
-        "contact_load_share",
-        "fluid_load_share",
-        "central_gap",
-        "minimum_gap",
-        "flux_gap",
-        "lambda_ratio",
-    )
+    names = tuple(OBSERVABLES)
     return {
         "title": title,
         "over": curve.over,

@@ -22,6 +22,7 @@ from stribeck.cli.reports.words import (
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
+from stribeck.quantities.outputs import ROWS
 from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:
@@ -65,22 +66,14 @@ def _solution_rows(
         yield f"friction coefficient ({definition})", digits(f.total, relative), "", error_text(relative)
         yield "  from asperities", part(f.contact, f.error), "", ""
         yield "  from the fluid", part(f.viscous, f.error), "", ""
-    for name, label in (
-        ("contact_load_share", "load on asperities"),
-        ("fluid_load_share", "load on the fluid"),
-    ):
-        yield label, part(getattr(solution, name), errors[name]), "", error_text(errors[name])
+    for row in (row for row in ROWS if row.error == "absolute"):
+        yield row.label, part(getattr(solution, row.name), errors[row.name]), "", error_text(errors[row.name])
     scales = None if solution.contact is None else solution.contact.hertz
-    for name, label in (
-        ("central_gap", "central film"),
-        ("minimum_gap", "least film"),
-        ("flux_gap", "flux film h*"),
-        ("offset", "offset z0"),
-    ):
-        value = getattr(solution, name)
-        si = "" if scales is None else length(value * scales.indentation, errors[name])
+    for row in (row for row in ROWS if row.scale == "gap"):
+        value, error = getattr(solution, row.name), errors[row.name]
+        si = "" if scales is None else length(value * scales.indentation, error)
         unit = " u_Hz" if math.isfinite(value) else ""
-        yield label, f"{digits(value, errors[name])}{unit}", si, error_text(errors[name])
+        yield row.label, f"{digits(value, error)}{unit}", si, error_text(error)
     place, wrong = solution.minimum_position, solution.minimum_position_error
     relative = wrong / abs(place) if place != 0 else 0.0
     si = "" if scales is None else length(place * scales.half_width, max(relative, 1e-4))
