@@ -68,9 +68,7 @@ ROWS = (
     Observable("flux_gap", "flux film h*", "flux gap: fluid flux over half the speed", "gap", "flux_film_thickness"),
     Observable("offset", "offset z0", "height of the undeformed cylinder over the undeformed surface", "gap"),
     Observable("lambda_ratio", "Lambda (film over h_rms/alpha)", "central gap over h_rms/alpha", error=""),
-    Observable(
-        "viscous_published", "viscous friction, published", "viscous friction as published", "friction", listed=False
-    ),
+    Observable("viscous_published", "viscous friction, published", "viscous friction as published", "friction", listed=False),
     Observable("viscous_balanced", "viscous friction, balanced", "viscous friction that balances", "friction", listed=False),
     Observable(
         "error_estimate",
