@@ -27,7 +27,7 @@ def states(number: int) -> sb.Groups:
 
 
 def best(function: Callable[[sb.Groups], object], groups: sb.Groups) -> float:
-    """Return the least processor time of some runs."""
+    """Return the smallest processor time of some runs."""
     times = []
     for _ in range(RUNS):
         start = time.process_time()

@@ -119,7 +119,7 @@ def document(number: int = len(STATES)) -> Iterator[str]:
     yield head()
     yield ""
     yield (
-        "The error is the largest relative error of load shares (absolute), central and least gap, flux gap, "
+        "The error is the largest relative error of load shares (absolute), central and minimum gap, flux gap, "
         "offset and both frictions; the estimate is what a solution would state."
     )
     for name, numbers in list(STATES.items())[:number]:

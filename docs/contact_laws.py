@@ -127,7 +127,7 @@ def parting(pairs: dict[float, tuple[Pair, Pair]]) -> str:
             + [number(value, 4) for value in minimum]
         )
     head = ["$F$", "speeds where $\\mu$ differs by over 1 %", "largest difference", "at speed", "fluid's share there"]
-    return table([*head, "least $\\mu/\\mu_0$, exponential", "Persson"], rows)
+    return table([*head, "minimum $\\mu/\\mu_0$, exponential", "Persson"], rows)
 
 
 def simulated(alpha: float, beta: float) -> sb.TableLaw:

@@ -144,7 +144,7 @@ def share_table(maps: list[tuple[Formula[Any], xarray.Dataset]]) -> str:
         ends = [f"{percent(float(end))}" for end in (np.nanmin(error), np.nanmax(error))]
         fluid = "5 %" if "5" in data.attrs["predicts"] else "50 %"
         rows.append([f"`{data.attrs['title']}`", fluid, percent(float(np.nanmedian(np.abs(error)))), *ends])
-    return table(["Formula", "Fluid carries", "Median size", "Least error", "Largest error"], rows)
+    return table(["Formula", "Fluid carries", "Median size", "Smallest error", "Largest error"], rows)
 
 
 @one_blas_thread

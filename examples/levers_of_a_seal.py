@@ -40,6 +40,6 @@ def plot(curves):
 if __name__ == "__main__":
     curves = main()
     for name, curve in curves.items():
-        least = curve.minimum
-        print(f"{name:22} least friction {least.friction:.4f} at {1e3 * least.value:.0f} mm/s")
+        lowest = curve.minimum
+        print(f"{name:22} minimum friction {lowest.friction:.4f} at {1e3 * lowest.value:.0f} mm/s")
     plot(curves).savefig("levers_of_a_seal.png")

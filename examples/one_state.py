@@ -38,7 +38,7 @@ if __name__ == "__main__":
     state, fields = data = main()
     print(f"{state.outcome.value} Relative error about {state.error_estimate:.0e}.")
     print(f"the fluid carries {state.fluid_load_share:.6f} of the load")
-    print(f"central gap {state.central_gap:.8f} u_Hz, least gap {state.minimum_gap:.8f} u_Hz")
+    print(f"central gap {state.central_gap:.8f} u_Hz, minimum gap {state.minimum_gap:.8f} u_Hz")
     print(f"flux gap {state.flux_gap:.8f} u_Hz, offset {state.offset:.8f} u_Hz")
     for definition in ("published", "balanced"):
         print(f"friction ({definition}): {state.friction(boundary_friction=1, beta=1, definition=definition).total:.8f}")

@@ -27,8 +27,8 @@ def plot(diagram):
 
 if __name__ == "__main__":
     diagram = main()
-    print("roughness (um)   boundary ends (mm/s)   least friction at (mm/s)")
+    print("roughness (um)   boundary ends (mm/s)   minimum friction at (mm/s)")
     for i, roughness in enumerate(diagram.roughness.values):
-        ends, least = (float(diagram[name].values.ravel()[i]) for name in ("speed_at_5_percent_fluid", "speed_at_minimum"))
-        print(f"{1e6 * roughness:10.2f} {1e3 * ends:20.3g} {1e3 * least:24.3g}")
+        ends, lowest = (float(diagram[name].values.ravel()[i]) for name in ("speed_at_5_percent_fluid", "speed_at_minimum"))
+        print(f"{1e6 * roughness:10.2f} {1e3 * ends:20.3g} {1e3 * lowest:24.3g}")
     plot(diagram).savefig("regimes_of_a_contact.png")

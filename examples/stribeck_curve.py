@@ -1,7 +1,7 @@
 """A Stribeck curve
 ================
 
-That of a PDMS cylinder in glycerol-water, from a data sheet to the least friction.
+That of a PDMS cylinder in glycerol-water, from a data sheet to the minimum friction.
 
 Equations: theory.md Eqs. (1)-(5).  Reference: Bertin and Pouliquen, Section "Stribeck curve".
 Runs in about a second.
@@ -33,8 +33,8 @@ def plot(curve):
 
 if __name__ == "__main__":
     curve = main()
-    least = curve.minimum
-    print(f"least friction {least.friction:.4f} at {least.value:.3g} m/s")
+    lowest = curve.minimum
+    print(f"minimum friction {lowest.friction:.4f} at {lowest.value:.3g} m/s")
     for mark in curve.transitions:
         print(f"{mark.name}: {mark.value:.3g} m/s")
     plot(curve).savefig("stribeck_curve.png")

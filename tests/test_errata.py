@@ -559,17 +559,17 @@ def test_only_with_the_contact_pressure_projected_do_the_forces_balance():
 # --- mixed lubrication ---
 
 
-def test_the_second_term_of_the_least_friction_grows_with_the_logarithm():
+def test_the_second_term_of_the_minimum_friction_grows_with_the_logarithm():
     """[BP] Eq. (minimal_friction): (-ln k)**(-2/3) for (-ln k)**(+2/3)."""
     groups = sb.Groups(1.0, LOAD, LOAD * KAPPA)
 
     def friction(log_speed):
         return float(mixed.friction.function(sb.Groups(math.exp(log_speed), LOAD, LOAD * KAPPA), film="large"))
 
-    least = minimize_scalar(friction, bounds=(math.log(1e-4), math.log(1e-2)), method="bounded", options={"xatol": 1e-9})
+    lowest = minimize_scalar(friction, bounds=(math.log(1e-4), math.log(1e-2)), method="bounded", options={"xatol": 1e-9})
     law = transitions.friction_at_minimum
-    assert law(groups, form="exact") == pytest.approx(least.fun, rel=1e-9)
-    assert law(groups, form="leading") == pytest.approx(least.fun, rel=0.06)
+    assert law(groups, form="exact") == pytest.approx(lowest.fun, rel=1e-9)
+    assert law(groups, form="leading") == pytest.approx(lowest.fun, rel=0.06)
     assert law(groups, printed=True) == pytest.approx(3.27e-3, abs=1e-5)
     solved = minimum(LOAD, KAPPA).friction
     assert solved == pytest.approx(0.02682, abs=1e-5)
@@ -578,7 +578,7 @@ def test_the_second_term_of_the_least_friction_grows_with_the_logarithm():
     assert law(groups) == pytest.approx(solved, rel=0.0105)
 
 
-def test_what_the_least_friction_leaves_out_is_larger_than_its_smaller_term():
+def test_what_the_minimum_friction_leaves_out_is_larger_than_its_smaller_term():
     """[BP] Eq. (minimal_friction): O[ln(-ln k)]; it is (2/9) (-ln k)**(-1/3) ln(-ln k)."""
     ratios = []
     for L in (1e2, 1e4, 1e6, 1e8):
@@ -673,10 +673,10 @@ def test_a_minimum_above_the_dry_friction_still_weakens_with_speed():
 
 def test_friction_falls_until_a_hersey_number_of_five_in_a_hundred_thousand():
     """[BP] Section "Dimensional analysis", Fig. 3(a): hydrodynamic lubrication from eta U/F_N = 3e-5 on (beta = 1)."""
-    least = minimum(LOAD, KAPPA)
-    assert least.solution.groups.hersey_number() == pytest.approx(4.69e-5, abs=1e-7)
+    lowest = minimum(LOAD, KAPPA)
+    assert lowest.solution.groups.hersey_number() == pytest.approx(4.69e-5, abs=1e-7)
     at_3e_5 = state(3e-5 * 3 * math.pi / (4 * LOAD)).friction(definition="published").total
-    assert at_3e_5 / least.friction == pytest.approx(1.258, abs=2e-3)
+    assert at_3e_5 / lowest.friction == pytest.approx(1.258, abs=2e-3)
 
 
 # --- printed and right ---
@@ -802,7 +802,7 @@ def test_the_slope_of_the_pressure_of_second_order_is_as_printed():
     assert (slope(step) - slope(-step)) / (2 * step) == pytest.approx(printed, rel=1e-8)
 
 
-def test_the_least_friction_in_si_units_has_the_printed_powers_and_beta_in_its_logarithm_only():
+def test_the_minimum_friction_in_si_units_has_the_printed_powers_and_beta_in_its_logarithm_only():
     """[BP] Conclusion: h_rms**(2/3) F_N**(-1/6)."""
 
     def scale(contact):

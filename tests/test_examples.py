@@ -50,7 +50,7 @@ def test_an_example_draws_what_it_returns(path, results):
     assert all(axes.has_data() for axes in figure.axes)
 
 
-def test_friction_of_the_pdms_cylinder_is_least_at_28_mm_per_second(results):
+def test_friction_of_the_pdms_cylinder_is_lowest_at_28_mm_per_second(results):
     _, curve = results("stribeck_curve")
     assert curve.outcome.ok
     assert curve.minimum.value == pytest.approx(0.02760, rel=2e-3)

@@ -461,9 +461,9 @@ def luminance(colour):
 @pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])
 def test_lines_and_text_stand_out_from_their_ground(palette):
     for ground in (palette.card, *palette.tints.values()):
-        for colour, least in ((palette.ink, 7.0), (palette.grey, 3.0), (palette.contact, 3.0), (palette.fluid, 3.0)):
+        for colour, lowest in ((palette.ink, 7.0), (palette.grey, 3.0), (palette.contact, 3.0), (palette.fluid, 3.0)):
             low, high = sorted((luminance(colour), luminance(ground)))
-            assert (high + 0.05) / (low + 0.05) > least, (colour, ground)
+            assert (high + 0.05) / (low + 0.05) > lowest, (colour, ground)
 
 
 # --- files ---

@@ -35,12 +35,12 @@ def orders(x, y):
 
 def test_friction_falls_between_the_boundary_plateau_and_its_minimum_and_rises_after_it(curve):
     x, friction = curve.hersey_number.values, curve.friction_balanced.values
-    least = float(curve.minimum_hersey)
-    assert 4.68e-5 < least < 4.70e-5
+    lowest = float(curve.minimum_hersey)
+    assert 4.68e-5 < lowest < 4.70e-5
     assert round(float(curve.minimum_friction), 5) == 0.02682
     assert 1 <= curve.friction_published.values.min() / float(curve.minimum_friction) < 1.001
-    assert (np.diff(friction[x < 0.9 * least]) < 1e-6).all()
-    assert (np.diff(friction[x > 1.1 * least]) > 0).all()
+    assert (np.diff(friction[x < 0.9 * lowest]) < 1e-6).all()
+    assert (np.diff(friction[x > 1.1 * lowest]) > 0).all()
 
 
 def test_lubrication_is_boundary_below_the_hersey_number_that_the_paper_names(curve):
@@ -85,7 +85,7 @@ def test_slow_outlets_tend_to_the_similarity_solution_as_speed_to_two_fifths(smo
     assert inside[-1] / inside[0] > 900 and smooth.outlet_distance.values[-1] < 0.21
 
 
-def test_the_least_film_of_the_outlet_is_three_quarters_of_the_central_film(smooth):
+def test_the_minimum_film_of_the_outlet_is_three_quarters_of_the_central_film(smooth):
     assert abs(float(smooth.outlet_limit.min()) - 0.75801) < 1e-5
     assert 0.37 < float(smooth.xi[int(smooth.outlet_limit.values.argmin())]) < 0.43
 

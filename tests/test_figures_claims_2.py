@@ -187,9 +187,10 @@ def test_lamberts_w_and_its_expansion_give_lambda_of_smooth_contacts(mixed):
     assert np.abs(mixed.lambda_uniform.values / mixed.lambda_ratio.values - 1)[:, :-1].max() < 0.02
 
 
-def test_least_friction_needs_the_other_sign_of_the_power(mixed):
+def test_minimum_friction_needs_the_other_sign_of_the_power(mixed):
     ratio = {
-        form: (mixed[f"friction_{form}"] / mixed.least_friction).values for form in ("exact", "leading", "printed", "uniform")
+        form: (mixed[f"friction_{form}"] / mixed.minimum_friction).values
+        for form in ("exact", "leading", "printed", "uniform")
     }
     assert ratio["printed"].max() < 0.125
     assert (np.diff(ratio["exact"], axis=1) < 0).all()
@@ -199,13 +200,13 @@ def test_least_friction_needs_the_other_sign_of_the_power(mixed):
 
 
 def test_the_minima_are_those_of_the_curves(mixed, curves):
-    found = float(mixed.least_friction.sel(minimum_load=0.1, kappa=1e-3))
+    found = float(mixed.minimum_friction.sel(minimum_load=0.1, kappa=1e-3))
     assert abs(found / curves.minimum_friction.values[case(curves, 0.1, 1e-4)] - 1) < 1e-6
     assert round(found, 4) == 0.0268
 
 
-def test_least_friction_goes_with_roughness_to_two_thirds_and_logarithms(mixed):
-    steps = orders(mixed.minimum_roughness.values[1], mixed.least_friction.values[1])
+def test_minimum_friction_goes_with_roughness_to_two_thirds_and_logarithms(mixed):
+    steps = orders(mixed.minimum_roughness.values[1], mixed.minimum_friction.values[1])
     # 2/3 (1 - 2/(3 Lambda)) = 0.633 at the smoothest, without what the asperities add to the film.
     assert 0.63 < steps[0] < 0.66 and (np.diff(steps) > 0).all()
 
@@ -290,7 +291,7 @@ def test_the_printed_end_of_boundary_lubrication_lies_deep_inside_it(regimes):
     assert np.abs(ours - 1).max() < 0.05
 
 
-def test_the_line_of_least_friction_is_right_for_smooth_contacts_and_ends_where_friction_no_longer_falls(regimes):
+def test_the_line_of_minimum_friction_is_right_for_smooth_contacts_and_ends_where_friction_no_longer_falls(regimes):
     smooth = regimes.sel(roughness=1e-6)
     printed = (smooth.printed_speed_at_minimum / smooth.speed_at_minimum).values
     assert 0.88 < printed.min() and printed.max() < 0.92

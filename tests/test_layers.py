@@ -36,8 +36,8 @@ def slope(function, position, step=1e-3):
     return float((f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
 
 
-def least_gap(layer):
-    """Return the least gap of the outlet and its position."""
+def minimum_gap(layer):
+    """Return the minimum gap of the outlet and its position."""
     found = minimize_scalar(lambda xi: at(layer.gap, xi), bounds=(0.0, 1.0), method="bounded", options={"xatol": 1e-8})
     return found.fun, found.x
 
@@ -49,8 +49,8 @@ def test_the_inlet_selects_the_film_constant():
     assert abs(film_layers.inlet().constant - constants.FILM_CONSTANT) < 0.5e-9
 
 
-def test_the_outlet_has_the_least_gap_of_the_constants():
-    gap, position = least_gap(film_layers.outlet())
+def test_the_outlet_has_the_minimum_gap_of_the_constants():
+    gap, position = minimum_gap(film_layers.outlet())
     assert abs(gap - constants.MINIMUM_CONSTANT) < 0.5e-8
     assert abs(position - constants.MINIMUM_POSITION) < 0.5e-5
     assert abs(gap / film_layers.inlet().constant - 0.75801004) < 0.5e-8
@@ -103,7 +103,7 @@ def test_finer_panels_change_nothing(name, finer):
     assert np.abs(coarse.gap(xi) / fine.gap(xi) - 1).max() < bound
     assert np.abs(coarse.pressure(xi) - fine.pressure(xi)).max() < bound
     if name == "outlet":
-        assert abs(least_gap(coarse)[0] - least_gap(fine)[0]) < 1e-9
+        assert abs(minimum_gap(coarse)[0] - minimum_gap(fine)[0]) < 1e-9
     if name == "inlet":
         assert abs(coarse.constant - fine.constant) < 1e-11
 

@@ -15,7 +15,7 @@ from scipy.sparse.linalg import gmres
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.model import Model
-from stribeck.equations.gap import gap_at, least_gap
+from stribeck.equations.gap import gap_at, minimum_gap
 from stribeck.equations.line import LOAD, Equations, Operators
 from stribeck.equations.prediction import SeenFrom
 from stribeck.equations.state import mesh_for, solve_state
@@ -79,7 +79,7 @@ def observed(state):
     mesh, gap = state.mesh, state.gap
     share = state.equations.pressures(state.y)[0] @ mesh.weights / LOAD
     central = gap_at(mesh, gap, np.array([-state.exit]))[0]
-    return {"h0": central, "hmin": least_gap(mesh, gap)[1], "m": state.flux_gap, "contact_share": share, "xc": state.exit}
+    return {"h0": central, "hmin": minimum_gap(mesh, gap)[1], "m": state.flux_gap, "contact_share": share, "xc": state.exit}
 
 
 @pytest.mark.parametrize("row", EXIT, ids=lambda row: f"{row['speed']:g}")

@@ -1,4 +1,4 @@
-"""Observables: gradients against differences, friction integrals in closed form, least and central gap."""
+"""Observables: gradients against differences, friction integrals in closed form, minimum and central gap."""
 
 import math
 
@@ -8,7 +8,7 @@ from scipy.optimize import minimize_scalar
 
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
-from stribeck.equations.gap import gap_at, least_gap
+from stribeck.equations.gap import gap_at, minimum_gap
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import friction_integrals, friction_integrands, friction_scale, gradients, observables
 from stribeck.numerics.panels import Mesh, base_edges
@@ -108,7 +108,7 @@ def test_the_gradient_of_each_observable_is_its_derivative(case, name):
         up, down = (values(equations, y + d * change, load)[NAMES.index(name)] for d in (step, -step))
         difference = (up - down) / (2 * step)
         # The printed friction answers through the moment of the pressure on the panels in x, all but its far
-        # end; the least gap answers at the node next to it.
+        # end; the minimum gap answers at the node next to it.
         allowed = {"viscous_published": 2e-3, "minimum_gap": 2e-2}.get(name, 1e-5)
         scale = np.abs(row) @ np.abs(change)
         assert abs(row @ change - difference) <= allowed * scale + 1e-13, name
@@ -124,34 +124,34 @@ def test_at_speed_zero_only_contact_has_gradients(solved):
         assert not rows[NAMES.index(name)].any()
 
 
-# Central and least gap
+# Central and minimum gap
 
 
-def dipped(x, least):
+def dipped(x, lowest):
     """A positive gap with one narrow dip."""
-    return (1 + x * x / 20) * (1 - 0.3 / (1 + ((x - least) / 0.05) ** 2))
+    return (1 + x * x / 20) * (1 - 0.3 / (1 + ((x - lowest) / 0.05) ** 2))
 
 
-@pytest.mark.parametrize("least", [0.0, 0.013, 0.4999, 0.5, -0.77, 1.0])
-def test_the_least_gap_is_that_between_the_nodes(least):
+@pytest.mark.parametrize("lowest", [0.0, 0.013, 0.4999, 0.5, -0.77, 1.0])
+def test_the_minimum_gap_is_that_between_the_nodes(lowest):
     edges = np.concatenate([-np.array([8.0, 4, 2]), np.linspace(-1.25, 1.25, 51), [2.0, 4, 8]])
     mesh = Mesh(edges, 20)
-    position, gap = least_gap(mesh, dipped(mesh.nodes, least))
-    bounds = (least - 0.02, least + 0.02)
-    exact = minimize_scalar(dipped, bounds=bounds, args=(least,), method="bounded", options={"xatol": 1e-10})
+    position, gap = minimum_gap(mesh, dipped(mesh.nodes, lowest))
+    bounds = (lowest - 0.02, lowest + 0.02)
+    exact = minimize_scalar(dipped, bounds=bounds, args=(lowest,), method="bounded", options={"xatol": 1e-10})
     assert gap == pytest.approx(exact.fun, rel=1e-9)
     assert position == pytest.approx(exact.x, abs=1e-6)
-    assert gap <= dipped(mesh.nodes, least).min()
+    assert gap <= dipped(mesh.nodes, lowest).min()
 
 
-@pytest.mark.parametrize("least", [0.5001, 0.4499])
-def test_a_least_gap_beyond_the_panel_of_the_least_node_is_found(least):
+@pytest.mark.parametrize("lowest", [0.5001, 0.4499])
+def test_a_minimum_gap_beyond_the_panel_of_the_minimum_node_is_found(lowest):
     edges = np.array([-8.0, -4.0, -2.0, -1.0, 0.0, 0.25, 0.45, 0.5, 0.75, 1.0, 2.0, 4.0, 8.0])
     mesh = Mesh(edges, 20)
-    gap = 1 + np.log1p((mesh.nodes - least) ** 2)
+    gap = 1 + np.log1p((mesh.nodes - lowest) ** 2)
     assert 0.45 < mesh.nodes[np.argmin(gap)] < 0.5  # the narrow panel has the nearest node, its neighbour the minimum
-    position, found = least_gap(mesh, gap)
-    assert position == pytest.approx(least, abs=1e-7)
+    position, found = minimum_gap(mesh, gap)
+    assert position == pytest.approx(lowest, abs=1e-7)
     assert found == pytest.approx(1.0, abs=1e-12)
 
 

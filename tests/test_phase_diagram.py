@@ -139,7 +139,7 @@ def test_transitions_lie_where_their_shares_are_passed(diagram):
             assert friction.contact / friction.total == pytest.approx(0.1, abs=1e-7)
 
 
-def test_at_the_minimum_friction_is_stationary_and_least(diagram):
+def test_at_the_minimum_friction_is_stationary_and_minimal(diagram):
     step = 5e-3
     for i, load in enumerate(LOADS):
         for j in (0, 2):
@@ -161,7 +161,7 @@ def test_transitions_outside_the_speeds_of_the_grid_are_found_all_the_same(diagr
 
 
 def test_a_minimum_above_the_plateau_is_found():
-    # The least friction of these curves is that of the plateau; the minimum is local.
+    # The minimum friction of these curves is that of the plateau; the minimum is local.
     found = sb.phase_diagram(load=0.1, roughness=0.014, speed=(1e-4, 10.0), points=9)
     assert found.velocity_weakening == 1
     assert found.friction_at_minimum > 1.0

@@ -246,7 +246,7 @@ def test_the_profile_at_the_nodes_is_the_nodal_field(state):
     assert (np.diff(state.x) > 0).all()
 
 
-def test_central_and_least_gap_are_those_of_the_profile(state):
+def test_central_and_minimum_gap_are_those_of_the_profile(state):
     near = state.minimum_position + np.linspace(-1e-3, 1e-3, 401)
     gap = state.profile(np.concatenate([np.linspace(-2, 2, 4001), near])).gap
     assert state.central_gap == pytest.approx(state.profile([0.0]).gap[0], rel=1e-12)

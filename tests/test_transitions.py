@@ -116,8 +116,8 @@ def test_lambert_w_gives_the_ratio_at_which_the_slope_vanishes():
         there = mixed.friction.function(sb.Groups(speed, 0.1, groups.roughness), 0.5, 2.0, "large")
         assert (there > transitions.friction_at_minimum.function(groups, 0.5, 2.0, "exact")).all()
     speed = transitions.speed_at_minimum.function(groups, 0.5, 2.0, "exact")
-    least = mixed.friction.function(sb.Groups(speed, 0.1, groups.roughness), 0.5, 2.0, "large")
-    np.testing.assert_allclose(transitions.friction_at_minimum.function(groups, 0.5, 2.0, "exact"), least, rtol=1e-12)
+    lowest = mixed.friction.function(sb.Groups(speed, 0.1, groups.roughness), 0.5, 2.0, "large")
+    np.testing.assert_allclose(transitions.friction_at_minimum.function(groups, 0.5, 2.0, "exact"), lowest, rtol=1e-12)
 
 
 def test_the_expansion_of_lambert_w_nears_it_as_roughness_vanishes():
@@ -165,7 +165,7 @@ def test_our_minimum_is_stationary():
     assert (beside[0] > beside[1]).all() and (beside[2] > beside[1]).all()
 
 
-def test_the_least_friction_of_the_paper_is_exact_only_for_vanishing_roughness():
+def test_the_minimum_friction_of_the_paper_is_exact_only_for_vanishing_roughness():
     errors = []
     for kappa in (1e-4, 1e-3, 1e-2):
         groups = sb.Groups(1.0, 0.1, 0.1 * kappa)
@@ -173,7 +173,7 @@ def test_the_least_friction_of_the_paper_is_exact_only_for_vanishing_roughness()
     assert errors == pytest.approx([0.061, 0.182, 0.403], abs=0.003)
 
 
-def test_the_printed_least_friction_has_the_wrong_sign_in_an_exponent():
+def test_the_printed_minimum_friction_has_the_wrong_sign_in_an_exponent():
     groups = sb.Groups(1.0, 0.1, 1e-4)
     solver = minimum(1e-3, 0.1).friction
     law = transitions.friction_at_minimum
@@ -241,8 +241,8 @@ def test_from_load_one_there_is_no_speed_from_boundary_to_mixed():
 def test_the_plateau_is_reached_where_merging_says():
     load = np.array([1e-3, 0.1, 0.5])
     edge = transitions.merging_roughness(load, 0.3, 0.2, "plateau")
-    least = transitions.friction_at_minimum.function(sb.Groups(1.0, load, edge), 0.3, 0.2, "exact")
-    np.testing.assert_allclose(least, 0.3, rtol=1e-10)
+    lowest = transitions.friction_at_minimum.function(sb.Groups(1.0, load, edge), 0.3, 0.2, "exact")
+    np.testing.assert_allclose(lowest, 0.3, rtol=1e-10)
 
 
 def test_the_lines_meet_where_merging_says():

@@ -114,8 +114,8 @@ def test_coefficients_given_to_a_formula_hold_for_the_solver_too():
         found = uniform.friction(groups, boundary_friction=0.3, beta=0.02, definition="balanced")
         assert math.isclose(error, found / right - 1, rel_tol=1e-3, abs_tol=1e-6)
     assert data.attrs["title"] == "uniform.friction(boundary_friction=0.3, beta=0.02, definition='balanced')"
-    least = error_map(transitions.friction_at_minimum, load=0.1, relative_roughness=1e-3, beta=0.02)
-    assert abs(float(least["error"].values[0, 0])) < 0.01
+    lowest = error_map(transitions.friction_at_minimum, load=0.1, relative_roughness=1e-3, beta=0.02)
+    assert abs(float(lowest["error"].values[0, 0])) < 0.01
 
 
 def test_a_map_of_coefficients_outside_the_range_has_no_state_in_it():

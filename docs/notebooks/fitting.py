@@ -69,7 +69,7 @@ assert loose.undetermined and loose["alpha"].interval_95 == (0.0, float("inf"))
 # %% [markdown]
 # ## Into a prediction
 #
-# The fitted contact is an ordinary contact. Its least friction in the first fluid, solved, not read off the data:
+# The fitted contact is an ordinary contact. Its minimum friction in the first fluid, solved, not read off the data:
 
 # %%
 curve = sb.stribeck_curve(fit.contact)
@@ -77,4 +77,4 @@ figure, axes = plt.subplots()
 axes.loglog(1e3 * curve.values, curve.friction)
 axes.plot(1e3 * curve.minimum.value, curve.minimum.friction, "o")
 axes.set(xlabel="speed [mm/s]", ylabel="friction coefficient")
-print(f"least friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.value:.1f} mm/s")
+print(f"minimum friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.value:.1f} mm/s")

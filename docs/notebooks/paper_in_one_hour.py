@@ -77,11 +77,11 @@ axes.loglog(speed, curve.friction_viscous, "--", label="viscous part")
 axes.loglog(speed, uniform.friction(curve.groups), ":", label="closed form for every speed")
 axes.set(xlabel=r"speed group $\lambda$", ylabel=r"$\mu$", ylim=(1e-3, 3))
 _ = axes.legend()
-print(f"least friction {curve.minimum.friction:.5f} at speed {curve.minimum.value:.3e}")
+print(f"minimum friction {curve.minimum.friction:.5f} at speed {curve.minimum.value:.3e}")
 assert abs(curve.minimum.friction - 0.02682) < 1e-5
 
 # %% [markdown]
-# For the least friction the article prints a formula that gives 0.0033 here; with the sign of one exponent corrected it
+# For the minimum friction the article prints a formula that gives 0.0033 here; with the sign of one exponent corrected it
 # gives 0.0219. The errata list 37 such
 # places, each with a test.
 #
@@ -125,7 +125,7 @@ assert abs(formula / half - 1) < 0.1
 # %%
 diagram = sb.phase_diagram(load=0.1, roughness=np.geomspace(1e-5, 1e-2, 5), speed=(1e-9, 10.0), points={"speed": 21})
 figure, axes = plt.subplots()
-for name, label in (("speed_at_5_percent_fluid", "end of boundary"), ("speed_at_minimum", "least friction")):
+for name, label in (("speed_at_5_percent_fluid", "end of boundary"), ("speed_at_minimum", "minimum friction")):
     axes.loglog(diagram[name].values.ravel(), diagram.roughness, "o-", label=label)
 axes.set(xlabel=r"speed group $\lambda$", ylabel=r"roughness group $\bar h_\mathrm{rms}$")
 _ = axes.legend()

@@ -61,7 +61,7 @@ def contact(law, radius=surface.shape.radius):
 
 curve = sb.stribeck_curve(contact(surface.law), speed=("1 um/s", "1 m/s"), points=41)
 print(f"load group {contact(surface.law).groups.load:.2f}")
-print(f"least friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.value:.2f} mm/s")
+print(f"minimum friction {curve.minimum.friction:.4f} at {1e3 * curve.minimum.value:.2f} mm/s")
 
 # %% [markdown]
 # ## How sure is that

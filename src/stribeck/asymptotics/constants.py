@@ -11,7 +11,7 @@ PRINTED_FILM_CONSTANT = 0.44
 """The same as [BP] print it, for the printed forms of formulas."""
 
 MINIMUM_CONSTANT = 0.33794396
-"""Least film over u_Hz lambda**(3/5) as lambda -> 0, in the outlet: 0.75801004 of the central film."""
+"""Minimum film over u_Hz lambda**(3/5) as lambda -> 0, in the outlet: 0.75801004 of the central film."""
 
 MINIMUM_POSITION = 0.40117
 """Where that is: (x - 1)/lambda**(2/5)."""

@@ -26,18 +26,18 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 
-LEAST_LOAD = 1e-6
-"""Least load group of the atlas."""
+MIN_LOAD = 1e-6
+"""Minimum load group of the atlas."""
 
-LEAST_SPEED = 1e-12
-"""Least speed group of the atlas beside rest."""
+MIN_SPEED = 1e-12
+"""Minimum speed group of the atlas beside rest."""
 
 NEARLY_SMOOTH = 1e-3
 """Relative roughness up to which heavy loads are a region of their own."""
 
 HEAVY = -math.log(0.99)
-"""L of the least of them. Towards load 1 the gap at rest closes, to 2 kappa, and the speed at which roughness begins to yield
-falls below the least speed: this region begins at that."""
+"""L of the smallest of them. Towards load 1 the gap at rest closes, to 2 kappa, and the speed at which roughness begins to
+yield falls below the minimum speed: this region begins at that."""
 
 SHARES = (1.1, 2.6, 6.5, 30.0)
 """Minus the logarithms of the contact shares at which the segments of speed end."""
@@ -59,9 +59,9 @@ class Region:
     Attributes
     ----------
     roughness : tuple of float
-        Least and largest relative roughness.
+        Smallest and largest relative roughness.
     logs : tuple of float
-        Least and largest L = -ln(load).
+        Smallest and largest L = -ln(load).
     pieces : tuple of int
         Pieces in roughness and load.
     nodes : tuple of int
@@ -81,7 +81,7 @@ class Region:
 
     @property
     def has_rest(self) -> bool:
-        """Whether the segments begin at rest, else at :data:`LEAST_SPEED`."""
+        """Whether the segments begin at rest, else at :data:`MIN_SPEED`."""
         return self.speeds[0] > 0
 
     @property
@@ -120,7 +120,7 @@ class Region:
         return np.full_like(kappa, self.closing) if self.closing else 2 * kappa / (1 + kappa)
 
 
-LIGHTEST = -math.log(LEAST_LOAD)
+LIGHTEST = -math.log(MIN_LOAD)
 
 REGIONS = (
     Region((1e-6, NEARLY_SMOOTH), (HEAVY, LIGHTEST), (2, 2), (10, 12), (10, 13, 12, 10, 14, 16)),

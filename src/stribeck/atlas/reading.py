@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array, Flags
-from stribeck.atlas.grid import HEAVY, LEAST_LOAD, LEAST_SPEED, NEARLY_SMOOTH, region_at
+from stribeck.atlas.grid import HEAVY, MIN_LOAD, MIN_SPEED, NEARLY_SMOOTH, region_at
 from stribeck.atlas.table import TABULATED, Values, load_table, solver_hash
 from stribeck.contact_laws.law import LawShape, is_exponential
 from stribeck.contacts.friction import Definition, check_definition
@@ -41,8 +41,8 @@ __all__ = [
     "viscous_friction",
 ]
 
-BOX = {"speed": (LEAST_SPEED, 1e6), "load": (LEAST_LOAD, 1.0), "relative_roughness": (1e-6, 1e2)}
-"""Least and largest groups of the atlas, beside speed 0, at rest, and roughness 0, smooth."""
+BOX = {"speed": (MIN_SPEED, 1e6), "load": (MIN_LOAD, 1.0), "relative_roughness": (1e-6, 1e2)}
+"""Smallest and largest groups of the atlas, beside speed 0, at rest, and roughness 0, smooth."""
 
 HEAVY_REGION = 1
 """Number of the region of heavy loads on nearly smooth surfaces, which does not begin at rest."""
@@ -300,7 +300,7 @@ def central_gap(groups: Groups) -> Value:
 
 
 def minimum_gap(groups: Groups) -> Value:
-    """Return the least gap.
+    """Return the minimum gap.
 
     Parameters
     ----------
@@ -398,7 +398,7 @@ def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> t
     _check("relative_roughness", kappa, *BOX["relative_roughness"], zero=True)
     with np.errstate(divide="ignore"):
         log_speed = np.log(speed)
-    log_load = np.clip(-np.log(load), 0.0, -math.log(LEAST_LOAD))
+    log_load = np.clip(-np.log(load), 0.0, -math.log(MIN_LOAD))
     inside = np.where(kappa > 0, np.clip(kappa, *BOX["relative_roughness"]), 0.0)
     closing = (speed == 0) & (inside > 0) & (region_at(log_load, inside) == HEAVY_REGION)
     if FLUX in functions and closing.any():

@@ -21,7 +21,7 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.atlas.grid import (
     BREAK_TERMS,
-    LEAST_SPEED,
+    MIN_SPEED,
     PIECES,
     REGIONS,
     SEGMENTS,
@@ -67,7 +67,7 @@ STEP = 2.0**-25
 CHUNK = 1024
 """States that are summed at once: their polynomials then fit into the cache."""
 
-FILM_RANGE = (math.log(LEAST_SPEED), math.log(1e6))
+FILM_RANGE = (math.log(MIN_SPEED), math.log(1e6))
 """Logarithms of the speeds between which smooth films are tabulated."""
 
 

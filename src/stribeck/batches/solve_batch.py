@@ -41,9 +41,9 @@ class BatchSolution:
     contact_load_share, fluid_load_share : ndarray
         Parts of the load on asperities and fluid [-].
     central_gap, minimum_gap, flux_gap : ndarray
-        Gap at x = 0, least gap and flux gap [u_Hz].
+        Gap at x = 0, minimum gap and flux gap [u_Hz].
     minimum_position : ndarray
-        Where the gap is least [a].
+        Where the gap is at its minimum [a].
     offset : ndarray
         Height of the apex of the undeformed cylinder [u_Hz].
     viscous_published, viscous_balanced : ndarray

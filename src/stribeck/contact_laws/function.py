@@ -79,7 +79,7 @@ class FunctionLaw:
         Parameters
         ----------
         separation : float
-            Its least separation [-].
+            Its minimum separation [-].
 
         Returns
         -------
@@ -88,7 +88,7 @@ class FunctionLaw:
         """
         if separation >= self.checked[0] or separation < 0:
             return ()
-        return (f"The least separation is {separation:.2g}, below those at which the contact law was checked.",)
+        return (f"The minimum separation is {separation:.2g}, below those at which the contact law was checked.",)
 
 
 def _values(name: str, function: Callable[[Array], Array], s: Array) -> Array:

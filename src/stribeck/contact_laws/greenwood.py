@@ -26,7 +26,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.quantities.units import InputError, show, to_si
 
-LEAST_KNOT = -12.0
+MIN_KNOT = -12.0
 """Separation below which a moment is continued by its tangent; the pressure there is above 40 beta E*."""
 
 LARGEST_KNOT = 1e4
@@ -44,7 +44,7 @@ def _spline(order: float) -> tuple[Any, Any]:
     """Return the spline of ``ln F_n + s**2/2`` over arsinh(s), and its derivative."""
     from scipy.interpolate import make_interp_spline  # slow to import, and most uses do not get here
 
-    knots = np.arange(math.asinh(LEAST_KNOT), math.asinh(LARGEST_KNOT) + KNOT_STEP, KNOT_STEP)
+    knots = np.arange(math.asinh(MIN_KNOT), math.asinh(LARGEST_KNOT) + KNOT_STEP, KNOT_STEP)
     s = np.sinh(knots)
     # The integrand in y = ln(z - s), shifted to where it is largest, falls at least exponentially on both sides.
     centre = np.log(np.where(s < 1, 0.5 * (np.sqrt(s * s + 4 * order + 4) - s), (order + 1) / np.maximum(s, 1)))
@@ -58,7 +58,7 @@ def _spline(order: float) -> tuple[Any, Any]:
 
 
 def _ends() -> tuple[float, float]:
-    return math.asinh(LEAST_KNOT), math.asinh(LARGEST_KNOT)
+    return math.asinh(MIN_KNOT), math.asinh(LARGEST_KNOT)
 
 
 def log_moment(order: float, separation: Array) -> Array:
@@ -83,12 +83,12 @@ def log_moment(order: float, separation: Array) -> Array:
     """
     s = np.asarray(separation, dtype=float)
     spline, slope = _spline(order)
-    inside = np.maximum(s, LEAST_KNOT)
+    inside = np.maximum(s, MIN_KNOT)
     low, high = _ends()
     t = np.arcsinh(inside)
     found = spline(np.minimum(t, high)) - 0.5 * inside * inside - (order + 1) * np.maximum(t - high, 0.0)
-    if s.size and s.min() < LEAST_KNOT:
-        tangent = float(slope(low)) / math.hypot(1.0, LEAST_KNOT) - LEAST_KNOT
+    if s.size and s.min() < MIN_KNOT:
+        tangent = float(slope(low)) / math.hypot(1.0, MIN_KNOT) - MIN_KNOT
         found = found + tangent * (s - inside)
     return np.asarray(found)
 
@@ -97,7 +97,7 @@ def log_moment_slope(order: float, separation: Array) -> Array:
     """Return the derivative of :func:`log_moment` with respect to the separation."""
     s = np.asarray(separation, dtype=float)
     _, slope = _spline(order)
-    inside = np.maximum(s, LEAST_KNOT)
+    inside = np.maximum(s, MIN_KNOT)
     low, high = _ends()
     t = np.arcsinh(inside)
     of_spline = np.where(t > high, -(order + 1.0), slope(np.minimum(t, high)))
@@ -126,11 +126,11 @@ class _GaussianHeights:
         return log_moment_slope(self.order, separation)
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state of which this is the least separation."""
+        """Return what to know about a state of which this is the minimum separation."""
         if separation >= 0:
             return ()
         return (
-            f"The least separation is {separation:.2g} standard deviations of the asperity heights, below their mean plane: "
+            f"The minimum separation is {separation:.2g} standard deviations of the asperity heights, below their mean plane: "
             f"most asperities touch, and the {self.name} law, which takes each for alone, is outside its range.",
         )
 

@@ -35,7 +35,7 @@ class LawShape(Protocol):
         """Return d ln(Phi)/ds at the separation s, negative."""
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state of which this is the least separation, one sentence each."""
+        """Return what to know about a state of which this is the minimum separation, one sentence each."""
 
 
 @runtime_checkable

@@ -98,12 +98,12 @@ class PerssonLaw:
         return {"alpha": self.alpha, "beta": self.beta, "roughness": self.rms_height}
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state of which this is the least separation.
+        """Return what to know about a state of which this is the minimum separation.
 
         Parameters
         ----------
         separation : float
-            Least separation s of the state [-].
+            Minimum separation s of the state [-].
 
         Returns
         -------

@@ -75,15 +75,15 @@ class Integral:
         """Return ln s and its first two derivatives with respect to y = ln Phi, a row each."""
         # The factor exp(-t_1^2), t_1 = P/G(q_1), is taken out of all three sums, so that they do not underflow.
         P = self.beta * np.exp(y)[:, None]
-        least = (P[:, 0] / self.stiffness) ** 2
+        lowest = (P[:, 0] / self.stiffness) ** 2
         t = P / self.G
-        fade = np.exp(np.minimum(least[:, None] - t * t, 0.0)) * self.weight
+        fade = np.exp(np.minimum(lowest[:, None] - t * t, 0.0)) * self.weight
         erf, share = special.erf(t), 3 * (1 - self.gamma)
         rate = self.gamma + share * erf * erf
         bend = 4 / math.sqrt(math.pi) * share * erf * t * np.exp(-t * t) - 2 * t * t * rate
         s = np.sum(_scaled_J(t, self.gamma) * fade, axis=1)
         first, second = -np.sum(rate * fade, axis=1) / s, -np.sum(bend * fade, axis=1) / s
-        return np.stack((np.log(self.alpha * s) - least, first, second - first * first))
+        return np.stack((np.log(self.alpha * s) - lowest, first, second - first * first))
 
 
 def _nodes(spectrum: Spectrum) -> tuple[Array, Array]:

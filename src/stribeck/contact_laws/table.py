@@ -23,7 +23,7 @@ from stribeck.quantities.units import InputError, show
 
 __all__ = ["TableLaw"]
 
-LEAST_ROWS = 4
+MIN_ROWS = 4
 
 PLAIN, WITH_UNITS = ("separation", "pressure"), {"gap": "length", "pressure": "pressure"}
 """Headers of a file."""
@@ -199,7 +199,7 @@ class TableLaw:
         Parameters
         ----------
         separation : float
-            Its least separation [-].
+            Its minimum separation [-].
 
         Returns
         -------
@@ -210,7 +210,7 @@ class TableLaw:
         found = []
         if separation < first:
             found.append(
-                f"The least separation is {separation:.3g}, below the first row of the contact law's table, {first:.3g}: "
+                f"The minimum separation is {separation:.3g}, below the first row of the contact law's table, {first:.3g}: "
                 "the law is continued there by its tangent."
             )
         largest = float(self.log_pressure(np.array([separation]))[0])
@@ -237,8 +237,8 @@ def _check_rows(s: Sequence[float], p: Sequence[float]) -> None:
     """Refuse rows that are no contact law, naming the first."""
     if len(s) != len(p):
         raise InputError(f"separation has {len(s)} rows and pressure {len(p)}; they must be equally many.")
-    if len(s) < LEAST_ROWS:
-        raise InputError(f"the table of the contact law has {len(s)} rows; at least {LEAST_ROWS} are needed.")
+    if len(s) < MIN_ROWS:
+        raise InputError(f"the table of the contact law has {len(s)} rows; at least {MIN_ROWS} are needed.")
     for i in range(len(s)):
         row = f"row {i + 1} of the contact law's table"
         if not (math.isfinite(s[i]) and math.isfinite(p[i])):

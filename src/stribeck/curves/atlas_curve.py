@@ -136,7 +136,7 @@ class AtlasCurve:
 
     @cached_property
     def minimum(self) -> Mark | None:
-        """The least friction, where its slope vanishes; None where the curve has none inside."""
+        """The minimum friction, where its slope vanishes; None where the curve has none inside."""
         i = int(np.argmin(self.friction))
         if not 0 < i < len(self) - 1:
             return None

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 __all__ = ["plot_curve", "plot_profile"]
 
 DECADES_BELOW = 1.3
-"""How far below the least friction the axis goes on, so that both parts of the friction show."""
+"""How far below the minimum friction the axis goes on, so that both parts of the friction show."""
 
 FEW = 25
 """Number of points up to which each is marked."""

@@ -223,7 +223,7 @@ class StribeckCurve:
         """The boundaries between regimes, where the load is shared in halves, and the friction minimum.
 
         As far as the curve holds them, ascending: where the fluid carries 5 % and 50 % of the load, where asperities cause
-        10 % of the friction, and where friction is least.
+        10 % of the friction, and where friction is at its minimum.
         """
         fluid = self.observable("fluid_load_share")
         contact = self.friction_contact / np.maximum(self.friction, 1e-300)

@@ -24,7 +24,7 @@ from stribeck.solver.solve import SolveError, describe
 FASTEST = 1e3
 """Speed group from which the branch is looked for; its film is the rigid one."""
 
-LEAST_SPEED = 1e-12
+MIN_SPEED = 1e-12
 """Speed group below which no curve begins by itself."""
 
 PLATEAU = 1e-3
@@ -75,7 +75,7 @@ def automatic_speeds(groups: Groups, boundary_friction: float, beta: float, defi
     path = march(
         correct,
         -top,
-        -math.log(LEAST_SPEED),
+        -math.log(MIN_SPEED),
         Steps(0.5, math.log(10), 1e-3),
         stop_when=lambda state: plateau,
         on_point=record,
@@ -86,7 +86,7 @@ def automatic_speeds(groups: Groups, boundary_friction: float, beta: float, defi
         raise SolveError(
             path.outcome, None, f"{describe(groups)}: no speed was found from which a curve can begin; give a range of speeds."
         )
-    low = max(LEAST_SPEED, math.exp(shares[-1][0]) / MARGIN)
+    low = max(MIN_SPEED, math.exp(shares[-1][0]) / MARGIN)
     contact_part = np.array([part for _, _, part in shares])
     on_branch = np.nonzero(contact_part < BRANCH)[0]
     high = math.exp(shares[int(on_branch[-1])][0]) if len(on_branch) else math.exp(top)

@@ -243,17 +243,17 @@ def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
 
 
 def interpolation_errors(states: Rows, minimum_positions: Array) -> Array:
-    """Return the absolute errors of the interpolated central and least gap, shape (2, rows)."""
+    """Return the absolute errors of the interpolated central and minimum gap, shape (2, rows)."""
     mesh = states.equations.operators.mesh
     central = int(np.searchsorted(mesh.edges, 0.0))
-    least = np.clip(np.searchsorted(mesh.edges, minimum_positions) - 1, 0, mesh.panels - 1)
-    panels = np.stack([np.full_like(least, central), least])
-    gap = states.y[:, states.equations.layout.gap].reshape(len(least), mesh.panels, -1)[np.arange(len(least)), panels]
+    lowest = np.clip(np.searchsorted(mesh.edges, minimum_positions) - 1, 0, mesh.panels - 1)
+    panels = np.stack([np.full_like(lowest, central), lowest])
+    gap = states.y[:, states.equations.layout.gap].reshape(len(lowest), mesh.panels, -1)[np.arange(len(lowest)), panels]
     return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
 
 
 def reads_off(mesh: Mesh, gap: Array, rtol: float) -> bool:
-    """Tell whether the central and the least gap are interpolated to ``rtol``: what a mesh kept along a path loses first."""
+    """Tell whether the central and the minimum gap are interpolated to ``rtol``: what a mesh kept along a path loses first."""
     panels = [int(np.searchsorted(mesh.edges, 0.0)), int(np.argmin(gap)) // mesh.order]
     return bool((_between_nodes(mesh, gap.reshape(mesh.panels, -1)[panels], panels) <= rtol).all())
 

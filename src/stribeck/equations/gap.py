@@ -13,7 +13,7 @@ from stribeck.numerics.panels import Mesh, reference
 
 NEWTON_STEPS = 3
 LARGEST_STEP = 0.2
-"""Of the search for the least gap, the step in half-widths of a panel."""
+"""Of the search for the minimum gap, the step in half-widths of a panel."""
 
 
 def gap_at(mesh: Mesh, h: Array, x: Array) -> Array:
@@ -48,17 +48,17 @@ def central_gap(mesh: Mesh, h: Array) -> Array:
     return np.asarray(np.exp(np.log(h[..., nodes] / mesh.far[nodes]) @ reference(mesh.order).left_end) * mesh.scale**2)
 
 
-def least_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
-    """Return position and value of the least gap, that of the panels' polynomials around the least node."""
+def minimum_gap(mesh: Mesh, h: Array) -> tuple[float, float]:
+    """Return position and value of the minimum gap, that of the panels' polynomials around the minimum node."""
     order = mesh.order
     panel, node = divmod(int(np.argmin(h)), order)
     panels = {panel, panel - (node == 0), panel + (node == order - 1)}
-    found = [_least_on_panel(mesh, h, k) for k in panels if 0 <= k < mesh.panels - 1]
+    found = [_minimum_on_panel(mesh, h, k) for k in panels if 0 <= k < mesh.panels - 1]
     return min(found, key=lambda pair: pair[1]) if found else (float(mesh.nodes[np.argmin(h)]), float(h.min()))
 
 
-def _least_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
-    """Return position and value of the least gap on a panel, by Newton's iteration from its least node."""
+def _minimum_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
+    """Return position and value of the minimum gap on a panel, by Newton's iteration from its minimum node."""
     nodes = slice(panel * mesh.order, (panel + 1) * mesh.order)
     rule, c, d = reference(mesh.order), float(mesh.centres[panel]), float(mesh.half_widths[panel])
     node = int(np.argmin(h[nodes]))

@@ -24,8 +24,8 @@ class Guess(Protocol):
         """Guess of the exit, from which x is measured if the film has a free one."""
 
     @property
-    def least_position(self) -> float:
-        """About where the gap is least."""
+    def minimum_position(self) -> float:
+        """About where the gap is at its minimum."""
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
@@ -42,8 +42,8 @@ class RowsGuess(Protocol):
         """Guess of the flux gaps, a column."""
 
     @property
-    def least_position(self) -> Array:
-        """About where the gaps are least, a column."""
+    def minimum_position(self) -> Array:
+        """About where the gaps are at their minimum, a column."""
 
     def fields(self, x: Array) -> Array:
         """Return the logarithms of the gaps and, if known, the fluid pressures at ``x``, shape (1 or 2, rows, len(x))."""

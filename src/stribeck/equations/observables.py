@@ -21,7 +21,7 @@ from functools import lru_cache
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.equations.gap import central_gap, far_gap, least_gap
+from stribeck.equations.gap import central_gap, far_gap, minimum_gap
 from stribeck.equations.line import LOAD, Equations
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import Mesh, reference
@@ -78,13 +78,13 @@ def observables_of_rows(equations: Equations, y: Array, load: Numbers) -> list[O
     mesh, at = equations.operators.mesh, equations.layout
     h, h_star = y[:, at.gap], y[:, at.flux_gap]
     contact = equations.law.pressure(h) @ mesh.weights / LOAD
-    positions, least = np.array([least_gap(mesh, row) for row in h]).T
+    positions, lowest = np.array([minimum_gap(mesh, row) for row in h]).T
     fluid, friction = np.zeros(len(y)), np.zeros((2, len(y)))
     if equations.is_sliding:
         fluid = (equations.speed * reynolds.gradient(h, h_star)) @ equations.operators.load_of_gradient / LOAD
         friction = np.ravel(friction_scale(load, equations.speed)) * friction_integrals(mesh, h, h_star)
     numbers = (y[:, at.flux_gap.start], y[:, at.offset.start])
-    values = np.stack([contact, fluid, central_gap(mesh, h), least, positions, *numbers, *friction])
+    values = np.stack([contact, fluid, central_gap(mesh, h), lowest, positions, *numbers, *friction])
     return [Observables(*row) for row in values.T.tolist()]
 
 
@@ -122,7 +122,7 @@ def _towards_infinity(order: int) -> tuple[Array, Array, Array]:
 def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
     """Return the derivatives of the observables with respect to the unknowns, shape (len(NAMES), ..., y.shape[-1]).
 
-    The position of the least gap is held, to first order without effect.  The projected pressure enters as its moment,
+    The position of the minimum gap is held, to first order without effect.  The projected pressure enters as its moment,
     ``3 int x**2 g dx = -6 int x A g dx`` without the panel through infinity: the two forms respond alike to true changes of
     the gap, but this one is insensitive to what the quadrature of g leaves.
     """

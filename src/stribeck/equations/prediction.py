@@ -41,9 +41,9 @@ class Extrapolation:
         return float(sum(w * s.exit for w, s in zip(self.weights, self.states, strict=True)))
 
     @property
-    def least_position(self) -> float:
+    def minimum_position(self) -> float:
         """That of the last state."""
-        return self.states[-1].least_position
+        return self.states[-1].minimum_position
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
@@ -96,9 +96,9 @@ class SeenFrom:
         return self.state.offset
 
     @property
-    def least_position(self) -> float:
+    def minimum_position(self) -> float:
         """That of the state, from the new origin."""
-        return self.state.least_position - self.exit
+        return self.state.minimum_position - self.exit
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""

@@ -110,8 +110,8 @@ class State:
         return float(self.y[layout.exit.start]) if self.equations.operators.has_exit else 0.0
 
     @property
-    def least_position(self) -> float:
-        """The node where the gap is least."""
+    def minimum_position(self) -> float:
+        """The node where the gap is at its minimum."""
         return float(self.mesh.nodes[np.argmin(self.gap)])
 
     @property
@@ -199,7 +199,7 @@ def mesh_for(
     profile_tolerance : float
         That of the logarithm of the gap on all other panels, where it is below ten times ``tolerance``.
     gap_tolerance : float
-        That of the logarithm of the gap on the panels where the central and the least gap are read off.
+        That of the logarithm of the gap on the panels where the central and the minimum gap are read off.
 
     Raises
     ------
@@ -225,7 +225,7 @@ def mesh_for(
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
         at_zero = np.abs(centres) <= (1 + ROUNDING) * half_widths
-        read_off = at_zero | (np.abs(centres - guess.least_position) <= half_widths)
+        read_off = at_zero | (np.abs(centres - guess.minimum_position) <= half_widths)
         read_off &= stretch[:, 0] == 1.0
         weight = max(0.1, tolerance / profile_tolerance)
         shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[..., None]

@@ -23,7 +23,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.atlas.grid import (
     BREAK_TERMS,
-    LEAST_SPEED,
+    MIN_SPEED,
     REGIONS,
     SEGMENTS,
     SHARES,
@@ -86,12 +86,12 @@ def speed_range(log_load: float, kappa: float) -> tuple[float, float]:
 
 
 def breaks_on(log_speeds: Array, observed: Array, has_rest: bool) -> Array:
-    """Return b_1 .. b_5 on a coarse curve; b_1 is the least speed where segments do not begin at rest."""
+    """Return b_1 .. b_5 on a coarse curve; b_1 is the minimum speed where segments do not begin at rest."""
     from scipy.interpolate import PchipInterpolator
 
     there = observed[:, 0] > 1e-300
     s, contact, fluid, central = log_speeds[there], *observed[there, :3].T
-    first = math.log(LEAST_SPEED)
+    first = math.log(MIN_SPEED)
     if has_rest:
         yielding = fluid / contact + central / central[0] - 1
         early = np.arange(1, 1 + int(np.argmax(yielding > 8 * YIELDING)))
@@ -108,7 +108,7 @@ def coarse_line(region: int, i: int) -> Array:
     for y in nodes(COARSE_NODES[1]):
         log_load = float(where.log_load(y, np.asarray(kappa)))
         low, high = speed_range(log_load, kappa)
-        low = low if where.has_rest else math.log(LEAST_SPEED)
+        low = low if where.has_rest else math.log(MIN_SPEED)
         speeds = np.linspace(low, high, max(30, int((high - low) / COARSE_STEP)))
         found.append(breaks_on(speeds, solved(speeds, log_load, kappa, COARSE_RTOL), where.has_rest))
     return np.array(found)

@@ -20,17 +20,17 @@ from stribeck.solver.solve import solve
 RTOL = 1e-7
 """Tolerance of the states that judge, as far as double precision gives it."""
 
-LEAST_SHARE = 1e-9
+MIN_SHARE = 1e-9
 """Contact share from which its relative error counts; so small a part of the load is felt nowhere else."""
 
-LEAST_FLUID = 1e-3
+MIN_FLUID = 1e-3
 """Fluid share from which the solver, which bounds its absolute error, can judge."""
 
 OFFSET_FLOOR = 1.0
 """The offset crosses zero: below this its error is absolute."""
 
 SHARED = 0.01
-"""Least of the two load shares of states in mixed lubrication, which are judged apart as well."""
+"""Smallest of the two load shares of states in mixed lubrication, which are judged apart as well."""
 
 TRIES = 20
 """States drawn for each in mixed lubrication; about one in nine is."""
@@ -132,8 +132,8 @@ def compare(speed: Array, load: Array, kappa: Array, observed: Array) -> Certifi
     ]
     found += [atlas.central_gap(groups) / central, atlas.minimum_gap(groups) / minimum, atlas.flux_gap(groups) / flux]
     found += [1 + (atlas.offset(groups) - offset) / np.maximum(np.abs(offset), OFFSET_FLOOR)]
-    contact_counts = np.where(contact > LEAST_SHARE, contact, np.nan)
-    fluid_counts = np.where(fluid > LEAST_FLUID, fluid, np.nan)
+    contact_counts = np.where(contact > MIN_SHARE, contact, np.nan)
+    fluid_counts = np.where(fluid > MIN_FLUID, fluid, np.nan)
     found += [atlas.contact_load_share(groups) / contact_counts, atlas.fluid_load_share(groups) / fluid_counts]
     return Certificate(speed, load, kappa, contact, np.abs(np.stack(found, axis=1) - 1))
 

@@ -76,18 +76,18 @@ def _of_minimum(formula: Formula[Any], points: tuple[int, int]) -> Callable[[flo
     def errors(ratio: float) -> Array:
         log_speed, friction = coarse, share + ratio * viscous
         falls = (friction[..., 1:-1] < friction[..., :-2]) & (friction[..., 1:-1] <= friction[..., 2:])
-        least = np.where(falls, friction[..., 1:-1], np.inf).argmin(axis=-1)[..., None] + 1
+        lowest = np.where(falls, friction[..., 1:-1], np.inf).argmin(axis=-1)[..., None] + 1
         for _ in range(ZOOMS):
-            low, high = (np.take_along_axis(log_speed, least + side, axis=-1) for side in (-1, 1))
+            low, high = (np.take_along_axis(log_speed, lowest + side, axis=-1) for side in (-1, 1))
             log_speed = low + (high - low) * np.linspace(0, 1, ZOOM_POINTS)
             here, there = parts(log_speed)
             friction = here + ratio * there
-            least = np.clip(friction.argmin(axis=-1), 1, ZOOM_POINTS - 2)[..., None]
-        speed = np.exp(np.take_along_axis(log_speed, least, axis=-1))
+            lowest = np.clip(friction.argmin(axis=-1), 1, ZOOM_POINTS - 2)[..., None]
+        speed = np.exp(np.take_along_axis(log_speed, lowest, axis=-1))
         at = Groups(speed[..., 0], load[..., 0], (kappa * load)[..., 0])
         right = {
             "speed_at_minimum": at.speed,
-            "friction_at_minimum": np.take_along_axis(friction, least, axis=-1)[..., 0],
+            "friction_at_minimum": np.take_along_axis(friction, lowest, axis=-1)[..., 0],
             "lambda_ratio_at_minimum": atlas.central_gap(at) / at.relative_roughness,
         }[formula.predicts]
         found = np.abs(formula.function(at, 1.0, ratio) / right - 1)

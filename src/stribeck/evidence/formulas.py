@@ -298,8 +298,8 @@ def _axes(kind: str, given: dict[str, ArrayLike | None]) -> dict[str, Array]:
             low, high, each = default
             value = np.logspace(low, high, round((high - low) * each) + 1)
         axis = np.atleast_1d(np.asarray(default if value is None else value, dtype=float))
-        least = 0.0 if name == "speed" else math.ulp(0.0)
-        if axis.ndim != 1 or not np.isfinite(axis).all() or not (np.diff(axis) > 0).all() or not (axis >= least).all():
+        lowest = 0.0 if name == "speed" else math.ulp(0.0)
+        if axis.ndim != 1 or not np.isfinite(axis).all() or not (np.diff(axis) > 0).all() or not (axis >= lowest).all():
             raise InputError(f"{name} = {show(value)}; a map needs positive numbers that ascend (a speed may be zero).")
         found[name] = axis
     return found

@@ -38,10 +38,10 @@ SCALE = (1e-4, 1.0)
 CONTOURS = {0.01: "white", 0.1: INK}
 """Errors of the contour lines, and their colours, each seen on the colours around it."""
 
-LEAST = 1e-7
+SMALLEST = 1e-7
 """Error below which nothing is told apart: the tolerance of the solved states."""
 
-MOST = 1e6
+LARGEST = 1e6
 """Error from which on, likewise."""
 
 NOTHING, HATCH = "#f4f4f4", "#b8bec5"
@@ -190,10 +190,10 @@ def _draw_map(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left: 
     error = np.ma.masked_invalid(np.abs(data["error"].transpose("relative_roughness", name).values))
     axes.patch.set(facecolor=NOTHING, edgecolor=HATCH, hatch="////", linewidth=0)
     axes.set(xscale="log", yscale="log")
-    error = np.ma.clip(error, LEAST, MOST)
+    error = np.ma.clip(error, SMALLEST, LARGEST)
     edges = [_edges(values) for values in (x, y)]
     image = axes.pcolormesh(*edges, error, cmap="cividis", norm=LogNorm(*SCALE))
-    smooth = np.ma.array(median_filter(error.filled(MOST), 3, mode="nearest"), mask=error.mask)
+    smooth = np.ma.array(median_filter(error.filled(LARGEST), 3, mode="nearest"), mask=error.mask)
     for level, colour in CONTOURS.items():
         if smooth.count() and smooth.min() < level < smooth.max():
             logs = np.log(smooth / level)
@@ -230,7 +230,7 @@ def _draw_lines(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left
     loads = data["load"].values.ravel().tolist() if "load" in data.coords else [1.0]
     shown = data.transpose(..., name)
     error, inside = (shown[key].values.reshape(-1, len(x)) for key in ("error", "valid"))
-    size = np.clip(np.abs(error), LEAST, None)
+    size = np.clip(np.abs(error), SMALLEST, None)
     colours = sequence(len(loads)) if len(loads) > 1 else [INK]
     fine = _fine(x)
     valid = np.zeros(FINE, dtype=bool)
@@ -245,7 +245,7 @@ def _draw_lines(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left
     axes.fill_between(fine, 0, 1, where=where, transform=across, color=TINTS["hydrodynamic"], lw=0, zorder=0)
     axes.plot(fine, np.where(valid, formula.worst, np.nan), color=GREY, lw=1.2, ls=DASHED)
     known = size[np.isfinite(size)]
-    low, high = (known.min(), known.max()) if known.size else (LEAST, 1.0)
+    low, high = (known.min(), known.max()) if known.size else (SMALLEST, 1.0)
     axes.set_ylim(low / 2, 2 * min(max(high, formula.worst), 10.0))
     axes.set_title(data.attrs["title"], loc="left", size=9, color=INK)
     _decades(axes.xaxis, (x[0], x[-1]))

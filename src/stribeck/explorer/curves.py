@@ -106,8 +106,8 @@ class Diagram:
     roughness : ndarray, shape (n,)
         Roughnesses [m].
     boundary, hydrodynamic, minimum : ndarray, shape (n,)
-        Speeds at which boundary lubrication ends, hydrodynamic lubrication begins and friction is least; zero, infinite or nan
-        where there are none [m/s].
+        Speeds at which boundary lubrication ends, hydrodynamic lubrication begins and friction is at its minimum;
+        zero, infinite or nan where there are none [m/s].
     message : str
         Why there is no diagram, or empty.
     """
@@ -149,8 +149,8 @@ def axis_speeds(contact: LineContact, marks: Sequence[Transition]) -> tuple[floa
     places = [mark.speed for mark in marks] or [1e-8 / unit, 1.0 / unit]
     places += [contact.speed] if contact.speed > 0 else []
     low, high = 10.0 ** math.floor(math.log10(min(places)) - 0.7), 10.0 ** math.ceil(math.log10(max(places)) + 0.7)
-    least, most = (end / unit for end in atlas.BOX["speed"])
-    return max(low, least), min(high, most)
+    lowest, highest = (end / unit for end in atlas.BOX["speed"])
+    return max(low, lowest), min(high, highest)
 
 
 def curve_from_atlas(contact: LineContact, speeds: tuple[float, float], marks: tuple[Transition, ...]) -> Curve:
@@ -211,12 +211,12 @@ def diagram_from_atlas(contact: LineContact, definition: Definition, speeds: tup
     roughness = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)
     none = np.full(ROWS, math.nan)
     load, unit = float(contact.groups.load), _speed_group(contact)
-    least, most = atlas.BOX["load"]
+    lowest, highest = atlas.BOX["load"]
     message = ""
     if not atlas.holds_for(contact.law):
         message = "Regime map unavailable: the lookup table holds the exponential contact law only."
-    elif not least <= load <= most:
-        bound = f"up to {most:g}" if load > most else f"from {least:g}"
+    elif not lowest <= load <= highest:
+        bound = f"up to {highest:g}" if load > highest else f"from {lowest:g}"
         message = f"Regime map unavailable: the lookup table covers load groups {bound}; here it is {load:.3g}."
     if message:
         return Diagram(roughness, none, none, none, message)

@@ -22,7 +22,7 @@ from stribeck.fits.result import Fit
 __all__ = ["Posterior", "draw_posterior"]
 
 SEED = 20_261_121
-LEAST_TIMES = 50
+MIN_TIMES = 50
 """Autocorrelation times after which emcee's documentation calls a chain long enough."""
 
 
@@ -106,9 +106,9 @@ def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int],
     samples = np.exp(sampler.get_chain(discard=burnt, flat=True)) * np.array([free.start for free in at.objective.model.free])
     time = float(np.max(sampler.get_autocorr_time(tol=0, discard=burnt)))
     acceptance = float(np.mean(sampler.acceptance_fraction))
-    converged = bool(np.isfinite(time) and steps - burnt >= LEAST_TIMES * time)
+    converged = bool(np.isfinite(time) and steps - burnt >= MIN_TIMES * time)
     ends = [np.quantile(samples, [(1 - level) / 2, (1 + level) / 2], axis=0).T for level in (0.6827, 0.95)]
-    how = "converged" if converged else f"did not converge: ask for at least {int(LEAST_TIMES * time / 0.8) + 1} steps"
+    how = "converged" if converged else f"did not converge: ask for at least {int(MIN_TIMES * time / 0.8) + 1} steps"
     return Posterior(
         samples=samples,
         interval_68=tuple((float(a), float(b)) for a, b in ends[0]),

@@ -23,7 +23,7 @@ MAX_PANELS = 128
 """Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator."""
 
 
-LEAST_PART = 0.19
+MIN_PART = 0.19
 """Part of two panels together that the smaller must be for them to become one: the nodes of both see less too little."""
 
 
@@ -227,7 +227,7 @@ def adapt(
         that may be neglected. ``stretch``, of the shape of ``x``, is one but on the panel through infinity, where it is by
         how much dx/dt grows towards it: what is integrated over x has to be multiplied by it.
     scale, reach : float
-        Width of the coarsest panels and the least half-width of their box [half-width of the Hertz contact].
+        Width of the coarsest panels and the smallest half-width of their box [half-width of the Hertz contact].
     order : int
         Nodes on each panel.
     tolerance : float
@@ -287,7 +287,7 @@ def _merged(edges: Array, unresolved: Callable[[Array], Flags], passes: int) -> 
         inner = np.arange(1 + trial % 2, len(edges) - 1, 2)
         inner = inner[edges[inner] != 0.0]
         left, right = edges[inner] - edges[inner - 1], edges[inner + 1] - edges[inner]
-        inner = inner[np.minimum(left, right) > LEAST_PART * (left + right)]
+        inner = inner[np.minimum(left, right) > MIN_PART * (left + right)]
         unions = np.column_stack([edges[inner - 1], edges[inner + 1]])
         if len(unions):
             edges = np.delete(edges, inner[~unresolved(unions)])

@@ -15,10 +15,10 @@ MEANT = LETTERS | FORMER | {"poisson": "poisson_ratio", "mu": "boundary_friction
 """What symbols, former names and short names stand for."""
 
 ALIKE = 0.8
-"""Least likeness, 0 to 1, of two words of which one is taken for a slip of the other: 0.8 allows one letter in five."""
+"""Smallest likeness, 0 to 1, of two words of which one is taken for a slip of the other: 0.8 allows one letter in five."""
 
 SHORTEST = 4
-"""Least number of letters of a word that stands for the key that begins with it."""
+"""Smallest number of letters of a word that stands for the key that begins with it."""
 
 _RMS = "heights are root mean squares, of Gaussian ones about 1.25 Ra: h_rms in [surface], or roughness in [contact]"
 _FLUID = "the fluid is Newtonian, and its viscosity is the same everywhere: give viscosity at the temperature and pressure"

@@ -292,13 +292,13 @@ class _Scan:
             return Distance(name, None, None, (0.0, 0.0))
         if self.contact.roughness == 0 and name == "speed":
             return Distance(name, None, Crossing("hydrodynamic", 0.0, math.inf), (0.0, 0.0))
-        start = _with_least(self.contact, name)
+        start = _with_smallest(self.contact, name)
         more, highest = self._outwards(start, name, _limits(start, name)[1], math.inf)
-        least = float(getattr(start, name))
+        lowest = float(getattr(start, name))
         if more is not None:
-            # A regime that the least value is in already begins at zero itself.
-            more = Crossing(more.regime, more.value if more.value > least else 0.0, math.inf)
-        return Distance(name, None, more, (0.0, least * math.exp(highest)))
+            # A regime that the smallest value is in already begins at zero itself.
+            more = Crossing(more.regime, more.value if more.value > lowest else 0.0, math.inf)
+        return Distance(name, None, more, (0.0, lowest * math.exp(highest)))
 
     def _outwards(self, start: LineContact, name: Over, limit: float, reach: float = REACH) -> tuple[Crossing | None, float]:
         """Return the first change of regime towards ``limit`` and how far was searched, logarithms of factors."""
@@ -393,8 +393,8 @@ def _possible_factors(contact: LineContact, name: str) -> tuple[float, float]:
     return min(math.log(low / value) for value, (low, _) in ends), max(math.log(high / value) for value, (_, high) in ends)
 
 
-def _with_least(contact: LineContact, name: Over) -> LineContact:
-    """Return the contact with the least speed or roughness of the box instead of zero."""
+def _with_smallest(contact: LineContact, name: Over) -> LineContact:
+    """Return the contact with the minimum speed or roughness of the box instead of zero."""
     groups = contact.replace(**{name: 1.0}).groups
     group = "speed" if name == "speed" else "relative_roughness"
     return contact.replace(**{name: BOX[group][0] / float(getattr(groups, group))})

@@ -194,7 +194,7 @@ def _enter(diagram: Diagram, place: tuple[int, int, int], solution: Solution) ->
 
 
 def _enter_lines(diagram: Diagram, place: tuple[int, int], curve: StribeckCurve, groups: Groups, unit: float) -> None:
-    """Locate the transitions of a row; a minimum above the boundary plateau is not the least friction, yet one."""
+    """Locate the transitions of a row; a minimum above the boundary plateau is not the minimum friction, yet one."""
     marks: dict[str, Landmark] = {mark.name: mark for mark in curve.transitions}
     for variable, name in MARKS.items():
         if name in marks:

@@ -40,7 +40,7 @@ class TransitionSpeeds:
     hydrodynamic : ndarray, shape (n,)
         Where asperities cause no more than 10 % of the friction; zero or infinite likewise.
     minimum : ndarray, shape (n,)
-        Where friction is least, nan where its minimum is not between the speeds asked for.
+        Where friction is at its minimum, nan where its minimum is not between the speeds asked for.
     error : ndarray, shape (3, n)
         Errors of the logarithms of the three, from the stated error of the shares and of the friction's slope [-].
     """
@@ -75,7 +75,7 @@ def transition_speeds(
     definition : {"balanced", "published"}
         Definition of the viscous friction.
     speeds : tuple of float
-        Least and largest speed group between which to look.
+        Smallest and largest speed group between which to look.
     narrowings : int
         Rounds in which a passage is narrowed, two evaluations each; with fewer the stated error is larger.
 
@@ -191,7 +191,7 @@ def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups) -> None:
 
 
 def _enter_lines(diagram: Diagram, row: tuple[int, int], groups: Groups, unit: float) -> None:
-    """Locate the transitions of a row between the least and the largest speed of the atlas."""
+    """Locate the transitions of a row between the smallest and largest speed of the atlas."""
     low, high = atlas.BOX["speed"]
 
     def groups_at(speed: Array) -> Groups:

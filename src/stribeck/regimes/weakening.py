@@ -37,10 +37,10 @@ CRITERIA: tuple[Criterion, ...] = get_args(Criterion)
 """What merging means: the slope of the curve is nowhere negative, or its minimum is as high as the boundary plateau mu0."""
 
 POINTS_PER_DECADE = 3
-"""Points on which the least slope of a curve is looked for, before it is located."""
+"""Points on which the minimum slope of a curve is looked for, before it is located."""
 
 SPEED_TOLERANCE = 1e-3
-"""Tolerance of ln(speed) at the least slope, on which the slope itself depends in second order."""
+"""Tolerance of ln(speed) at the minimum slope, on which the slope itself depends in second order."""
 
 MINIMUM_TOLERANCE = 1e-9
 """Tolerance of ln(speed) at the minimum."""
@@ -59,7 +59,7 @@ class Weakening:
     Attributes
     ----------
     speed : float
-        Speed group at which friction falls most steeply, or grows least.
+        Speed group at which friction falls most steeply, or grows most slowly.
     slope : float
         d mu/d ln(speed) over the published viscous friction there [-]: negative where friction weakens with speed,
         1 far down on the plateau, 0.4 to 0.7 on the hydrodynamic branch.
@@ -121,7 +121,7 @@ def weakening(
     *,
     rtol: float = 1e-6,
 ) -> Weakening:
-    r"""Tell whether friction falls with speed anywhere on a Stribeck curve, by the least slope on solved states.
+    r"""Tell whether friction falls with speed anywhere on a Stribeck curve, by the minimum slope on solved states.
 
     .. math:: \min_\lambda \frac{1}{\mu_f} \frac{d\mu}{d\ln\lambda} < 0
 
@@ -139,7 +139,7 @@ def weakening(
     Returns
     -------
     Weakening
-        Where the slope is least, and the minimum of friction behind that place, which may lie above the boundary plateau.
+        Where the slope is smallest, and the minimum of friction behind that place, which may lie above the boundary plateau.
 
     Raises
     ------
@@ -165,13 +165,13 @@ def weakening(
 
     i = min(max(1, int(np.argmin(values))), count - 2)
     minimize_scalar(slope, bounds=(coarse[i + 1], coarse[i - 1]), method="bounded", options={"xatol": SPEED_TOLERANCE})
-    least = min(slope.found, key=lambda s: slope.found[s])
-    above = [s for s in sorted(slope.found) if s > least and slope.found[s] > 0]
-    if slope.found[least] >= 0 or not above:
-        return Weakening(math.exp(least), slope.found[least])
-    s = float(brentq(slope, least, above[0], xtol=MINIMUM_TOLERANCE))
+    lowest = min(slope.found, key=lambda s: slope.found[s])
+    above = [s for s in sorted(slope.found) if s > lowest and slope.found[s] > 0]
+    if slope.found[lowest] >= 0 or not above:
+        return Weakening(math.exp(lowest), slope.found[lowest])
+    s = float(brentq(slope, lowest, above[0], xtol=MINIMUM_TOLERANCE))
     slope(s)
-    return Weakening(math.exp(least), slope.found[least], math.exp(s), slope.friction(s))
+    return Weakening(math.exp(lowest), slope.found[lowest], math.exp(s), slope.friction(s))
 
 
 @refuse_former

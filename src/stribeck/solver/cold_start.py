@@ -61,14 +61,14 @@ class RigidGuess:
         Height of the cylinder [u_Hz].
     flux_gap : float
         Flux gap of the rigid parabola, 4/3 of its height [u_Hz].
-    least_position, exit : float
+    minimum_position, exit : float
         The middle: a rigid film starts full films only [a].
     """
 
     speed: float
     offset: float
     flux_gap: float
-    least_position: float = 0.0
+    minimum_position: float = 0.0
     exit: float = 0.0
 
     def log_gap(self, mesh: Mesh) -> Array:

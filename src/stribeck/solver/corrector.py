@@ -85,7 +85,7 @@ class Follower:
             return self._kept(point)
         if point is None or point.state is None:
             return self._adopt(converge(guess, groups, self.rtol, self.tolerances))
-        if self.at_nodes < FINER_THAN_NEEDED:  # the panels of the central and the least gap failed alone
+        if self.at_nodes < FINER_THAN_NEEDED:  # the panels of the central and the minimum gap failed alone
             self._relax()
         refined = converge(point.state, groups, self.rtol, self.tolerances)
         adopted = self._adopt(refined)

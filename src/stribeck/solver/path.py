@@ -20,7 +20,7 @@ AIM = 3
 """What steps aim at where targets may be passed over: the smaller, the shorter the steps, and the better what lies between is
 interpolated."""
 
-LEAST_SKIPPED = 3
+MIN_SKIPPED = 3
 """Targets that a step has to pass over: filling fewer costs more than as many steps."""
 
 FILL_ORDER = 5
@@ -137,7 +137,7 @@ def follow(
         follower,
         targets[0],
         targets[-1],
-        Steps(0.5, LONGEST_STEP, SHORTEST_STEP, PREDICTOR_ORDER, AIM if moving else 4, LEAST_SKIPPED if moving else None),
+        Steps(0.5, LONGEST_STEP, SHORTEST_STEP, PREDICTOR_ORDER, AIM if moving else 4, MIN_SKIPPED if moving else None),
         targets=targets,
         stop_when=lambda _: filling.lost is not None,
         on_point=filling.arrive,

@@ -25,7 +25,7 @@ MAX_REFINEMENTS = 12
 NODAL_ROUNDING = 16 * 2.0**-52
 """Rounding of a nodal gap, the difference of terms of order one, as the polynomials between the nodes magnify it."""
 
-LEAST_GAP_TAIL = 0.02
+MIN_GAP_TAIL = 0.02
 """Part of the tolerance below which resolving the gap where it is read off alone does not help."""
 
 CLEARLY_FINER = 1.1
@@ -109,7 +109,7 @@ def converge(
             break
         tail *= shrink(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
         between = shrink(rtol / (estimate.between_nodes + 1e-300))
-        if gap_tail * between >= LEAST_GAP_TAIL * rtol:
+        if gap_tail * between >= MIN_GAP_TAIL * rtol:
             gap_tail *= between
         else:
             tail *= between

@@ -33,7 +33,7 @@ RTOL_RANGE = (1e-11, 1e-2)
 PROFILE_TAIL = 10.0
 """Legendre tail left in the logarithm of the gap between the nodes of a single solution, in units of its tolerance."""
 
-LEAST_ESTIMATE = 0.03
+MIN_ESTIMATE = 0.03
 """Part of the tolerance below which no error is stated, as estimates so small are not sure."""
 
 SURE_ESTIMATE = 1e-10
@@ -183,9 +183,9 @@ def finish(point: Point, groups: Groups, contact: LineContact | None, rtol: floa
     raise SolveError(point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}{untested(groups)}")
 
 
-def least_estimate(rtol: float) -> float:
+def minimum_estimate(rtol: float) -> float:
     """Return the smallest error that is stated for a tolerance."""
-    return max(LEAST_ESTIMATE * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
+    return max(MIN_ESTIMATE * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
 
 
 def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solution | None:
@@ -208,7 +208,7 @@ def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solut
         rtol=rtol,
         law=state.equations.law.name,
         observables=values,
-        relative_errors=np.maximum(estimate.relative, least_estimate(rtol)),
+        relative_errors=np.maximum(estimate.relative, minimum_estimate(rtol)),
         minimum_position_error=estimate.minimum_position,
         rounding_floor=estimate.floor,
         mesh=state.mesh,

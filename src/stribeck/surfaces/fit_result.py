@@ -144,7 +144,7 @@ class SelfAffineFit:
 
         Notes
         -----
-        The interval is that of a profile over the longest wave of the surface: from the least of ``value - 1.96 standard
+        The interval is that of a profile over the longest wave of the surface: from the smallest of ``value - 1.96 standard
         errors`` to the largest of ``value + 1.96 standard errors``, over longest waves from the scan on.  If neither a
         roll-off nor the longest wave was seen, ``beta`` has no lower bound, and its interval begins at 0.  How often the
         intervals hold the truth is in docs/surfaces.md, from ``benchmarks/surface_errors.py``.

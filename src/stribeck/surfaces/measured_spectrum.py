@@ -31,10 +31,10 @@ __all__ = ["MeasuredSpectrum", "Window", "line_density", "power_spectrum"]
 Window = Literal["hann", "none"]
 
 LONGEST = 2.5
-"""Least number of waves in the scan that is used: detrending and window take power from longer ones."""
+"""Smallest number of waves in the scan that is used: detrending and window take power from longer ones."""
 
 PIXELS = 4.0
-"""Least number of points in a wave that is used: power beyond the grid folds onto shorter ones."""
+"""Smallest number of points in a wave that is used: power beyond the grid folds onto shorter ones."""
 
 RINGS = 24
 """Rings in a decade of wave numbers, at most."""

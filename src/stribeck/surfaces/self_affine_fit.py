@@ -6,7 +6,7 @@ likelihood is Whittle's, and twice its distance from the best possible one is th
 .. math:: D = 2 \sum_b n_b \left[\frac{P_b}{M_b} - 1 - \ln\frac{P_b}{M_b}\right]
 
 The model is a power law with or without a roll-off, with or without a sharp long or short cut-off inside the scan, and with
-or without white noise of the instrument; the least deviance plus ``k ln(sum n)`` for its ``k`` parameters decides.
+or without white noise of the instrument; the smallest deviance plus ``k ln(sum n)`` for its ``k`` parameters decides.
 
 Source: [Whittle53]; [Schwarz78] for the penalty.
 """

@@ -19,7 +19,7 @@ from stribeck.quantities.units import InputError
 __all__ = ["Topography", "synthetic_topography"]
 
 FEWEST = {1: 64, 2: 32}
-"""Least points along a line and along each side of a map, for a spectrum of a decade."""
+"""Smallest points along a line and along each side of a map, for a spectrum of a decade."""
 
 MOST_MISSING = 0.1
 """Largest share of missing points that is filled."""

@@ -34,7 +34,7 @@ Film = Literal["large", "central", "uniform"]
 OUTLET = (0.37, 0.0072)
 FEEDBACK = 0.45
 SATURATION = 1.85
-"""Coefficients of :func:`contact_load_share`, by least largest error on 243 states of film ratio 3 to 10."""
+"""Coefficients of :func:`contact_load_share`, by smallest maximum error on 243 states of film ratio 3 to 10."""
 
 BOX = (Limit("film_ratio", 3.0), Limit("relative_roughness", 1e-4, 0.1), Limit("load", 1e-3, 0.7))
 

@@ -37,7 +37,7 @@ POWER = 0.325
 """Least-squares fit of ln(phi (-ln F)**5) over loads 1e-5 to 1e-1; [BP] print 0.510 = 0.325 pi/2."""
 
 CLOSED = (6.055, 4.462, 4.861, 1.498)
-"""a1, a2, b1, b2 of the closed form, with the least largest error."""
+"""a1, a2, b1, b2 of the closed form, with the smallest maximum error."""
 
 
 def phi_of(load: Value, form: PhiForm = "quadrature") -> Value:

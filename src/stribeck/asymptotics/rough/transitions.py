@@ -188,7 +188,7 @@ def speed_at_minimum(
 def friction_at_minimum(
     groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
 ) -> Value:
-    r"""Return the least friction of a Stribeck curve.
+    r"""Return the minimum friction of a Stribeck curve.
 
     .. math::
 

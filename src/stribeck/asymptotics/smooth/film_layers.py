@@ -124,7 +124,7 @@ def gap_outlet(groups: Groups, x: Value) -> Value:
     Notes
     -----
     Within 5 widths lambda**(2/5) of the edge the error is below 5.5 % of the largest gap there for speeds up to 0.001 and
-    falls as lambda**(2/5).  The least gap is
+    falls as lambda**(2/5).  The minimum gap is
     :data:`.constants.MINIMUM_CONSTANT` lambda**(3/5), at x = 1 + :data:`.constants.MINIMUM_POSITION` lambda**(2/5).
 
     Source: [BP] Section "Smooth limit", after Snoeijer, Eggers and Venner (2013).
@@ -242,7 +242,7 @@ def inlet(reach: float = 1e6, width: float = 0.25, order: int = 12) -> Layer:
 def outlet(reach: float = 1e6, width: float = 0.25, order: int = 12, film: float | None = None) -> Layer:
     """Solve the similarity problem of the outlet, for a given c or for that of the inlet; otherwise as :func:`inlet`.
 
-    The least gap over c is good to 1e-9 (``test_layers.py``), the fields to 2e-6.
+    The minimum gap over c is good to 1e-9 (``test_layers.py``), the fields to 2e-6.
     """
     return _solve(HalfLine(reach, width, order), inlet(reach, width, order).constant if film is None else film)
 

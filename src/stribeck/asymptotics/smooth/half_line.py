@@ -104,7 +104,7 @@ class HalfLine:
     Parameters
     ----------
     reach : float
-        Least half-width of the box.
+        Smallest half-width of the box.
     width : float
         Width of the panels near the edge.
     order : int

@@ -51,7 +51,7 @@ FRICTION_SLOPE = 4.0
 CENTRAL_GAP_FIT = (-0.841, 0.511, 0.032, 0.273)
 FLUX_GAP_FIT = (-0.882, 0.574, 0.127, -0.442)
 FRICTION_FIT = (3.69, 2.09, -1.10)
-"""Free coefficients of the laws for every speed, by least largest error on 241 speeds from 1e-12 to 1e8."""
+"""Free coefficients of the laws for every speed, by smallest maximum error on 241 speeds from 1e-12 to 1e8."""
 
 
 @formula(

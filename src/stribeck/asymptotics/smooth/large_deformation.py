@@ -105,7 +105,7 @@ def flux_gap_large(groups: Groups) -> Value:
     source="ours",
 )
 def minimum_gap_large(groups: Groups) -> Value:
-    r"""Return the least gap, at the outlet, at large deformation, speed group -> 0.
+    r"""Return the minimum gap, at the outlet, at large deformation, speed group -> 0.
 
     .. math:: \min h = 0.33794 \lambda^{3/5} = 0.75801 \, c \lambda^{3/5}
 

@@ -136,10 +136,10 @@ def gap_chart(answer: Answer, palette: Palette) -> Options:
     scale = contact.hertz.indentation / u
     rms = contact.alpha * float(contact.groups.relative_roughness)
     positive = values[values > 0]
-    least = float(positive.min()) if len(positive) else 1e-6
-    shown = [least, float(values.max())]
+    lowest = float(positive.min()) if len(positive) else 1e-6
+    shown = [lowest, float(values.max())]
     series = [line("gap", "gap", profile.x * x_scale, np.where(values > 0, values, np.nan) * scale, palette.ink, 2.2)]
-    if rms > 0.03 * least:
+    if rms > 0.03 * lowest:
         shown.append(rms)
         series.append(line("rms", "roughness", np.array([-x_end, x_end]), np.full(2, rms * scale), palette.grey, 1.2, [6, 4]))
     series += _thin_series(answer, ("gap",), x_scale, scale, palette)
@@ -166,9 +166,9 @@ def pressure_chart(answer: Answer, palette: Palette) -> Options:
     ]
     series += _thin_series(answer, ("pressure", "contact_pressure", "fluid_pressure"), x_scale, scale, palette)
     most = max(1.0, float(profile.pressure.max()), float(profile.fluid_pressure.max())) * scale
-    least = min(0.0, float(profile.fluid_pressure.min()), float(profile.pressure.min())) * scale
+    lowest = min(0.0, float(profile.fluid_pressure.min()), float(profile.pressure.min())) * scale
     high = round_up(1.02 * most)
-    low = 0.0 if least > -0.01 * high else -round_up(-1.02 * least)
+    low = 0.0 if lowest > -0.01 * high else -round_up(-1.02 * lowest)
     y = linear_axis(f"pressure ({name})", low, high, palette)
     axis = with_unit("pressure", linear_axis(f"position x ({x_unit}); fluid enters left", -x_end, x_end, palette))
     options = chart(palette, axis, y, series)
@@ -211,9 +211,9 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
         series.append(line("end", "boundary ends", np.where(inside, b, np.nan), rows, palette.contact, 1.8, [7, 3]))
         inside = (h > low) & (h < high)
         series.append(line("begin", "hydrodynamic begins", np.where(inside, h, np.nan), rows, palette.fluid, 1.8))
-        least = diagram.minimum[known]
-        least = np.where((least > low) & (least < high), least, np.nan)
-        series.append(line("minimum", "minimum friction", least, rows, palette.mark, 1.6, [2, 3]))
+        lowest = diagram.minimum[known]
+        lowest = np.where((lowest > low) & (lowest < high), lowest, np.nan)
+        series.append(line("minimum", "minimum friction", lowest, rows, palette.mark, 1.6, [2, 3]))
     height = min(max(1e6 * contact.roughness, float(roughness[0])), float(roughness[-1]))
     series.append(line("path", "path of the speed", np.array([low, high]), np.full(2, height), palette.grey, 1.0, [4, 4]))
     series.append(marker("point", [min(max(contact.speed, low), high), height], palette))

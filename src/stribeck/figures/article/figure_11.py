@@ -68,7 +68,7 @@ def _finding(data: xarray.Dataset) -> str:
     finding = (
         f"up to roughness {SMOOTHEST:g} the criterion of the paper, with phi corrected, gives {_span(corrected)} times the "
         f"speed at which the fluid carries 5 % of the load and {_span(half)} times that of one half; as printed "
-        f"{_span(printed)} times the former, deep in the boundary regime. The printed speed of least friction is "
+        f"{_span(printed)} times the former, deep in the boundary regime. The printed speed of minimum friction is "
         f"{_span(minimum)} times the solved; our formulas for the 5 % and the minimum are within {off:.0f} %. Falling "
         f"friction ends at roughness {merging} for loads {LOADS[0]}, {LOADS[1]}, by our formula at {formula}."
     )

@@ -64,7 +64,7 @@ def _compute(report: Report) -> xarray.Dataset:
     excess = float(curve.friction.max()) - 1
     finding = (
         f"boundary up to a Hersey number of {hersey * marks['boundary_end'][0]:.2g}, mixed up to "
-        f"{hersey * marks['hydrodynamic_begin'][0]:.2g}; least friction {marks['minimum'][1]:.5f} at "
+        f"{hersey * marks['hydrodynamic_begin'][0]:.2g}; minimum friction {marks['minimum'][1]:.5f} at "
         f"{hersey * marks['minimum'][0]:.3g} (force balance: {fair['minimum'][1]:.5f} at {hersey * fair['minimum'][0]:.3g}). "
         f"The printed friction exceeds mu_0 by {100 * excess:.1f} % before it falls, since its fluid part is up to "
         f"{float((curve.friction_viscous / balanced.friction_viscous).max()):.0f} times that of the force balance."
@@ -98,7 +98,7 @@ def _draw_curve(axes: Axes, data: xarray.Dataset) -> None:
     axes.loglog(x, data.friction_published, color=style.INK, lw=2.2, label="as published")
     axes.plot(x, data.friction_balanced, color=style.MARK, lw=1.4, ls=style.DASHED, label="by the balance of forces")
     axes.plot(x, data.friction_contact, color=style.CONTACT, lw=1.2, ls=style.DOTTED, label="part from asperities")
-    axes.plot(data.minimum_hersey, data.minimum_friction, "o", color=style.INK, ms=7, mec="white", label="least friction")
+    axes.plot(data.minimum_hersey, data.minimum_friction, "o", color=style.INK, ms=7, mec="white", label="minimum friction")
     axes.set(ylim=(8e-3, 4), ylabel=r"friction coefficient $\mu$")
     axes.tick_params(labelbottom=False)
     load, roughness = (style.power(data.attrs[f"{name}_group"]) for name in ("load", "roughness"))

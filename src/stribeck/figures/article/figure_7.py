@@ -49,7 +49,7 @@ def _compute(report: Report) -> xarray.Dataset:
     fluid_film = over(curves, "friction_contact") < HYDRODYNAMIC_SHARE * friction
     off, ours = (np.where(fluid_film, friction / x - 1, np.nan) for x in (law, uniform))
     minima = [curve.minimum for curve in curves]
-    least = {
+    lowest = {
         "minimum_hersey": [m.solution.hersey_number if m else math.nan for m in minima],
         "minimum_friction": [m.friction if m else math.nan for m in minima],
         "minimum_law": [float(hydrodynamic.friction.function(m.solution.groups)) if m else math.nan for m in minima],
@@ -65,7 +65,7 @@ def _compute(report: Report) -> xarray.Dataset:
         f"times; over mu_f,th they lie from {100 * np.nanmin(off):.1f} to {100 * np.nanmax(off):+.1f} % of the line y = x, "
         f"the error of mu_f,th itself (over our uniform law within {100 * np.nanmax(np.abs(ours)):.2f} %). The slope grows "
         f"from {np.nanmin(slopes):.2f} to {np.nanmax(slopes):.2f}. Lambda at the minimum falls from "
-        f"{np.nanmax(least['minimum_lambda_ratio']):.1f} to {np.nanmin(least['minimum_lambda_ratio']):.1f} with roughness; "
+        f"{np.nanmax(lowest['minimum_lambda_ratio']):.1f} to {np.nanmin(lowest['minimum_lambda_ratio']):.1f} with roughness; "
         f"load {CASES[-1][0]} with roughness {CASES[-1][1]} has no minimum below its plateau. The paper names only load 0.1 "
         "with roughness 1e-4 and prints no table of the others."
     )
@@ -81,7 +81,7 @@ def _compute(report: Report) -> xarray.Dataset:
         "slope": column("speed", slopes, "d ln friction / d ln Hersey number of the first case, where hydrodynamic"),
         "predicted_lambda_ratio": column(("predicted_load", "predicted_roughness"), predicted, "Lambda at the minimum, law"),
     }
-    variables |= {name: column("case", values, f"{name.replace('_', ' ')} of friction") for name, values in least.items()}
+    variables |= {name: column("case", values, f"{name.replace('_', ' ')} of friction") for name, values in lowest.items()}
     coords = case_coords() | {
         "speed": column("speed", curves[0].values, "speed group lambda"),
         "predicted_load": column("predicted_load", LOADS, "load group"),
@@ -124,7 +124,7 @@ def _draw_curves(axes: Axes, data: xarray.Dataset, x: str, minimum: str, labels:
     for i, look, label in drawn_cases(data):
         axes.loglog(data[x][i], data.friction[i], markevery=2, label=label if labels else None, **look)
         if np.isfinite(data[minimum].values[i]):
-            words = "least friction" if i == 0 and not labels else None
+            words = "minimum friction" if i == 0 and not labels else None
             axes.plot(data[minimum][i], data.minimum_friction[i], "v", color=style.MARK, ms=5, zorder=5, label=words, ls="")
 
 

@@ -11,7 +11,7 @@ from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.rough import mixed, transitions
 from stribeck.contacts.line import Groups
 from stribeck.curves.landmarks import Landmark
-from stribeck.figures.article.mixed_panels import LARGEST_FILM, LARGEST_KAPPA, LEAST_FILM, draw
+from stribeck.figures.article.mixed_panels import LARGEST_FILM, LARGEST_KAPPA, MIN_FILM, draw
 from stribeck.figures.article.stribeck_cases import CASES, LOADS, REPORTED, case_coords, over, report_variables, solved_cases
 from stribeck.figures.making import Work, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
@@ -51,7 +51,7 @@ def _compute(report: Report) -> xarray.Dataset:
     found = [[_minimum(work, LOADS[i], KAPPAS[j], speed) for j, speed in enumerate(row)] for i, row in enumerate(expected)]
     speeds = np.array([[mark.value for mark in row] for row in found])
     ratio = np.array([[mark.solution.lambda_ratio for mark in row] for row in found])
-    least = np.array([[mark.friction for mark in row] for row in found])
+    lowest = np.array([[mark.friction for mark in row] for row in found])
     film_ratio = FILM_CONSTANT * speeds**0.6 / kappa
     ratios: dict[str, Array] = {
         form: np.asarray(transitions.lambda_ratio_at_minimum.function(at, form=form)) for form in FORMS
@@ -67,8 +67,8 @@ def _compute(report: Report) -> xarray.Dataset:
     alone = (numbers / float(transitions.weakening_number(Groups(1.0, 1.0, 1.0)))) ** 1.5
     against = transitions.lambda_ratio_at_minimum.function(Groups(1.0, 1.0, alone), form="exact")
     errors = {f"{name.removeprefix('law_')}_error": law / friction - 1 for name, law in laws.items()}
-    near = (film > LEAST_FILM) & (film < LARGEST_FILM) & (relative <= LARGEST_KAPPA)
-    finding = _finding(errors, near, ratio, ratios, least, minima)
+    near = (film > MIN_FILM) & (film < LARGEST_FILM) & (relative <= LARGEST_KAPPA)
+    finding = _finding(errors, near, ratio, ratios, lowest, minima)
     grid, map_ = ("case", "speed"), ("minimum_load", "kappa")
     variables = {
         "minimum_roughness": column(map_, at.roughness, "roughness group h_rms"),
@@ -81,17 +81,17 @@ def _compute(report: Report) -> xarray.Dataset:
         "large_error": column(grid, errors["large_error"], "relative error of law_large against the solver"),
         "uniform_error": column(grid, errors["uniform_error"], "relative error of law_uniform against the solver"),
         "film_ratio": column(grid, film, "film ratio c lambda^(3/5)/kappa"),
-        "speed_at_minimum": column(map_, speeds, "speed group of least friction, solved"),
+        "speed_at_minimum": column(map_, speeds, "speed group of minimum friction, solved"),
         "lambda_ratio": column(map_, ratio, "central gap over h_rms/alpha at least friction, solved"),
         "film_ratio_at_minimum": column(
             map_, film_ratio, "c lambda^(3/5)/kappa at least friction, solved: the paper's Lambda"
         ),
-        "least_friction": column(map_, least, "least friction coefficient, solved"),
+        "minimum_friction": column(map_, lowest, "minimum friction coefficient, solved"),
         "number": column(map_, transitions.weakening_number(at), "k of the solved minima"),
         "lambda_of_number": column("k", against, "Lambda at the minimum by Lambert's W"),
     }
     variables |= {f"lambda_{form}": column(map_, value, f"Lambda at the minimum, {form}") for form, value in ratios.items()}
-    variables |= {name: column(map_, value, f"least friction, {name.split('_')[1]}") for name, value in minima.items()}
+    variables |= {name: column(map_, value, f"minimum friction, {name.split('_')[1]}") for name, value in minima.items()}
     coords = case_coords() | {
         "speed": column("speed", curves[0].values, "speed group lambda"),
         "minimum_load": column("minimum_load", LOADS, "load group"),
@@ -112,19 +112,19 @@ def _minimum(work: Work, load: float, kappa: float, speed: float) -> Landmark:
 
 
 def _finding(
-    errors: dict[str, Array], near: Flags, ratio: Array, ratios: dict[str, Array], least: Array, minima: dict[str, Array]
+    errors: dict[str, Array], near: Flags, ratio: Array, ratios: dict[str, Array], lowest: Array, minima: dict[str, Array]
 ) -> str:
     worst = {name: 100 * np.abs(error[near]).max() for name, error in errors.items()}
     smoothest = 100 * np.abs(errors["large_error"][0][near[0]]).max()
     exact, expansion, ours = (100 * np.abs(ratios[form] / ratio - 1).max(axis=0) for form in FORMS)
-    corrected, printed, best = (minima[f"friction_{form}"] / least for form in ("exact", "printed", "uniform"))
+    corrected, printed, best = (minima[f"friction_{form}"] / lowest for form in ("exact", "printed", "uniform"))
     finding = (
-        f"for film ratios {LEAST_FILM:g} to {LARGEST_FILM:g} and kappa up to {LARGEST_KAPPA:g} the paper's friction is up to "
+        f"for film ratios {MIN_FILM:g} to {LARGEST_FILM:g} and kappa up to {LARGEST_KAPPA:g} the paper's friction is up to "
         f"{worst['large_error']:.0f} % off ({smoothest:.0f} % at kappa = {KAPPAS[2]:g}), ours {worst['uniform_error']:.0f} %. "
         f"Lambda grows from {ratio.min():.1f} to {ratio.max():.1f}; Lambert's W is within {exact[0]:.1f} % of it at kappa = "
         f"{KAPPAS[0]:g}, {exact[4]:.0f} % at {KAPPAS[4]:g} and {exact[-1]:.0f} % at {KAPPAS[-1]:g}, its expansion within "
-        f"{expansion[0]:.1f}, {expansion[4]:.0f} and {expansion[-1]:.0f} %, ours within {ours.max():.0f} %. Least friction by "
-        f"the formula is {corrected[:, 0].min():.2f} of the solved at kappa = {KAPPAS[0]:g} and {corrected[:, 4].min():.2f} "
+        f"{expansion[0]:.1f}, {expansion[4]:.0f} and {expansion[-1]:.0f} %, ours within {ours.max():.0f} %. Minimum friction "
+        f"by formula is {corrected[:, 0].min():.2f} of the solved at kappa = {KAPPAS[0]:g} and {corrected[:, 4].min():.2f} "
         f"at {KAPPAS[4]:g}; with the printed power -2/3 it is {printed.min():.2f} to {printed.max():.2f} of it, and ours "
         f"within {100 * np.abs(best - 1).max():.1g} %."
     )
@@ -135,7 +135,7 @@ FIGURE = PaperFigure(
     name="9",
     title="Hydrodynamic-to-mixed lubrication transition",
     claim="the formula for friction matches the numbers closely around the minimum and over much of the mixed regime; Lambda "
-    "at the minimum is not constant but grows as roughness falls, and its expansion matches remarkably well; least friction "
+    "at the minimum is not constant but grows as roughness falls, and its expansion matches remarkably well; minimum friction "
     "compares well with its formula.",
     compute=_compute,
     draw=draw,

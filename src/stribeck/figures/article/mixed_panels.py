@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LEAST_FILM, LARGEST_FILM, LARGEST_KAPPA = 3.0, 20.0, 0.1
+MIN_FILM, LARGEST_FILM, LARGEST_KAPPA = 3.0, 20.0, 0.1
 """Film ratios and relative roughness within which the formulas for friction are compared."""
 
 FORMS = {
@@ -38,7 +38,7 @@ def draw(data: xarray.Dataset) -> Figure:
     for i, look, label in drawn_cases(data):
         x = data.hydrodynamic_friction[i]
         a.loglog(x, data.friction[i], markevery=2, label=label, **look)
-        shown = data.film_ratio[i] > LEAST_FILM
+        shown = data.film_ratio[i] > MIN_FILM
         a.plot(x.where(shown), data.law_large[i].where(shown), color=style.INK, ls=style.DASHED, lw=1.0, zorder=4)
         a.plot(x.where(shown), data.law_uniform[i].where(shown), color=style.MARK, ls=style.DOTTED, lw=1.6, zorder=5)
         if float(data["roughness"][i] / data["load"][i]) <= LARGEST_KAPPA:
@@ -74,15 +74,15 @@ def _draw_lambda(axes: Axes, data: xarray.Dataset) -> None:
 def _draw_friction(axes: Axes, ratios: Axes, data: xarray.Dataset) -> None:
     for i, (load, colour) in enumerate(zip(data.minimum_load.values, LOAD_COLOURS, strict=True)):
         x = data.minimum_roughness[i]
-        axes.loglog(x, data.least_friction[i], "o", color=colour, ms=5, label=f"solved, load {load:g}")
+        axes.loglog(x, data.minimum_friction[i], "o", color=colour, ms=5, label=f"solved, load {load:g}")
         for name, (label, dashes) in FRICTIONS.items():
             shown = {"color": colour, "ls": dashes, "lw": 1.2, "label": label if i else None}
             axes.plot(x, data[name][i], **shown)
-            ratios.loglog(x, data[name][i] / data.least_friction[i], **shown)
+            ratios.loglog(x, data[name][i] / data.minimum_friction[i], **shown)
     ratios.axhline(1.0, color=style.GREY, lw=0.8)
-    axes.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"least friction $\mu_\mathrm{min}$", ylim=(2e-5, 5))
+    axes.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"minimum friction $\mu_\mathrm{min}$", ylim=(2e-5, 5))
     ratios.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"formula over solver", ylim=(0.03, 2))
-    style.letter(axes, "c", "least friction")
+    style.letter(axes, "c", "minimum friction")
     style.letter(ratios, "+", "the same over the solved: corrected and printed")
     style.legend(axes, loc="upper left")
 

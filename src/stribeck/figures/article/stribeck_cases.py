@@ -54,7 +54,7 @@ def report_variables() -> dict[str, Column]:
     """Return the reported ranges of Lambda along the dimension ``report``, whose names are in the attribute ``reports``."""
     low, high = zip(*REPORTED.values(), strict=True)
     return {
-        "reported_low": column("report", low, "least Lambda at the transition that the paper quotes from experiments"),
+        "reported_low": column("report", low, "minimum Lambda at the transition that the paper quotes from experiments"),
         "reported_high": column("report", high, "largest Lambda at the transition that the paper quotes from experiments"),
         "textbook": column((), TEXTBOOK, "Lambda at the transition by textbooks"),
     }
