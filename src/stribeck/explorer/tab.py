@@ -50,6 +50,10 @@ OPENED: dict[str, Answer] = {}
 OPENED_LOCK = threading.Lock()
 """Answers to the last inputs with which pages opened."""
 
+MOST_WAITING = 50
+WAITING: list[Tab] = []
+"""Pages that were sent and whose browser did not answer yet; of more than so many the oldest is given up."""
+
 TABS: weakref.WeakValueDictionary[str, Tab] = weakref.WeakValueDictionary()
 """Open pages, by the names of their clients; a page that is closed drops out."""
 
@@ -356,11 +360,18 @@ class Tab:
 
     async def open(self) -> None:
         """Do what needs the browser: its theme, and what comes at rest."""
+        WAITING.append(self)
+        while len(WAITING) > MOST_WAITING:
+            WAITING.pop(0).page.client.delete()
         try:
             await self.page.client.connected(timeout=30)
         except TimeoutError:  # the browser went away at once
             if not self.closed:
                 self.page.client.delete()
+        finally:
+            if self in WAITING:
+                WAITING.remove(self)
+        if self.closed:
             return
         with self.page.client:
             for name, (text, sentence) in self.problems.items():
