@@ -1,4 +1,4 @@
-"""Exit codes, sentences on stderr, and streams that take no more."""
+"""Exit codes, tables on stdout, sentences on stderr, and streams that take no more."""
 
 from __future__ import annotations
 
@@ -8,9 +8,12 @@ import signal
 import sys
 from contextlib import suppress
 from types import FrameType
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from stribeck.files.writing import reason_of
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 FAILED, BAD_INPUT, INTERRUPTED, NOBODY_READS = 1, 2, 130, 141
 """Exit codes besides 0; the last two are what a shell gives to processes that end by SIGINT and SIGPIPE."""
@@ -73,6 +76,18 @@ def prepare_streams() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
+
+
+def stdout_console() -> Console:
+    """Return the console that tables go to."""
+    from rich.console import Console
+
+    class Table(Console):
+        def on_broken_pipe(self) -> None:
+            """Let the command know, instead of ending the process as rich does."""
+            raise BrokenPipeError
+
+    return Table(file=sys.stdout)
 
 
 class Interrupted:

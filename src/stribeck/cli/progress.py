@@ -1,4 +1,4 @@
-"""Progress on a terminal, tables on stdout, and where Ctrl-C takes effect."""
+"""Progress on a terminal, and when Ctrl-C takes effect."""
 
 from __future__ import annotations
 
@@ -8,25 +8,10 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from stribeck.cli.exits import Interrupted
 from stribeck.solver.solve import SolveError
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-
-def stdout_console() -> Console:
-    """Return the console that tables go to."""
-    from rich.console import Console
-
-    class Table(Console):
-        def on_broken_pipe(self) -> None:
-            """Let the command know, instead of ending the process as rich does."""
-            raise BrokenPipeError
-
-    return Table(file=sys.stdout)
 
 
 class Progress:

@@ -22,8 +22,8 @@ from stribeck.cli.exits import (
     complain,
     prepare_streams,
     silence,
+    stdout_console,
 )
-from stribeck.cli.progress import stdout_console
 from stribeck.cli.solving import curve_command, figures_command, regimes_command, solve_command
 from stribeck.cli.studies import explore_command, fit_command, surface_command, sweep_command
 from stribeck.quantities.outcome import Outcome

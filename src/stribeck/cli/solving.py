@@ -26,8 +26,8 @@ from stribeck.cli.arguments import (
     curve_arguments,
     read_case,
 )
-from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain
-from stribeck.cli.progress import interruptible, stdout_console
+from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain, stdout_console
+from stribeck.cli.progress import interruptible
 from stribeck.contacts.friction import coefficients
 from stribeck.contacts.line import Groups
 from stribeck.curves.elasticities import friction_elasticities
@@ -86,7 +86,8 @@ def solve_command(
     loaded = read_case(case, groups, boundary_friction, beta, law)
     tolerance = as_rtol(rtol, loaded)
     mu, b = as_number("boundary_friction", boundary_friction), as_number("beta", beta)
-    coefficients(loaded.contact if loaded else None, mu, b)
+    if mu is not None or b is not None:
+        coefficients(None, mu, b)
     pictures = check_pictures(plot, force)
     problem = loaded.contact if loaded else Groups(*map(as_group, AXES, groups or ()))
     solution = solve(problem, rtol=tolerance, law=law)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from stribeck.cli.arguments import CaseFile, File, Flag, Number, Word, as_number, as_whole, check_pictures, need_extra
-from stribeck.cli.exits import FAILED, INTERRUPTED, complain
-from stribeck.cli.progress import interruptible, stdout_console
+from stribeck.cli.exits import FAILED, INTERRUPTED, complain, stdout_console
+from stribeck.cli.progress import interruptible
 from stribeck.files.writing import check_output
 from stribeck.quantities.units import InputError
 
