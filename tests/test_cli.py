@@ -291,8 +291,8 @@ def test_regimes_tells_the_regime_the_transitions_and_what_moves_friction(capsys
     assert re.search(r"fluid carries 5% of the load +367\.9 µm/s +2\.72x slower", answer.out)
     assert re.search(r"fluid carries 50% of the load +2\.795 mm/s +2\.79x faster", answer.out)
     assert re.search(r"minimum of friction +27\.6 mm/s +27\.6x faster +0\.03469", answer.out)
-    assert re.search(r"roughness +1 µm +\+0\.523 +\+5\.1 % friction", answer.out)
-    assert "The dry friction coefficient moves friction most: 10 % less of it lowers friction by 9.89 %" in answer.out
+    assert re.search(r"roughness +1 µm +\+0\.529 +\+5\.2 % friction", answer.out)
+    assert "The dry friction coefficient moves friction most: 10 % less of it lowers friction by 9.95 %" in answer.out
     assert "…" not in answer.out
 
 
