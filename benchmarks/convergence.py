@@ -28,7 +28,7 @@ from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver.cold_start import cold_start
-from stribeck.solver.refinement import judge
+from stribeck.solver.refinement import verify
 
 STATES = {
     "mixed": (1e-5, 0.1, 1e-4),
@@ -54,7 +54,7 @@ def head() -> str:
 
 def observed(state: State) -> tuple[np.ndarray, float, np.ndarray]:
     """Return the observables of a state, its estimated error and what errors are relative to."""
-    point = judge(state, state.groups, FineOperators(state.mesh), 1e-6)
+    point = verify(state, state.groups, FineOperators(state.mesh), 1e-6)
     values = np.array([getattr(point.values, name) for name in NAMES])
     return values, point.estimate.total, point.estimate.scales
 

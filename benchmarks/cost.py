@@ -23,7 +23,7 @@ from stribeck.equations.line import Operators
 from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.cold_start import cold_start
-from stribeck.solver.refinement import judge, mesh_tolerances_for, order_for, values_of
+from stribeck.solver.refinement import mesh_tolerances_for, order_for, values_of, verify
 
 RUNS = 5
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
@@ -69,7 +69,7 @@ def parts(groups: sb.Groups, rtol: float, runs: int) -> list[str]:
         "its factorisation": lambda: lapack.dgetrf(jacobian),
         "solve with its factors": lambda: lapack.dgetrs(*factors, residual),
         "observables": lambda: values_of(state, groups),
-        "observables and error estimate": lambda: judge(state, groups, fine, rtol),
+        "observables and error estimate": lambda: verify(state, groups, fine, rtol),
         "choice of a mesh": lambda: mesh_for(state, groups, law, order, *tolerances),
         "operators of a mesh": lambda: Operators(mesh).deflection_of_gradient,
     }

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.contact_laws.scaled import ShiftedShape
+from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import observables
@@ -61,7 +61,7 @@ def _refined_values(solution, extra_nodes=6, doublings=5):
     else:
         light, lift = groups.load, LIFT if groups.speed == 0 and math.isinf(groups.law.lowest) else 0.0
         shift = -lift * groups.relative_roughness
-        base = dataclasses.replace(groups, law=ShiftedShape(groups.law, lift))
+        base = dataclasses.replace(groups, law=ShiftedLaw(groups.law, lift))
     gap = np.maximum(solution.profile(mesh.nodes).gap - shift, 1e-3 * solution.nodal_gap.min())
     flux_gap = reynolds.flux_gap(gap, mesh.weights)
     equations = Equations(Operators(mesh), base.speed, contact_law(base), flux_gap**2)

@@ -10,7 +10,7 @@ from numpy.polynomial import chebyshev as reference
 import stribeck as sb
 from stribeck.atlas import grid as atlas_grid
 from stribeck.atlas import table as atlas_table
-from stribeck.curves.elasticities import friction_elasticities
+from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.evidence import atlas_build
 from stribeck.evidence.atlas_certificate import FRICTIONS, QUANTITIES, certify, compare, solved
 
@@ -213,7 +213,7 @@ def test_something_else_than_groups_is_refused():
 def test_the_table_is_small_and_says_where_it_comes_from():
     path = atlas_table.files("stribeck.atlas").joinpath(atlas_table.FILE)
     assert path.stat().st_size < 5e6
-    about = sb.atlas.about()
+    about = sb.atlas.info()
     assert about["states"] > 50_000
     assert len(about["solver_hash"]) == 64
     assert about["same_solver"] is (about["solver_hash"] == atlas_table.solver_hash())
@@ -283,7 +283,7 @@ def test_a_build_goes_on_with_what_is_kept(tmp_path):
     assert len(calls) == 1
 
 
-# --- curves, diagrams and elasticities read off it ---
+# --- curves, diagrams and sensitivities read off it ---
 
 
 @pytest.fixture(scope="module")
@@ -324,8 +324,8 @@ def test_a_curve_knows_what_it_does_not_have(contact):
 
 
 def test_elasticities_read_off_it_are_the_solved_ones(contact):
-    _, right = friction_elasticities(contact)
-    nothing, found = friction_elasticities(contact, method="atlas")
+    _, right = friction_sensitivities(contact)
+    nothing, found = friction_sensitivities(contact, method="atlas")
     assert nothing is None
     assert found == pytest.approx(right, abs=2e-4)
 

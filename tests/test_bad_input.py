@@ -20,14 +20,14 @@ def nothing_is_solved(monkeypatch):
         raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "this was not refused")
 
     monkeypatch.setattr(solving, "solve", solve)
-    monkeypatch.setattr(solving, "friction_elasticities", solve)
+    monkeypatch.setattr(solving, "friction_sensitivities", solve)
     checked = sb.stribeck_curve
 
     def curve(*arguments, **options):
         # Its own checks stay; the first point would be solved after them.
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("stribeck.curves.stribeck_curve.follow", solve)
-            patch.setattr("stribeck.curves.stribeck_curve.automatic_speeds", solve)
+            patch.setattr("stribeck.curves.stribeck_curve.solve_along", solve)
+            patch.setattr("stribeck.curves.stribeck_curve.automatic_speed_range", solve)
             return checked(*arguments, **options)
 
     monkeypatch.setattr(solving, "stribeck_curve", curve)

@@ -68,13 +68,13 @@ def test_each_state_has_the_error_it_states(found):
 
 
 def test_a_neighbour_is_cheaper_than_a_cold_start(monkeypatch):
-    starts, follow = [], chain.Follower.__call__
+    starts, follow = [], chain.Corrector.__call__
 
     def counted(self, s, history):
         starts.append(not history)
         return follow(self, s, history)
 
-    monkeypatch.setattr(chain.Follower, "__call__", counted)
+    monkeypatch.setattr(chain.Corrector, "__call__", counted)
     assert sb.solve_batch(crowd()).ok.all()
     assert sum(starts) == 1
 
@@ -140,12 +140,12 @@ def test_a_state_that_rounding_bounds_is_kept_with_its_outcome():
 
 def test_a_state_that_is_lost_costs_no_other(monkeypatch):
     groups = crowd()
-    wanted, follow = float(groups.speed[5]), chain.Follower.__call__
+    wanted, follow = float(groups.speed[5]), chain.Corrector.__call__
 
     def failing(self, s, history):
         return None if self.groups_at(s).speed == wanted else follow(self, s, history)
 
-    monkeypatch.setattr(chain.Follower, "__call__", failing)
+    monkeypatch.setattr(chain.Corrector, "__call__", failing)
     found = sb.solve_batch(groups)
     assert np.flatnonzero(~found.ok).tolist() == [5]
     assert found.outcome[5] is Outcome.PATH_LOST
@@ -156,7 +156,7 @@ def test_an_error_of_the_program_is_no_outcome_of_a_state(monkeypatch):
     def broken(self, s, history):
         raise ZeroDivisionError("a fault")
 
-    monkeypatch.setattr(chain.Follower, "__call__", broken)
+    monkeypatch.setattr(chain.Corrector, "__call__", broken)
     with pytest.raises(ZeroDivisionError, match="a fault"):
         sb.solve_batch(crowd())
 

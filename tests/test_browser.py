@@ -381,12 +381,12 @@ def test_it_is_dark_where_the_system_is(open_page):
 def test_the_distances_are_those_of_the_regimes_command(open_page):
     page = open_page()
     page.wait_for_selector(".more tr[data-key=roughness]")
-    from stribeck.regimes.distances import transition_distances
+    from stribeck.regimes.margins import regime_margins
 
-    for distance in transition_distances(server.example().contact).distances:
-        cells = page.locator(f".more tr[data-key={distance.name}] td[data-value]")
+    for margin in regime_margins(server.example().contact).margins:
+        cells = page.locator(f".more tr[data-key={margin.name}] td[data-value]")
         shown = [float(cell.get_attribute("data-value")) for cell in cells.all()]
-        marks = [mark for mark in (distance.less, distance.more) if mark is not None]
+        marks = [mark for mark in (margin.less, margin.more) if mark is not None]
         assert sorted(shown) == pytest.approx(sorted(mark.factor for mark in marks), rel=1e-6)
 
 

@@ -303,7 +303,7 @@ def test_regimes_as_json_gives_transitions_as_factors_of_the_speed(capsys):
     for mark in found["transitions"]:
         assert mark["factor"] == pytest.approx(mark["value"] / 0.001)
     assert len(found["transitions"]) == 4
-    assert set(found["elasticities"]) == {
+    assert set(found["sensitivities"]) == {
         *("speed", "load", "viscosity", "modulus", "radius", "roughness", "alpha", "beta", "boundary_friction")
     }
     assert found["moves_friction_most"] == "boundary_friction"
@@ -554,11 +554,11 @@ AT_ONCE = """
 import os, signal, sys
 import stribeck.curves.stribeck_curve, stribeck.cli
 signal.signal(signal.SIGINT, signal.default_int_handler)
-whole = stribeck.curves.stribeck_curve.automatic_speeds
+whole = stribeck.curves.stribeck_curve.automatic_speed_range
 def interrupted(*arguments):
     os.kill(os.getpid(), signal.SIGINT)
     return whole(*arguments)
-stribeck.curves.stribeck_curve.automatic_speeds = interrupted
+stribeck.curves.stribeck_curve.automatic_speed_range = interrupted
 sys.exit(stribeck.cli.main(sys.argv[1:]))
 """
 

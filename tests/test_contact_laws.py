@@ -29,7 +29,7 @@ def case(request):
 def test_the_law_of_the_paper_falls_by_e_over_kappa():
     law = of(0.25, 0.005)
     assert law.name == "exponential"
-    assert math.isclose(law.decay, 0.02)
+    assert math.isclose(law.decay_length, 0.02)
     assert law.pressure(np.zeros(1))[0] == pytest.approx(2.0, rel=1e-14)
     assert law.pressure(np.array([0.06]))[0] == pytest.approx(2.0 * math.exp(-3), rel=1e-14)
 
@@ -38,7 +38,7 @@ def test_smooth_surfaces_have_no_contact_pressure():
     law, gap = of(0.1, 0.0), np.array([0.0, 1e-8, 3.0])
     p = law.pressure(gap)
     assert isinstance(law, NoContact)
-    assert law.decay == 0
+    assert law.decay_length == 0
     for values in (p, law.slope(gap, p), law.load_derivative(gap, p), law.roughness_derivative(gap, p)):
         assert np.array_equal(values, np.zeros(3))
     assert np.array_equal(law.log_pressure(gap), np.full(3, -np.inf))
@@ -47,7 +47,7 @@ def test_smooth_surfaces_have_no_contact_pressure():
 def test_the_slope_is_the_derivative_with_respect_to_the_gap(case):
     load, roughness, gap = case
     law = of(load, roughness)
-    step = 1e-4 * law.decay
+    step = 1e-4 * law.decay_length
     difference = (law.pressure(gap + step) - law.pressure(gap - step)) / (2 * step)
     assert np.abs(law.slope(gap, law.pressure(gap)) / difference - 1).max() < 1e-8
 
@@ -73,7 +73,7 @@ def test_the_logarithm_is_finite_where_the_pressure_underflows():
     law = of(1e-8, 1e-14)
     gap = np.array([0.1, 1.0, 50.0])
     assert np.array_equal(law.pressure(gap), np.zeros(3))
-    assert np.abs(law.log_pressure(gap) / (-gap / law.decay - 0.5 * math.log(1e-8)) - 1).max() < 1e-15
+    assert np.abs(law.log_pressure(gap) / (-gap / law.decay_length - 0.5 * math.log(1e-8)) - 1).max() < 1e-15
     assert law.log_pressure(gap)[-1] < -4e7
     for derivative in (law.slope, law.load_derivative, law.roughness_derivative):
         assert np.isfinite(derivative(gap, law.pressure(gap))).all()

@@ -368,7 +368,7 @@ def test_ctrl_c_while_the_range_is_looked_for_is_not_taken_for_its_end(monkeypat
 
 @pytest.mark.quick
 def test_a_lost_path_keeps_the_points_before_and_tells_why(monkeypatch):
-    whole = curve_module.follow
+    whole = curve_module.solve_along
 
     def lose(groups_at, coordinates, *arguments):
         path = whole(groups_at, coordinates[:2], *arguments)
@@ -376,7 +376,7 @@ def test_a_lost_path_keeps_the_points_before_and_tells_why(monkeypatch):
         failure = type(last)(**{**vars(last), "outcome": sb.Outcome.ROUNDING})
         return type(path)(path.coordinates, path.states, sb.Outcome.PATH_LOST, 1, failure)
 
-    monkeypatch.setattr(curve_module, "follow", lose)
+    monkeypatch.setattr(curve_module, "solve_along", lose)
     curve = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-2, 1), points=5)
     assert curve.outcome is sb.Outcome.ROUNDING
     assert (len(curve), curve.requested) == (2, 5)

@@ -106,7 +106,7 @@ def test_the_jacobian_predicts_central_differences_along_any_direction(case):
     (speed, load, roughness), mesh, y = case
     equations = equations_of(speed, load, roughness, mesh)
     rng = np.random.default_rng(SEED + 1)
-    decay = equations.law.decay or np.inf
+    decay = equations.law.decay_length or np.inf
     for _ in range(3):
         direction = np.append(np.minimum(y[:-2], decay), [1.0, y[-1]]) * rng.normal(size=len(y))
         step = 1e-5

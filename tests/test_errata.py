@@ -667,7 +667,9 @@ def test_a_minimum_above_the_dry_friction_still_weakens_with_speed():
     assert lower.minimum_friction < 1 < higher.minimum_friction
     lower, higher = (weakening(sb.Groups(1.0, LOAD, kappa * LOAD), definition="published") for kappa in (0.1595, 0.1605))
     assert lower.present and not higher.present
-    by_formulas = [transitions.merging_roughness(LOAD, criterion=name) / LOAD for name in ("plateau", "lines", "weakening")]
+    by_formulas = [
+        transitions.roughness_without_minimum(LOAD, criterion=name) / LOAD for name in ("plateau", "lines", "weakening")
+    ]
     assert by_formulas == pytest.approx([0.645, 1.59, 14.0], rel=0.01)
 
 

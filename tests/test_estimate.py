@@ -12,7 +12,7 @@ from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver.cold_start import cold_start
-from stribeck.solver.refinement import judge
+from stribeck.solver.refinement import verify
 
 SEED = 17_903
 
@@ -36,7 +36,7 @@ def state_on(groups, order, tolerance, newton=1e-11):
 
 def judged(state):
     """Observables and their estimated relative errors, by part."""
-    point = judge(state, state.groups, FineOperators(state.mesh), 1e-6)
+    point = verify(state, state.groups, FineOperators(state.mesh), 1e-6)
     values = np.array([getattr(point.values, name) for name in NAMES])
     estimate = point.estimate
     names = ("discretisation", "interpolation", "rounding")
@@ -104,7 +104,7 @@ def test_an_iteration_that_stopped_early_is_seen(case):
     rng = np.random.default_rng(SEED)
     step = state.root.last_step
     assert step < 1e-3
-    scale = min(state.gap.min(), state.equations.law.decay or np.inf)
+    scale = min(state.gap.min(), state.equations.law.decay_length or np.inf)
     x = state.mesh.nodes
     gap = 1e-4 * scale / (1 + ((x - 0.2) / 0.7) ** 2)
     change = np.append(gap, [1e-5 * rng.normal(), 1e-4 * state.flux_gap])

@@ -17,7 +17,7 @@ import stribeck as sb
 from stribeck.cli import main
 from stribeck.explorer import carried, inputs, server, table, url
 from stribeck.explorer import downloads as files
-from stribeck.explorer.answer import Model, round_down, round_up, thin_lines
+from stribeck.explorer.answer import Answerer, asymptotic_fields, round_down, round_up
 from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
@@ -28,7 +28,7 @@ START = server.example()
 
 @pytest.fixture(scope="module")
 def answer():
-    return Model()(START)
+    return Answerer()(START)
 
 
 def reopened(query, start=START):
@@ -215,7 +215,7 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(kind, tmp_path):
         assert opened.problems == {}
         assert opened.inputs == shown and opened.pins == pin
         answer = SimpleNamespace(inputs=opened.inputs, curve=None)
-        saved = files.read_case("saved.toml", files.content("toml", files.Shown(answer)))
+        saved = files.read_case("saved.toml", files.content("toml", files.View(answer)))
         same_contact(saved.contact, case.contact)
         for name in ("law", "curve", "rtol", "definition", "title", "notes", "fit"):
             assert getattr(saved, name) == getattr(case, name), name
@@ -224,12 +224,12 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(kind, tmp_path):
 
 def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
     shown = inputs.from_case(sb.load_case("examples/rod_seal.toml"))
-    answer = Model()(reopened(url.encode(shown)).inputs)
+    answer = Answerer()(reopened(url.encode(shown)).inputs)
     expected = sb.solve(sb.load_case("examples/rod_seal.toml").contact)
     found = {row.key: row for row in table.numbers(answer)}[f"friction_{shown.definition}"]
     assert abs(found.value - expected.friction(definition=shown.definition).total) <= 2 * found.error
     assert answer.solution.law == "persson"
-    saved = files.read_case("saved.toml", files.content("toml", files.Shown(answer)))
+    saved = files.read_case("saved.toml", files.content("toml", files.View(answer)))
     assert sb.solve(saved.contact).friction() == expected.friction()
     assert "Persson, for the surface with h rms 1 um" in carried.law_words(shown.law)
     assert "holds the exponential contact law only" in answer.diagram.message
@@ -318,7 +318,7 @@ def test_an_empty_address_is_the_start():
 
 @pytest.mark.parametrize("name", ["speed", "load_group", "roughness", "boundary_friction"])
 def test_the_numbers_are_those_of_solve_within_their_errors(name):
-    model = Model()
+    model = Answerer()
     model(START)
     moved = inputs.slid(START, name, inputs.position(START, name) + 0.3)
     rows = {row.key: row for row in table.numbers(model(moved))}
@@ -355,7 +355,7 @@ def test_the_curve_and_its_transitions_are_those_of_the_solver(answer):
 
 def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marked_stale():
     heavy = inputs.from_case(sb.load_case("examples/wiper_blade.toml"))
-    model = Model()
+    model = Answerer()
     first = model(heavy)
     assert first.curve is None and "Regime map unavailable" in first.diagram.message
     assert model.settle(heavy) and not model.settle(heavy)
@@ -374,7 +374,7 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
 
 @pytest.mark.parametrize("change", [{"speed": 0.0}, {"roughness": 0.0}, {"boundary_friction": 0.0}])
 def test_rest_smooth_and_frictionless_contacts_are_shown(change):
-    shown = Model()(replace(START, contact=START.contact.replace(**change)))
+    shown = Answerer()(replace(START, contact=START.contact.replace(**change)))
     rows = {row.key: row for row in table.numbers(shown)}
     assert rows["friction_balanced"].value == sb.solve(shown.inputs.contact).friction().total
     for palette in (LIGHT, DARK):
@@ -383,15 +383,15 @@ def test_rest_smooth_and_frictionless_contacts_are_shown(change):
 
 def test_formulas_are_drawn_where_their_range_holds_the_state_and_nowhere_else():
     fast_and_smooth = sb.solve(sb.Groups(1e-5, 0.1, 1e-6))
-    names = {line.name for line in thin_lines(fast_and_smooth, 2.0)}
+    names = {line.name for line in asymptotic_fields(fast_and_smooth, 2.0)}
     assert "film_layers.gap_inlet" in names and "rest.gap" not in names
     at_rest = sb.solve(sb.Groups(0.0, 0.1, 1e-4))
-    names = {line.name for line in thin_lines(at_rest, 2.0)}
+    names = {line.name for line in asymptotic_fields(at_rest, 2.0)}
     assert "edge_layer.contact_pressure" in names and "film_layers.gap_inlet" not in names
-    for line in thin_lines(at_rest, 2.0):
+    for line in asymptotic_fields(at_rest, 2.0):
         solved = getattr(at_rest.profile(line.x), line.predicts)
         assert np.abs(line.value - solved).max() <= 1.05 * line.worst * np.abs(solved).max()
-    assert thin_lines(sb.solve(START.contact), 2.0) == []
+    assert asymptotic_fields(sb.solve(START.contact), 2.0) == []
 
 
 @pytest.mark.parametrize(
@@ -414,7 +414,7 @@ def applied(old, change):
 
 
 def test_a_moved_speed_sends_the_point_alone_where_nothing_else_moves(answer):
-    model = Model()
+    model = Answerer()
     before = data_only(charts.all_charts(model(START), [], [], LIGHT))
     moved = inputs.slid(START, "speed", inputs.position(START, "speed") + 0.05)
     after = data_only(charts.all_charts(model(moved), [], [], LIGHT))
@@ -471,7 +471,7 @@ def test_lines_and_text_stand_out_from_their_ground(palette):
 
 def test_the_case_that_is_downloaded_reproduces_what_is_shown(tmp_path, answer):
     odd = replace(inputs.slid(START, "load_group", -1.37), definition="balanced", title='a "quoted" \\ title')
-    shown = files.Shown(Model()(odd))
+    shown = files.View(Answerer()(odd))
     path = tmp_path / "case.toml"
     path.write_bytes(files.content("toml", shown))
     case = sb.load_case(path)
@@ -488,7 +488,7 @@ def rows_of(content):
 
 def test_the_csv_holds_the_curve_the_pins_and_the_measured_points(answer):
     [measured] = read_measured("m.csv", b"speed [m/s],friction\n0.001,0.5\n0.01,0.2\n", answer.inputs.contact)
-    shown = files.Shown(answer, [("pinned, once", answer.curve, 2.0)], (measured,))
+    shown = files.View(answer, [("pinned, once", answer.curve, 2.0)], (measured,))
     rows = rows_of(files.content("csv", shown))
     assert len(rows) == 121 + 121 + 2
     assert float(rows[60]["friction_balanced [1]"]) == answer.curve.friction["balanced"][60]
@@ -507,7 +507,7 @@ def test_the_csv_holds_the_curve_the_pins_and_the_measured_points(answer):
 
 
 def test_the_profile_is_downloaded_in_si_units(answer):
-    rows = rows_of(files.content("profile.csv", files.Shown(answer)))
+    rows = rows_of(files.content("profile.csv", files.View(answer)))
     x = np.array([float(row["position [m]"]) for row in rows])
     total = np.array([float(row["contact_pressure [Pa]"]) + float(row["fluid_pressure [Pa]"]) for row in rows])
     solved = sb.solve(START.contact).to_si(x)
@@ -516,7 +516,7 @@ def test_the_profile_is_downloaded_in_si_units(answer):
 
 
 def test_pictures_are_whole_and_hold_title_and_inputs(answer):
-    shown = files.Shown(
+    shown = files.View(
         answer,
         [("pinned", answer.curve, 1.0)],
         tuple(read_measured("m.csv", b"speed [m/s],friction\n0.001,0.5\n", answer.inputs.contact)),
@@ -647,10 +647,10 @@ def test_present_point_minimum_and_measured_points_have_colours_of_their_own(ans
 
 
 def test_an_empty_map_says_why_in_its_place():
-    shown = Model()(inputs.typed(START, "load_group", "3"))
+    shown = Answerer()(inputs.typed(START, "load_group", "3"))
     said = charts.diagram_chart(shown, LIGHT)["title"]["text"]
     assert said == "Regime map unavailable: the lookup table covers load groups up to 1; here it is 3."
-    assert charts.diagram_chart(Model()(START), LIGHT)["title"]["text"] == ""
+    assert charts.diagram_chart(Answerer()(START), LIGHT)["title"]["text"] == ""
 
 
 def test_a_refused_value_is_told_in_the_unit_of_its_field():

@@ -17,8 +17,8 @@ from command_line import SCRIPT, call, call_outside, environment, run_python
 from figure_data import data_of, picture_of
 
 import stribeck as sb
-from stribeck.figures import FIGURES, PaperFigure, figure_names, load_figure, make_figures, making, style
-from stribeck.figures.making import Work, column, dataset
+from stribeck.figures import FIGURES, PaperFigure, build, figure_names, load_figure, make_figures, style
+from stribeck.figures.build import FigureJob, column, dataset
 
 PANELS = {
     "3": "ab",
@@ -168,7 +168,7 @@ class Fakes:
 @pytest.fixture
 def fakes(monkeypatch):
     found = Fakes()
-    monkeypatch.setattr(making, "load_figure", found.figure)
+    monkeypatch.setattr(build, "load_figure", found.figure)
     return found
 
 
@@ -207,7 +207,7 @@ def test_force_solves_again(fakes, tmp_path):
 
 def test_data_from_other_sources_are_solved_again(fakes, tmp_path, monkeypatch):
     make_figures(["3"], tmp_path)
-    monkeypatch.setattr(making, "fingerprint", lambda figure: "another")
+    monkeypatch.setattr(build, "fingerprint", lambda figure: "another")
     (made,) = make_figures(["3"], tmp_path)
     assert (made.outcome, fakes.computed) == ("solved", ["3", "3"])
     assert opened(tmp_path / "figure_3.nc").attrs["fingerprint"] == "another"
@@ -218,7 +218,7 @@ def test_data_from_other_sources_are_solved_again(fakes, tmp_path, monkeypatch):
     [
         ("numerics/newton.py", True, True),
         ("asymptotics/smooth/hydrodynamic.py", True, True),
-        ("figures/making.py", True, True),
+        ("figures/build.py", True, True),
         ("figures/article/figure_3.py", True, False),
         ("figures/article/figure_4.py", False, True),
         ("figures/style.py", False, False),
@@ -228,16 +228,16 @@ def test_data_from_other_sources_are_solved_again(fakes, tmp_path, monkeypatch):
     ],
 )
 def test_the_fingerprint_changes_with_every_source_of_the_numbers(tmp_path, monkeypatch, changed, of_3, of_4):
-    package = Path(making.__file__).parents[1]
+    package = Path(build.__file__).parents[1]
     shutil.copytree(package, tmp_path / "stribeck", ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(making, "__file__", str(tmp_path / "stribeck" / "figures" / "making.py"))
+    monkeypatch.setattr(build, "__file__", str(tmp_path / "stribeck" / "figures" / "build.py"))
     figures = [Fakes().figure(name) for name in ("3", "4")]
-    before = [making.fingerprint(figure) for figure in figures]
+    before = [build.fingerprint(figure) for figure in figures]
     assert before[0] != before[1]
     with (tmp_path / "stribeck" / changed).open("r+") as file:  # of a source that exists
         file.seek(0, os.SEEK_END)
         file.write("\n# another word\n")
-    after = [making.fingerprint(figure) for figure in figures]
+    after = [build.fingerprint(figure) for figure in figures]
     assert [a != b for a, b in zip(after, before, strict=True)] == [of_3, of_4]
 
 
@@ -262,7 +262,7 @@ def test_ctrl_c_in_the_middle_of_a_picture_leaves_whole_files_only(fakes, tmp_pa
     assert outcomes(make_figures(["3"], tmp_path)) == [("3", "interrupted")]
     assert os.listdir(tmp_path) == ["figure_3.nc"]
     monkeypatch.undo()
-    monkeypatch.setattr(making, "load_figure", fakes.figure)
+    monkeypatch.setattr(build, "load_figure", fakes.figure)
     assert outcomes(make_figures(["3"], tmp_path)) == [("3", "reused")]
     assert fakes.computed == ["3"]
 
@@ -358,7 +358,7 @@ print(sorted({"matplotlib", "xarray", "netCDF4", "pandas"} & set(sys.modules)))
 
 def test_work_reports_each_solve_and_keeps_the_largest_error():
     seen = []
-    work = Work(lambda *step: seen.append(step), steps=2, rtol=1e-5)
+    work = FigureJob(lambda *step: seen.append(step), steps=2, rtol=1e-5)
     state = work.solve(0.0, 0.1, 0.01)
     assert work.attributes == {"rtol": 1e-5, "error_estimate": state.error_estimate}
     curve = work.curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=3)
@@ -368,14 +368,14 @@ def test_work_reports_each_solve_and_keeps_the_largest_error():
 
 
 def test_no_state_is_given_that_did_not_converge(monkeypatch):
-    work = Work(lambda *step: None, steps=3, rtol=1e-11)
+    work = FigureJob(lambda *step: None, steps=3, rtol=1e-11)
     with pytest.raises(sb.SolveError):
         work.solve(1e-6, 0.1, 1e-7)
     whole = sb.stribeck_curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=3)
     few = {"solutions": whole.solutions[1:], "values": whole.values[1:]}
     for changes in ({"outcome": sb.Outcome.PATH_LOST}, few):
         broken = dataclasses.replace(whole, **changes)
-        monkeypatch.setattr("stribeck.figures.making.stribeck_curve", lambda broken=broken, **arguments: broken)
+        monkeypatch.setattr("stribeck.figures.build.stribeck_curve", lambda broken=broken, **arguments: broken)
         with pytest.raises(sb.SolveError, match="of 3 points"):
             work.curve(load=0.1, roughness=0.01)
     assert (work.done, work.error_estimate) == (0, 0.0)
@@ -387,7 +387,7 @@ def test_ctrl_c_inside_a_curve_ends_the_figure():
 
     for points in (2, 5):
         with pytest.raises(KeyboardInterrupt):
-            Work(report, steps=1, rtol=1e-5).curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=points)
+            FigureJob(report, steps=1, rtol=1e-5).curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=points)
 
 
 def test_a_curve_that_is_lost_because_of_ctrl_c_counts_as_interrupted(monkeypatch):
@@ -399,9 +399,9 @@ def test_a_curve_that_is_lost_because_of_ctrl_c_counts_as_interrupted(monkeypatc
             on_point(1, 3)
         raise sb.SolveError(sb.Outcome.PATH_LOST, None, "lost.")
 
-    monkeypatch.setattr("stribeck.figures.making.stribeck_curve", lost)
+    monkeypatch.setattr("stribeck.figures.build.stribeck_curve", lost)
     with pytest.raises(KeyboardInterrupt):
-        Work(report, steps=1).curve(load=0.1, roughness=0.01)
+        FigureJob(report, steps=1).curve(load=0.1, roughness=0.01)
 
 
 # --- the command ---

@@ -295,10 +295,10 @@ def test_the_line_of_minimum_friction_is_right_for_smooth_contacts_and_ends_wher
     smooth = regimes.sel(roughness=1e-6)
     printed = (smooth.printed_speed_at_minimum / smooth.speed_at_minimum).values
     assert 0.88 < printed.min() and printed.max() < 0.92
-    np.testing.assert_allclose(regimes.merging_roughness, [0.00343, 0.01599], rtol=2e-3)
+    np.testing.assert_allclose(regimes.roughness_without_minimum, [0.00343, 0.01599], rtol=2e-3)
     for i in range(regimes.sizes["load"]):
         falls = np.isfinite(regimes.speed_at_minimum.values[i])
-        np.testing.assert_array_equal(falls, regimes["roughness"].values < float(regimes.merging_roughness[i]))
+        np.testing.assert_array_equal(falls, regimes["roughness"].values < float(regimes.roughness_without_minimum[i]))
 
 
 def test_ctrl_c_ends_the_phase_diagram_of_the_figure():

@@ -6,7 +6,7 @@ import pytest
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import gradients, observables, observables_of_rows
+from stribeck.equations.observables import gradients, observables, observables_of_stacked
 from stribeck.numerics.panels import Mesh, base_edges
 from stribeck.quantities.outputs import NAMES
 from stribeck.solids.half_plane import (
@@ -27,14 +27,14 @@ RTOL = 1e-6
 def filled(monkeypatch):
     """Coordinates of the points that were found between steps."""
     found = []
-    between = follow_module.between
+    between = follow_module.interpolate_and_correct
 
     def counted(ends, on, through, coordinates, groups, rtol):
         points = between(ends, on, through, coordinates, groups, rtol)
         found.extend(s for s, p in zip(coordinates, points, strict=False) if p.outcome.ok)
         return points
 
-    monkeypatch.setattr(follow_module, "between", counted)
+    monkeypatch.setattr(follow_module, "interpolate_and_correct", counted)
     return found
 
 
@@ -54,14 +54,14 @@ def test_states_between_steps_are_those_of_single_solves(filled, load, roughness
 
 def test_points_that_cannot_be_found_at_once_are_stepped_to(monkeypatch):
     whole = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1), points=61)
-    monkeypatch.setattr(follow_module, "between", lambda *arguments: [])
+    monkeypatch.setattr(follow_module, "interpolate_and_correct", lambda *arguments: [])
     alone = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1), points=61)
     assert alone.outcome.ok and len(alone) == 61
     np.testing.assert_allclose(alone.friction, whole.friction, rtol=3 * RTOL)
 
 
 def rows(size, load=0.1, roughness=1e-3):
-    """Equations of three states in rows, each state's own, and unknowns."""
+    """Equations of three stacked states, each state's own, and unknowns."""
     mesh = Mesh(base_edges(0.5, 8.0), size, 0.5)
     speeds = np.array([[1e-3], [2e-3], [5e-3]])
     groups = sb.Groups(speeds, np.full((3, 1), load), np.full((3, 1), roughness))
@@ -77,7 +77,7 @@ def rows(size, load=0.1, roughness=1e-3):
 
 def test_rows_are_what_each_state_is_alone():
     together, alone, y = rows(12)
-    residuals, found = together.residual(y), observables_of_rows(together, y, 0.1)
+    residuals, found = together.residual(y), observables_of_stacked(together, y, 0.1)
     slopes = gradients(together, y, 0.1)
     for i, equations in enumerate(alone):
         np.testing.assert_allclose(residuals[i], equations.residual(y[i]), rtol=1e-12, atol=1e-13)

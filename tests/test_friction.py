@@ -7,9 +7,9 @@ import pytest
 import stribeck as sb
 from stribeck.cases.case import Case
 from stribeck.contacts.friction import DEFINITIONS
-from stribeck.curves.elasticities import friction_elasticities
+from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.explorer.inputs import Inputs
-from stribeck.regimes.distances import transition_distances
+from stribeck.regimes.margins import regime_margins
 
 MIXED = (1e-5, 0.1, 1e-4)
 
@@ -59,7 +59,7 @@ def test_friction_is_balanced_unless_the_published_one_is_asked_for(solved):
     assert batch.friction() == batch.friction(definition="balanced")
     defaults = {
         function.__name__: inspect.signature(function).parameters["definition"].default
-        for function in (sb.stribeck_curve, sb.phase_diagram, transition_distances, friction_elasticities)
+        for function in (sb.stribeck_curve, sb.phase_diagram, regime_margins, friction_sensitivities)
     }
     assert set(defaults.values()) == {"balanced"} == {Case.definition, Inputs.definition}, defaults
 

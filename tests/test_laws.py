@@ -11,15 +11,15 @@ import pytest
 from scipy.integrate import quad
 
 import stribeck as sb
-from stribeck.contact_laws.exponential import ExponentialShape
+from stribeck.contact_laws.exponential import SpectralExponential
 from stribeck.contact_laws.law import largest_load
-from stribeck.contact_laws.scaled import BlendedShape, ScaledLaw, ShiftedShape
+from stribeck.contact_laws.scaled import BlendedLaw, ScaledLaw, ShiftedLaw
 from stribeck.contacts.groups import contact_law
-from stribeck.curves.elasticities import friction_elasticities
+from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.equations.line import Equations, Operators
 from stribeck.numerics.panels import Mesh
-from stribeck.regimes.distances import transition_distances
-from stribeck.regimes.weakening import merging_roughness, weakening
+from stribeck.regimes.margins import regime_margins
+from stribeck.regimes.weakening import roughness_without_minimum, weakening
 from stribeck.solver import infill as fill
 from stribeck.solver import path as follow
 from stribeck.solver.at_rest import with_positive_gap
@@ -41,9 +41,9 @@ def laws():
         "function": sb.FunctionLaw(lambda s: -s - np.log(s), lambda s: -1 - 1 / s),
     }
     return found | {
-        "shifted": ShiftedShape(found["greenwood-tripp"], 0.7),
-        "blended": BlendedShape(found["persson"], 0.3),
-        "exponential": ExponentialShape(0.1),
+        "shifted": ShiftedLaw(found["greenwood-tripp"], 0.7),
+        "blended": BlendedLaw(found["persson"], 0.3),
+        "exponential": SpectralExponential(0.1),
     }
 
 
@@ -85,7 +85,7 @@ def test_the_derivatives_of_a_scaled_law_are_those_of_its_pressure(shape):
     )
     assert np.abs(here.roughness_derivative(h, p) - by_roughness).max() < 1e-7 * np.abs(by_roughness).max()
     assert np.abs(np.log(p) - here.log_pressure(h)).max() < 1e-12
-    assert here.local_decay(h) == pytest.approx(-p / here.slope(h, p), rel=1e-12)
+    assert here.local_decay_length(h) == pytest.approx(-p / here.slope(h, p), rel=1e-12)
 
 
 @pytest.mark.quick
@@ -108,7 +108,7 @@ def test_the_jacobian_under_a_law_is_the_derivative_of_the_residual(shape):
 @pytest.mark.parametrize("name", ["persson", "greenwood-tripp", "table"])
 def test_elasticities_under_a_law_are_the_differences_of_solved_friction(name):
     contact = line_contact(law=laws()[name])
-    _, found = friction_elasticities(contact, rtol=1e-9)
+    _, found = friction_sensitivities(contact, rtol=1e-9)
     for key in ("speed", "load", "roughness", "beta"):
         d, value = 1e-4, getattr(contact, key)
         ahead, behind = (
@@ -173,7 +173,7 @@ def test_under_perssons_law_the_gap_is_positive_at_rest_at_any_load(load):
 def test_at_rest_no_pressure_is_lost_by_the_shift_of_a_law():
     # The shift is no part of the answer: a law shifted by hand gives the same state, shifted.
     groups = sb.Groups(0.0, 5.0, 0.05, law=sb.GreenwoodTripp())
-    shifted = replace(groups, law=ShiftedShape(sb.GreenwoodTripp(), 4.0))
+    shifted = replace(groups, law=ShiftedLaw(sb.GreenwoodTripp(), 4.0))
     one, other = sb.solve(groups, rtol=1e-8), sb.solve(shifted, rtol=1e-8)
     assert with_positive_gap(groups)[1] < 0
     assert one.central_gap + 4.0 * 0.01 == pytest.approx(other.central_gap, rel=1e-7)
@@ -257,13 +257,13 @@ def test_a_curve_follows_any_law_and_names_it(shape, tmp_path):
 
 def test_states_between_the_steps_of_a_curve_have_its_law(monkeypatch):
     filled = []
-    between = fill.between
+    between = fill.interpolate_and_correct
 
     def counted(*arguments):
         filled.extend(between(*arguments))
         return between(*arguments)
 
-    monkeypatch.setattr(follow, "between", counted)
+    monkeypatch.setattr(follow, "interpolate_and_correct", counted)
     curve = sb.stribeck_curve(load=0.3, roughness=0.006, speed=(1e-3, 1e-2), points=41, law=laws()["persson"])
     assert len(filled) > 20
     for i in (5, 17, 30):
@@ -304,8 +304,8 @@ def test_atlas_and_formulas_refuse_another_law_in_one_sentence():
 
 def test_distances_reach_beyond_load_one_under_a_law_that_holds_there():
     contact = line_contact(law=laws()["persson"])
-    found = transition_distances(contact, rtol=1e-4)
-    highest = next(d for d in found.distances if d.name == "load").searched[1]
+    found = regime_margins(contact, rtol=1e-4)
+    highest = next(d for d in found.margins if d.name == "load").searched[1]
     factor = highest / contact.load
     assert float(contact.groups.load) * factor == pytest.approx(10.0, rel=1e-6)
 
@@ -331,7 +331,7 @@ def test_the_real_area_is_that_of_perssons_theory_and_only_where_a_spectrum_is_k
 
 def test_the_exponential_law_of_a_known_surface_has_an_area_and_the_same_states():
     groups = sb.Groups(1e-6, 0.1, 1e-3)
-    with_area = sb.solve(groups, law=ExponentialShape(laws()["persson"].area_slope))
+    with_area = sb.solve(groups, law=SpectralExponential(laws()["persson"].area_slope))
     bare = sb.solve(groups)
     assert with_area.central_gap == bare.central_gap
     assert with_area.law == "exponential"
@@ -506,15 +506,15 @@ class Wall:
 
 def test_the_roughness_without_a_minimum_depends_on_the_law():
     law = sb.GreenwoodTripp()
-    roughness = merging_roughness(0.1, law=law, rtol=1e-3)
-    assert roughness != pytest.approx(merging_roughness(0.1, rtol=1e-3), rel=0.05)
+    roughness = roughness_without_minimum(0.1, law=law, rtol=1e-3)
+    assert roughness != pytest.approx(roughness_without_minimum(0.1, rtol=1e-3), rel=0.05)
     below, above = (weakening(sb.Groups(1.0, 0.1, roughness * factor, law=law)).present for factor in (0.95, 1.05))
     assert below and not above
 
 
 def test_formulas_and_atlas_say_for_which_laws_they_hold():
     other = sb.GreenwoodTripp()
-    for law, holds in ((None, True), (ExponentialShape(0.1), True), (other, False)):
+    for law, holds in ((None, True), (SpectralExponential(0.1), True), (other, False)):
         assert sb.asymptotics.boundary.gap.holds_for(law) is holds
         assert sb.atlas.holds_for(law) is holds
         assert largest_load(law) == (1.0 if holds else math.inf)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.solver.corrector import Follower
-from stribeck.solver.nearby import NearSolver
+from stribeck.solver.corrector import Corrector
+from stribeck.solver.nearby import WarmStartSolver
 
 
 def disagreements(near, state):
@@ -23,7 +23,7 @@ def disagreements(near, state):
 
 def test_a_state_does_not_depend_on_what_it_was_solved_from():
     random = np.random.default_rng(771204)
-    near = NearSolver()
+    near = WarmStartSolver()
     for _ in range(4):
         speed, load, kappa = 10 ** random.uniform((-8, -4, -3.5), (1, -0.2, 0))
         logs = np.log10([speed, load, load * kappa])
@@ -33,7 +33,7 @@ def test_a_state_does_not_depend_on_what_it_was_solved_from():
 
 
 def test_rest_smooth_and_dry_contacts_are_ordinary_states_between_others():
-    near = NearSolver()
+    near = WarmStartSolver()
     for state in (
         sb.Groups(1e-4, 0.1, 1e-3),
         sb.Groups(0.0, 0.1, 1e-3),
@@ -45,7 +45,7 @@ def test_rest_smooth_and_dry_contacts_are_ordinary_states_between_others():
 
 
 def test_a_near_state_comes_from_the_last_one(monkeypatch):
-    near = NearSolver()
+    near = WarmStartSolver()
     near(sb.Groups(1e-4, 0.1, 1e-3))
     monkeypatch.setattr("stribeck.solver.nearby.solved_point", lambda *_: pytest.fail("solved from cold"))
     assert near(sb.Groups(1.1e-4, 0.1, 1e-3)).outcome.ok
@@ -53,16 +53,16 @@ def test_a_near_state_comes_from_the_last_one(monkeypatch):
 
 
 def test_what_does_not_converge_from_the_last_state_is_solved_from_cold(monkeypatch):
-    near, state = NearSolver(), sb.Groups(1.1e-4, 0.1, 1e-3)
+    near, state = WarmStartSolver(), sb.Groups(1.1e-4, 0.1, 1e-3)
     near(sb.Groups(1e-4, 0.1, 1e-3))
-    follow = Follower.__call__
-    monkeypatch.setattr(Follower, "__call__", lambda *a: replace(follow(*a), outcome=sb.Outcome.REFINEMENT_LIMIT))
+    follow = Corrector.__call__
+    monkeypatch.setattr(Corrector, "__call__", lambda *a: replace(follow(*a), outcome=sb.Outcome.REFINEMENT_LIMIT))
     assert near(state).outcome.ok
     assert max(disagreements(near, state)) < 1
 
 
 def test_after_a_failure_the_next_state_is_solved():
-    near = NearSolver(rtol=1e-9)
+    near = WarmStartSolver(rtol=1e-9)
     near(sb.Groups(1.0, 0.1, 1e-2))
     with pytest.raises(sb.SolveError):  # rounding bounds so thin a film to 1e-7
         near(sb.Groups(1e-12, 0.9, 0.0))
@@ -71,4 +71,4 @@ def test_after_a_failure_the_next_state_is_solved():
 
 def test_a_tolerance_out_of_range_is_refused():
     with pytest.raises(sb.InputError, match="rtol = 1.0; it must be a number"):
-        NearSolver(1.0)
+        WarmStartSolver(1.0)

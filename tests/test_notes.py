@@ -9,7 +9,7 @@ from command_line import EXAMPLES, FEW, PDMS, call, case_text
 from fit_data import TRUE, exact
 
 import stribeck as sb
-from stribeck.regimes.distances import TransitionDistances, physical_bounds, transition_distances
+from stribeck.regimes.margins import RegimeMargins, physical_bounds, regime_margins
 from stribeck.solver.notes import HARD, HIGHEST_PRESSURE, LAW_RANGE
 
 SEAL = sb.load_case(EXAMPLES / "rod_seal.toml").contact
@@ -39,7 +39,7 @@ def pdms():
 @pytest.fixture
 def no_scans(monkeypatch):
     """Leave out the search for the next regimes, which is no matter here and slow."""
-    monkeypatch.setattr("stribeck.cli.solving.transition_distances", lambda *_, **__: TransitionDistances("mixed", (), ()))
+    monkeypatch.setattr("stribeck.cli.solving.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
 
 
 # --- the contact law ---
@@ -161,7 +161,7 @@ def test_over_the_load_the_first_note_is_that_of_the_pressure_too():
 
 @pytest.fixture(scope="module")
 def slow_and_stiff():
-    """Return a contact that would be hydrodynamic at speeds and roughness that there are not, and its distances."""
+    """Return a contact that would be hydrodynamic at speeds and roughness that there are not, and its margins."""
     contact = sb.LineContact(
         radius="20 mm",
         youngs_modulus="210 GPa",
@@ -174,24 +174,24 @@ def slow_and_stiff():
         beta=0.02,
         boundary_friction=0.12,
     )
-    return contact, transition_distances(contact, rtol=1e-4)
+    return contact, regime_margins(contact, rtol=1e-4)
 
 
 def test_no_advice_leaves_what_an_input_can_be(slow_and_stiff):
     contact, found = slow_and_stiff
-    for distance in found.distances:
-        low, high = physical_bounds(contact, distance.name)
-        assert low <= distance.searched[0] * (1 + 1e-9) and distance.searched[1] <= high * (1 + 1e-9)
-        for mark in (distance.less, distance.more):
+    for margin in found.margins:
+        low, high = physical_bounds(contact, margin.name)
+        assert low <= margin.searched[0] * (1 + 1e-9) and margin.searched[1] <= high * (1 + 1e-9)
+        for mark in (margin.less, margin.more):
             assert mark is None or low <= mark.value <= high
-    roughness = found.distances[2]
+    roughness = found.margins[2]
     assert roughness.searched[1] <= contact.hertz.half_width < 1e-3  # and not 866 mm, 43 times the radius
 
 
 def test_speed_and_viscosity_end_each_where_they_must():
     """One scan serves both: a speed that there is not may belong to a viscosity that there is."""
     thin = TRUE.replace(viscosity="1e-8 Pa*s", speed="1 m/s")
-    speed, _, _, viscosity = transition_distances(thin, rtol=1e-4).distances
+    speed, _, _, viscosity = regime_margins(thin, rtol=1e-4).margins
     assert speed.more is None and speed.searched[1] == pytest.approx(1e3)
     assert viscosity.more is not None and viscosity.more.value > 1e-5
 

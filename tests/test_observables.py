@@ -92,7 +92,7 @@ def test_the_tail_of_friction_holds_the_logarithm_of_the_gap():
 def smooth_changes(equations, y):
     """Changes of gap, offset and flux gap without noise from node to node."""
     x, rng = equations.operators.mesh.nodes, np.random.default_rng(SEED)
-    size = min(y[:-2].min(), equations.law.decay)
+    size = min(y[:-2].min(), equations.law.decay_length)
     for _ in range(4):
         centre, width = rng.uniform(-1, 1), rng.uniform(0.5, 1.5)
         gap = size * rng.normal() / (1 + ((x - centre) / width) ** 2)

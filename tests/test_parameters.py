@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stribeck.contacts.line import Groups, InputError, LineContact
-from stribeck.quantities.inputs import EXPONENTS, QUANTITIES
+from stribeck.quantities.inputs import GROUP_EXPONENTS, QUANTITIES
 
 INPUTS = {
     "radius": "10 mm",
@@ -233,7 +233,7 @@ def test_the_signature_of_a_contact_names_every_input():
 
 def test_the_exponents_of_an_input_are_those_of_the_groups():
     base = contact()
-    for name, exponents in EXPONENTS.items():
+    for name, exponents in GROUP_EXPONENTS.items():
         doubled = base.replace(**{name: 2 * getattr(base, name)})
         for group, exponent in zip(("speed", "load", "roughness"), exponents, strict=True):
             ratio = getattr(doubled.groups, group) / getattr(base.groups, group)

@@ -11,7 +11,7 @@ import stribeck as sb
 from stribeck.asymptotics.rough import load_sharing, transitions
 from stribeck.files import datasets as store
 from stribeck.quantities.outcome import Outcome
-from stribeck.regimes.weakening import merging_roughness, weakening
+from stribeck.regimes.weakening import roughness_without_minimum, weakening
 
 pytest.importorskip("xarray")
 
@@ -196,13 +196,13 @@ def test_formulas_stand_beside_the_solved_transitions(diagram):
             assert float(row["printed_speed_at_minimum"]) == pytest.approx(float(printed), rel=1e-12)
             assert float(row["printed_speed_at_minimum"]) != pytest.approx(float(row["formula_speed_at_minimum"]), rel=1e-3)
         found = float(diagram["formula_merging_roughness"][i])
-        assert found == pytest.approx(float(transitions.merging_roughness(load, MU0, BETA)), rel=1e-12)
+        assert found == pytest.approx(float(transitions.roughness_without_minimum(load, MU0, BETA)), rel=1e-12)
     assert (diagram.formula_velocity_weakening == np.isfinite(diagram.formula_speed_at_minimum)).all()
 
 
 # --- the merging ---
 
-merging = functools.cache(merging_roughness)
+merging = functools.cache(roughness_without_minimum)
 
 
 @pytest.mark.parametrize(("load", "ratio"), [(0.1, 1.0), (0.01, 20.0)])
@@ -219,7 +219,7 @@ def test_the_merging_roughness_parts_curves_with_a_minimum_from_those_without(lo
 
 
 def test_the_minimum_passes_the_plateau_before_it_disappears():
-    plateau, slope = merging_roughness(0.1, criterion="plateau"), merging(0.1, 1.0)
+    plateau, slope = roughness_without_minimum(0.1, criterion="plateau"), merging(0.1, 1.0)
     assert plateau == pytest.approx(0.0122053, rel=1e-5)
     assert slope == pytest.approx(0.0159905, rel=1e-5)
     found = weakening(sb.Groups(1.0, 0.1, plateau))
@@ -236,12 +236,12 @@ def test_only_the_quotient_of_the_friction_coefficients_moves_the_merging():
 
 
 def test_without_dry_friction_no_roughness_makes_a_minimum():
-    assert merging_roughness(0.1, boundary_friction=0) == 0
+    assert roughness_without_minimum(0.1, boundary_friction=0) == 0
 
 
 def test_a_merging_beyond_the_range_is_no_number(monkeypatch):
     monkeypatch.setattr("stribeck.regimes.weakening.KAPPA_RANGE", (0.25, 0.5))
-    assert math.isnan(merging_roughness(0.1))
+    assert math.isnan(roughness_without_minimum(0.1))
 
 
 @pytest.mark.parametrize(
@@ -249,14 +249,14 @@ def test_a_merging_beyond_the_range_is_no_number(monkeypatch):
 )
 def test_bad_input_to_the_merging_is_refused(arguments):
     with pytest.raises(sb.InputError):
-        merging_roughness(**{"load": 0.1} | arguments)
+        roughness_without_minimum(**{"load": 0.1} | arguments)
 
 
 def test_the_diagram_holds_the_merging_line_where_asked(si_diagram):
-    assert "merging_roughness" not in si_diagram
+    assert "roughness_without_minimum" not in si_diagram
     contact = contact_of(sb.Groups(1.0, 0.1, 1e-3))
     found = sb.phase_diagram(contact, speed="1 mm/s", merging=True)
-    groups = contact.replace(roughness=float(found.merging_roughness.squeeze())).groups
+    groups = contact.replace(roughness=float(found.roughness_without_minimum.squeeze())).groups
     for factor, present in ((0.99, True), (1.01, False)):
         beside = sb.Groups(1.0, 0.1, factor * groups.roughness)
         assert weakening(beside, MU0, BETA).present == present
@@ -398,7 +398,7 @@ def test_the_regions_are_those_of_the_states(plot, diagram):
 def test_the_merging_is_drawn_where_it_lies_in_the_picture(plot, diagram):
     label = "above: no minimum of friction"
     for height, seen in ((1e-3, True), (0.5, False)):
-        figure = plot.plot_phase_diagram(diagram.assign(merging_roughness=("load", [height, height])))
+        figure = plot.plot_phase_diagram(diagram.assign(roughness_without_minimum=("load", [height, height])))
         assert (label in texts(figure)) == seen
         if seen:
             (line,) = [line for line in figure.axes[0].lines if line.get_label() == label]

@@ -9,9 +9,9 @@ import pytest
 
 import stribeck as sb
 from stribeck import cli
-from stribeck.contacts.line import EXPONENTS
-from stribeck.curves.elasticities import friction_elasticities
-from stribeck.regimes.distances import BOX, transition_distances
+from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.quantities.inputs import GROUP_EXPONENTS
+from stribeck.regimes.margins import BOX, regime_margins
 
 CONTACT = sb.LineContact(
     radius="10 mm",
@@ -41,23 +41,23 @@ def test_a_regime_is_named_by_the_shares_of_load_and_friction(fluid, contact, re
     assert sb.regime_of(fluid, contact) == regime
 
 
-@pytest.mark.parametrize("name", EXPONENTS)
+@pytest.mark.parametrize("name", GROUP_EXPONENTS)
 def test_the_exponents_are_those_of_the_groups(name):
     def logs(factor):
         groups = CONTACT.replace(**{name: factor * getattr(CONTACT, name)}).groups
         return np.log([groups.speed, groups.load, groups.roughness])
 
     slope = (logs(1.1) - logs(1 / 1.1)) / (2 * math.log(1.1))
-    np.testing.assert_allclose(slope, EXPONENTS[name], atol=1e-12)
+    np.testing.assert_allclose(slope, GROUP_EXPONENTS[name], atol=1e-12)
 
 
 @pytest.mark.parametrize(("speed", "definition"), [(1e-3, "published"), (0.03, "balanced")])
 def test_elasticities_agree_with_differences_of_cold_solves(speed, definition):
     contact = CONTACT.replace(speed=speed)
-    solution, found = friction_elasticities(contact, rtol=1e-9, definition=definition)
+    solution, found = friction_sensitivities(contact, rtol=1e-9, definition=definition)
     assert solution.friction(definition=definition) == sb.solve(contact, rtol=1e-9).friction(definition=definition)
     step = 1e-2
-    for name in EXPONENTS:
+    for name in GROUP_EXPONENTS:
 
         def log_friction(k, name=name):
             other = contact.replace(**{name: getattr(contact, name) * math.exp(k * step)})
@@ -69,34 +69,34 @@ def test_elasticities_agree_with_differences_of_cold_solves(speed, definition):
 
 def test_elasticities_obey_the_dimensions():
     # Speed and viscosity enter as their product; friction knows no unit of force and none of length.
-    _, found = friction_elasticities(CONTACT)
+    _, found = friction_sensitivities(CONTACT)
     assert found["speed"] == found["viscosity"]
     assert found["load"] + found["modulus"] + found["viscosity"] == pytest.approx(0, abs=1e-12)
     assert found["alpha"] == -found["roughness"]
 
 
 def test_at_rest_only_the_dry_friction_coefficient_matters():
-    solution, found = friction_elasticities(CONTACT.replace(speed=0))
+    solution, found = friction_sensitivities(CONTACT.replace(speed=0))
     assert found.pop("boundary_friction") == pytest.approx(1, abs=1e-6)
     assert set(found.values()) == {0.0}
     assert solution.groups.speed == 0
 
 
 def test_a_smooth_contact_does_not_ask_for_its_law_of_roughness():
-    _, found = friction_elasticities(CONTACT.replace(roughness=0))
+    _, found = friction_sensitivities(CONTACT.replace(roughness=0))
     assert found["roughness"] == found["alpha"] == found["beta"] == found["boundary_friction"] == 0
     assert found["speed"] > 0.4
 
 
 def test_where_there_is_no_friction_elasticities_are_no_number():
-    _, found = friction_elasticities(CONTACT.replace(speed=0, boundary_friction=0))
+    _, found = friction_sensitivities(CONTACT.replace(speed=0, boundary_friction=0))
     assert all(math.isnan(value) for value in found.values())
 
 
 @pytest.mark.parametrize("arguments", [{"rtol": 1e-20}, {"definition": "mine"}])
 def test_bad_settings_are_refused(arguments):
     with pytest.raises(sb.InputError):
-        friction_elasticities(CONTACT, **arguments)
+        friction_sensitivities(CONTACT, **arguments)
 
 
 # --- the way to the next regime ---
@@ -111,16 +111,16 @@ def shares(contact, definition="published"):
 
 
 def crossings(found):
-    """Yield input, its present distance and each crossing."""
-    for distance in found.distances:
-        for mark in (distance.less, distance.more):
+    """Yield input, its present margin and each crossing."""
+    for margin in found.margins:
+        for mark in (margin.less, margin.more):
             if mark is not None:
-                yield distance.name, mark
+                yield margin.name, mark
 
 
 @pytest.fixture(scope="module")
 def mixed():
-    return transition_distances(CONTACT)
+    return regime_margins(CONTACT)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +129,7 @@ def mixed():
 )
 def test_at_a_crossing_the_named_regime_begins(changes, definition):
     contact = CONTACT.replace(**changes)
-    found = transition_distances(contact, definition=definition)
+    found = regime_margins(contact, definition=definition)
     assert found.regime == shares(contact, definition)[0]
     seen = list(crossings(found))
     assert len(seen) >= 3
@@ -154,18 +154,18 @@ def test_a_crossing_is_the_nearest(mixed):
 def test_a_mixed_contact_has_two_neighbours(mixed):
     assert mixed.regime == "mixed"
     assert mixed.targets == ("boundary", "hydrodynamic")
-    speed, load, roughness, viscosity = mixed.distances
-    assert [distance.name for distance in mixed.distances] == ["speed", "load", "roughness", "viscosity"]
+    speed, load, roughness, viscosity = mixed.margins
+    assert [margin.name for margin in mixed.margins] == ["speed", "load", "roughness", "viscosity"]
     assert (speed.less.regime, speed.more.regime) == ("boundary", "hydrodynamic")
     assert (roughness.less.regime, roughness.more.regime) == ("hydrodynamic", "boundary")
-    assert speed.towards("boundary") is speed.less
-    assert load.towards("boundary") is None
+    assert speed.crossing_into("boundary") is speed.less
+    assert load.crossing_into("boundary") is None
     assert viscosity.more.factor == speed.more.factor
     assert viscosity.less.value == pytest.approx(speed.less.factor * CONTACT.viscosity)
 
 
 def test_where_no_load_leads_on_the_range_searched_ends_at_load_group_one(mixed):
-    load = mixed.distances[1]
+    load = mixed.margins[1]
     assert load.more is None
     assert CONTACT.replace(load=load.searched[1]).groups.load == pytest.approx(1.0)
     assert load.searched[0] == pytest.approx(load.less.value)
@@ -173,7 +173,7 @@ def test_where_no_load_leads_on_the_range_searched_ends_at_load_group_one(mixed)
 
 def test_a_hydrodynamic_contact_stays_so_however_fast():
     contact = CONTACT.replace(speed=1.0)
-    speed, load, _, viscosity = transition_distances(contact).distances
+    speed, load, _, viscosity = regime_margins(contact).margins
     assert (speed.less.regime, speed.more) == ("mixed", None)
     # Less load raises the speed group as its square.
     assert load.less is None
@@ -184,28 +184,28 @@ def test_a_hydrodynamic_contact_stays_so_however_fast():
 
 
 def test_a_contact_on_the_threshold_is_said_to_stand_there(mixed):
-    there = CONTACT.replace(speed=mixed.distances[0].more.value)
+    there = CONTACT.replace(speed=mixed.margins[0].more.value)
     for factor in (1, 1 + 1e-9):
-        found = transition_distances(there.replace(speed=factor * there.speed))
+        found = regime_margins(there.replace(speed=factor * there.speed))
         other = {"mixed": "hydrodynamic", "hydrodynamic": "mixed"}[found.regime]
         assert found.notes == (f"The contact stands at the threshold to {other} lubrication.",)
-        assert found.distances[0].towards(other).factor == pytest.approx(1, abs=1e-6)
+        assert found.margins[0].crossing_into(other).factor == pytest.approx(1, abs=1e-6)
     assert mixed.notes == ()
 
 
 def test_at_rest_only_speed_leads_on():
-    found = transition_distances(CONTACT.replace(speed=0))
-    speed, *others = found.distances
+    found = regime_margins(CONTACT.replace(speed=0))
+    speed, *others = found.margins
     assert found.regime == "boundary"
     assert (speed.less, speed.more.regime, speed.more.factor) == (None, "mixed", math.inf)
     assert shares(CONTACT.replace(speed=speed.more.value))[1] == pytest.approx(0.05, abs=1e-7)
-    assert all(distance.less is distance.more is None for distance in others)
+    assert all(margin.less is margin.more is None for margin in others)
     assert any("At rest" in note for note in found.notes)
 
 
 def test_smooth_surfaces_are_never_boundary_lubricated():
-    found = transition_distances(CONTACT.replace(roughness=0))
-    speed, load, roughness, _ = found.distances
+    found = regime_margins(CONTACT.replace(roughness=0))
+    speed, load, roughness, _ = found.margins
     assert found.regime == "hydrodynamic"
     assert speed.less is speed.more is load.less is load.more is None
     assert roughness.more.regime == "mixed"
@@ -214,7 +214,7 @@ def test_smooth_surfaces_are_never_boundary_lubricated():
 
 
 def test_a_smooth_contact_at_rest_is_hydrodynamic_as_soon_as_it_moves():
-    speed = transition_distances(CONTACT.replace(speed=0, roughness=0)).distances[0]
+    speed = regime_margins(CONTACT.replace(speed=0, roughness=0)).margins[0]
     assert (speed.more.regime, speed.more.value) == ("hydrodynamic", 0.0)
     assert shares(CONTACT.replace(speed=1e-9, roughness=0))[0] == "hydrodynamic"
 
@@ -222,14 +222,14 @@ def test_a_smooth_contact_at_rest_is_hydrodynamic_as_soon_as_it_moves():
 def test_a_saturated_contact_at_rest_leaves_boundary_lubrication_as_soon_as_it_moves():
     # From load group 1 on asperities cannot carry the load at a positive gap.
     contact = CONTACT.replace(load=1200.0, speed=0, roughness=1e-5)
-    found = transition_distances(contact)
-    assert (found.distances[0].more.regime, found.distances[0].more.value) == ("mixed", 0.0)
+    found = regime_margins(contact)
+    assert (found.margins[0].more.regime, found.margins[0].more.value) == ("mixed", 0.0)
     assert any("load group 1" in note for note in found.notes)
     assert shares(contact.replace(speed=1e-5))[0] == "mixed"
 
 
 def test_without_dry_friction_nothing_leads_on():
-    found = transition_distances(CONTACT.replace(boundary_friction=0))
+    found = regime_margins(CONTACT.replace(boundary_friction=0))
     assert found.regime == "hydrodynamic"
     assert list(crossings(found)) == []
     assert any("Without dry friction" in note for note in found.notes)
@@ -243,8 +243,8 @@ def test_a_path_that_the_solver_loses_ends_the_search(monkeypatch):
             raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "lost")
         return right(contact, **settings)
 
-    monkeypatch.setattr("stribeck.regimes.distances.stribeck_curve", fails_far_out)
-    roughness = transition_distances(CONTACT).distances[2]
+    monkeypatch.setattr("stribeck.regimes.margins.stribeck_curve", fails_far_out)
+    roughness = regime_margins(CONTACT).margins[2]
     assert roughness.more is None
     assert roughness.searched[1] == CONTACT.roughness
     assert roughness.less is not None
@@ -256,7 +256,7 @@ def test_an_interruption_of_the_search_is_passed_on():
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        transition_distances(CONTACT, on_point=stop)
+        regime_margins(CONTACT, on_point=stop)
 
 
 @pytest.mark.parametrize(
@@ -265,7 +265,7 @@ def test_an_interruption_of_the_search_is_passed_on():
 )
 def test_distances_refuse_bad_input(contact, settings):
     with pytest.raises(sb.InputError):
-        transition_distances(contact, **settings)
+        regime_margins(contact, **settings)
 
 
 # --- in words and as JSON ---
@@ -296,13 +296,13 @@ def test_the_command_says_what_it_takes_to_reach_each_neighbour(capsys, tmp_path
 
 
 def test_the_command_gives_the_distances_as_json(capsys, tmp_path, mixed):
-    found = json.loads(command(capsys, tmp_path, "--json"))["distances"]
+    found = json.loads(command(capsys, tmp_path, "--json"))["margins"]
     assert list(found) == ["speed", "load", "roughness", "viscosity"]
-    for distance in mixed.distances:
-        there = found[distance.name]
-        assert there["searched"] == pytest.approx(list(distance.searched))
+    for margin in mixed.margins:
+        there = found[margin.name]
+        assert there["searched"] == pytest.approx(list(margin.searched))
         for way in ("less", "more"):
-            mark = getattr(distance, way)
+            mark = getattr(margin, way)
             if mark is None:
                 assert there[way] is None
             else:

@@ -21,7 +21,7 @@ import stribeck as sb
 from stribeck.curves.table import curve_dataset
 from stribeck.files import writing
 from stribeck.files.datasets import write_csv, write_data, write_netcdf
-from stribeck.files.writing import MissingExtraError, check_output, replacing
+from stribeck.files.writing import MissingExtraError, atomic_write, check_writable
 
 CONTACT = sb.LineContact(
     radius="10 mm",
@@ -278,7 +278,7 @@ def test_a_place_that_cannot_be_written_is_refused_beforehand(tmp_path, name, wo
     (tmp_path / "loop.nc").symlink_to(tmp_path / "loop.nc")
     before = sorted(os.listdir(tmp_path))
     with pytest.raises(sb.InputError, match=words):
-        check_output(tmp_path / name, (".nc", ".csv"), force=True)
+        check_writable(tmp_path / name, (".nc", ".csv"), force=True)
     assert sorted(os.listdir(tmp_path)) == before
 
 
@@ -289,14 +289,14 @@ def test_a_folder_without_permission_is_refused(tmp_path, monkeypatch):
 
     monkeypatch.setattr("pathlib.Path.touch", refuse)
     with pytest.raises(sb.InputError, match="cannot be written \\(Permission denied\\)"):
-        check_output(tmp_path / "curve.nc", (".nc",))
+        check_writable(tmp_path / "curve.nc", (".nc",))
 
 
 def test_a_protected_file_is_kept_even_when_forced(tmp_path, monkeypatch):
     (tmp_path / "curve.nc").write_text("precious")
     monkeypatch.setattr("os.access", lambda path, mode: False)
     with pytest.raises(sb.InputError, match="protected against writing"):
-        check_output(tmp_path / "curve.nc", (".nc",), force=True)
+        check_writable(tmp_path / "curve.nc", (".nc",), force=True)
 
 
 def test_through_a_link_its_target_is_written_and_the_link_kept(dataset, tmp_path):
@@ -313,7 +313,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, failure):
     path.write_text("precious")
     with (
         pytest.raises((sb.InputError, KeyboardInterrupt)) as caught,
-        replacing(path, (".csv",), force=True) as temporary,
+        atomic_write(path, (".csv",), force=True) as temporary,
     ):
         temporary.write_text("half")
         raise failure
@@ -325,7 +325,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, failure):
 
 def test_a_file_that_appears_meanwhile_is_kept(tmp_path):
     path = tmp_path / "curve.csv"
-    with pytest.raises(sb.InputError, match="exists already"), replacing(path, (".csv",)) as temporary:
+    with pytest.raises(sb.InputError, match="exists already"), atomic_write(path, (".csv",)) as temporary:
         temporary.write_text("ours")
         path.write_text("theirs")
     assert path.read_text() == "theirs"
@@ -346,7 +346,7 @@ def test_a_file_is_on_the_disk_before_it_takes_its_name(tmp_path, monkeypatch):
 
     monkeypatch.setattr(os, "fsync", noted_fsync)
     monkeypatch.setattr(os, "replace", noted_replace)
-    with replacing(path, (".csv",)) as temporary:
+    with atomic_write(path, (".csv",)) as temporary:
         temporary.write_text("whole")
     assert at_replacement == [True]
     assert path.read_text() == "whole"
@@ -409,7 +409,7 @@ def test_a_file_is_on_the_disk_before_it_has_its_name_and_its_folder_after(tmp_p
             whole(*arguments)
 
         monkeypatch.setattr(writing.os, name, noted)
-    with replacing(tmp_path / "curve.csv", (".csv",)) as temporary:
+    with atomic_write(tmp_path / "curve.csv", (".csv",)) as temporary:
         temporary.write_text("ours")
     assert done == ["fsync", "replace", "folder"]
 

@@ -82,13 +82,13 @@ def test_the_coefficients_scale_friction_on_the_same_states(tmp_path):
 
 def test_continuation_costs_fewer_cold_starts_than_states(tmp_path, monkeypatch):
     starts = []
-    cold = sweep_chain.Follower.__call__
+    cold = sweep_chain.Corrector.__call__
 
     def counted(self, s, history):
         starts.append(not history)
         return cold(self, s, history)
 
-    monkeypatch.setattr(sweep_chain.Follower, "__call__", counted)
+    monkeypatch.setattr(sweep_chain.Corrector, "__call__", counted)
     assert sb.sweep(write(tmp_path, GRID), tmp_path / "store").failed == 0
     assert sum(starts) == 4
     assert len(starts) < 1.5 * 68
@@ -107,14 +107,14 @@ def test_the_numbers_do_not_depend_on_the_workers(tmp_path):
 
 def fail_at(monkeypatch, when, how):
     """Let the solver fail wherever ``when(groups)`` holds."""
-    follow = sweep_chain.Follower.__call__
+    follow = sweep_chain.Corrector.__call__
 
     def failing(self, s, history):
         if when(self.groups_at(s)):
             return how()
         return follow(self, s, history)
 
-    monkeypatch.setattr(sweep_chain.Follower, "__call__", failing)
+    monkeypatch.setattr(sweep_chain.Corrector, "__call__", failing)
 
 
 @pytest.mark.quick

@@ -11,7 +11,7 @@ from stribeck.asymptotics import OutOfRangeWarning
 from stribeck.asymptotics.constants import FILM_CONSTANT, PRINTED_FILM_CONSTANT
 from stribeck.asymptotics.rough import mixed, transitions
 from stribeck.asymptotics.rough.perturbation import phi
-from stribeck.regimes.weakening import merging_roughness
+from stribeck.regimes.weakening import roughness_without_minimum
 
 C = FILM_CONSTANT
 
@@ -134,7 +134,7 @@ def test_the_expansion_of_lambert_w_nears_it_as_roughness_vanishes():
 def test_beyond_the_branch_of_lambert_w_there_is_no_minimum():
     limit = transitions.LARGEST_WEAKENING
     assert limit == pytest.approx(0.4968, abs=5e-5)
-    edge = transitions.merging_roughness(0.1, criterion="weakening")
+    edge = transitions.roughness_without_minimum(0.1, criterion="weakening")
     for factor, present in ((0.999, True), (1.001, False)):
         groups = sb.Groups(1.0, 0.1, factor * edge)
         assert transitions.has_minimum(groups, form="exact") == present
@@ -240,14 +240,14 @@ def test_from_load_one_there_is_no_speed_from_boundary_to_mixed():
 
 def test_the_plateau_is_reached_where_merging_says():
     load = np.array([1e-3, 0.1, 0.5])
-    edge = transitions.merging_roughness(load, 0.3, 0.2, "plateau")
+    edge = transitions.roughness_without_minimum(load, 0.3, 0.2, "plateau")
     lowest = transitions.friction_at_minimum.function(sb.Groups(1.0, load, edge), 0.3, 0.2, "exact")
     np.testing.assert_allclose(lowest, 0.3, rtol=1e-10)
 
 
 def test_the_lines_meet_where_merging_says():
     load = np.array([1e-3, 0.1, 0.5])
-    edge = transitions.merging_roughness(load, 0.3, 0.2, "lines")
+    edge = transitions.roughness_without_minimum(load, 0.3, 0.2, "lines")
     groups = sb.Groups(1.0, load, edge)
     np.testing.assert_allclose(
         transitions.speed_at_minimum.function(groups, 0.3, 0.2, "exact"),
@@ -258,17 +258,17 @@ def test_the_lines_meet_where_merging_says():
 
 def test_our_minimum_disappears_where_merging_says():
     for load in (1e-2, 0.1):
-        edge = transitions.merging_roughness(load)
+        edge = transitions.roughness_without_minimum(load)
         assert transitions.has_minimum(sb.Groups(1.0, load, 0.999 * edge))
         assert not transitions.has_minimum(sb.Groups(1.0, load, 1.001 * edge))
 
 
 def test_which_criterion_of_merging_is_near_the_solver():
     # Relative roughness at which the solved curve loses its minimum, and what the formulas say of it.
-    solved = np.array([merging_roughness(load, 1.0, 1.0, rtol=1e-5, definition="published") for load in (1e-2, 0.1)])
+    solved = np.array([roughness_without_minimum(load, 1.0, 1.0, rtol=1e-5, definition="published") for load in (1e-2, 0.1)])
     np.testing.assert_allclose(solved / [1e-2, 0.1], [0.343, 0.160], atol=1e-3)
     over = {
-        name: transitions.merging_roughness(np.array([1e-2, 0.1]), criterion=name) / solved
+        name: transitions.roughness_without_minimum(np.array([1e-2, 0.1]), criterion=name) / solved
         for name in ("uniform", "plateau", "lines", "weakening")
     }
     np.testing.assert_allclose(over["uniform"], [0.87, 0.72], atol=0.01)
@@ -279,6 +279,6 @@ def test_which_criterion_of_merging_is_near_the_solver():
 
 def test_an_unknown_criterion_is_refused_by_name_and_what_is_never_met_is_nan():
     with pytest.raises(sb.InputError, match="'uniform', 'plateau', 'lines' or 'weakening'"):
-        transitions.merging_roughness(0.1, criterion="slope")
-    assert np.isnan(transitions.merging_roughness(np.array([2.0, 3.0]), criterion="lines")).all()
-    assert math.isnan(transitions.merging_roughness(5.0, criterion="plateau"))
+        transitions.roughness_without_minimum(0.1, criterion="slope")
+    assert np.isnan(transitions.roughness_without_minimum(np.array([2.0, 3.0]), criterion="lines")).all()
+    assert math.isnan(transitions.roughness_without_minimum(5.0, criterion="plateau"))

@@ -8,4 +8,4 @@ Indices = NDArray[np.intp]
 Flags = NDArray[np.bool_]
 
 Numbers = float | Array
-"""One number, or a column of them where states lie in rows."""
+"""One number, or a column of them where states are stacked."""

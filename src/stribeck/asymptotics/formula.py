@@ -18,7 +18,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import FILM_CONSTANT
-from stribeck.contact_laws.law import LawShape, is_exponential
+from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, real_array, show
 
@@ -223,12 +223,12 @@ class Formula(Generic[Arguments]):
         if groups.law is not None and not self.holds_for(groups.law):
             raise InputError(f"{self.name} holds for the exponential contact law, not for {groups.law.name}; use solve.")
 
-    def holds_for(self, law: LawShape | None) -> bool:
+    def holds_for(self, law: AsperityLaw | None) -> bool:
         """Return whether the formula was derived for a contact law; one of smooth contacts holds for every law.
 
         Parameters
         ----------
-        law : LawShape or None
+        law : AsperityLaw or None
             The law; None is the exponential one.
 
         Returns

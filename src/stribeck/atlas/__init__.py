@@ -2,7 +2,6 @@
 
 from stribeck.atlas.reading import (
     BOX,
-    about,
     central_gap,
     contact_load_share,
     covers,
@@ -12,6 +11,7 @@ from stribeck.atlas.reading import (
     friction_derivatives,
     friction_parts,
     holds_for,
+    info,
     minimum_gap,
     offset,
     shares_and_friction,
@@ -20,7 +20,7 @@ from stribeck.atlas.reading import (
 
 __all__ = [
     "BOX",
-    "about",
+    "info",
     "central_gap",
     "contact_load_share",
     "covers",

@@ -15,7 +15,7 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.atlas.grid import HEAVY, MIN_LOAD, MIN_SPEED, NEARLY_SMOOTH, region_at
 from stribeck.atlas.table import TABULATED, Values, load_table, solver_hash
-from stribeck.contact_laws.law import LawShape, is_exponential
+from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import Groups, InputError
 from stribeck.numerics.threads import one_blas_thread
@@ -25,7 +25,7 @@ from stribeck.solids import hertz
 
 __all__ = [
     "BOX",
-    "about",
+    "info",
     "central_gap",
     "contact_load_share",
     "covers",
@@ -363,7 +363,7 @@ def offset(groups: Groups) -> Value:
     return _shaped(groups, np.exp(values.values[0]) + values.values[1])
 
 
-def about() -> dict[str, Any]:
+def info() -> dict[str, Any]:
     """Return where the table comes from.
 
     Returns
@@ -417,12 +417,12 @@ def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> t
     return (speed, load, kappa), found
 
 
-def holds_for(law: LawShape | None) -> bool:
+def holds_for(law: AsperityLaw | None) -> bool:
     """Return whether the atlas holds the rough states of a contact law.
 
     Parameters
     ----------
-    law : LawShape or None
+    law : AsperityLaw or None
         The law; None is the exponential one.
 
     Returns

@@ -10,15 +10,15 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.batches.order import coordinates
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.line import LineContact
 from stribeck.numerics.continuation import Steps, march
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.corrector import Follower
+from stribeck.solver.corrector import Corrector
 from stribeck.solver.path import LONGEST_STEP, PREDICTOR_ORDER, SHORTEST_STEP
-from stribeck.solver.refinement import Point
+from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import describe, hertz_solution, solution_of
 
@@ -55,7 +55,7 @@ class Ended:
 
 def solve_in_order(
     states: Array,
-    law: LawShape | None,
+    law: AsperityLaw | None,
     rtol: float,
     on_state: Callable[[int, Ended], object],
     contact_of: Callable[[int], LineContact | None] = lambda _: None,
@@ -66,7 +66,7 @@ def solve_in_order(
     ----------
     states : ndarray, shape (n, 3)
         Speed, load and roughness group of each.
-    law : LawShape or None
+    law : AsperityLaw or None
         Contact law of all; None is the exponential one.
     rtol : float
         Relative tolerance of each state.
@@ -89,7 +89,7 @@ class _Chain:
     def __init__(
         self,
         states: Array,
-        law: LawShape | None,
+        law: AsperityLaw | None,
         rtol: float,
         on_state: Callable[[int, Ended], object],
         contact_of: Callable[[int], LineContact | None],
@@ -119,24 +119,24 @@ class _Chain:
 
     def _follow(self, first: int, path: _Polyline) -> tuple[int, Ended]:
         """Solve along a path; return how many of its states are finished, and how the solve of the next one ended."""
-        follower = Follower(path.groups_at, self.rtol)
+        corrector = Corrector(path.groups_at, self.rtol)
         finished = 0
         fault: Exception | None = None
 
-        def correct(s: float, history: Sequence[tuple[float, Point]]) -> Point | None:
+        def correct(s: float, history: Sequence[tuple[float, RefinedState]]) -> RefinedState | None:
             nonlocal fault
             begin = path.straight_from(s)
             straight = [pair for pair in history if pair[0] >= begin]
             fault = None
             try:
-                return follower(s, straight if len(straight) > 1 else history[-1:])
+                return corrector(s, straight if len(straight) > 1 else history[-1:])
             except MemoryError:
                 raise
             except Exception as problem:  # a fault of the program must not cost the other states of a long run
                 fault = problem
                 return None
 
-        def report(s: float, point: Point) -> None:
+        def report(s: float, point: RefinedState) -> None:
             nonlocal finished
             while finished < len(path) and path.knots[finished] == s:
                 i = first + finished
@@ -157,7 +157,7 @@ class _Chain:
             return finished, Ended(found.outcome, None)
         return 0, self._failure(first, found.outcome, found.failure, fault)
 
-    def _failure(self, i: int, outcome: Outcome, failure: Point | None, fault: Exception | None) -> Ended:
+    def _failure(self, i: int, outcome: Outcome, failure: RefinedState | None, fault: Exception | None) -> Ended:
         """Return how a state failed from cold, with what was reached."""
         where = describe(self.groups(i))
         if fault is not None:
@@ -180,7 +180,7 @@ def _end(groups: Array, first: int) -> int:
 class _Polyline:
     """The way from state to state, straight in the logarithms of the groups that are not zero."""
 
-    def __init__(self, groups: Array, law: LawShape | None) -> None:
+    def __init__(self, groups: Array, law: AsperityLaw | None) -> None:
         self.groups, self.law = groups, law
         self.z = np.log(np.where(groups > 0, groups, 1.0))
         steps = np.diff(self.z, axis=0)

@@ -10,9 +10,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.rough_surface import RoughSurface
-from stribeck.contact_laws.exponential import ExponentialShape
+from stribeck.contact_laws.exponential import SpectralExponential
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import GAMMA, PerssonLaw, persson_law
 from stribeck.contact_laws.scaled import NAMED
 from stribeck.contact_laws.spectrum import Spectrum
@@ -84,7 +84,7 @@ TABLES_OF: dict[Law, str] = {law: names[0] for law, names in MAY_HAVE.items() if
 class LawOfFile:
     """A contact law, and what its tables say of alpha, beta and roughness; these are empty where the file gives them."""
 
-    shape: LawShape | None
+    shape: AsperityLaw | None
     coefficients: dict[str, float]
 
 
@@ -143,7 +143,7 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
     return LawOfFile(found.shape, {}) if shape_only else found
 
 
-def self_contained(law: Law, tables: dict[str, Any], folder: Path, shape: LawShape | None) -> dict[str, Any]:
+def self_contained(law: Law, tables: dict[str, Any], folder: Path, shape: AsperityLaw | None) -> dict[str, Any]:
     """Return the table of a contact law with the numbers of the file that it names in the place of the name.
 
     Parameters
@@ -154,7 +154,7 @@ def self_contained(law: Law, tables: dict[str, Any], folder: Path, shape: LawSha
         The tables of the file, by name.
     folder : pathlib.Path
         Where files that they name lie.
-    shape : LawShape or None
+    shape : AsperityLaw or None
         The law that :func:`law_of_file` made of them.
 
     Returns
@@ -189,7 +189,7 @@ def _of_surface(law: Law, entries: dict[str, Any], folder: Path) -> LawOfFile:
         full = RoughSurface(**entries).law
     if law == "persson":
         return LawOfFile(full, full.coefficients)
-    return LawOfFile(ExponentialShape(full.area_slope), full.coefficients)
+    return LawOfFile(SpectralExponential(full.area_slope), full.coefficients)
 
 
 def _of_spectrum(entries: dict[str, Any], folder: Path) -> PerssonLaw:

@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from stribeck.cases.case import Case, curve_range, load_case
 from stribeck.curves.coordinate import Over
-from stribeck.files.writing import MissingExtraError, check_output
+from stribeck.files.writing import MissingExtraError, check_writable
 from stribeck.quantities.units import InputError, read_number, show
 
 AXES: tuple[Over, ...] = ("speed", "load", "roughness")
@@ -132,7 +132,7 @@ def check_outputs(data: Sequence[Path], plot: Path | None, force: bool) -> tuple
     from stribeck.files.datasets import DATA, NETCDF
 
     for path in data:
-        check_output(path, DATA, force=force)
+        check_writable(path, DATA, force=force)
     if data:
         need_extra("a data file", "data", "xarray")
     if any(path.suffix.lower() in NETCDF for path in data):
@@ -151,7 +151,7 @@ def check_pictures(plot: Path | None, force: bool) -> list[Path]:
 
     if plot is None:
         return []
-    check_output(plot, PICTURES, force=force)
+    check_writable(plot, PICTURES, force=force)
     need_extra("a picture", "plot", "matplotlib")
     return [plot]
 

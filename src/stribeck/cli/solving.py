@@ -30,13 +30,13 @@ from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain, stdout_
 from stribeck.cli.progress import interruptible
 from stribeck.contacts.friction import coefficients
 from stribeck.contacts.line import Groups
-from stribeck.curves.elasticities import friction_elasticities
 from stribeck.curves.result import StribeckCurve
+from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, format_si
-from stribeck.regimes.distances import transition_distances
+from stribeck.regimes.margins import regime_margins
 from stribeck.solver.solve import solve
 
 REGIME_POINTS = 41
@@ -208,7 +208,7 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     if case is None:
         raise InputError("CASE is missing; give a case file, as in: stribeck regimes case.toml.")
     loaded = load_case(case)
-    solution, elasticities = friction_elasticities(loaded.contact, rtol=loaded.rtol, definition=loaded.definition)
+    solution, sensitivities = friction_sensitivities(loaded.contact, rtol=loaded.rtol, definition=loaded.definition)
     with interruptible() as progress:
         curve = stribeck_curve(
             loaded.contact,
@@ -220,14 +220,14 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
         _ = curve.transitions
         if curve.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
-        distances = transition_distances(loaded.contact, rtol=loaded.rtol, definition=loaded.definition, on_point=progress)
+        margins = regime_margins(loaded.contact, rtol=loaded.rtol, definition=loaded.definition, on_point=progress)
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import regimes as report_regimes
 
     if json:
-        print(report_json.dump(report_json.regimes_json(solution, elasticities, curve, distances, loaded.title)))
+        print(report_json.dump(report_json.regimes_json(solution, sensitivities, curve, margins, loaded.title)))
     else:
-        report_regimes.print_regimes(stdout_console(), solution, elasticities, curve, distances, loaded.title)
+        report_regimes.print_regimes(stdout_console(), solution, sensitivities, curve, margins, loaded.title)
     return 0 if curve.outcome.ok else complain(curve.outcome.value, FAILED)
 
 

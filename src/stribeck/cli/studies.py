@@ -12,7 +12,7 @@ from cyclopts import Parameter
 from stribeck.cli.arguments import CaseFile, File, Flag, Number, Word, as_number, as_whole, check_pictures, need_extra
 from stribeck.cli.exits import FAILED, INTERRUPTED, complain, stdout_console
 from stribeck.cli.progress import interruptible
-from stribeck.files.writing import check_output
+from stribeck.files.writing import check_writable
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def sweep_command(
     if out is None:
         raise InputError("out is missing; give the folder of the store with --out.")
     if export is not None:
-        check_output(export, NETCDF, force=force)
+        check_writable(export, NETCDF, force=force)
         need_extra("a NetCDF file", "data", "netCDF4")
     plan = load_sweep(design)
     processes = 1 if workers is None else as_whole("workers", workers)
@@ -149,7 +149,7 @@ def fit_command(
     loaded = load_fit_case(data, case)
     pictures = check_pictures(plot, force)
     if out is not None:
-        check_output(out, (".toml",), force=force)
+        check_writable(out, (".toml",), force=force)
     steps = None if posterior is None else as_whole("posterior", posterior)
     if steps is not None:
         need_extra("a posterior", "fit", "emcee")
@@ -247,7 +247,7 @@ def surface_command(
         raise InputError("FILE is missing; give a file of heights, as in: stribeck surface scan.x3p.")
     pictures = check_pictures(plot, force)
     if out is not None:
-        check_output(out, (".toml",), force=force)
+        check_writable(out, (".toml",), force=force)
     given = {"trend": trend, "window": window, "resolution": resolution, "gamma": as_number("gamma", gamma)}
     arguments: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     scan = surfaces.read_topography(file, unit=unit, height_unit=height_unit, spacing=spacing, channel=channel)

@@ -18,12 +18,12 @@ class NoContact:
     """The contact pressure of smooth surfaces: none."""
 
     name: str = "smooth"
-    decay: Numbers = 0.0
-    uniform: bool = True
+    decay_length: Numbers = 0.0
+    constant_decay: bool = True
 
-    def local_decay(self, gap: Array) -> Numbers:
+    def local_decay_length(self, gap: Array) -> Numbers:
         """Return zero."""
-        return self.decay
+        return self.decay_length
 
     def pressure(self, gap: Array) -> Array:
         """Return zeros."""
@@ -50,8 +50,8 @@ class ExponentialLaw:
     Parameters
     ----------
     load : float or ndarray
-        Load group [-]; for states in rows a column of them.
-    decay : float or ndarray
+        Load group [-]; for stacked states a column of them.
+    decay_length : float or ndarray
         Relative roughness kappa, the length of the decay [u_Hz], likewise.
 
     Notes
@@ -62,13 +62,13 @@ class ExponentialLaw:
     """
 
     load: Numbers
-    decay: Numbers
+    decay_length: Numbers
     name: str = "exponential"
-    uniform: bool = True
+    constant_decay: bool = True
 
-    def local_decay(self, gap: Array) -> Numbers:
+    def local_decay_length(self, gap: Array) -> Numbers:
         """Return kappa."""
-        return self.decay
+        return self.decay_length
 
     def pressure(self, gap: Array) -> Array:
         """Return the contact pressure [p_Hz]."""
@@ -76,23 +76,23 @@ class ExponentialLaw:
 
     def log_pressure(self, gap: Array) -> Array:
         """Return ``-h/kappa - ln(F)/2``."""
-        return np.asarray(gap / -self.decay - 0.5 * np.log(self.load))
+        return np.asarray(gap / -self.decay_length - 0.5 * np.log(self.load))
 
     def slope(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dh`` = -p_c/kappa."""
-        return pressure / -self.decay
+        return pressure / -self.decay_length
 
     def load_derivative(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dlnF`` = p_c (-1/2 - h/kappa), the roughness group held."""
-        return -pressure * (0.5 + gap / self.decay)
+        return -pressure * (0.5 + gap / self.decay_length)
 
     def roughness_derivative(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dln h_rms`` = p_c h/kappa."""
-        return pressure * (gap / self.decay)
+        return pressure * (gap / self.decay_length)
 
 
 @dataclass(frozen=True)
-class ExponentialShape:
+class SpectralExponential:
     r"""The exponential law of a surface of which the spectrum is known, so that the real area of contact is too.
 
     .. math:: \Phi(s) = e^{-s}, \qquad A/A_0 = \operatorname{erf}(k \Phi)

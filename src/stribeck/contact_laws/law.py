@@ -10,7 +10,7 @@ from stribeck.quantities.units import InputError, show
 
 
 @runtime_checkable
-class LawShape(Protocol):
+class AsperityLaw(Protocol):
     r"""A contact law without dimensions: a small frozen object that can be hashed.
 
     .. math:: p_c = \beta E^* \Phi(s), \qquad s = \alpha h/h_\mathrm{rms}
@@ -39,7 +39,7 @@ class LawShape(Protocol):
 
 
 @runtime_checkable
-class WithArea(LawShape, Protocol):
+class WithArea(AsperityLaw, Protocol):
     """What a law has besides that knows the spectrum of its surface."""
 
     def area_fraction_at(self, pressure: Array) -> Array:
@@ -54,14 +54,14 @@ class ContactLaw(Protocol):
         """Name that outputs print."""
 
     @property
-    def decay(self) -> Numbers:
+    def decay_length(self) -> Numbers:
         """The unit of separations, kappa [u_Hz]; 0 where there is no contact."""
 
-    def local_decay(self, gap: Array) -> Numbers:
+    def local_decay_length(self, gap: Array) -> Numbers:
         """Return the length over which the pressure falls by a factor e, by its slope at the gap [u_Hz]."""
 
     @property
-    def uniform(self) -> bool:
+    def constant_decay(self) -> bool:
         """Whether that length is the same at all gaps."""
 
     def pressure(self, gap: Array) -> Array:
@@ -80,12 +80,12 @@ class ContactLaw(Protocol):
         """Return the derivative of the contact pressure with respect to the logarithm of the roughness group [p_Hz]."""
 
 
-def is_exponential(law: LawShape | None) -> bool:
+def is_exponential(law: AsperityLaw | None) -> bool:
     """Return whether a law is the exponential one of the paper; ask what follows from that where it is known by a name."""
     return law is None or law.name == "exponential"
 
 
-def has_constant_decay(law: LawShape | None) -> bool:
+def has_constant_decay(law: AsperityLaw | None) -> bool:
     """Return whether the pressure falls by the same factor over the same length at every gap.
 
     Then a load at rest only shifts the gap.
@@ -93,25 +93,25 @@ def has_constant_decay(law: LawShape | None) -> bool:
     return is_exponential(law)
 
 
-def largest_load(law: LawShape | None) -> float:
+def largest_load(law: AsperityLaw | None) -> float:
     """Return the load group from which asperities cannot carry the load at a positive gap; infinite if there is none."""
     return 1.0 if is_exponential(law) else math.inf
 
 
-def check_law(law: Any) -> LawShape | None:
+def check_law(law: Any) -> AsperityLaw | None:
     """Return a contact law, or None for the exponential one; refuse what has not the methods of one."""
-    if law is None or (isinstance(law, LawShape) and not isinstance(law, type)):
+    if law is None or (isinstance(law, AsperityLaw) and not isinstance(law, type)):
         return law
     advice = f"write {law.__name__}()" if isinstance(law, type) else "give an object such as GreenwoodWilliamson(), or None"
     raise InputError(f"law = {show(law)} is no contact law; {advice}.")
 
 
-def law_attributes(law: LawShape | None, smooth: bool = False) -> dict[str, Any]:
+def law_attributes(law: AsperityLaw | None, smooth: bool = False) -> dict[str, Any]:
     """Return name and parameters of a contact law as attributes of a dataset.
 
     Parameters
     ----------
-    law : LawShape or None
+    law : AsperityLaw or None
         The law; None is the exponential one.
     smooth : bool
         Whether the surfaces are smooth and have none.

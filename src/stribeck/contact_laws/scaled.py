@@ -1,8 +1,8 @@
 r"""Contact laws of any shape: scaled to a load and a roughness, shifted, blended with the exponential law, found by name.
 
 A law is a small frozen object with a name, the pressure, and its derivatives beside it.  Everything is in Hertz units
-(gap in u_Hz, pressure in p_Hz).  A *shape* is the law without dimensions, :class:`stribeck.contact_laws.law.LawShape`, which
-the groups of a state carry; :class:`ScaledLaw` makes the contact law of it.
+(gap in u_Hz, pressure in p_Hz).  A *shape* is the law without dimensions, :class:`stribeck.contact_laws.law.AsperityLaw`,
+which the groups of a state carry; :class:`ScaledLaw` makes the contact law of it.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.quantities.units import InputError, show
 
-NAMED: dict[str, LawShape | None] = {
+NAMED: dict[str, AsperityLaw | None] = {
     "exponential": None,
     "greenwood-williamson": GreenwoodWilliamson(),
     "greenwood-tripp": GreenwoodTripp(),
@@ -32,11 +32,11 @@ class ScaledLaw:
 
     Parameters
     ----------
-    shape : LawShape
+    shape : AsperityLaw
         Phi of the separation ``s = h/kappa``, which is alpha h/h_rms.
     load : float or ndarray
-        Load group [-]; for states in rows a column of them.
-    decay : float or ndarray
+        Load group [-]; for stacked states a column of them.
+    decay_length : float or ndarray
         Relative roughness kappa, the unit of separations [u_Hz], likewise.
 
     Notes
@@ -44,20 +44,20 @@ class ScaledLaw:
     With ``Phi = exp(-s)`` this is the exponential law.  Source: theory.md, section 8.
     """
 
-    shape: LawShape
+    shape: AsperityLaw
     load: Numbers
-    decay: Numbers
-    uniform: bool = False
+    decay_length: Numbers
+    constant_decay: bool = False
 
     @property
     def name(self) -> str:
         """Name of the shape."""
         return self.shape.name
 
-    def local_decay(self, gap: Array) -> Numbers:
+    def local_decay_length(self, gap: Array) -> Numbers:
         """Return ``-kappa/(d ln Phi/ds)``."""
         with np.errstate(divide="ignore"):
-            return np.asarray(-self.decay / self.shape.log_slope(gap / self.decay))
+            return np.asarray(-self.decay_length / self.shape.log_slope(gap / self.decay_length))
 
     def pressure(self, gap: Array) -> Array:
         """Return the contact pressure [p_Hz]."""
@@ -65,11 +65,11 @@ class ScaledLaw:
 
     def log_pressure(self, gap: Array) -> Array:
         """Return ``ln Phi(h/kappa) - ln(F)/2``."""
-        return np.asarray(self.shape.log_pressure(gap / self.decay) - 0.5 * np.log(self.load))
+        return np.asarray(self.shape.log_pressure(gap / self.decay_length) - 0.5 * np.log(self.load))
 
     def slope(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dh`` = p_c (d ln Phi/ds)/kappa."""
-        return np.asarray(pressure * self.shape.log_slope(gap / self.decay) / self.decay)
+        return np.asarray(pressure * self.shape.log_slope(gap / self.decay_length) / self.decay_length)
 
     def load_derivative(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dlnF`` = p_c (-1/2 + s d ln Phi/ds), the roughness group held."""
@@ -80,15 +80,15 @@ class ScaledLaw:
         return np.asarray(-pressure * self._elasticity(gap))
 
     def _elasticity(self, gap: Array) -> Array:
-        s = gap / self.decay
+        s = gap / self.decay_length
         return np.asarray(s * self.shape.log_slope(s))
 
 
 @dataclass(frozen=True)
-class ShiftedShape:
+class ShiftedLaw:
     """A shape at separations that are all larger by ``shift``: at speed zero that only shifts the gap."""
 
-    shape: LawShape
+    shape: AsperityLaw
     shift: float
 
     @property
@@ -120,10 +120,10 @@ class ShiftedShape:
 
 
 @dataclass(frozen=True)
-class BlendedShape:
+class BlendedLaw:
     """A shape on the way from the exponential law, ``part`` = 0, to another, ``part`` = 1, in the logarithm of Phi."""
 
-    shape: LawShape
+    shape: AsperityLaw
     part: float
     name: str = "blended"
 
@@ -150,7 +150,7 @@ class BlendedShape:
         return ()
 
 
-def named_law(name: str) -> LawShape | None:
+def named_law(name: str) -> AsperityLaw | None:
     """Return the law of a name; refuse a name that there is not, or of which more must be known."""
     if name not in NAMED:
         known = ", ".join(map(repr, NAMED))

@@ -14,7 +14,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
-from stribeck.contact_laws.law import ContactLaw, LawShape, check_law, has_constant_decay
+from stribeck.contact_laws.law import AsperityLaw, ContactLaw, check_law, has_constant_decay
 from stribeck.contact_laws.scaled import ScaledLaw
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
@@ -48,7 +48,7 @@ class Groups:
         :math:`\bar F_N > 0` [-]; 1e-300 to 1e300.  From one on, the exponential contact law is outside its range.
     roughness : float or array_like
         :math:`\bar h_\mathrm{rms} \ge 0` [-]; zero is the smooth contact, else 1e-300 to 1e300, as its ratio to the load.
-    law : LawShape, optional
+    law : AsperityLaw, optional
         Contact law :math:`\Phi`, the pressure over :math:`\beta E^*` at the separation :math:`\alpha h/h_\mathrm{rms}`; the
         exponential law of the paper by default.
 
@@ -69,7 +69,7 @@ class Groups:
     speed: float | Array
     load: float | Array
     roughness: float | Array
-    law: LawShape | None = field(default=None, kw_only=True)
+    law: AsperityLaw | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         """Check the groups and make them floats or read-only arrays."""
@@ -201,7 +201,7 @@ def _group(name: str, value: Any, positive: bool) -> float | Array:
 def contact_law(groups: Groups) -> ContactLaw:
     """Return the contact law of a state: that of its shape, exponential without one, none where the roughness is zero.
 
-    Groups that are columns give the law of states in rows; none or all of these are smooth.
+    Groups that are columns give the law of stacked states; none or all of these are smooth.
     """
     if not np.any(groups.roughness):
         return NoContact()

@@ -13,7 +13,7 @@ import math
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Self
 
-from stribeck.contact_laws.law import LawShape, check_law
+from stribeck.contact_laws.law import AsperityLaw, check_law
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.inputs import (
     INPUTS,
@@ -96,7 +96,7 @@ class LineContact:
         Poisson ratio :math:`0 \le \nu \le 1/2` of the half-space [-].
     entrainment_speed : str or float, optional
         Mean of both surface speeds, in place of ``speed`` [m/s].
-    law : LawShape, optional
+    law : AsperityLaw, optional
         Contact law :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
 
     Attributes
@@ -141,12 +141,12 @@ class LineContact:
     beta: float
     boundary_friction: float
     modulus: float
-    law: LawShape | None
+    law: AsperityLaw | None
 
     __signature__: ClassVar[inspect.Signature] = signature_of(ROWS)
 
     @refuse_former
-    def __init__(self, *, law: LawShape | None = None, **inputs: str | float | None) -> None:
+    def __init__(self, *, law: AsperityLaw | None = None, **inputs: str | float | None) -> None:
         for name, value in contact_values(inputs).items():
             object.__setattr__(self, name, value)
         object.__setattr__(self, "law", check_law(law))

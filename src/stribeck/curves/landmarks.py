@@ -12,8 +12,8 @@ from stribeck._types import Array
 from stribeck.curves.coordinate import Coordinate
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.corrector import Follower
-from stribeck.solver.refinement import Point
+from stribeck.solver.corrector import Corrector
+from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, describe, solution_of
 
@@ -50,21 +50,21 @@ class Landmark:
 
 @one_blas_thread
 def locate(
-    function: Callable[[Point], float],
+    function: Callable[[RefinedState], float],
     first: int,
     last: int,
     *,
     coordinate: Coordinate,
     values: Array,
-    points: Sequence[Point],
+    points: Sequence[RefinedState],
     rtol: float,
 ) -> tuple[float, Solution] | None:
     """Return where ``function`` of the solved state vanishes between two points, and the state there, or None.
 
     Where points are dense their own errors hide between which two it is: the search then widens.
     """
-    follower = Follower(coordinate.groups_at, min(rtol, 1e-8))
-    solved: dict[float, Point] = {}
+    corrector = Corrector(coordinate.groups_at, min(rtol, 1e-8))
+    solved: dict[float, RefinedState] = {}
     found: dict[float, float] = {}
 
     def at(s: float) -> float:
@@ -72,7 +72,7 @@ def locate(
         if s in found:
             return found[s]
         nearest = sorted(known, key=lambda pair: -abs(pair[0] - s))
-        point = follower(s, nearest[-3:])
+        point = corrector(s, nearest[-3:])
         if point is None or point.state is None:
             raise SolveError(Outcome.PATH_LOST, None, f"{describe(coordinate.groups_at(s))}: {Outcome.PATH_LOST.value}")
         solved[s] = point

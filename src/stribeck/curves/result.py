@@ -13,7 +13,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.smooth import hydrodynamic
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.coordinate import Coordinate, Over
@@ -24,7 +24,7 @@ from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import format_si
 from stribeck.solver.notes import HARD, minimum_note
-from stribeck.solver.refinement import Point
+from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class StribeckCurve:
     rtol: float
     outcome: Outcome
     requested: int
-    _points: tuple[Point, ...] = field(repr=False)
+    _points: tuple[RefinedState, ...] = field(repr=False)
     _path: Coordinate = field(repr=False)
 
     def __len__(self) -> int:
@@ -83,7 +83,7 @@ class StribeckCurve:
         return Groups(*columns, law=self.law)
 
     @property
-    def law(self) -> LawShape | None:
+    def law(self) -> AsperityLaw | None:
         """Contact law of all points; None is the exponential one."""
         return self._path.base.law
 
@@ -211,7 +211,7 @@ class StribeckCurve:
         if not 0 < i < len(self) - 1:
             return None
 
-        def slope(point: Point) -> float:
+        def slope(point: RefinedState) -> float:
             assert point.state is not None
             slopes = friction_slopes(point.state, self.boundary_friction, self.beta, self.definition)
             return float(slopes @ self._path.direction)
@@ -229,7 +229,7 @@ class StribeckCurve:
         contact = self.friction_contact / np.maximum(self.friction, 1e-300)
         found = [self.minimum]
 
-        def cross(name: str, line: float, values: Array, of: Callable[[Point], float]) -> None:
+        def cross(name: str, line: float, values: Array, of: Callable[[RefinedState], float]) -> None:
             crossings = np.nonzero(np.diff(np.sign(values - line)))[0]
             if len(crossings):
                 i = int(crossings[0])
@@ -240,12 +240,12 @@ class StribeckCurve:
         cross("asperities cause {:.0%} of the friction", HYDRODYNAMIC_CONTACT_SHARE, contact, self._contact_part)
         return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
 
-    def _contact_part(self, point: Point) -> float:
+    def _contact_part(self, point: RefinedState) -> float:
         assert point.values is not None
         contact = self.boundary_friction * point.values.contact_load_share
         return contact / (contact + self.beta * float(getattr(point.values, f"viscous_{self.definition}")))
 
-    def _landmark(self, name: str, first: int, last: int, function: Callable[[Point], float]) -> Landmark | None:
+    def _landmark(self, name: str, first: int, last: int, function: Callable[[RefinedState], float]) -> Landmark | None:
         """Return the landmark where ``function`` of the solved state vanishes between two points, or None."""
         found = locate(function, first, last, coordinate=self._path, values=self.values, points=self._points, rtol=self.rtol)
         if found is None:
@@ -329,6 +329,6 @@ class StribeckCurve:
         return plot_curve(self, path, force=force)
 
 
-def _fluid(point: Point) -> float:
+def _fluid(point: RefinedState) -> float:
     assert point.values is not None
     return point.values.fluid_load_share

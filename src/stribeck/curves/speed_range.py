@@ -37,7 +37,7 @@ MARGIN = 10.0
 """Factor by which the curve goes on beyond plateau and branch."""
 
 
-def automatic_speeds(groups: Groups, boundary_friction: float, beta: float, definition: str) -> tuple[float, float]:
+def automatic_speed_range(groups: Groups, boundary_friction: float, beta: float, definition: str) -> tuple[float, float]:
     """Return the speed groups from boundary plateau to hydrodynamic branch for the load and roughness of ``groups``.
 
     They are found on coarse states that come down in speed from the rigid film.  Smooth surfaces have no plateau: their

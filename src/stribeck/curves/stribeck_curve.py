@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.atlas_curve import AtlasCurve
@@ -17,13 +17,13 @@ from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_prob
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method
 from stribeck.curves.result import StribeckCurve
-from stribeck.curves.speed_range import automatic_speeds
+from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.path import follow
-from stribeck.solver.refinement import Point
+from stribeck.solver.path import solve_along
+from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import SolveError, check_rtol, describe, finish, solution_of, with_law
 
 __all__ = ["Landmark", "StribeckCurve", "stribeck_curve"]
@@ -44,7 +44,7 @@ def stribeck_curve(
     beta: float | None = ...,
     definition: Definition = ...,
     on_point: Callable[[int, int], object] | None = ...,
-    law: str | LawShape | None = ...,
+    law: str | AsperityLaw | None = ...,
     method: Literal["solver"] = ...,
 ) -> StribeckCurve: ...
 
@@ -62,7 +62,7 @@ def stribeck_curve(
     beta: float | None = ...,
     definition: Definition = ...,
     on_point: Callable[[int, int], object] | None = ...,
-    law: str | LawShape | None = ...,
+    law: str | AsperityLaw | None = ...,
     method: Literal["atlas"],
 ) -> AtlasCurve: ...
 
@@ -81,7 +81,7 @@ def stribeck_curve(
     beta: float | None = None,
     definition: Definition = "balanced",
     on_point: Callable[[int, int], object] | None = None,
-    law: str | LawShape | None = None,
+    law: str | AsperityLaw | None = None,
     method: Method = "solver",
 ) -> StribeckCurve | AtlasCurve:
     """Solve the contact along speed, load or roughness.
@@ -104,7 +104,7 @@ def stribeck_curve(
         Definition of the viscous friction, see :meth:`Solution.friction`.
     on_point : callable, optional
         ``on_point(done, points)`` is called after each point, for progress.
-    law : str or LawShape, optional
+    law : str or AsperityLaw, optional
         Contact law as in :func:`stribeck.solve`; that of the problem if omitted.
     method : {"solver", "atlas"}
         Whether each state is solved, or read off :mod:`stribeck.atlas`: within 1e-4, thousands of times as fast, without
@@ -151,13 +151,13 @@ def stribeck_curve(
     targets = np.log(descending)
     wanted = set(targets.tolist())
 
-    def report(s: float, point: Point) -> None:
+    def report(s: float, point: RefinedState) -> None:
         nonlocal done
         if s in wanted and on_point is not None:
             done += 1
             on_point(done, len(values))
 
-    path = follow(coordinate.groups_at, targets.tolist(), rtol, report)
+    path = solve_along(coordinate.groups_at, targets.tolist(), rtol, report)
     found = {s: p for s, p in zip(path.coordinates, path.states, strict=True) if s in wanted}
     if not found:
         if path.failure is not None:
@@ -190,5 +190,5 @@ def stribeck_curve(
 def _automatic(coordinate: Coordinate, boundary_friction: float, beta: float, definition: Definition, points: int) -> Array:
     """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm."""
     groups = coordinate.groups_at(0.0)
-    low, high = automatic_speeds(groups, boundary_friction, beta, definition)
+    low, high = automatic_speed_range(groups, boundary_friction, beta, definition)
     return np.geomspace(low / float(groups.speed), high / float(groups.speed), points)

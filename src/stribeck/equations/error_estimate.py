@@ -26,7 +26,7 @@ from stribeck.equations.gap import far_gap
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.observables import ROW, Observables, friction_integrals, friction_scale, gradients
 from stribeck.equations.position_error import position_errors
-from stribeck.equations.state import Rows
+from stribeck.equations.state import StackedStates
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
 from stribeck.numerics.running_integral import RunningIntegral
@@ -198,7 +198,7 @@ class ErrorEstimate:
 
 
 @dataclass(frozen=True)
-class Changes:
+class Perturbations:
     """What may be wrong with states.
 
     ``unknowns``, shape (1 + PATTERNS, rows, unknowns), are the changes that defect and rounding may cause, the defect first;
@@ -209,7 +209,7 @@ class Changes:
     friction: Array = field(repr=False)
 
 
-def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
+def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -> Perturbations:
     """Return what defect, quadrature and rounding may change in states; ``observed`` as in :func:`error_estimates`."""
     equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
     coarse, mesh = fine.coarse, fine.mesh
@@ -239,10 +239,10 @@ def changes(states: Rows, observed: Array, fine: FineOperators) -> Changes:
     if equations.is_sliding:
         scale = np.ravel(friction_scale(states.load, equations.speed))
         friction = np.abs(scale * friction_integrals(mesh, gap, h_star, slopes) - observed[:, FRICTION].T)
-    return Changes(states.correction(residual), friction)
+    return Perturbations(states.correction(residual), friction)
 
 
-def interpolation_errors(states: Rows, minimum_positions: Array) -> Array:
+def interpolation_errors(states: StackedStates, minimum_positions: Array) -> Array:
     """Return the absolute errors of the interpolated central and minimum gap, shape (2, rows)."""
     mesh = states.equations.operators.mesh
     central = int(np.searchsorted(mesh.edges, 0.0))
@@ -252,7 +252,7 @@ def interpolation_errors(states: Rows, minimum_positions: Array) -> Array:
     return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
 
 
-def reads_off(mesh: Mesh, gap: Array, rtol: float) -> bool:
+def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float) -> bool:
     """Tell whether the central and the minimum gap are interpolated to ``rtol``: what a mesh kept along a path loses first."""
     panels = [int(np.searchsorted(mesh.edges, 0.0)), int(np.argmin(gap)) // mesh.order]
     return bool((_between_nodes(mesh, gap.reshape(mesh.panels, -1)[panels], panels) <= rtol).all())
@@ -270,13 +270,13 @@ def _signs(panels: int, order: int) -> Array:
     return np.hstack([np.repeat(signs[:, 2:], order, axis=1), signs[:, :2]])
 
 
-def error_estimates(states: Rows, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
+def error_estimates(states: StackedStates, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
     """Return the estimated errors of what was ``observed`` on states.
 
     At speed zero the values may be those of the same state under another load, see :mod:`stribeck.solver.at_rest`.
     """
     values = np.array([one.array() for one in observed])
-    changed = changes(states, values, fine)
+    changed = perturbations(states, values, fine)
     rows = gradients(states.equations, states.y, states.load)
     effects = np.abs(np.matmul(rows.transpose(1, 0, 2), changed.unknowns.transpose(1, 2, 0)))
     effects[:, FRICTION, 0] += changed.friction.T
@@ -286,7 +286,7 @@ def error_estimates(states: Rows, observed: list[Observables], fine: FineOperato
     scales[:, SHARES] = 1.0
     scales[:, ROW["offset"]] = np.maximum(scales[:, ROW["offset"]], OFFSET_FLOOR)
     if not states.equations.is_sliding:
-        scales[:, GAPS] = np.maximum(scales[:, GAPS], GAP_FLOOR * states.equations.law.decay)
+        scales[:, GAPS] = np.maximum(scales[:, GAPS], GAP_FLOOR * states.equations.law.decay_length)
     scales[scales == 0] = 1.0
     rounding = DEVIATIONS * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
     positions, gap = np.array([one.minimum_position for one in observed]), states.y[:, states.equations.layout.gap]

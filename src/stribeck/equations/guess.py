@@ -34,8 +34,8 @@ class Guess(Protocol):
         """Return the logarithm of the gap and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
 
 
-class RowsGuess(Protocol):
-    """What :func:`mesh_for` asks of guesses of states in rows."""
+class StackedGuess(Protocol):
+    """What :func:`mesh_for` asks of guesses of stacked states."""
 
     @property
     def flux_gap(self) -> Array:

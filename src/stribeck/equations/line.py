@@ -285,14 +285,14 @@ class Equations:
         part = min(part, 0.7 / max(0.7, abs(flux)))
         if self.operators.has_exit:
             part = min(part, 0.3 / max(0.3, abs(dy[at.exit.start])))
-        if np.all(self.law.decay > 0):
+        if np.all(self.law.decay_length > 0):
             log_p = self.law.log_pressure(h)
-            decays = dh / self.law.local_decay(h)
+            decays = dh / self.law.local_decay_length(h)
             allowed = 3.0 + np.maximum(0.0, -1.0 - log_p)
             closing = float((-decays / allowed).max())
             opening = float((decays * (log_p > -7.0)).max()) / 3.0
             part = min(part, 1.0 / max(1.0, closing, opening))
-            if not self.law.uniform:
+            if not self.law.constant_decay:
                 part = self._held_by_law(h, dh, float(part), log_p, allowed)
         return float(part)
 

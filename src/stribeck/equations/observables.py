@@ -70,10 +70,10 @@ def friction_integrands(x: Array, h: Array, h_star: Numbers, slopes: Array | Non
 
 def observables(equations: Equations, y: Array, load: float) -> Observables:
     """Return the observables of the unknowns ``y`` of ``equations`` at the load group ``load``."""
-    return observables_of_rows(equations, y[None], load)[0]
+    return observables_of_stacked(equations, y[None], load)[0]
 
 
-def observables_of_rows(equations: Equations, y: Array, load: Numbers) -> list[Observables]:
+def observables_of_stacked(equations: Equations, y: Array, load: Numbers) -> list[Observables]:
     """Return the observables of many states, the unknowns ``y`` of each in a row and their load groups in a column."""
     mesh, at = equations.operators.mesh, equations.layout
     h, h_star = y[:, at.gap], y[:, at.flux_gap]

@@ -17,7 +17,7 @@ from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
-from stribeck.equations.guess import Guess, RowsGuess
+from stribeck.equations.guess import Guess, StackedGuess
 from stribeck.equations.line import Equations, Operators
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import Mesh, adapt
@@ -38,7 +38,7 @@ PREDICTION_GOAL = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class StackedStates:
     """States that share a mesh, as observables and error estimates want them.
 
     Attributes
@@ -124,12 +124,12 @@ class State:
         return replace(self, root=replace(self.root, inverse=None))
 
     @property
-    def rows(self) -> Rows:
+    def stacked(self) -> StackedStates:
         """The state as the only one of its mesh."""
         inverse = self.root.inverse
         assert inverse is not None
         units = self.equations.units(self.y)
-        return Rows(self.equations, self.y[None], float(self.groups.load), lambda r: units * inverse(r))
+        return StackedStates(self.equations, self.y[None], float(self.groups.load), lambda r: units * inverse(r))
 
     @property
     def effort(self) -> float:
@@ -172,7 +172,7 @@ class State:
 
 
 def mesh_for(
-    guess: Guess | RowsGuess,
+    guess: Guess | StackedGuess,
     groups: Groups,
     law: ContactLaw,
     order: int,
@@ -184,12 +184,12 @@ def mesh_for(
 
     Parameters
     ----------
-    guess : Guess or RowsGuess
+    guess : Guess or StackedGuess
         The fields to resolve: contact and fluid pressure to ``tolerance``, relative to what a Hertz pressure has at that
         distance from its edge, the square root of the half-width of the panel; the viscous shear 1/h, relative to that at
         zero, to ``tolerance`` too, the logarithm of the gap to ten times that.
     groups : Groups
-        Scalar groups; columns for states in rows.
+        Scalar groups; columns for stacked states.
     law : ContactLaw
         Contact pressure from the gap.
     order : int

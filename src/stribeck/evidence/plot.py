@@ -14,7 +14,7 @@ from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.line import Groups
 from stribeck.figures.style import DASHED, house_style, power, save, sequence
 from stribeck.files.pictures import CONTACT, GREY, INK, PICTURES, TINTS
-from stribeck.files.writing import MissingExtraError, PathLike, replacing
+from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def plot_error_maps(
                 _draw_lines(ax, *panel, left=j == 0)
     _explain(figure, image, lines)
     if path is not None:
-        with replacing(path, PICTURES, force=force) as temporary:
+        with atomic_write(path, PICTURES, force=force) as temporary:
             save(figure, temporary)
     return figure
 

@@ -33,11 +33,11 @@ from stribeck.explorer.curves import (
 )
 from stribeck.explorer.inputs import FIELDS, Inputs
 from stribeck.quantities.units import InputError
-from stribeck.solver.nearby import NearSolver
+from stribeck.solver.nearby import WarmStartSolver
 from stribeck.solver.solution import Profile, Solution
 from stribeck.solver.solve import SolveError
 
-__all__ = ["Answer", "Model", "Thin", "profile_reach", "round_down", "round_up", "thin_lines"]
+__all__ = ["Answer", "Answerer", "AsymptoticField", "profile_reach", "round_down", "round_up", "asymptotic_fields"]
 
 RTOL = 1e-6
 MOST_KEPT = 64
@@ -53,7 +53,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
-class Thin:
+class AsymptoticField:
     """An asymptotic field where it is in its range.
 
     Attributes
@@ -95,7 +95,7 @@ class Answer:
         How far the profile is drawn to both sides [a].
     profile : Profile
         The fields, in Hertz units.
-    thin : tuple of Thin
+    thin : tuple of AsymptoticField
         Asymptotic fields.
     speeds : tuple of float
         Ends of the axis of speeds [m/s].
@@ -108,15 +108,15 @@ class Answer:
     diagram: Diagram
     reach: float
     profile: Profile
-    thin: tuple[Thin, ...]
+    thin: tuple[AsymptoticField, ...]
     speeds: tuple[float, float]
 
 
-class Model:
+class Answerer:
     """Answers the inputs of one tab, one after another."""
 
     def __init__(self) -> None:
-        self._solve = NearSolver(RTOL)
+        self._solve = WarmStartSolver(RTOL)
         self._kept: dict[Any, Any] = {}
         self._last_solved: Curve | None = None
 
@@ -140,7 +140,7 @@ class Model:
         """
         contact, definition = inputs.contact, inputs.definition
         if self._solve.rtol != inputs.rtol:
-            self._solve = NearSolver(inputs.rtol)
+            self._solve = WarmStartSolver(inputs.rtol)
         solution = self._solve(contact)
         friction = solution.friction(definition=definition)
         part = friction.contact / friction.total if friction.total > 0 else 0.0
@@ -160,7 +160,7 @@ class Model:
             diagram=diagram,
             reach=reach,
             profile=solution.profile(x),
-            thin=tuple(thin_lines(solution, reach)),
+            thin=tuple(asymptotic_fields(solution, reach)),
             speeds=speeds,
         )
 
@@ -235,7 +235,7 @@ def profile_reach(solution: Solution) -> float:
     return round_up(a * reach) / a
 
 
-def thin_lines(solution: Solution, reach: float) -> list[Thin]:
+def asymptotic_fields(solution: Solution, reach: float) -> list[AsymptoticField]:
     """Return the asymptotic fields whose range holds the state.
 
     Parameters
@@ -247,7 +247,7 @@ def thin_lines(solution: Solution, reach: float) -> list[Thin]:
 
     Returns
     -------
-    list of Thin
+    list of AsymptoticField
         Those of rough contacts, and those of smooth ones, or of contacts at rest, where asperities, or the fluid, carry less
         than :data:`ABSENT` of the load.
     """
@@ -267,5 +267,5 @@ def thin_lines(solution: Solution, reach: float) -> list[Thin]:
             warnings.simplefilter("ignore")
             value = np.asarray(formula(groups, x))
         if np.isfinite(value).all():
-            found.append(Thin(formula.name, formula.worst, formula.predicts, x, value))
+            found.append(AsymptoticField(formula.name, formula.worst, formula.predicts, x, value))
     return found

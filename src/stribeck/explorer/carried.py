@@ -13,7 +13,7 @@ from typing import Any
 
 from stribeck.cases.case import Case, check_case
 from stribeck.cases.law import self_contained
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.quantities.inputs import INPUTS
 from stribeck.quantities.units import InputError, show
 
@@ -63,7 +63,7 @@ def rest_of_case(case: Case) -> str:
 
 
 @functools.lru_cache(maxsize=32)
-def shape_of(text: str) -> LawShape | None:
+def shape_of(text: str) -> AsperityLaw | None:
     """Return the contact law of its JSON; the same object for the same text.
 
     Parameters
@@ -73,7 +73,7 @@ def shape_of(text: str) -> LawShape | None:
 
     Returns
     -------
-    LawShape or None
+    AsperityLaw or None
         The law; None for the exponential law of alpha and beta alone.
 
     Raises

@@ -19,7 +19,7 @@ from stribeck.curves.atlas_curve import ERROR
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.regimes.phase_from_atlas import transition_speeds
-from stribeck.solver.nearby import NearSolver
+from stribeck.solver.nearby import WarmStartSolver
 from stribeck.solver.solve import SolveError
 
 __all__ = [
@@ -172,7 +172,7 @@ def solved_curve(contact: LineContact, definition: Definition) -> Curve:
     states = dict(zip(map(float, found.values), found.solutions, strict=True))
     if found.minimum is not None:
         # Straight lines between the points of the curve would end in a kink where friction turns.
-        solve = NearSolver(SOLVED_RTOL)
+        solve = WarmStartSolver(SOLVED_RTOL)
         for speed in found.minimum.value * np.geomspace(1 / AROUND, AROUND, AROUND_POINTS):
             if found.values[0] < speed < found.values[-1]:
                 states[float(speed)] = solve(contact.replace(speed=float(speed)))

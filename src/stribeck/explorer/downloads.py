@@ -21,7 +21,7 @@ from stribeck.explorer.inputs import FIELDS, Inputs, exact_text
 from stribeck.explorer.measured import Measured
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["KINDS", "Shown", "case_text", "content", "name_of", "pin_name", "read_case", "shown_name"]
+__all__ = ["KINDS", "View", "case_text", "content", "name_of", "pin_name", "read_case", "shown_name"]
 
 LONGEST_NAME = 80
 
@@ -36,7 +36,7 @@ KINDS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
+class View:
     """What a tab shows.
 
     Attributes
@@ -117,14 +117,14 @@ def pin_name(inputs: Inputs, start: Inputs, taken: Sequence[str]) -> str:
     return unique
 
 
-def content(kind: str, shown: Shown) -> bytes:
+def content(kind: str, shown: View) -> bytes:
     """Return the content of a file of what is shown.
 
     Parameters
     ----------
     kind : str
         One of the endings of :data:`KINDS`.
-    shown : Shown
+    shown : View
         What is shown.
 
     Returns
@@ -145,7 +145,7 @@ def content(kind: str, shown: Shown) -> bytes:
     return text(shown).encode()
 
 
-def case_text(shown: Shown) -> str:
+def case_text(shown: View) -> str:
     """Return the case file that holds what is shown, and all that the page carries along."""
     inputs, curve = shown.answer.inputs, shown.answer.curve
     law = json.loads(inputs.law) if inputs.law else {}
@@ -172,7 +172,7 @@ def case_text(shown: Shown) -> str:
     return toml_text(tables)
 
 
-def curves_text(shown: Shown) -> str:
+def curves_text(shown: View) -> str:
     """Return the curve, the pinned and the measured ones as CSV, one below the other."""
     inputs = shown.answer.inputs
     hersey = inputs.contact.viscosity / inputs.contact.load
@@ -202,7 +202,7 @@ def curves_text(shown: Shown) -> str:
     return file.getvalue()
 
 
-def profile_text(shown: Shown) -> str:
+def profile_text(shown: View) -> str:
     """Return gap and pressures along the contact as CSV."""
     scales, profile = shown.answer.inputs.contact.hertz, shown.answer.profile
     file = io.StringIO()
@@ -220,7 +220,7 @@ def profile_text(shown: Shown) -> str:
     return file.getvalue()
 
 
-def _head(shown: Shown) -> str:
+def _head(shown: View) -> str:
     inputs, solution = shown.answer.inputs, shown.answer.solution
     lines = [
         f"title: {inputs.title}",

@@ -106,7 +106,7 @@ class Inputs:
     units : mapping of str to str
         The unit of each field that has one.
     definition : {"balanced", "published"}
-        The friction by which curves, regimes and distances go.
+        The friction by which curves, regimes and margins go.
     abscissa : {"speed", "hersey"}
         What the curve is drawn over.
     title : str

@@ -20,7 +20,7 @@ from stribeck.explorer.carried import law_words
 from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
-from stribeck.explorer.downloads import Shown
+from stribeck.explorer.downloads import View
 from stribeck.explorer.inputs import FIELDS, GROUP_FIELDS, Inputs
 from stribeck.explorer.measured import Measured
 from stribeck.explorer.url import Pin
@@ -37,7 +37,7 @@ DEFINITIONS = {"balanced": "balanced", "published": "as published"}
 ABSCISSAS = {"speed": "speed", "hersey": "Hersey number"}
 
 
-class Knob(ui.element, component="knob.js"):
+class Slider(ui.element, component="slider.js"):
     """Field, unit and slider of one quantity.
 
     Parameters
@@ -78,7 +78,7 @@ class Page:
         self.client_name = dumps(self.client.id)
         self.ways_of: Inputs | None = None
         self.moved: int | None = None
-        self.knobs: dict[str, Knob] = {}
+        self.knobs: dict[str, Slider] = {}
         self.charts: dict[str, ui.echart] = {}
         self.toggles: dict[str, ui.toggle] = {}
         self.shown: dict[str, Any] = {}
@@ -106,10 +106,10 @@ class Page:
                 with ui.element("section").classes("card numbers").props('aria-label="Numbers"'):
                     self.status = ui.label().classes("status").props('role="status"')
                     self.numbers = ui.html("", sanitize=False)
-                with ui.element("section").classes("card more").props('aria-label="Distances"'):
+                with ui.element("section").classes("card more").props('aria-label="Margins"'):
                     head = f"To the next regimes, by each input <span class='caption waits'>{UPDATING}</span>"
                     ui.html(f"<h2>{head}</h2>", sanitize=False)
-                    self.distances = ui.html(f'<p class="caption">{UPDATING}</p>', sanitize=False).classes("ways")
+                    self.margins = ui.html(f'<p class="caption">{UPDATING}</p>', sanitize=False).classes("ways")
                 with ui.element("section").classes("card diagram").props('aria-label="Phase diagram"'):
                     self.diagram_head = ui.html("<h2>Regimes</h2>", sanitize=False)
                     self.chart("diagram", "Regimes over speed and roughness")
@@ -141,11 +141,11 @@ class Page:
         """Make fields and sliders of the contact and of the groups."""
         ui.html("<h2>Contact</h2>", sanitize=False)
         for name in FIELDS:
-            self.knobs[name] = Knob(name, knob_state(now, name))
+            self.knobs[name] = Slider(name, knob_state(now, name))
         self.law = ui.html("", sanitize=False).classes("caption law")
         ui.html("<h2>Dimensionless groups</h2>", sanitize=False)
         for name in GROUP_FIELDS:
-            self.knobs[name] = Knob(name, knob_state(now, name))
+            self.knobs[name] = Slider(name, knob_state(now, name))
         ui.html(
             '<p class="caption">A group moves load, speed and roughness; the other two groups stay.</p>',
             sanitize=False,
@@ -231,11 +231,11 @@ class Page:
         # Closed ones are removed, or each would stay with its page.
         dialog.on("hide", dialog.delete)
 
-    def options(self, seen: Shown) -> dict[str, dict[str, Any]]:
+    def options(self, seen: View) -> dict[str, dict[str, Any]]:
         """Return what all charts show."""
         return charts.all_charts(seen.answer, seen.pins, seen.measured, self.palette)
 
-    def draw_all(self, now: Inputs, seen: Shown) -> None:
+    def draw_all(self, now: Inputs, seen: View) -> None:
         """Put whole charts and all numbers into a page that is being made."""
         for name, options in self.options(seen).items():
             # Points come with the first frame: here each would be kept as an object of its own, 2 MB in all.
@@ -258,19 +258,19 @@ class Page:
             (self.diagram_head, f"<h2>Regimes <span class='caption'>at this load (group {load})</span></h2>"),
         ]
 
-    def show_distances(self, content: str, now: Inputs) -> None:
-        """Show the distances of inputs to the next regimes."""
+    def show_margins(self, content: str, now: Inputs) -> None:
+        """Show the margins of inputs to the next regimes."""
         self.ways_of = now
-        self.distances.content = content
+        self.margins.content = content
         self.client.run_javascript("explorerWaits('')")
 
     def ways_words(self, now: Inputs) -> str:
-        """Return what stands beside the distances: whether they belong to what is shown."""
+        """Return what stands beside the margins: whether they belong to what is shown."""
         shown = self.ways_of
         same = shown is not None and (shown.contact, shown.definition) == (now.contact, now.definition)
         return "" if same else UPDATING
 
-    async def draw(self, now: Inputs, seen: Shown) -> None:
+    async def draw(self, now: Inputs, seen: View) -> None:
         """Send what changed, and wait until the browser has drawn it."""
         frame: dict[str, Any] = {"html": [], "charts": [], "knobs": [], "moved": self.moved}
         frame["waits"] = self.ways_words(now)

@@ -20,10 +20,10 @@ from nicegui import background_tasks, events, ui
 
 from stribeck.explorer import downloads as files
 from stribeck.explorer import inputs, table, url
-from stribeck.explorer.answer import Answer, Model
+from stribeck.explorer.answer import Answer, Answerer
 from stribeck.explorer.charts.palette import LIGHT
 from stribeck.explorer.curves import Curve
-from stribeck.explorer.downloads import Shown
+from stribeck.explorer.downloads import View
 from stribeck.explorer.inputs import Inputs
 from stribeck.explorer.measured import Measured
 from stribeck.explorer.page import Page
@@ -32,7 +32,7 @@ from stribeck.explorer.serving.tidy import tidy_soon
 from stribeck.explorer.url import Pin
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
-from stribeck.regimes.distances import TransitionDistances, transition_distances
+from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.solver.solve import SolveError
 
 __all__ = ["TABS", "Tab", "opening"]
@@ -75,13 +75,13 @@ def answer_of(now: Inputs) -> Answer:
     with OPENED_LOCK:
         found = OPENED.get(key)
         if found is None:
-            found = OPENED[key] = Model()(now)
+            found = OPENED[key] = Answerer()(now)
             while len(OPENED) > MOST_OPENED:
                 del OPENED[next(iter(OPENED))]
         return found
 
 
-def curves_of(model: Model, pins: Sequence[Pin], answer: Answer) -> list[tuple[str, Curve, float]]:
+def curves_of(model: Answerer, pins: Sequence[Pin], answer: Answer) -> list[tuple[str, Curve, float]]:
     """Return the pinned curves as far as they are known, over the speeds of the axis of an answer."""
     found = []
     for pin in pins:
@@ -91,7 +91,7 @@ def curves_of(model: Model, pins: Sequence[Pin], answer: Answer) -> list[tuple[s
     return found
 
 
-async def opening(items: list[tuple[str, str]], start: Inputs) -> tuple[url.Opened, Shown]:
+async def opening(items: list[tuple[str, str]], start: Inputs) -> tuple[url.Opened, View]:
     """Return what an address asks for and its answer, computed beside the event loop.
 
     Parameters
@@ -103,18 +103,18 @@ async def opening(items: list[tuple[str, str]], start: Inputs) -> tuple[url.Open
 
     Returns
     -------
-    Opened, Shown
+    Opened, View
         The inputs, and their answer with the pinned curves; that of the start where they cannot be solved.
     """
 
-    def prepare() -> tuple[url.Opened, Shown]:
+    def prepare() -> tuple[url.Opened, View]:
         opened = url.decode(items, start)
         try:
             answer = answer_of(opened.inputs)
-            return opened, Shown(answer, curves_of(Model(), opened.pins, answer))
+            return opened, View(answer, curves_of(Answerer(), opened.pins, answer))
         except (InputError, SolveError) as problem:
             told = url.Opened(opened.inputs, opened.pins, {**opened.problems, "state": ("", str(problem))})
-            return told, Shown(answer_of(start))
+            return told, View(answer_of(start))
 
     opened, shown = await Tab.run(LIVE, prepare)
     return opened, shown
@@ -129,15 +129,15 @@ class Tab:
         What its address asks for.
     start : Inputs
         What the command was started with.
-    shown : Shown
+    shown : View
         The answer to the inputs of the address, with the pinned curves.
     """
 
-    def __init__(self, opened: url.Opened, start: Inputs, shown: Shown) -> None:
+    def __init__(self, opened: url.Opened, start: Inputs, shown: View) -> None:
         self.inputs, self.pins = opened.inputs, list(opened.pins)
         self.start = start
         self.measured: list[Measured] = []
-        self.model = Model()
+        self.model = Answerer()
         self.asked = False
         self.working = False
         self.resting: asyncio.Task[Any] | None = None
@@ -317,9 +317,9 @@ class Tab:
         answer = self.model(now)
         return answer, curves_of(self.model, pins, answer)
 
-    def seen(self) -> Shown:
+    def seen(self) -> View:
         """Return the answer, and the curves that are shown with it."""
-        return Shown(self.answer, self.pinned, tuple(self.measured))
+        return View(self.answer, self.pinned, tuple(self.measured))
 
     # --- when the sliders rest ---
 
@@ -332,7 +332,7 @@ class Tab:
         self.resting = background_tasks.create(self.settle(), name="explorer rests")
 
     async def settle(self) -> None:
-        """Put the state into the address; solve the curve outside the atlas and the distances in all inputs."""
+        """Put the state into the address; solve the curve outside the atlas and the margins in all inputs."""
         await asyncio.sleep(REST)
         now = self.inputs
         with self.page.client:
@@ -342,17 +342,17 @@ class Tab:
                 return
             found = await self.run(SLOW, self.ways, now)
             if found is not None and self.inputs is now:
-                self.page.show_distances(found if isinstance(found, str) else table.distances_html(found), now)
+                self.page.show_margins(found if isinstance(found, str) else table.margins_html(found), now)
 
-    def ways(self, now: Inputs) -> TransitionDistances | str | None:
-        """Return the distances of a contact, the reason why there are none, or None where it is no longer shown."""
+    def ways(self, now: Inputs) -> RegimeMargins | str | None:
+        """Return the margins of a contact, the reason why there are none, or None where it is no longer shown."""
 
         def go_on(done: int, scans: int) -> None:
             if self.inputs is not now or self.closed:
                 raise Superseded
 
         try:
-            return transition_distances(now.contact, definition=now.definition, on_point=go_on)
+            return regime_margins(now.contact, definition=now.definition, on_point=go_on)
         except Superseded:
             return None
         except (InputError, SolveError) as problem:

@@ -12,9 +12,9 @@ from stribeck.explorer.curves import Transition
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outputs import ROWS
 from stribeck.quantities.units import format_si
-from stribeck.regimes.distances import TransitionDistances
+from stribeck.regimes.margins import RegimeMargins
 
-__all__ = ["Row", "distances_html", "numbers", "numbers_html"]
+__all__ = ["Row", "margins_html", "numbers", "numbers_html"]
 
 MOST_DIGITS = 4
 
@@ -190,12 +190,12 @@ def _notes(notes: Iterable[str]) -> str:
     return "".join(f'<p class="note">{escape(note)}</p>' for note in notes if note)
 
 
-def distances_html(distances: TransitionDistances) -> str:
+def margins_html(margins: RegimeMargins) -> str:
     """Return the way to the next regimes in each input as HTML.
 
     Parameters
     ----------
-    distances : TransitionDistances
+    margins : RegimeMargins
         Of the state that is shown.
 
     Returns
@@ -203,17 +203,17 @@ def distances_html(distances: TransitionDistances) -> str:
     str
         A table with a line for each input and a column for each regime beside the present one.
     """
-    targets = distances.targets
+    targets = margins.targets
     lines = ["<table><tr><th></th>", *(f'<th scope="col">to {target}</th>' for target in targets), "</tr>"]
-    for distance in distances.distances:
-        lines.append(f'<tr data-key="{distance.name}"><th scope="row">{distance.name}</th>')
+    for margin in margins.margins:
+        lines.append(f'<tr data-key="{margin.name}"><th scope="row">{margin.name}</th>')
         for target in targets:
-            mark = distance.towards(target)
+            mark = margin.crossing_into(target)
             if mark is None:
                 lines.append("<td>not reachable</td>")
                 continue
-            value = format_si(mark.value, QUANTITIES[distance.name].dimension).replace("*", "·")
+            value = format_si(mark.value, QUANTITIES[margin.name].dimension).replace("*", "·")
             factor = f"{_times(mark.factor)} " if 0 < mark.factor < math.inf else ""
             lines.append(f'<td data-value="{mark.factor!r}">{factor}<small>{escape(value)}</small></td>')
         lines.append("</tr>")
-    return "".join([*lines, "</table>", _notes(distances.notes)])
+    return "".join([*lines, "</table>", _notes(margins.notes)])

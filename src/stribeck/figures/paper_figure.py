@@ -43,7 +43,7 @@ class PaperFigure:
     compute : callable
         ``compute(report)`` solves all states and returns what is drawn as one Dataset. Each variable and coordinate has
         the attributes ``units`` and ``long_name``; the dataset has ``finding``, one sentence with numbers measured on
-        it that answers the claim, and what :attr:`Work.attributes` gives.
+        it that answers the claim, and what :attr:`FigureJob.attributes` gives.
     draw : callable
         ``draw(dataset)`` returns the picture, from the dataset alone.
     """

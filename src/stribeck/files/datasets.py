@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck.files.writing import MissingExtraError, PathLike, replacing
+from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
 
 if TYPE_CHECKING:
     import xarray
@@ -47,7 +47,7 @@ def write_netcdf(dataset: xarray.Dataset, path: PathLike, *, force: bool = False
         import netCDF4  # noqa: F401
     except ImportError:
         raise MissingExtraError("a NetCDF file", "data", "netCDF4") from None
-    with replacing(path, NETCDF, force=force) as temporary:
+    with atomic_write(path, NETCDF, force=force) as temporary:
         try:
             dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
         except RuntimeError as problem:  # of the HDF5 library, as on a full disk
@@ -74,7 +74,7 @@ def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -
     (over,) = dataset.sizes
     columns = [dataset[over], *dataset.data_vars.values()]
     with (
-        replacing(path, CSV, force=force) as temporary,
+        atomic_write(path, CSV, force=force) as temporary,
         temporary.open("w", newline="", encoding="utf-8") as file,
     ):
         for name, value in dataset.attrs.items():

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from stribeck._types import Array
-from stribeck.files.writing import MissingExtraError, PathLike, replacing
+from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
 from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def add_legend(figure: Figure, axes: Sequence[Axes], columns: int = 4) -> None:
 def finish_figure(figure: Figure, path: PathLike | None, force: bool) -> Figure:
     """Write the figure where wanted, and return it."""
     if path is not None:
-        with replacing(path, PICTURES, force=force) as temporary:
+        with atomic_write(path, PICTURES, force=force) as temporary:
             figure.savefig(temporary)
     return figure
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from stribeck.quantities.units import InputError
 
-__all__ = ["MissingExtraError", "PathLike", "check_output", "reason_of", "replacing", "sync_folder"]
+__all__ = ["MissingExtraError", "PathLike", "check_writable", "reason_of", "atomic_write", "sync_folder"]
 
 PathLike = str | os.PathLike[str]
 
@@ -28,7 +28,7 @@ class MissingExtraError(InputError, ImportError):
         super().__init__(f"{purpose} needs {library}; install it with: pip install 'stribeck[{extra}]'.")
 
 
-def check_output(path: PathLike, suffixes: Collection[str], *, force: bool = False) -> Path:
+def check_writable(path: PathLike, suffixes: Collection[str], *, force: bool = False) -> Path:
     """Return where a file shall be written, or refuse a place where it cannot.
 
     Parameters
@@ -83,7 +83,7 @@ def check_output(path: PathLike, suffixes: Collection[str], *, force: bool = Fal
 
 
 @contextmanager
-def replacing(path: PathLike, suffixes: Collection[str], *, force: bool = False) -> Iterator[Path]:
+def atomic_write(path: PathLike, suffixes: Collection[str], *, force: bool = False) -> Iterator[Path]:
     """Give a temporary name beside ``path`` to write to, and move it there after success.
 
     Whatever ends the writing, ``path`` then holds its new content whole, or what it held before.
@@ -93,7 +93,7 @@ def replacing(path: PathLike, suffixes: Collection[str], *, force: bool = False)
     path : str or path-like
         Name of the file.
     suffixes : collection of str
-        As in :func:`check_output`.
+        As in :func:`check_writable`.
     force : bool
         Whether an existing file may be replaced.
 
@@ -105,15 +105,15 @@ def replacing(path: PathLike, suffixes: Collection[str], *, force: bool = False)
     Raises
     ------
     InputError
-        As in :func:`check_output`, or if the writing failed, as on a full disk.
+        As in :func:`check_writable`, or if the writing failed, as on a full disk.
     """
-    target = check_output(path, suffixes, force=force)
+    target = check_writable(path, suffixes, force=force)
     temporary = _beside(target)
     try:
         yield temporary
         with temporary.open("rb+") as file:
             os.fsync(file.fileno())
-        check_output(path, suffixes, force=force)  # the file may have come to exist meanwhile
+        check_writable(path, suffixes, force=force)  # the file may have come to exist meanwhile
         os.replace(temporary, target)
         sync_folder(target.parent)
     except OSError as problem:

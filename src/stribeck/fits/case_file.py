@@ -11,7 +11,7 @@ from typing import Any
 
 from stribeck.cases.case import Case, load_case, read_toml
 from stribeck.contacts.line import InputError
-from stribeck.files.writing import PathLike, replacing
+from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit, FittedInput
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.units import format_si
@@ -85,7 +85,7 @@ def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = Fal
     if not fit.converged:
         raise InputError(f"no fitted case is written. {fit.outcome.value}")
     text = case.path.read_text(encoding="utf-8-sig")
-    with replacing(path, (".toml",), force=force) as temporary:
+    with atomic_write(path, (".toml",), force=force) as temporary:
         temporary.write_text(_fitted_text(text, fit), encoding="utf-8")
         try:
             back = load_case(temporary).contact

@@ -23,7 +23,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import LineContact
 from stribeck.fits.case_file import load_fit_case
 from stribeck.fits.friction_parts import PartsOf, atlas_or_solved_parts, atlas_parts, solved_parts
-from stribeck.fits.identifiability import Undetermined, undetermined
+from stribeck.fits.identifiability import Unidentifiable, undetermined
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.model import FreeInput, FrictionModel, free_inputs
 from stribeck.fits.objective import Minimum, Objective, effective_parameters, minimise, objective, settle
@@ -396,7 +396,7 @@ def _notes(
     inputs: Sequence[FittedInput],
     correlation: Array,
     covariance: Array,
-    weak: Sequence[Undetermined],
+    weak: Sequence[Unidentifiable],
     contacts: Sequence[LineContact],
 ) -> list[str]:
     notes = []

@@ -12,7 +12,7 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups, InputError
 from stribeck.curves.stribeck_curve import stribeck_curve
@@ -20,14 +20,14 @@ from stribeck.equations.sensitivity import log_derivatives
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver.solve import SolveError
 
-__all__ = ["Parts", "PartsOf", "atlas_parts", "atlas_or_solved_parts", "solved_parts"]
+__all__ = ["FrictionParts", "PartsOf", "atlas_parts", "atlas_or_solved_parts", "solved_parts"]
 
 ATLAS_ERROR = 2.4e-5
 """Largest relative error of both parts in docs/atlas.md, on states that the atlas was not made from."""
 
 
 @dataclass(frozen=True)
-class Parts:
+class FrictionParts:
     """Both parts of the friction of n states for boundary_friction = beta = 1, and their derivatives.
 
     Parameters
@@ -45,21 +45,21 @@ class Parts:
     errors: Array
 
 
-PartsOf = Callable[[Groups], Parts]
+PartsOf = Callable[[Groups], FrictionParts]
 """What gives the parts of the friction of states in a row."""
 
 
 def atlas_parts(definition: Definition) -> PartsOf:
     """Return the function that reads states off the atlas; it raises InputError outside."""
 
-    def parts(groups: Groups) -> Parts:
+    def parts(groups: Groups) -> FrictionParts:
         values, by_contact, by_viscous = atlas.friction_parts(groups, definition)
-        return Parts(values, np.stack([by_contact, by_viscous]), np.full(values.shape, ATLAS_ERROR))
+        return FrictionParts(values, np.stack([by_contact, by_viscous]), np.full(values.shape, ATLAS_ERROR))
 
     return parts
 
 
-def solved_parts(definition: Definition, rtol: float, law: LawShape | None = None) -> PartsOf:
+def solved_parts(definition: Definition, rtol: float, law: AsperityLaw | None = None) -> PartsOf:
     """Return the function that solves states, those that differ in speed alone as one curve.
 
     Parameters
@@ -68,16 +68,16 @@ def solved_parts(definition: Definition, rtol: float, law: LawShape | None = Non
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of each state.
-    law : LawShape, optional
+    law : AsperityLaw, optional
         Contact law; the exponential one by default.
 
     Returns
     -------
     callable
-        Groups of many states -> their :class:`Parts`; raises SolveError where a state cannot be solved.
+        Groups of many states -> their :class:`FrictionParts`; raises SolveError where a state cannot be solved.
     """
 
-    def parts(groups: Groups) -> Parts:
+    def parts(groups: Groups) -> FrictionParts:
         speed, load, roughness = (np.broadcast_to(g, groups.shape) for g in (groups.speed, groups.load, groups.roughness))
         n = groups.shape[0]
         values, slopes, errors = np.empty((2, n)), np.empty((2, 3, n)), np.empty((2, n))
@@ -87,7 +87,7 @@ def solved_parts(definition: Definition, rtol: float, law: LawShape | None = Non
             speeds, at = np.unique(speed[rows], return_inverse=True)
             found = _along(speeds, float(F), float(h_rms), definition, rtol, law)
             values[:, rows], slopes[:, :, rows], errors[:, rows] = (array[..., at.ravel()] for array in found)
-        return Parts(values, slopes, errors)
+        return FrictionParts(values, slopes, errors)
 
     return parts
 
@@ -96,7 +96,7 @@ def atlas_or_solved_parts(definition: Definition, rtol: float) -> PartsOf:
     """Return the function that reads the states off the atlas where it holds all of them, and else solves them."""
     quick, slow = atlas_parts(definition), solved_parts(definition, rtol)
 
-    def parts(groups: Groups) -> Parts:
+    def parts(groups: Groups) -> FrictionParts:
         try:
             return quick(groups)
         except InputError:
@@ -106,7 +106,7 @@ def atlas_or_solved_parts(definition: Definition, rtol: float) -> PartsOf:
 
 
 def _along(
-    speeds: Array, load: float, roughness: float, definition: Definition, rtol: float, law: LawShape | None
+    speeds: Array, load: float, roughness: float, definition: Definition, rtol: float, law: AsperityLaw | None
 ) -> tuple[Array, Array, Array]:
     """Return values, slopes and errors of the states of a curve at ascending speeds."""
     # A pair would be taken as a range, and one speed is no curve.

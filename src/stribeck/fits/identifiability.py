@@ -15,7 +15,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.fits.model import FreeInput, Prediction
 
-__all__ = ["Undetermined", "undetermined"]
+__all__ = ["Unidentifiable", "undetermined"]
 
 WIDEST = math.log(10.0) / (2 * 1.959963984540054)
 """Standard error of a logarithm from which the 95 % interval is wider than a factor of ten."""
@@ -28,7 +28,7 @@ EXACT = 1e-6
 
 
 @dataclass(frozen=True)
-class Undetermined:
+class Unidentifiable:
     """A combination of free inputs that the data do not determine.
 
     Attributes
@@ -51,7 +51,7 @@ class Undetermined:
 
 def undetermined(
     free: Sequence[FreeInput], labels: Sequence[str], jacobian: Array, prediction: Prediction
-) -> tuple[Undetermined, ...]:
+) -> tuple[Unidentifiable, ...]:
     """Return the combinations of free inputs that the data do not determine.
 
     Parameters
@@ -67,7 +67,7 @@ def undetermined(
 
     Returns
     -------
-    tuple of Undetermined
+    tuple of Unidentifiable
         The worst first; empty where all are determined.
     """
     _, S, V = np.linalg.svd(jacobian, full_matrices=True)
@@ -112,7 +112,7 @@ def _described(
     exact: bool,
     jacobian: Array,
     prediction: Prediction,
-) -> Undetermined:
+) -> Unidentifiable:
     part = [i for i in range(len(free)) if abs(direction[i]) >= PART_OF]
     names = tuple(labels[i] for i in part)
     exponents = tuple(float(direction[i]) for i in part)
@@ -131,7 +131,7 @@ def _described(
             f"{_listed(names)} are not determined one by one: the predicted friction {how} when {_changed(names, exponents)}"
             f"{because}; the data give only {_listed(ties)}. Fix one of them, or give a prior."
         )
-    return Undetermined(names, exponents, error, message)
+    return Unidentifiable(names, exponents, error, message)
 
 
 def _weak_alone(column: Array) -> bool:

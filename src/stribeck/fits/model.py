@@ -8,7 +8,7 @@ A free input is the common factor :math:`e^\theta` on what the case or the curve
     \frac{\partial \mu_i}{\partial \theta} = A_{c(i)} \frac{\partial \mu_i}
     {\partial \ln (\lambda, \bar F_N, \bar h_\mathrm{rms}, \mu_0, \beta)}
 
-with a constant matrix A of exponents for each curve c, :data:`stribeck.quantities.inputs.EXPONENTS`.
+with a constant matrix A of exponents for each curve c, :data:`stribeck.quantities.inputs.GROUP_EXPONENTS`.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.line import Groups, LineContact
-from stribeck.fits.friction_parts import Parts, PartsOf
+from stribeck.fits.friction_parts import FrictionParts, PartsOf
 from stribeck.fits.measurements import Measurements
-from stribeck.quantities.inputs import EXPONENTS, QUANTITIES
+from stribeck.quantities.inputs import GROUP_EXPONENTS, QUANTITIES
 from stribeck.quantities.units import InputError, format_si
 
 __all__ = ["FreeInput", "FrictionModel", "Prediction", "free_inputs"]
@@ -188,7 +188,7 @@ class FrictionModel:
         """Return the exponents with which each free input enters the groups, boundary_friction and beta of a curve."""
         rows = []
         for free in self.free:
-            speed, load, roughness = EXPONENTS[free.name]
+            speed, load, roughness = GROUP_EXPONENTS[free.name]
             if self.data.abscissa == "hersey_number" and free.name == "load":
                 speed += 1  # U = H F_N/eta
             row = [speed, load, roughness, free.name == "boundary_friction", free.name == "beta"]
@@ -253,7 +253,7 @@ class FrictionModel:
         curve, logs = (self.data.curve, self.logs) if at is None else (at[0], self.logs_at(*at))
         A = self.exponents[curve]
         x = np.exp(logs + np.einsum("p,npk->nk", theta, A))
-        found: Parts = parts_of(Groups(x[:, 0], x[:, 1], x[:, 2]))
+        found: FrictionParts = parts_of(Groups(x[:, 0], x[:, 1], x[:, 2]))
         contact, viscous = x[:, 3] * found.values[0], x[:, 4] * found.values[1]
         by_groups = x[:, 3] * found.slopes[0] + x[:, 4] * found.slopes[1]
         by_logs = np.concatenate([by_groups, contact[None], viscous[None]])

@@ -12,7 +12,7 @@ from stribeck._types import Array
 from stribeck.cases.fit_settings import FREE
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import LineContact
-from stribeck.fits.identifiability import Undetermined
+from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
 from stribeck.quantities.inputs import QUANTITIES
@@ -117,7 +117,7 @@ class Fit:
         Whether outliers were kept from steering.
     quality : Quality
         What the residuals say.
-    undetermined : tuple of Undetermined
+    undetermined : tuple of Unidentifiable
         Combinations of inputs that the data do not determine.
     notes : tuple of str
         What to know before using the values, one sentence each.
@@ -145,7 +145,7 @@ class Fit:
     logarithmic: bool
     robust: bool
     quality: Quality
-    undetermined: tuple[Undetermined, ...]
+    undetermined: tuple[Unidentifiable, ...]
     notes: tuple[str, ...]
     solver_shift: float
     model_error: float

@@ -17,7 +17,7 @@ from stribeck.quantities.units import DIMENSIONS, InputError, format_si, show, t
 
 __all__ = [
     "ALTERNATIVES",
-    "EXPONENTS",
+    "GROUP_EXPONENTS",
     "FORMER",
     "INPUTS",
     "LETTERS",
@@ -291,7 +291,7 @@ SYMBOLS = {row.name: row.symbol for row in ROWS if not row.derived}
 LETTERS = {letter: row.name for row in ROWS for letter in row.letters}
 """Letters of the article and of the trade, and the inputs that they stand for."""
 
-EXPONENTS = {row.name: row.exponents for row in ROWS if not row.derived}
+GROUP_EXPONENTS = {row.name: row.exponents for row in ROWS if not row.derived}
 """Exponents with which each input enters the groups of speed, load and roughness."""
 
 FORMER = {"friction_coefficient": "boundary_friction", "mu0": "boundary_friction"}

@@ -42,7 +42,7 @@ LABELS = {
     "formula_speed_at_minimum": "speed of the minimum of friction by the law of mixed friction",
     "printed_speed_boundary_to_mixed": "the same as [BP] print it",
     "printed_speed_at_minimum": "the speed of the minimum as [BP] print it",
-    "merging_roughness": "roughness at which the minimum of friction disappears, on solved states",
+    "roughness_without_minimum": "roughness at which the minimum of friction disappears, on solved states",
     "formula_merging_roughness": "the same by the law of mixed friction",
 }
 """Long names of the numbers."""
@@ -86,7 +86,7 @@ def diagram_dataset(diagram: Diagram) -> xarray.Dataset:
     found["message"] = (plane, diagram.messages, {"units": "1", "long_name": "why results of the row are missing, if any"})
     merging = {"formula_merging_roughness": _formula_merging(diagram)}
     if diagram.merging is not None:
-        merging["merging_roughness"] = diagram.merging
+        merging["roughness_without_minimum"] = diagram.merging
     for name, values in merging.items():
         found[name] = (("load",), values, {"units": roughness_unit, "long_name": LABELS[name]})
     found |= _group_axes(diagram)
@@ -167,7 +167,7 @@ def _formula_merging(diagram: Diagram) -> Array:
     loads = np.asarray(groups.load)[:, 0]
     if not transitions.speed_at_minimum.holds_for(groups.law):
         return np.full(len(loads), np.nan)
-    line = np.asarray(transitions.merging_roughness(loads, diagram.boundary_friction, diagram.beta))
+    line = np.asarray(transitions.roughness_without_minimum(loads, diagram.boundary_friction, diagram.beta))
     if diagram.contact is None:
         return line
     return line / float(diagram.contact.replace(roughness=1.0).groups.roughness)

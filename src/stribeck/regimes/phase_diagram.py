@@ -15,20 +15,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method, regime_of
 from stribeck.curves.result import StribeckCurve
-from stribeck.curves.speed_range import automatic_speeds
+from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes import phase_from_atlas as atlas_phase
 from stribeck.regimes.phase_grid import FIELDS, MARKS, REGIMES, Diagram, empty_diagram
-from stribeck.regimes.weakening import merging_roughness, weakening
+from stribeck.regimes.weakening import roughness_without_minimum, weakening
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, check_rtol, solve
 
@@ -56,7 +56,7 @@ def phase_diagram(
     rtol: float = 1e-4,
     merging: bool = False,
     on_point: Callable[[int, int], object] | None = None,
-    law: str | LawShape | None = None,
+    law: str | AsperityLaw | None = None,
     method: Method = "solver",
 ) -> xarray.Dataset:
     """Solve a grid of speeds, loads and roughnesses, and locate the transitions between its regimes.
@@ -79,10 +79,10 @@ def phase_diagram(
         Relative tolerance of the states of the grid; transitions are located on finer ones.
     merging : bool
         Whether to look, at each load, for the roughness at which the minimum disappears, see
-        :func:`stribeck.merging.merging_roughness`; about a second each.
+        :func:`stribeck.regimes.weakening.roughness_without_minimum`; about a second each.
     on_point : callable, optional
         ``on_point(done, points)`` is called as points are finished, for progress.
-    law : str or LawShape, optional
+    law : str or AsperityLaw, optional
         Contact law as in :func:`stribeck.solve`; that of the problem if omitted.  What formulas give is nan for another law
         than the exponential one.
     method : {"solver", "atlas"}
@@ -213,7 +213,9 @@ def _filled(speeds: Array, groups: Groups, unit: float, diagram: Diagram) -> Arr
     """Return the speeds of a row: those of the grid, what lies in wide gaps, and as far out as its transitions may lie."""
     if len(speeds) > 1 and groups.roughness == 0:  # smooth surfaces have no transitions
         return speeds
-    low, high = (end / unit for end in automatic_speeds(groups, diagram.boundary_friction, diagram.beta, diagram.definition))
+    low, high = (
+        end / unit for end in automatic_speed_range(groups, diagram.boundary_friction, diagram.beta, diagram.definition)
+    )
     ends = sorted({*speeds.tolist(), low, high} if len(speeds) else {low, high})
     pieces = [np.geomspace(*pair, 1 + max(1, round(DENSITY * math.log10(pair[1] / pair[0]))))[:-1] for pair in pairwise(ends)]
     return np.concatenate([*pieces, ends[-1:]])
@@ -225,7 +227,7 @@ def _merging_line(diagram: Diagram) -> Array:
     for i in range(len(line)):
         _, groups, _ = diagram.problem(i, 0)
         try:
-            group = merging_roughness(
+            group = roughness_without_minimum(
                 float(groups.load), diagram.boundary_friction, diagram.beta, diagram.definition, law=groups.law
             )
         except SolveError:

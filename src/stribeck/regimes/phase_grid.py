@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import LawShape, check_law
+from stribeck.contact_laws.law import AsperityLaw, check_law
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
-from stribeck.curves.speed_range import automatic_speeds
+from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show, to_si
@@ -70,7 +70,7 @@ class Diagram:
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of the states.
-    law : LawShape or None
+    law : AsperityLaw or None
         Contact law; None is the exponential one.
     outcome : Outcome
         CONVERGED, or INTERRUPTED.
@@ -82,7 +82,7 @@ class Diagram:
     beta: float
     definition: Definition
     rtol: float
-    law: LawShape | None = None
+    law: AsperityLaw | None = None
     outcome: Outcome = Outcome.CONVERGED
     fields: dict[str, Array] = field(init=False)
     regime: Any = field(init=False)
@@ -120,7 +120,7 @@ def empty_diagram(
     beta: float | None,
     definition: Definition,
     rtol: float,
-    law: str | LawShape | None = None,
+    law: str | AsperityLaw | None = None,
 ) -> Diagram:
     """Return the empty diagram that the arguments ask for."""
     problem = problem if problem is None else with_law(problem, law)
@@ -182,5 +182,7 @@ def _automatic_axis(diagram: Diagram, points: int) -> Array:
     ends = []
     for i, j in product((0, -1), repeat=2):
         _, groups, unit = diagram.problem(i, j)
-        ends += [end / unit for end in automatic_speeds(groups, diagram.boundary_friction, diagram.beta, diagram.definition)]
+        ends += [
+            end / unit for end in automatic_speed_range(groups, diagram.boundary_friction, diagram.beta, diagram.definition)
+        ]
     return np.geomspace(min(ends), max(ends), points)

@@ -179,7 +179,7 @@ def draw_phase_diagram(axes: Axes, dataset: xarray.Dataset, load: float | None =
         axes.plot(speed(plane[name].values), y, color=colour, lw=width, label=label, zorder=4)
     for name, (label, colour, dashes) in FORMULAS.items():
         axes.plot(speed(plane[name].values), y, color=colour, lw=1.2, ls=dashes, label=label, zorder=4.5)
-    merging = plane.get("merging_roughness")
+    merging = plane.get("roughness_without_minimum")
     if merging is not None and y[0] <= (height := float(_scaled(plane, "roughness")[0](merging.values))) <= y[-1]:
         axes.axhline(height, color=INK, lw=0.9, ls=(0, (7, 3, 1, 3)), label="above: no minimum of friction", zorder=2)
     axes.set(xscale="log", yscale="log", xlabel=x_label, ylabel=y_label, ylim=(y[0], y[-1]))

@@ -16,20 +16,20 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.line import Groups
-from stribeck.curves.speed_range import automatic_speeds
+from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.corrector import Follower
-from stribeck.solver.refinement import Point
+from stribeck.solver.corrector import Corrector
+from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solve import SolveError, as_groups, check_rtol, describe
 
-__all__ = ["Weakening", "merging_roughness", "weakening"]
+__all__ = ["Weakening", "roughness_without_minimum", "weakening"]
 
 Criterion = Literal["slope", "plateau"]
 
@@ -85,8 +85,8 @@ class _Slopes:
 
     def __init__(self, groups: Groups, boundary_friction: float, beta: float, definition: Definition, rtol: float) -> None:
         self.groups, self.boundary_friction, self.beta, self.definition = groups, boundary_friction, beta, definition
-        self.follower = Follower(self.at, rtol)
-        self.points: dict[float, Point] = {}
+        self.corrector = Corrector(self.at, rtol)
+        self.points: dict[float, RefinedState] = {}
         self.found: dict[float, float] = {}
 
     def at(self, s: float) -> Groups:
@@ -95,7 +95,7 @@ class _Slopes:
     def __call__(self, s: float) -> float:
         if s not in self.found:
             nearest = sorted(self.points.items(), key=lambda pair: -abs(pair[0] - s))
-            point = self.follower(s, nearest[-4:])
+            point = self.corrector(s, nearest[-4:])
             if point is None or point.state is None or point.values is None:
                 raise SolveError(Outcome.PATH_LOST, None, f"{describe(self.at(s))}: {Outcome.PATH_LOST.value}")
             self.points[s] = point
@@ -156,7 +156,7 @@ def weakening(
     check_rtol(rtol)
     boundary_friction, beta = coefficients(None, boundary_friction, beta)
     slope = _Slopes(groups, boundary_friction, beta, check_definition(definition), rtol)
-    low, high = automatic_speeds(groups, boundary_friction, beta, definition)
+    low, high = automatic_speed_range(groups, boundary_friction, beta, definition)
     count = max(8, math.ceil(POINTS_PER_DECADE * math.log10(high / low)))
     coarse = np.linspace(math.log(high), math.log(low), count).tolist()
     values = [slope(s) for s in coarse]
@@ -175,7 +175,7 @@ def weakening(
 
 
 @refuse_former
-def merging_roughness(
+def roughness_without_minimum(
     load: float,
     boundary_friction: float | None = None,
     beta: float | None = None,
@@ -183,7 +183,7 @@ def merging_roughness(
     *,
     criterion: Criterion = "slope",
     rtol: float = 1e-6,
-    law: LawShape | None = None,
+    law: AsperityLaw | None = None,
 ) -> float:
     r"""Return the roughness at which the solved Stribeck curve loses its minimum, and the lines of transition merge.
 
@@ -200,7 +200,7 @@ def merging_roughness(
         where there still is one, lies above boundary_friction (the words of [BP]); always the smaller.
     rtol : float
         Relative tolerance of the states, and of the result.
-    law : LawShape, optional
+    law : AsperityLaw, optional
         Contact law; the exponential one if omitted.
 
     Returns

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from stribeck.contact_laws.law import LawShape, has_constant_decay
-from stribeck.contact_laws.scaled import ShiftedShape
+from stribeck.contact_laws.law import AsperityLaw, has_constant_decay
+from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import Groups
 
 STATIC_LOAD = 0.01
@@ -18,7 +18,7 @@ SAFE_SEPARATION = 2.3
 """Separation at the largest pressure from which all gaps are positive at rest; that of the exponential law at load 0.01."""
 
 
-def separation_at(shape: LawShape, log_pressure: float) -> float:
+def separation_at(shape: AsperityLaw, log_pressure: float) -> float:
     """Return the separation at which ln(Phi) has a value, by bisection; minus or plus 1e6 where it has none between them."""
     low, high = max(-1e6, shape.lowest), 1e6
     for _ in range(100):
@@ -49,9 +49,9 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
             return groups, 0.0
         lighter = replace(groups, load=STATIC_LOAD, roughness=STATIC_LOAD * groups.relative_roughness)
         return lighter, -0.5 * float(groups.relative_roughness) * math.log(float(groups.load / lighter.load))
-    if shape.lowest > -np.inf or isinstance(shape, ShiftedShape):
+    if shape.lowest > -np.inf or isinstance(shape, ShiftedLaw):
         return groups, 0.0
     shift = max(0.0, SAFE_SEPARATION - separation_at(shape, 0.5 * float(np.log(groups.load))))
     if shift == 0.0:
         return groups, 0.0
-    return replace(groups, law=ShiftedShape(shape, shift)), -shift * float(groups.relative_roughness)
+    return replace(groups, law=ShiftedLaw(shape, shift)), -shift * float(groups.relative_roughness)

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stribeck._types import Array
-from stribeck.contact_laws.scaled import BlendedShape
+from stribeck.contact_laws.scaled import BlendedLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.guess import Guess
@@ -103,7 +103,7 @@ def rigid_guess(groups: Groups) -> RigidGuess | None:
     """
     speed, law = float(groups.speed), contact_law(groups)
     x, dx = np.linspace(-6, 6, 241, retstep=True)
-    x, dx = x * math.sqrt(law.decay), dx * math.sqrt(law.decay)
+    x, dx = x * math.sqrt(law.decay_length), dx * math.sqrt(law.decay_length)
 
     def excess(log_height: float) -> float:
         height = math.exp(log_height)
@@ -132,7 +132,7 @@ def cold_start(groups: Groups) -> Path[State]:
     Path
         Of states on meshes that resolve them to about 1e-3; its outcome tells whether the end was reached.
     """
-    kappa = float(contact_law(groups).decay)
+    kappa = float(contact_law(groups).decay_length)
     by_speed = groups.speed > 0 and groups.load > SATURATED_LOAD and kappa < RIGID_ROUGHNESS
     along = faster if by_speed else unloaded
     factors = []
@@ -187,7 +187,7 @@ def start_by_exponential(groups: Groups) -> Path[State]:
     assert shape is not None
 
     def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
-        here = replace(groups, law=shape if part == 1.0 else BlendedShape(shape, part))
+        here = replace(groups, law=shape if part == 1.0 else BlendedLaw(shape, part))
         guess: Guess = extrapolate(history, part) if history else start.states[-1]
         try:
             mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
-from stribeck.equations.error_estimate import FineOperators, reads_off
+from stribeck.equations.error_estimate import FineOperators, gap_is_resolved
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.prediction import extrapolate
@@ -21,8 +21,8 @@ from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cold_start import first_path
-from stribeck.solver.judgement import judge_together
-from stribeck.solver.refinement import Point, converge, judge, mesh_tolerances_for, newton_tolerance, order_for
+from stribeck.solver.judgement import verify_together
+from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, order_for, verify
 
 MOST_STEPS = 16
 """Newton and chord steps after which the present mesh is given up."""
@@ -31,7 +31,7 @@ ROUGH = 1e-2
 """Error of a prediction from which the mesh that was made for it is looked at again: it is finer than need be."""
 
 MOST_WAITING = 8
-"""Points that may wait to be judged together."""
+"""Points that may wait to be verified together."""
 
 WAITING_NODES = 4000
 """Nodes that they may have in all: each may keep the factors of a matrix as large as its own."""
@@ -52,26 +52,26 @@ RELAX = 3.0
 """Factor by which a mesh tolerance that once had to be lowered is raised again at such a look."""
 
 
-class Follower:
-    """Corrector of a path: ``groups_at(s)`` gives the groups at coordinate s.
+class Corrector:
+    """Solve the states of a path from predictions: ``groups_at(s)`` gives the groups at coordinate s.
 
     It keeps the operators of the present mesh, whose making costs as much as several states.  With ``postpone`` a state on it
-    that looks resolved is judged later, together with others, by :meth:`judge_waiting`.
+    that looks resolved is verified later, together with others, by :meth:`verify_waiting`.
     """
 
     def __init__(self, groups_at: Callable[[float], Groups], rtol: float, postpone: bool = False) -> None:
         self.groups_at = groups_at
         self.rtol = rtol
         self.postpone = postpone
-        self.waiting: list[tuple[Point, Inverse]] = []
-        self.at_nodes = math.inf  # error there of the last point that was judged, in units of rtol
+        self.waiting: list[tuple[RefinedState, Inverse]] = []
+        self.at_nodes = math.inf  # error there of the last point that was verified, in units of rtol
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
         self.inverse: Inverse | None = None
         self.since_check = 0
         self.tolerances = mesh_tolerances_for(rtol)
 
-    def __call__(self, s: float, history: Sequence[tuple[float, Point]]) -> Point | None:
+    def __call__(self, s: float, history: Sequence[tuple[float, RefinedState]]) -> RefinedState | None:
         """Return the point at ``s`` predicted from ``history``; from cold where that is empty."""
         groups = self.groups_at(s)
         if not history:
@@ -93,18 +93,18 @@ class Follower:
             self._coarsen(adopted.state)
         return adopted
 
-    def judge_waiting(self) -> dict[Point, Point]:
-        """Return the points that waited, each with what it became: judged, and solved anew where its mesh was too coarse."""
+    def verify_waiting(self) -> dict[RefinedState, RefinedState]:
+        """Return the points that waited, each with what it became: verified, and solved anew where its mesh was too coarse."""
         waiting, self.waiting = self.waiting, []
-        found: dict[Point, Point] = {}
+        found: dict[RefinedState, RefinedState] = {}
         for fine in {point.fine: None for point, _ in waiting}:
             points, inverses = zip(*(pair for pair in waiting if pair[0].fine is fine), strict=True)
             assert fine is not None
-            judged = judge_together([point.state for point in points], inverses, fine, self.rtol)
-            found |= zip(points, judged, strict=True)
+            verified = verify_together([point.state for point in points], inverses, fine, self.rtol)
+            found |= zip(points, verified, strict=True)
         if waiting:
             self._learn(found[waiting[-1][0]])
-        return {point: judged if judged.outcome.ok else self._again(judged) for point, judged in found.items()}
+        return {point: verified if verified.outcome.ok else self._again(verified) for point, verified in found.items()}
 
     @property
     def patience(self) -> int:
@@ -112,13 +112,13 @@ class Follower:
         size = 1 if self.operators is None else self.operators.mesh.size
         return max(1, min(MOST_WAITING, WAITING_NODES // size, int(PATIENCE / math.sqrt(self.at_nodes + 1e-300))))
 
-    def _learn(self, point: Point) -> Point:
+    def _learn(self, point: RefinedState) -> RefinedState:
         """Return the point, and keep what it tells of the mesh."""
         if point.estimate is not None:
             self.at_nodes = point.estimate.at_nodes / self.rtol
         return point
 
-    def _again(self, point: Point) -> Point:
+    def _again(self, point: RefinedState) -> RefinedState:
         """Return a point whose mesh was too coarse: on the present one where that is another, else on a finer one."""
         assert point.state is not None
         if self.operators is not None and self.operators.mesh is not point.state.mesh:
@@ -127,7 +127,7 @@ class Follower:
                 return self._kept(again)
         return self._adopt(converge(point.state, point.groups, self.rtol, self.tolerances))
 
-    def _on_present_mesh(self, guess: Guess, groups: Groups, postpone: bool) -> Point | None:
+    def _on_present_mesh(self, guess: Guess, groups: Groups, postpone: bool) -> RefinedState | None:
         if self.operators is None or self.fine is None:
             return None
         base, tolerance = with_positive_gap(groups)[0], newton_tolerance(self.rtol)
@@ -135,17 +135,17 @@ class Follower:
         if not state.outcome.ok:
             return None
         if postpone:
-            resolved = reads_off(state.mesh, state.gap, self.rtol)
+            resolved = gap_is_resolved(state.mesh, state.gap, self.rtol)
             outcome = Outcome.CONVERGED if resolved else Outcome.REFINEMENT_LIMIT
-            point = Point(groups, state, None, None, outcome, fine=self.fine)
+            point = RefinedState(groups, state, None, None, outcome, fine=self.fine)
         else:
-            point = self._learn(judge(state, groups, self.fine, self.rtol))
+            point = self._learn(verify(state, groups, self.fine, self.rtol))
         self.since_check += 1
         if self.since_check >= CHECK_EVERY and point.outcome.ok:
             self._coarsen(state)
         return point
 
-    def _kept(self, point: Point) -> Point:
+    def _kept(self, point: RefinedState) -> RefinedState:
         """Return the point with its inverse kept here, for the next one, instead of there."""
         if point.state is None:
             return point
@@ -173,7 +173,7 @@ class Follower:
         tail, gap_tail = mesh_tolerances_for(self.rtol)
         self.tolerances = min(tail, RELAX * self.tolerances[0]), min(gap_tail, RELAX * self.tolerances[1])
 
-    def _adopt(self, point: Point) -> Point:
+    def _adopt(self, point: RefinedState) -> RefinedState:
         if point.state is not None and point.outcome.ok:
             self.operators, self.fine = point.state.equations.operators, point.fine
             self.tolerances = point.tolerances or self.tolerances

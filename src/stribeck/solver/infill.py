@@ -7,7 +7,7 @@ interpolated between those of the two ends,
 .. math:: J^{-1} \approx (1 - t) \, J_a^{-1} + t \, J_b^{-1},
 
 in units of the unknowns, which leaves an error of second order in the distance of the ends.  So nothing is factorised here.
-Each state is judged by its own error estimate, as any other is.
+Each state is verified by its own error estimate, as any other is.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.error_estimate import FineOperators
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.state import Rows, State, inverse_on
+from stribeck.equations.state import StackedStates, State, inverse_on
 from stribeck.numerics.continuation import extrapolation_weights
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.judgement import in_rows, judged
-from stribeck.solver.refinement import Point, newton_tolerance
+from stribeck.solver.judgement import stacked, verified
+from stribeck.solver.refinement import RefinedState, newton_tolerance
 
 MOST_STEPS = 12
 
@@ -37,17 +37,17 @@ SLOWEST = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Anchor:
+class SolvedState:
     """A solved state of a path, and what it lends to those beside it."""
 
     coordinate: float
-    point: Point
+    point: RefinedState
     state: State
     operators: Operators
     fine: FineOperators
 
     @classmethod
-    def at(cls, coordinate: float, point: Point, operators: Operators, fine: FineOperators) -> Anchor:
+    def at(cls, coordinate: float, point: RefinedState, operators: Operators, fine: FineOperators) -> SolvedState:
         """Return the anchor that a point is, with the operators of a mesh that resolves it."""
         assert point.state is not None
         return cls(coordinate, point, point.state, operators, fine)
@@ -63,7 +63,7 @@ class Anchor:
 
 
 @dataclass(frozen=True, eq=False)
-class _Gap:
+class _Interval:
     """The rows between two anchors on one mesh, and the inverse Jacobian of each."""
 
     equations: Equations
@@ -76,23 +76,23 @@ class _Gap:
         return np.asarray(units * (first + self.parts * (second - first)))
 
 
-def between(
-    ends: tuple[Anchor, Anchor],
-    on: Anchor,
-    through: Sequence[Anchor],
+def interpolate_and_correct(
+    ends: tuple[SolvedState, SolvedState],
+    on: SolvedState,
+    through: Sequence[SolvedState],
     coordinates: Sequence[float],
     groups: Sequence[Groups],
     rtol: float,
-) -> list[Point]:
+) -> list[RefinedState]:
     """Return the points at ``coordinates`` between two anchors; none if one of them does not converge.
 
     Parameters
     ----------
-    ends : tuple of Anchor
+    ends : tuple of SolvedState
         The two.
-    on : Anchor
+    on : SolvedState
         That whose mesh is used.
-    through : sequence of Anchor
+    through : sequence of SolvedState
         Those through which guesses are interpolated.
     coordinates : sequence of float
         Where points are wanted.
@@ -103,7 +103,7 @@ def between(
 
     Returns
     -------
-    list of Point
+    list of RefinedState
         In the order of the coordinates, each with its outcome.
     """
     operators, fine = on.operators, on.fine
@@ -118,12 +118,12 @@ def between(
     for block in (at.gap, at.flux_gap):
         y[:, block] = np.exp(y[:, block])
     scales = y[:, at.flux_gap] ** 2
-    equations, load = in_rows(groups, operators, scales)
+    equations, load = stacked(groups, operators, scales)
     first, second = ends
     parts = (np.array(coordinates)[:, None] - first.coordinate) / (second.coordinate - first.coordinate)
-    gap = _Gap(equations, (first.on(operators), second.on(operators)), parts)
+    interval = _Interval(equations, (first.on(operators), second.on(operators)), parts)
     guess, tolerance = y, newton_tolerance(rtol)
-    y, sizes, rates, steps = _corrected(gap, y, tolerance)
+    y, sizes, rates, steps = _corrected(interval, y, tolerance)
     if not ((sizes <= tolerance) & (rates <= SLOWEST)).all():
         return []
     prediction = np.abs(guess[:, at.gap] / y[:, at.gap] - 1).max(axis=1)
@@ -132,18 +132,18 @@ def between(
         own = Equations(operators, float(groups[i].speed), contact_law(groups[i]), float(scales[i, 0]))
         root = Root(y[i], Outcome.CONVERGED, steps, 0, float(sizes[i]), float(rates[i]), 0.0, None)
         solved.append(State(groups[i], own, y[i], root, float(prediction[i])))
-    rows = Rows(equations, y, load, lambda r: gap.correction(r, equations.units(y)))
-    return judged(rows, solved, fine, rtol)
+    rows = StackedStates(equations, y, load, lambda r: interval.correction(r, equations.units(y)))
+    return verified(rows, solved, fine, rtol)
 
 
-def _corrected(gap: _Gap, y: Array, tolerance: float) -> tuple[Array, Array, Array, int]:
+def _corrected(interval: _Interval, y: Array, tolerance: float) -> tuple[Array, Array, Array, int]:
     """Return the unknowns after the iteration, the size of each row's last step, its part of the one before, and steps."""
-    equations = gap.equations
+    equations = interval.equations
     sizes = rates = np.full(len(y), np.inf)
     with np.errstate(all="ignore"):
         for step in range(1, MOST_STEPS + 1):
             units = equations.units(y)
-            dy = gap.correction(equations.residual(y), units)
+            dy = interval.correction(equations.residual(y), units)
             relative = np.abs(dy / units)
             relative[:, equations.layout.offset] = 0.0
             before, sizes = sizes, relative.max(axis=1)

@@ -9,18 +9,18 @@ import numpy as np
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.corrector import Follower
-from stribeck.solver.refinement import Point
+from stribeck.solver.corrector import Corrector
+from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, as_groups, check_rtol, finish, hertz_solution, solved_point
 
-__all__ = ["NearSolver"]
+__all__ = ["WarmStartSolver"]
 
 LARGEST_CHANGE = 30.0
 """Factor by which a group may have changed for the last state to be a guess of the next."""
 
 
-class NearSolver:
+class WarmStartSolver:
     """Solves one state after another, each from the last where that is near, from cold where it is not.
 
     Parameters
@@ -43,8 +43,8 @@ class NearSolver:
         check_rtol(rtol)
         self.rtol = rtol
         self._target = Groups(0.0, 1.0, 0.0)
-        self._follower = Follower(lambda _: self._target, rtol)
-        self._last: Point | None = None
+        self._corrector = Corrector(lambda _: self._target, rtol)
+        self._last: RefinedState | None = None
 
     @one_blas_thread
     def __call__(self, problem: Groups | LineContact) -> Solution:
@@ -73,18 +73,18 @@ class NearSolver:
         point = self._from_last(groups)
         if point is None:
             point = solved_point(groups, self.rtol)
-            self._follower = Follower(lambda _: self._target, self.rtol)
+            self._corrector = Corrector(lambda _: self._target, self.rtol)
         solution = finish(point, groups, contact, self.rtol)
         self._last = point
         return solution
 
-    def _from_last(self, groups: Groups) -> Point | None:
+    def _from_last(self, groups: Groups) -> RefinedState | None:
         """Return the state that Newton's iteration finds from the last one, or None."""
         if self._last is None or not _near(self._last.groups, groups):
             return None
         self._target = groups
         try:
-            point = self._follower(1.0, [(0.0, self._last)])
+            point = self._corrector(1.0, [(0.0, self._last)])
         except (SolveError, FloatingPointError, np.linalg.LinAlgError):
             return None
         if point is None or point.state is None or point.outcome is not Outcome.CONVERGED:

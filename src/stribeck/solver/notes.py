@@ -25,7 +25,7 @@ LAW_RANGE = (0.4, 2.0)
 """Gaps over h_rms between which the exponential law follows a rough surface; theory.md, section 8, and contact_laws.md."""
 
 USUAL_ALPHA, USUAL_BETA = 2.0, 0.05
-"""Coefficients of self-affine surfaces, by which groups alone are judged."""
+"""Coefficients of self-affine surfaces, by which groups alone are verified."""
 
 NEGLIGIBLE_SHARE = 0.01
 """Share of load and of friction up to which it does not matter by which law asperities carry them."""

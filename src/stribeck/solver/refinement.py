@@ -43,7 +43,7 @@ def mesh_tolerances_for(rtol: float) -> tuple[float, float]:
 
 
 @dataclass(frozen=True, eq=False)
-class Point:
+class RefinedState:
     """A refined state of ``groups``, its observables and their errors, and how the refinement ended.
 
     ``state`` is that of the groups solved for, see :func:`stribeck.solver.at_rest.with_positive_gap`; ``estimate`` is None if
@@ -70,7 +70,7 @@ def converge(
     rtol: float,
     tolerances: tuple[float, float] | None = None,
     profile_tolerance: float = math.inf,
-) -> Point:
+) -> RefinedState:
     """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
 
     ``tolerances`` are the Legendre tails to start with, see :func:`stribeck.equations.state.mesh_for`.
@@ -79,7 +79,7 @@ def converge(
     base, _ = with_positive_gap(groups)
     law = contact_law(base)
     tail, gap_tail = mesh_tolerances_for(rtol) if tolerances is None else tolerances
-    best = Point(groups, None, None, None, Outcome.REFINEMENT_LIMIT)
+    best = RefinedState(groups, None, None, None, Outcome.REFINEMENT_LIMIT)
     last: tuple[int, Array] | None = None
     outcome = Outcome.REFINEMENT_LIMIT
     for _ in range(MAX_REFINEMENTS):
@@ -96,12 +96,12 @@ def converge(
         if isinstance(guess, State):  # what was predicted is the first state on the way to this one
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
         fine, values = FineOperators(mesh), values_of(state, groups)
-        [estimate] = error_estimates(state.rows, [values], fine)
+        [estimate] = error_estimates(state.stacked, [values], fine)
         if last is not None and mesh.size >= CLEARLY_FINER * last[0]:
             estimate = estimate.at_most(np.abs(values.array() - last[1]))
         last = mesh.size, values.array()
         if best.estimate is None or estimate.total < best.estimate.total:
-            best = Point(groups, state, values, estimate, reached(estimate, rtol), (tail, gap_tail), fine)
+            best = RefinedState(groups, state, values, estimate, reached(estimate, rtol), (tail, gap_tail), fine)
         if best.outcome.ok:
             return best
         if estimate.total <= 3 * estimate.floor:
@@ -119,7 +119,7 @@ def converge(
     return replace(best, outcome=outcome)
 
 
-def _noise(point: Point) -> float:
+def _noise(point: RefinedState) -> float:
     """Return about the relative error of the read-off gaps that uneven nodal gaps may cause on small panels."""
     return 0.0 if point.state is None else NODAL_ROUNDING / float(point.state.gap.min())
 
@@ -129,11 +129,11 @@ def shrink(excess: float) -> float:
     return 1.0 if excess > 2 else min(0.5, max(0.3, 0.5 * excess))
 
 
-def judge(state: State, groups: Groups, fine: FineOperators, rtol: float) -> Point:
+def verify(state: State, groups: Groups, fine: FineOperators, rtol: float) -> RefinedState:
     """Return the state with its observables and their errors; it counts as converged if these are at most ``rtol``."""
     values = values_of(state, groups)
-    [estimate] = error_estimates(state.rows, [values], fine)
-    return Point(groups, state, values, estimate, reached(estimate, rtol), fine=fine)
+    [estimate] = error_estimates(state.stacked, [values], fine)
+    return RefinedState(groups, state, values, estimate, reached(estimate, rtol), fine=fine)
 
 
 def reached(estimate: ErrorEstimate, rtol: float) -> Outcome:

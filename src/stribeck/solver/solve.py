@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import Observables
@@ -24,7 +24,7 @@ from stribeck.solids import hertz
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
-from stribeck.solver.refinement import Point, converge, order_for
+from stribeck.solver.refinement import RefinedState, converge, order_for
 from stribeck.solver.solution import Solution
 
 RTOL_RANGE = (1e-11, 1e-2)
@@ -68,7 +68,7 @@ def solve(
     problem: Groups | LineContact,
     *,
     rtol: float = 1e-6,
-    law: str | LawShape | None = None,
+    law: str | AsperityLaw | None = None,
     on_failure: Literal["raise", "return"] = "raise",
 ) -> Solution:
     r"""Solve one state of the lubricated rough contact, from cold.
@@ -82,7 +82,7 @@ def solve(
         The state.  Speed zero (at rest), roughness zero (smooth) and both (Hertz, closed form) are ordinary inputs.
     rtol : float
         Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2.
-    law : str or LawShape, optional
+    law : str or AsperityLaw, optional
         Contact law: an object such as :class:`stribeck.GreenwoodWilliamson`, or the name of one that needs no parameters; that
         of the problem if omitted, which is the exponential one unless it says otherwise.
     on_failure : {"raise", "return"}
@@ -116,7 +116,7 @@ def solve(
     return finish(solved_point(groups, rtol), groups, contact, rtol, on_failure)
 
 
-def solved_point(groups: Groups, rtol: float) -> Point:
+def solved_point(groups: Groups, rtol: float) -> RefinedState:
     """Return the refined state of ``groups`` from cold; raise where no path leads there."""
     far = untested(groups)
     # Where double precision ends, a guess may overflow: Newton's iteration refuses it, and that is the outcome.
@@ -131,7 +131,7 @@ def solved_point(groups: Groups, rtol: float) -> Point:
         return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
 
 
-def with_law(problem: Groups | LineContact, law: str | LawShape | None) -> Groups | LineContact:
+def with_law(problem: Groups | LineContact, law: str | AsperityLaw | None) -> Groups | LineContact:
     """Return the problem with another contact law, unless none is given."""
     if law is None or not isinstance(problem, Groups | LineContact):
         return problem
@@ -174,7 +174,9 @@ def untested(groups: Groups) -> str:
     return f" The solver was not tested for {', '.join(outside)}; check the inputs." if outside else ""
 
 
-def finish(point: Point, groups: Groups, contact: LineContact | None, rtol: float, on_failure: str = "raise") -> Solution:
+def finish(
+    point: RefinedState, groups: Groups, contact: LineContact | None, rtol: float, on_failure: str = "raise"
+) -> Solution:
     """Return the solution that a refined state is, or raise what its outcome asks for."""
     solution = solution_of(point, contact, rtol)
     if solution is not None and (point.outcome.ok or on_failure == "return"):
@@ -188,7 +190,7 @@ def minimum_estimate(rtol: float) -> float:
     return max(MIN_ESTIMATE * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
 
 
-def solution_of(point: Point, contact: LineContact | None, rtol: float) -> Solution | None:
+def solution_of(point: RefinedState, contact: LineContact | None, rtol: float) -> Solution | None:
     """Return the solution that a refined state is, or None where there is no state."""
     state, values, estimate = point.state, point.values, point.estimate
     if state is None or values is None or estimate is None:

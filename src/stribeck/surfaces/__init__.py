@@ -6,7 +6,7 @@ from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.surfaces.analysis import Surface, analyse
 from stribeck.surfaces.case_table import write_surface_table
 from stribeck.surfaces.departures import Departures
-from stribeck.surfaces.detrend import Shape, detrended
+from stribeck.surfaces.detrend import Form, detrended
 from stribeck.surfaces.files import read_topography
 from stribeck.surfaces.fit_result import Estimate, SelfAffineFit
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, power_spectrum
@@ -21,7 +21,7 @@ __all__ = [
     "RoughSurface",
     "SelfAffine",
     "SelfAffineFit",
-    "Shape",
+    "Form",
     "Spectrum",
     "Surface",
     "Topography",

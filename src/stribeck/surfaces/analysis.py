@@ -17,7 +17,7 @@ from stribeck.contact_laws.persson import GAMMA, PerssonLaw, exponential_limit, 
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.departures import Departures, departure_notes, departures
-from stribeck.surfaces.detrend import Shape, Trend, detrended
+from stribeck.surfaces.detrend import Form, Trend, detrended
 from stribeck.surfaces.fit_result import SelfAffineFit
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum, Window, power_spectrum
 from stribeck.surfaces.notes import fit_notes, spike_notes
@@ -35,7 +35,7 @@ class Surface:
     ----------
     topography : Topography
         Roughness that was evaluated: filled, and without its trend.
-    shape : Shape
+    shape : Form
         The trend, with the radius of the body.
     measured : MeasuredSpectrum
         Spectrum of the scan.
@@ -56,7 +56,7 @@ class Surface:
     """
 
     topography: Topography
-    shape: Shape
+    shape: Form
     measured: MeasuredSpectrum
     fit: SelfAffineFit
     gamma: float

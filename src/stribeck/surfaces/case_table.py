@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from stribeck.files.writing import replacing
+from stribeck.files.writing import atomic_write
 from stribeck.surfaces.analysis import Surface
 
 __all__ = ["surface_table", "write_surface_table"]
@@ -27,7 +27,7 @@ def write_surface_table(surface: Surface, path: str | os.PathLike[str], *, force
     InputError
         If the file cannot be written, or exists and ``force`` is not given.
     """
-    with replacing(path, (".toml",), force=force) as temporary:
+    with atomic_write(path, (".toml",), force=force) as temporary:
         temporary.write_text(surface_table(surface), encoding="utf-8")
 
 

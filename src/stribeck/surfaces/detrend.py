@@ -18,14 +18,14 @@ from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.quantities.units import InputError, show
 from stribeck.surfaces.topography import Topography
 
-__all__ = ["Shape", "Trend", "detrended"]
+__all__ = ["Form", "Trend", "detrended"]
 
 Trend = Literal["none", "mean", "tilt", "curvature"]
 TRENDS = ("none", "mean", "tilt", "curvature")
 
 
 @dataclass(frozen=True)
-class Shape:
+class Form:
     """What was taken away from the heights.
 
     Attributes
@@ -92,7 +92,7 @@ class Shape:
         return math.sqrt(variance) * self.radius**2
 
 
-def detrended(topography: Topography, trend: Trend = "curvature") -> tuple[Topography, Shape]:
+def detrended(topography: Topography, trend: Trend = "curvature") -> tuple[Topography, Form]:
     """Return the heights without their trend, and the trend.
 
     Parameters
@@ -104,7 +104,7 @@ def detrended(topography: Topography, trend: Trend = "curvature") -> tuple[Topog
 
     Returns
     -------
-    tuple of Topography and Shape
+    tuple of Topography and Form
         Roughness about the trend, and what the trend is.
 
     Raises
@@ -115,7 +115,7 @@ def detrended(topography: Topography, trend: Trend = "curvature") -> tuple[Topog
     if trend not in TRENDS:
         raise InputError(f"detrend = {show(trend)} is not known; choose one of {', '.join(TRENDS)}.")
     if trend == "none":
-        return topography, Shape("none")
+        return topography, Form("none")
     z = topography.heights
     good = ~np.isnan(z)
     # Coordinates from -1 to 1 about the middle, so that the normal equations are well conditioned.
@@ -138,7 +138,7 @@ def detrended(topography: Topography, trend: Trend = "curvature") -> tuple[Topog
     tilt = tuple(float(c) / h for c, h in zip(coefficients[1 : 1 + z.ndim], half, strict=False)) if trend != "mean" else ()
     flat = replace(topography, heights=rest)
     if trend != "curvature":
-        return flat, Shape(trend, tilt)
+        return flat, Form(trend, tilt)
     K = np.zeros((z.ndim, z.ndim))
     places = [(i, j) for i in range(z.ndim) for j in range(i, z.ndim)]
     for (i, j), c in zip(places, coefficients[1 + z.ndim :], strict=True):
@@ -155,5 +155,5 @@ def detrended(topography: Topography, trend: Trend = "curvature") -> tuple[Topog
     weights = np.zeros(z.shape)
     weights[good] = A @ (inverse @ combination)
     angle = math.atan2(float(v[1]), float(v[0])) % math.pi if z.ndim == 2 else 0.0
-    shape = Shape(trend, tilt, tuple(float(values[i]) for i in order), angle, weights)
+    shape = Form(trend, tilt, tuple(float(values[i]) for i in order), angle, weights)
     return flat, shape

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from stribeck.quantities.units import format_si
-from stribeck.surfaces.detrend import Shape
+from stribeck.surfaces.detrend import Form
 from stribeck.surfaces.fit_result import SelfAffineFit
 from stribeck.surfaces.measured_spectrum import MeasuredSpectrum
 from stribeck.surfaces.self_affine_fit import MISFIT
@@ -49,14 +49,14 @@ def spike_notes(spikes: int, repaired: float, spiked: float) -> list[str]:
     return notes
 
 
-def fit_notes(topography: Topography, body: Shape, measured: MeasuredSpectrum, fit: SelfAffineFit) -> list[str]:
+def fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, fit: SelfAffineFit) -> list[str]:
     """Return sentences on what the fit does not see, or does not fit.
 
     Parameters
     ----------
     topography : Topography
         Heights without trend.
-    body : Shape
+    body : Form
         The trend.
     measured : MeasuredSpectrum
         Spectrum of the heights.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, PICTURES
-from stribeck.files.writing import MissingExtraError, PathLike, replacing
+from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
 from stribeck.quantities.units import DIMENSIONS, format_si
 from stribeck.surfaces.analysis import Surface
 
@@ -67,7 +67,7 @@ def plot_surface(surface: Surface, path: PathLike | None = None, *, force: bool 
         axes.legend(fontsize=8, frameon=False, loc="lower left")
     _footer(figure, surface)
     if path is not None:
-        with replacing(path, PICTURES, force=force) as temporary:
+        with atomic_write(path, PICTURES, force=force) as temporary:
             figure.savefig(temporary)
     return figure
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.batches.chain import Ended, solve_in_order
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.quantities.inputs import INPUTS
 from stribeck.solver.solve import describe
@@ -36,7 +36,7 @@ class Chain:
         Which of the two.
     rtol : float
         Relative tolerance of each state.
-    law : LawShape or None
+    law : AsperityLaw or None
         Contact law of all; None is the exponential one.
     """
 
@@ -45,7 +45,7 @@ class Chain:
     inputs: dict[str, tuple[float, ...]]
     si: bool
     rtol: float
-    law: LawShape | None = None
+    law: AsperityLaw | None = None
 
     def contact(self, i: int) -> LineContact | None:
         """Return the contact of the i-th state, where it has one."""

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import LawShape, WithArea
+from stribeck.contact_laws.law import AsperityLaw, WithArea
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.line import LineContact
 from stribeck.quantities.inputs import QUANTITIES, unit_of
@@ -24,14 +24,14 @@ OUTCOMES = (*(outcome.name for outcome in Outcome), ERROR)
 """The outcomes; a row holds the place of its own in here."""
 
 
-def columns_of(si: bool, law: LawShape | None = None) -> dict[str, tuple[str, str]]:
+def columns_of(si: bool, law: AsperityLaw | None = None) -> dict[str, tuple[str, str]]:
     """Return unit and meaning of each number of a row, in their order.
 
     Parameters
     ----------
     si : bool
         Whether the states are contacts in SI units, so that films have lengths.
-    law : LawShape or None
+    law : AsperityLaw or None
         Contact law of the states; one that knows its spectrum has the real area of contact.
 
     Returns
@@ -89,7 +89,7 @@ def row_of(solution: Solution, boundary_friction: float, beta: float) -> tuple[A
     return np.array(values), "\n".join(said)
 
 
-def failed_row(contact: LineContact | None, law: LawShape | None, outcome: str, message: str) -> tuple[Array, str]:
+def failed_row(contact: LineContact | None, law: AsperityLaw | None, outcome: str, message: str) -> tuple[Array, str]:
     """Return the row of a state of which nothing is known but how its solve ended."""
     values = np.full(len(columns_of(contact is not None, law)), math.nan)
     values[-1] = OUTCOMES.index(outcome)

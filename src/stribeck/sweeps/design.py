@@ -18,7 +18,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.cases.case import Case, contact_inputs, error_sentence, example_of, group_inputs, read_toml, surface_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.quantities.hints import advice_on
 from stribeck.quantities.inputs import ALTERNATIVES, INPUTS, QUANTITIES, ROWS, check_alternatives, quantity
@@ -65,7 +65,7 @@ class SweepDesign:
         Relative tolerance of each state.
     law : {"exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"}
         Name of the contact law.
-    contact_law : LawShape or None
+    contact_law : AsperityLaw or None
         The law itself; None is the exponential one.
     """
 
@@ -80,7 +80,7 @@ class SweepDesign:
     si: bool
     rtol: float
     law: Law
-    contact_law: LawShape | None = None
+    contact_law: AsperityLaw | None = None
 
     def __len__(self) -> int:
         """Return the number of states."""
@@ -166,7 +166,7 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
             if si and axis.name in FROM_TABLES and source not in (None, "table") and checked[source] is not None:
                 raise InputError(f"[vary] {axis.name} follows from the table [{source}]; remove one of them.")
         fixed = contact_inputs(checked, path.parent) if si else group_inputs(checked, path.parent)
-        shape: LawShape | None = fixed.pop("law")
+        shape: AsperityLaw | None = fixed.pop("law")
     except InputError as problem:
         problems += str(problem).splitlines()
         return None

@@ -33,7 +33,7 @@ from stribeck.asymptotics.rough.weakening import (
     checked_form,
     film_ratio_at_minimum,
     has_minimum,
-    merging_roughness,
+    roughness_without_minimum,
     weakening_number,
 )
 from stribeck.asymptotics.smooth.hydrodynamic import central_gap
@@ -46,7 +46,7 @@ __all__ = [
     "friction_at_minimum",
     "has_minimum",
     "lambda_ratio_at_minimum",
-    "merging_roughness",
+    "roughness_without_minimum",
     "speed_at_minimum",
     "speed_boundary_to_mixed",
     "weakening_number",

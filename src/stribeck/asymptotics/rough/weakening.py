@@ -23,7 +23,7 @@ from stribeck.asymptotics.rough.perturbation import phi_of
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["LARGEST_WEAKENING", "Criterion", "Form", "has_minimum", "merging_roughness", "weakening_number"]
+__all__ = ["LARGEST_WEAKENING", "Criterion", "Form", "has_minimum", "roughness_without_minimum", "weakening_number"]
 
 Form = Literal["uniform", "exact", "expansion", "leading"]
 Criterion = Literal["uniform", "plateau", "lines", "weakening"]
@@ -104,7 +104,7 @@ def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.
 
     Notes
     -----
-    The condition on k is necessary and far from sufficient, see :func:`merging_roughness`.
+    The condition on k is necessary and far from sufficient, see :func:`roughness_without_minimum`.
 
     Source: [BP] Eq. (Lambda_solution), whose condition is not stated there.
     """
@@ -114,7 +114,7 @@ def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.
     return np.asarray(weakening_number(groups, boundary_friction, beta) < LARGEST_WEAKENING)
 
 
-def merging_roughness(
+def roughness_without_minimum(
     load: Value, boundary_friction: float = 1.0, beta: float = 1.0, criterion: Criterion = "uniform"
 ) -> Value:
     r"""Return the roughness from which the branch of falling friction is gone, by formulas.
@@ -167,8 +167,8 @@ def merging_roughness(
     weakening            14029  444    14.0   1.25
     ===================  =====  =====  =====  =====
 
-    The solver's are :func:`stribeck.merging.merging_roughness`.  The limit behind the last three, small relative roughness,
-    excludes what they are asked for.
+    The solver's are :func:`stribeck.regimes.weakening.roughness_without_minimum`.
+    The limit behind the last three, small relative roughness, excludes what they are asked for.
 
     Source: [BP] Conclusion, in words; formulas ours.
     """

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.cli.reports.words import Elasticities, contact_part, hersey_of, part_error, regime_now, strongest
-from stribeck.contact_laws.law import LawShape
+from stribeck.cli.reports.words import Sensitivities, contact_part, hersey_of, part_error, regime_now, strongest
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.line import LineContact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import INPUTS, unit_of
 from stribeck.quantities.outputs import GROUPS, OBSERVABLES
-from stribeck.regimes.distances import Crossing, Distance, TransitionDistances
+from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
 from stribeck.solver.solution import Solution, si_films
 
 __all__ = ["curve_json", "dump", "law_json", "regimes_json", "solution_json"]
@@ -132,7 +132,7 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[s
 
 
 def regimes_json(
-    solution: Solution, elasticities: Elasticities, curve: StribeckCurve, distances: TransitionDistances, title: str = ""
+    solution: Solution, sensitivities: Sensitivities, curve: StribeckCurve, margins: RegimeMargins, title: str = ""
 ) -> dict[str, Any]:
     """Return the regime of a state, the transitions around it and what moves its friction.
 
@@ -140,11 +140,11 @@ def regimes_json(
     ----------
     solution : Solution
         The state, of a contact.
-    elasticities : dict of str to float
+    sensitivities : dict of str to float
         Those of its friction.
     curve : StribeckCurve
         The curve over the speed through it.
-    distances : TransitionDistances
+    margins : RegimeMargins
         The way to the next regimes.
     title : str
         Headline.
@@ -173,25 +173,25 @@ def regimes_json(
             {**_landmark(mark), "factor": mark.value / speed if speed > 0 else math.inf} for mark in curve.transitions
         ],
         "regimes": [{"regime": name, "from": low, "to": high} for name, low, high in curve.regime_ranges],
-        "distances": {distance.name: _distance(distance) for distance in distances.distances},
-        "elasticities": elasticities,
-        "moves_friction_most": strongest(elasticities),
+        "margins": {margin.name: _margin(margin) for margin in margins.margins},
+        "sensitivities": sensitivities,
+        "moves_friction_most": strongest(sensitivities),
         **law_json(solution.groups.law),
         "inputs": _inputs(solution.contact),
         "units": _units(),
         "error_estimate": max(solution.error_estimate, curve.error_estimate),
         "outcome": curve.outcome.name,
         "message": curve.outcome.value,
-        "notes": [*solution.notes, *curve.minimum_notes, *distances.notes],
+        "notes": [*solution.notes, *curve.minimum_notes, *margins.notes],
     }
 
 
-def law_json(law: LawShape | None) -> dict[str, Any]:
+def law_json(law: AsperityLaw | None) -> dict[str, Any]:
     """Return name and parameters of a contact law.
 
     Parameters
     ----------
-    law : LawShape or None
+    law : AsperityLaw or None
         The law; None is the exponential one.
 
     Returns
@@ -204,12 +204,12 @@ def law_json(law: LawShape | None) -> dict[str, Any]:
     return {"contact_law": law.name, "contact_law_parameters": law.parameters}
 
 
-def _distance(distance: Distance) -> dict[str, Any]:
+def _margin(margin: Margin) -> dict[str, Any]:
     return {
-        "less": None if distance.less is None else _crossing(distance.less),
-        "more": None if distance.more is None else _crossing(distance.more),
-        "searched": list(distance.searched),
-        "unit": unit_of(distance.name),
+        "less": None if margin.less is None else _crossing(margin.less),
+        "more": None if margin.more is None else _crossing(margin.more),
+        "searched": list(margin.searched),
+        "unit": unit_of(margin.name),
     }
 
 

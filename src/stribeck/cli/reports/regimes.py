@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from stribeck.cli.reports.words import (
-    Elasticities,
+    Sensitivities,
     contact_part,
     part_error,
     place,
@@ -22,7 +22,7 @@ from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.units import format_share, format_si
-from stribeck.regimes.distances import Crossing, Distance, TransitionDistances
+from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
 from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:
@@ -34,9 +34,9 @@ __all__ = ["print_regimes"]
 def print_regimes(
     console: Console,
     solution: Solution,
-    elasticities: Elasticities,
+    sensitivities: Sensitivities,
     curve: StribeckCurve,
-    distances: TransitionDistances,
+    margins: RegimeMargins,
     title: str,
 ) -> None:
     """Print in which regime a contact runs, where the transitions lie, and what moves its friction.
@@ -47,11 +47,11 @@ def print_regimes(
         Where to.
     solution : Solution
         The state, of a contact.
-    elasticities : dict of str to float
+    sensitivities : dict of str to float
         Those of its friction.
     curve : StribeckCurve
         The curve over the speed through it.
-    distances : TransitionDistances
+    margins : RegimeMargins
         The way to the next regimes.
     title : str
         Headline.
@@ -67,7 +67,7 @@ def print_regimes(
         f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load, asperities cause "
         f"{format_share(contact_part(friction), part_error(friction))} of the friction coefficient {friction.total:.4g}.",
     )
-    for line in _ways(distances):
+    for line in _ways(margins):
         say(console, line)
     if curve.transitions:
         table = table_of("where", "speed", "from here", "friction", right=(1, 3))
@@ -79,15 +79,15 @@ def print_regimes(
             console,
             "No transition lies between the boundary plateau and the hydrodynamic branch of this contact.",
         )
-    table = table_of("input", "value", "elasticity", "10 % more gives", right=(1, 2, 3))
-    for name in sorted(elasticities, key=lambda name: -abs(elasticities[name])):
-        value, slope = getattr(contact, name), elasticities[name]
+    table = table_of("input", "value", "sensitivity", "10 % more gives", right=(1, 2, 3))
+    for name in sorted(sensitivities, key=lambda name: -abs(sensitivities[name])):
+        value, slope = getattr(contact, name), sensitivities[name]
         text = format_si(value, QUANTITIES[name].dimension)
         table.add_row(QUANTITIES[name].label, text, f"{slope:+.3f}", f"{100 * _change(1.1, slope):+.2g} % friction")
     console.print(table)
-    most = strongest(elasticities)
+    most = strongest(sensitivities)
     if most is not None:
-        slope = elasticities[most]
+        slope = sensitivities[most]
         factor = 0.9 if slope > 0 else 1.1
         way, gain = "less" if slope > 0 else "more", f"{-100 * _change(factor, slope):.3g} %"
         name = QUANTITIES[most].label
@@ -95,22 +95,22 @@ def print_regimes(
             console,
             f"The {name} moves friction most: 10 % {way} of it lowers friction by {gain}, all else kept.",
         )
-    notes = [*solution.notes, *curve.minimum_notes, *distances.notes]
+    notes = [*solution.notes, *curve.minimum_notes, *margins.notes]
     print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), notes)
 
 
-def _ways(distances: TransitionDistances) -> Iterator[str]:
+def _ways(margins: RegimeMargins) -> Iterator[str]:
     """Yield a sentence for each regime that is near: what it takes of each input, and what leads nowhere."""
-    for regime in distances.targets:
-        found = [(distance, distance.towards(regime)) for distance in distances.distances]
-        ways = [f"{distance.name} {_step(distance.name, mark)}" for distance, mark in found if mark is not None]
-        barren = [_searched(distance) for distance, mark in found if mark is None]
+    for regime in margins.targets:
+        found = [(margin, margin.crossing_into(regime)) for margin in margins.margins]
+        ways = [f"{margin.name} {_step(margin.name, mark)}" for margin, mark in found if mark is not None]
+        barren = [_searched(margin) for margin, mark in found if mark is None]
         if not ways:
             yield f"To reach {regime}: not reachable by {', '.join(barren)}."
             continue
         rest = f"; not reachable by {', '.join(barren)}" if barren else ""
         yield f"To reach {regime}: {', or '.join(ways)}{rest}."
-    if any(distance.name == "viscosity" and (distance.less or distance.more) for distance in distances.distances):
+    if any(margin.name == "viscosity" and (margin.less or margin.more) for margin in margins.margins):
         yield "Speed and viscosity count as their product, so that their factors are the same."
 
 
@@ -124,12 +124,12 @@ def _step(name: str, mark: Crossing) -> str:
     return f"x {mark.factor:.3g} ({value})" if mark.factor >= 1 else f"/ {1 / mark.factor:.3g} ({value})"
 
 
-def _searched(distance: Distance) -> str:
-    low, high = distance.searched
+def _searched(margin: Margin) -> str:
+    low, high = margin.searched
     if low == high:  # it cannot lead anywhere, and a note says why
-        return distance.name
-    ends = (format_si(value, QUANTITIES[distance.name].dimension) for value in (low, high))
-    return f"{distance.name} (range searched {' to '.join(ends)})"
+        return margin.name
+    ends = (format_si(value, QUANTITIES[margin.name].dimension) for value in (low, high))
+    return f"{margin.name} (range searched {' to '.join(ends)})"
 
 
 def _way(mark: Landmark, speed: float) -> str:
@@ -140,5 +140,5 @@ def _way(mark: Landmark, speed: float) -> str:
 
 
 def _change(factor: float, slope: float) -> float:
-    """Return the relative change of friction where an input with this elasticity is multiplied."""
+    """Return the relative change of friction where an input with this sensitivity is multiplied."""
     return float(factor**slope - 1)

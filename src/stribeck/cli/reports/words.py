@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck.contact_laws.law import LawShape
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.friction import Definition, Friction
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.regime import regime_of
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 HANDS_ON = tuple(row.name for row in ROWS if not row.derived and not row.follows_surface)
 """Inputs that one may change; alpha and beta follow from the surface."""
 
-Elasticities = dict[str, float]
+Sensitivities = dict[str, float]
 
 
 def contact_part(friction: Friction) -> float:
@@ -50,10 +50,10 @@ def hersey_of(solution: Solution, beta: float | None) -> float:
     return solution.hersey_number
 
 
-def strongest(elasticities: Elasticities) -> str | None:
+def strongest(sensitivities: Sensitivities) -> str | None:
     """Return the input at hand that moves friction most; None where none does."""
-    found = max(HANDS_ON, key=lambda name: abs(np.nan_to_num(elasticities[name])))
-    return found if abs(np.nan_to_num(elasticities[found])) > 0 else None
+    found = max(HANDS_ON, key=lambda name: abs(np.nan_to_num(sensitivities[name])))
+    return found if abs(np.nan_to_num(sensitivities[found])) > 0 else None
 
 
 def place(curve: StribeckCurve, value: float, digits: int = 3) -> str:
@@ -123,12 +123,12 @@ def print_head(
         say(console, law_sentence(groups.law))
 
 
-def law_sentence(law: LawShape) -> str:
+def law_sentence(law: AsperityLaw) -> str:
     """Return name and parameters of a contact law as a sentence.
 
     Parameters
     ----------
-    law : LawShape
+    law : AsperityLaw
         The law.
 
     Returns

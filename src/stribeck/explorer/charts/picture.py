@@ -19,7 +19,7 @@ from stribeck.quantities.units import format_si
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from stribeck.explorer.downloads import Shown
+    from stribeck.explorer.downloads import View
 
 __all__ = ["picture"]
 
@@ -27,12 +27,12 @@ DPI = 160
 PLACES = {"friction": (0, 0), "diagram": (0, 1), "gap": (1, 0), "pressure": (1, 1)}
 
 
-def picture(shown: Shown, kind: str) -> bytes:
+def picture(shown: View, kind: str) -> bytes:
     """Return a picture of the four charts, drawn from the very data that the page shows.
 
     Parameters
     ----------
-    shown : Shown
+    shown : View
         What is shown.
     kind : {"png", "svg"}
         Its format.

@@ -12,7 +12,7 @@ from stribeck.asymptotics.rough import boundary, perturbation
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
 from stribeck.figures.article.stribeck_cases import CASES, case_coords, drawn_cases, over, solved_cases
-from stribeck.figures.making import Work, column, dataset
+from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ PHI = {
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = Work(report, steps=len(CASES))
+    work = FigureJob(report, steps=len(CASES))
     curves = solved_cases(work, SPEEDS, points=85)
     friction, law = over(curves, "friction"), over(curves, "hydrodynamic_friction")
     share = np.array([curve.observable("contact_load_share") for curve in curves])

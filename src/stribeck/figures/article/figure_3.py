@@ -10,7 +10,7 @@ import numpy as np
 from stribeck.contacts.line import Groups
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
-from stribeck.figures.making import Work, column, dataset
+from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ its lower ends, as their logarithm has no place."""
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = Work(report, steps=len(MAPPED) + 2)
+    work = FigureJob(report, steps=len(MAPPED) + 2)
     curve = work.curve(load=LOAD, roughness=ROUGHNESS, speed=SPEEDS, points=141)
     balanced = work.curve(load=LOAD, roughness=ROUGHNESS, speed=SPEEDS, points=141, definition="balanced")
     ends = {name: [] for name in MARKS.values()}  # type: dict[str, list[float]]

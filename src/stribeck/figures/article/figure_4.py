@@ -10,7 +10,7 @@ from stribeck._types import Array
 from stribeck.asymptotics.constants import FILM_CONSTANT
 from stribeck.asymptotics.smooth import film_layers
 from stribeck.figures import style
-from stribeck.figures.making import Work, column, dataset
+from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
 from stribeck.solids import hertz
 
@@ -26,7 +26,7 @@ LOAD = 0.1
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = Work(report, steps=len(SLOW) + len(FAST))
+    work = FigureJob(report, steps=len(SLOW) + len(FAST))
     x_slow, xi = np.linspace(-2, 2, 801), np.linspace(-6, 4, 401)
     x_fast, ratio = np.linspace(-8, 8, 401), np.linspace(-4, 4, 321)
     slow = [work.solve(speed, LOAD, 0.0) for speed in SLOW]

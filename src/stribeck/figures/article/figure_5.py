@@ -9,7 +9,7 @@ import numpy as np
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contacts.line import Groups
 from stribeck.figures import style
-from stribeck.figures.making import Work, column, dataset
+from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ FRICTIONS = {
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = Work(report, steps=1)
+    work = FigureJob(report, steps=1)
     curve = work.curve(load=LOAD, roughness=0.0, speed=SPEEDS, points=121)
     film = curve.observable("central_gap")
     friction = curve.friction_viscous / LOAD**0.5

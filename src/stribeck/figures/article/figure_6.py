@@ -11,7 +11,7 @@ from stribeck.asymptotics.rough import boundary
 from stribeck.asymptotics.smooth import edge_layer
 from stribeck.contacts.line import Groups
 from stribeck.figures import style
-from stribeck.figures.making import Work, column, dataset
+from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
 from stribeck.solids import hertz
 from stribeck.solver.solution import Solution
@@ -30,7 +30,7 @@ LOADS = (0.1, 0.01, 0.001)
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = Work(report, steps=len(LARGE) + len(SMALL) + len(LOADS))
+    work = FigureJob(report, steps=len(LARGE) + len(SMALL) + len(LOADS))
     load = LOADS[0]
     x, inside, x_rough = np.linspace(-1.6, 1.6, 641), np.linspace(-0.999, 0.999, 401), np.linspace(-8, 8, 401)
     xi, ratio = np.linspace(-6, 4, 401), np.linspace(-4, 4, 321)

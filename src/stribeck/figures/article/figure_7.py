@@ -24,7 +24,7 @@ from stribeck.figures.article.stribeck_cases import (
     report_variables,
     solved_cases,
 )
-from stribeck.figures.making import Work, column, dataset
+from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ HYDRODYNAMIC_SHARE = 1e-3
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = Work(report, steps=len(CASES))
+    work = FigureJob(report, steps=len(CASES))
     curves = solved_cases(work, SPEEDS, points=67)
     friction, hersey = over(curves, "friction"), over(curves, "hersey_number")
     law = over(curves, "hydrodynamic_friction")

@@ -9,7 +9,7 @@ import numpy as np
 from stribeck.asymptotics.rough import boundary
 from stribeck.contacts.line import Groups
 from stribeck.figures import style
-from stribeck.figures.making import Work, column, dataset
+from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
 from stribeck.solids import hertz
 
@@ -30,7 +30,7 @@ CYAN = "#56b4e9"
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = Work(report, steps=len(SPEEDS) + 2)
+    work = FigureJob(report, steps=len(SPEEDS) + 2)
     curve = work.curve(load=LOAD, roughness=ROUGHNESS, speed=CURVE, points=71)
     states = [work.solve(speed, LOAD, ROUGHNESS) for speed in SPEEDS]
     smooth = work.solve(SPEEDS[-1], LOAD, 0.0)

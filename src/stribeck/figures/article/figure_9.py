@@ -13,7 +13,7 @@ from stribeck.contacts.line import Groups
 from stribeck.curves.landmarks import Landmark
 from stribeck.figures.article.mixed_panels import LARGEST_FILM, LARGEST_KAPPA, MIN_FILM, draw
 from stribeck.figures.article.stribeck_cases import CASES, LOADS, REPORTED, case_coords, over, report_variables, solved_cases
-from stribeck.figures.making import Work, column, dataset
+from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.solve import SolveError
@@ -36,7 +36,7 @@ FORMS: tuple[transitions.Form, ...] = ("exact", "expansion", "uniform")
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = Work(report, steps=len(CASES) + len(LOADS) * len(KAPPAS))
+    work = FigureJob(report, steps=len(CASES) + len(LOADS) * len(KAPPAS))
     curves = solved_cases(work, SPEEDS, points=67)
     friction = over(curves, "friction")
     laws = {
@@ -102,7 +102,7 @@ def _compute(report: Report) -> xarray.Dataset:
     return dataset(variables | report_variables(), coords, finding=finding, reports=reports, **work.attributes)
 
 
-def _minimum(work: Work, load: float, kappa: float, speed: float) -> Landmark:
+def _minimum(work: FigureJob, load: float, kappa: float, speed: float) -> Landmark:
     low, high = WINDOW
     found = work.curve(load=load, roughness=kappa * load, speed=(low * speed, high * speed), points=5).minimum
     if found is None:

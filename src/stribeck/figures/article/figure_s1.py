@@ -10,7 +10,7 @@ from stribeck._types import Array, Flags
 from stribeck.asymptotics.rough import perturbation
 from stribeck.contacts.line import Groups
 from stribeck.figures import style
-from stribeck.figures.making import Work, column, dataset
+from stribeck.figures.build import FigureJob, column, dataset
 from stribeck.figures.paper_figure import PaperFigure, Report
 from stribeck.solver.solution import Solution
 
@@ -41,7 +41,7 @@ PANELS = (r"fluid pressure over $\lambda$", r"odd part of the gap over $\lambda$
 
 
 def _compute(report: Report) -> xarray.Dataset:
-    work = Work(report, steps=len(KAPPAS) * len(NUMBERS), rtol=RTOL)
+    work = FigureJob(report, steps=len(KAPPAS) * len(NUMBERS), rtol=RTOL)
     x = np.linspace(-1.2, 1.2, 481)
     near = np.abs(x) < 0.999
     core = np.abs(x) <= CORE

@@ -10,7 +10,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
-from stribeck.figures.making import Column, Work, column
+from stribeck.figures.build import Column, FigureJob, column
 
 if TYPE_CHECKING:
     import xarray
@@ -36,7 +36,7 @@ TEXTBOOK = 3.0
 REPORT_COLOURS = ("#cc79a7", "#e69f00", "#56b4e9", "#8c6d46")
 
 
-def solved_cases(work: Work, speed: tuple[float, float], points: int, **options: Any) -> list[StribeckCurve]:
+def solved_cases(work: FigureJob, speed: tuple[float, float], points: int, **options: Any) -> list[StribeckCurve]:
     """Return the curve of each of :data:`CASES`."""
     return [work.curve(load=load, roughness=rough, speed=speed, points=points, **options) for load, rough in CASES]
 

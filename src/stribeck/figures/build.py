@@ -22,7 +22,7 @@ from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.figures import style
 from stribeck.figures.paper_figure import PaperFigure, Report, figure_names, load_figure
 from stribeck.files.datasets import NETCDF, write_netcdf
-from stribeck.files.writing import MissingExtraError, PathLike, check_output, replacing
+from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
 from stribeck.solver.solution import Solution
@@ -54,7 +54,7 @@ OnProgress = Callable[[str, int, int], object]
 
 
 @dataclass
-class Work:
+class FigureJob:
     """The solves of one figure: each is reported when done, and one that fails ends the figure.
 
     Attributes
@@ -182,7 +182,7 @@ def dataset(variables: Mapping[str, Column], coords: Mapping[str, Column], **att
     variables, coords : mapping of str to tuple
         What :func:`column` returns, by name.
     **attributes
-        Of the whole: ``finding``, and what :attr:`Work.attributes` gives.
+        Of the whole: ``finding``, and what :attr:`FigureJob.attributes` gives.
 
     Returns
     -------
@@ -312,7 +312,7 @@ def _make(figure: PaperFigure, place: Path, force: bool, on_progress: OnProgress
         write_netcdf(data, file, force=True)
     picture = figure.draw(data)
     for ending in PICTURES:
-        with replacing(stem.with_suffix(ending), PICTURES, force=True) as temporary:
+        with atomic_write(stem.with_suffix(ending), PICTURES, force=True) as temporary:
             style.save(picture, temporary)
     files = tuple(stem.with_suffix(ending) for ending in (*PICTURES, *NETCDF))
     return Made(figure.name, "reused" if reused else "solved", files)
@@ -366,4 +366,4 @@ def _check_files(figure: PaperFigure, place: Path, force: bool) -> None:
     stem = place / figure.stem
     ours = force or _read(figure, stem.with_suffix(".nc")) is not None
     for ending in (*PICTURES, *NETCDF):
-        check_output(stem.with_suffix(ending), (ending,), force=ours)
+        check_writable(stem.with_suffix(ending), (ending,), force=ours)

@@ -14,25 +14,25 @@ from stribeck.contacts.line import LineContact
 from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.inputs import EXPONENTS
+from stribeck.quantities.inputs import GROUP_EXPONENTS
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
 
 
 @overload
-def friction_elasticities(
+def friction_sensitivities(
     contact: LineContact, *, rtol: float = ..., definition: Definition = ..., method: Literal["solver"] = ...
 ) -> tuple[Solution, dict[str, float]]: ...
 
 
 @overload
-def friction_elasticities(
+def friction_sensitivities(
     contact: LineContact, *, rtol: float = ..., definition: Definition = ..., method: Literal["atlas"]
 ) -> tuple[None, dict[str, float]]: ...
 
 
 @one_blas_thread
-def friction_elasticities(
+def friction_sensitivities(
     contact: LineContact,
     *,
     rtol: float = 1e-6,
@@ -47,8 +47,8 @@ def friction_elasticities(
         = \frac{1}{\mu} \left[ \sum_G n_{GX} \frac{\partial \mu}{\partial \ln G}
         + \left.\frac{\partial \mu}{\partial \ln X}\right|_G \right]
 
-    with G the three groups and n their exponents, :data:`stribeck.quantities.inputs.EXPONENTS`. The last term is the contact
-    part of the friction for the friction coefficient and the viscous part for beta.
+    with G the three groups and n their exponents, :data:`stribeck.quantities.inputs.GROUP_EXPONENTS`. The last term is the
+    contact part of the friction for the friction coefficient and the viscous part for beta.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def friction_elasticities(
     Solution or None
         The state; None from the atlas.
     dict of str to float
-        Elasticity by name of the input: 0.5 means that 1 % more of it makes 0.5 % more friction; nan where
+        Logarithmic sensitivity by name of the input: 0.5 means that 1 % more of it makes 0.5 % more friction; nan where
         there is no friction.
 
     Raises
@@ -92,20 +92,21 @@ def friction_elasticities(
         assert point.state is not None
         slopes = friction_slopes(point.state, contact.boundary_friction, contact.beta, definition)
     friction = solution.friction(definition=definition)
-    return solution, _elasticities(slopes, friction.contact, friction.viscous)
+    return solution, _sensitivities(slopes, friction.contact, friction.viscous)
 
 
 def _from_atlas(contact: LineContact, definition: Definition) -> dict[str, float]:
     groups, boundary_friction, beta = contact.groups, contact.boundary_friction, contact.beta
     viscous = float(atlas.viscous_friction(groups, beta, definition))
     slopes = atlas.friction_derivatives(groups, boundary_friction, beta, definition)
-    return _elasticities(slopes, boundary_friction * float(atlas.contact_load_share(groups)), viscous)
+    return _sensitivities(slopes, boundary_friction * float(atlas.contact_load_share(groups)), viscous)
 
 
-def _elasticities(slopes: Array, contact: float, viscous: float) -> dict[str, float]:
-    """Return the elasticities by the derivatives of the friction and its two parts."""
+def _sensitivities(slopes: Array, contact: float, viscous: float) -> dict[str, float]:
+    """Return the sensitivities by the derivatives of the friction and its two parts."""
     direct = {"boundary_friction": contact, "beta": viscous}
     total = (contact + viscous) or math.nan
     return {
-        name: (float(slopes @ np.array(exponents)) + direct.get(name, 0.0)) / total for name, exponents in EXPONENTS.items()
+        name: (float(slopes @ np.array(exponents)) + direct.get(name, 0.0)) / total
+        for name, exponents in GROUP_EXPONENTS.items()
     }

@@ -17,13 +17,13 @@ from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SH
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.inputs import EXPONENTS
+from stribeck.quantities.inputs import GROUP_EXPONENTS
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, check_rtol, solve
 
-__all__ = ["Crossing", "Distance", "TransitionDistances", "transition_distances"]
+__all__ = ["Crossing", "Margin", "RegimeMargins", "regime_margins"]
 
 REACH = 1e6
 """Largest factor by which an input is changed."""
@@ -81,7 +81,7 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class Distance:
+class Margin:
     """The nearest changes of regime along one input, all other inputs kept.
 
     Attributes
@@ -99,45 +99,45 @@ class Distance:
     more: Crossing | None
     searched: tuple[float, float]
 
-    def towards(self, regime: str) -> Crossing | None:
+    def crossing_into(self, regime: str) -> Crossing | None:
         """Return the nearer crossing into a regime, or None."""
         found = [mark for mark in (self.less, self.more) if mark is not None and mark.regime == regime]
         return min(found, key=lambda mark: abs(math.log(mark.factor)) if 0 < mark.factor < math.inf else 0.0, default=None)
 
 
 @dataclass(frozen=True)
-class TransitionDistances:
+class RegimeMargins:
     """A contact's regime and the way to its neighbours.
 
     Attributes
     ----------
     regime : str
         The present regime.
-    distances : tuple of Distance
+    margins : tuple of Margin
         For speed, load, roughness and viscosity.
     notes : tuple of str
         What to know: why an input leads nowhere, and whether the contact stands at a threshold.
     """
 
     regime: Regime
-    distances: tuple[Distance, ...]
+    margins: tuple[Margin, ...]
     notes: tuple[str, ...]
 
     @property
     def targets(self) -> tuple[Regime, ...]:
         """The regimes beside the present one, and those that an input enters without passing through them."""
-        entered = [mark.regime for distance in self.distances for mark in (distance.less, distance.more) if mark is not None]
+        entered = [mark.regime for margin in self.margins for mark in (margin.less, margin.more) if mark is not None]
         return tuple(dict.fromkeys([*NEIGHBOURS[self.regime], *entered]))
 
 
 @one_blas_thread
-def transition_distances(
+def regime_margins(
     contact: LineContact,
     *,
     rtol: float = 1e-6,
     definition: Definition = "balanced",
     on_point: Callable[[int, int], object] | None = None,
-) -> TransitionDistances:
+) -> RegimeMargins:
     """Return by which factors of speed, load, roughness and viscosity the lubrication regime of a contact changes.
 
     Parameters
@@ -153,7 +153,7 @@ def transition_distances(
 
     Returns
     -------
-    TransitionDistances
+    RegimeMargins
         For each input the nearest change with less and with more of it.
 
     Raises
@@ -175,7 +175,7 @@ def transition_distances(
     check_rtol(rtol)
     definition = check_definition(definition)
     if not isinstance(contact, LineContact):
-        raise InputError(f"contact = {show(contact)}; it must be a LineContact, as distances are in SI units.")
+        raise InputError(f"contact = {show(contact)}; it must be a LineContact, as margins are in SI units.")
     present = _regime(solve(contact, rtol=rtol), definition)
     scan = _Scan(contact, present, rtol, definition, on_point)
     notes = []
@@ -191,10 +191,10 @@ def transition_distances(
     found.append(_within(_of_viscosity(contact, found[0]), physical_bounds(contact, "viscosity")))
     if contact.speed > 0:
         found[0] = _within(found[0], physical_bounds(contact, "speed"))
-    close = [mark for distance in found for mark in (distance.less, distance.more) if mark is not None and _at_threshold(mark)]
+    close = [mark for margin in found for mark in (margin.less, margin.more) if mark is not None and _at_threshold(mark)]
     if close:
         notes.append(f"The contact stands at the threshold to {close[0].regime} lubrication.")
-    return TransitionDistances(present, tuple(found), tuple(notes))
+    return RegimeMargins(present, tuple(found), tuple(notes))
 
 
 def physical_bounds(contact: LineContact, name: str) -> tuple[float, float]:
@@ -229,24 +229,24 @@ def physical_bounds(contact: LineContact, name: str) -> tuple[float, float]:
     return (min(low, value), max(high, value)) if value > 0 else (low, high)
 
 
-def _within(distance: Distance, bounds: tuple[float, float]) -> Distance:
-    """Return a distance without what lies beyond the bounds of its input."""
+def _within(margin: Margin, bounds: tuple[float, float]) -> Margin:
+    """Return a margin without what lies beyond the bounds of its input."""
     low, high = bounds
-    ends = max(distance.searched[0], low), min(distance.searched[1], high)
-    less, more = (mark if mark is not None and low <= mark.value <= high else None for mark in (distance.less, distance.more))
-    return Distance(distance.name, less, more, ends)
+    ends = max(margin.searched[0], low), min(margin.searched[1], high)
+    less, more = (mark if mark is not None and low <= mark.value <= high else None for mark in (margin.less, margin.more))
+    return Margin(margin.name, less, more, ends)
 
 
-def _of_viscosity(contact: LineContact, speed: Distance) -> Distance:
-    """Return the distances in viscosity that those in speed are; a resting contact has none."""
+def _of_viscosity(contact: LineContact, speed: Margin) -> Margin:
+    """Return the margins in viscosity that those in speed are; a resting contact has none."""
     eta = contact.viscosity
     if contact.speed == 0:
-        return Distance("viscosity", None, None, (eta, eta))
+        return Margin("viscosity", None, None, (eta, eta))
     less, more = (
         None if mark is None else Crossing(mark.regime, eta * mark.factor, mark.factor) for mark in (speed.less, speed.more)
     )
     low, high = (eta * (end / contact.speed) for end in speed.searched)
-    return Distance("viscosity", less, more, (low, high))
+    return Margin("viscosity", less, more, (low, high))
 
 
 def _at_threshold(mark: Crossing) -> bool:
@@ -269,36 +269,36 @@ class _Scan:
     on_point: Callable[[int, int], object] | None
     done: int = 0
 
-    def along(self, name: Over) -> Distance:
+    def along(self, name: Over) -> Margin:
         """Return the changes along one input."""
         value = float(getattr(self.contact, name))
         found = self._from_zero(name) if value == 0 else self._both_ways(name, value)
         self.done += 1
         return found
 
-    def _both_ways(self, name: Over, value: float) -> Distance:
+    def _both_ways(self, name: Over, value: float) -> Margin:
         # Zero speed, zero roughness and zero dry friction hold the regime, whatever else changes.
         held = self.contact.speed == 0 or self.contact.boundary_friction == 0 or self.contact.roughness == 0
         if held:
-            return Distance(name, None, None, (value, value))
+            return Margin(name, None, None, (value, value))
         low, high = _limits(self.contact, name)
         less, lowest = self._outwards(self.contact, name, low)
         more, highest = self._outwards(self.contact, name, high)
-        return Distance(name, less, more, (value * math.exp(lowest), value * math.exp(highest)))
+        return Margin(name, less, more, (value * math.exp(lowest), value * math.exp(highest)))
 
-    def _from_zero(self, name: Over) -> Distance:
+    def _from_zero(self, name: Over) -> Margin:
         """Return the change with more of an input that is zero."""
         if self.contact.boundary_friction == 0 or (name == "roughness" and self.contact.speed == 0):
-            return Distance(name, None, None, (0.0, 0.0))
+            return Margin(name, None, None, (0.0, 0.0))
         if self.contact.roughness == 0 and name == "speed":
-            return Distance(name, None, Crossing("hydrodynamic", 0.0, math.inf), (0.0, 0.0))
+            return Margin(name, None, Crossing("hydrodynamic", 0.0, math.inf), (0.0, 0.0))
         start = _with_smallest(self.contact, name)
         more, highest = self._outwards(start, name, _limits(start, name)[1], math.inf)
         lowest = float(getattr(start, name))
         if more is not None:
             # A regime that the smallest value is in already begins at zero itself.
             more = Crossing(more.regime, more.value if more.value > lowest else 0.0, math.inf)
-        return Distance(name, None, more, (0.0, lowest * math.exp(highest)))
+        return Margin(name, None, more, (0.0, lowest * math.exp(highest)))
 
     def _outwards(self, start: LineContact, name: Over, limit: float, reach: float = REACH) -> tuple[Crossing | None, float]:
         """Return the first change of regime towards ``limit`` and how far was searched, logarithms of factors."""
@@ -374,7 +374,7 @@ class _Scan:
 def _limits(contact: LineContact, name: str) -> tuple[float, float]:
     """Return the logarithms of the factors of an input between which it is possible and the groups stay in the box."""
     box = BOX | {"load": (BOX["load"][0], min(BOX["load"][1], largest_load(contact.law)))}
-    n_speed, n_load, n_roughness = EXPONENTS[name]
+    n_speed, n_load, n_roughness = GROUP_EXPONENTS[name]
     groups = contact.groups
     low, high = _possible_factors(contact, name)
     for group, n in (("speed", n_speed), ("load", n_load), ("relative_roughness", n_roughness - n_load)):
