@@ -13,7 +13,7 @@ from stribeck._types import Array
 from stribeck.atlas.reading import check_law
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups, InputError, LineContact
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.quantities.units import show
 
 ERROR = 1e-4
@@ -140,16 +140,16 @@ class AtlasCurve:
         i = int(np.argmin(self.friction))
         if not 0 < i < len(self) - 1:
             return None
-        return self._mark("minimum of friction", i - 1, i + 1, self._slope_at)
+        return self._mark(Transition.MINIMUM, i - 1, i + 1, self._slope_at)
 
     @cached_property
     def transitions(self) -> tuple[Mark, ...]:
         """The boundaries between regimes, where the load is shared in halves, and the friction minimum, ascending."""
         found = [] if self.minimum is None else [self.minimum]
         for name, line, function in (
-            ("fluid carries {:.0%} of the load", BOUNDARY_FLUID_SHARE, self._fluid_at),
-            ("fluid carries {:.0%} of the load", 0.5, self._fluid_at),
-            ("asperities cause {:.0%} of the friction", HYDRODYNAMIC_CONTACT_SHARE, self._contact_part_at),
+            (Transition.BOUNDARY_END, BOUNDARY_FLUID_SHARE, self._fluid_at),
+            (Transition.EQUAL_SHARES, 0.5, self._fluid_at),
+            (Transition.HYDRODYNAMIC_START, HYDRODYNAMIC_CONTACT_SHARE, self._contact_part_at),
         ):
             crossings = np.nonzero(np.diff(np.sign(function(self.values) - line)))[0]
             if len(crossings):
@@ -158,14 +158,14 @@ class AtlasCurve:
                 def above(values: Array, function: Callable[[Array], Array] = function, line: float = line) -> Array:
                     return function(values) - line
 
-                found.append(self._mark(name.format(line), i, i + 1, above))
+                found.append(self._mark(name, i, i + 1, above))
         return tuple(sorted(found, key=lambda mark: mark.value))
 
     def local_minima(self) -> tuple[Mark, ...]:
         """Return all minima of the friction inside the curve, those above the boundary plateau too."""
         slope = self._slope_at(self.values)
         crossings = np.nonzero((slope[:-1] < 0) & (slope[1:] >= 0))[0]
-        return tuple(self._mark("minimum of friction", int(i), int(i) + 1, self._slope_at) for i in crossings)
+        return tuple(self._mark(Transition.MINIMUM, int(i), int(i) + 1, self._slope_at) for i in crossings)
 
     def _mark(self, name: str, first: int, last: int, function: Callable[[Array], Array]) -> Mark:
         value = crossing(function, float(self.values[first]), float(self.values[last]))

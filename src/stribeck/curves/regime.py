@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Literal
 
 from stribeck.quantities.units import InputError, show
@@ -18,6 +19,15 @@ BOUNDARY_FLUID_SHARE = 0.05
 HYDRODYNAMIC_CONTACT_SHARE = 0.1
 """Part of the friction from asperities up to which lubrication is called hydrodynamic; at the friction minimum of smooth
 contacts it is about 2/(2 + 3 Lambda), 6 to 18 % for Lambda from 10 to 3."""
+
+
+class Transition(StrEnum):
+    """The places of a curve that have a name; the value is what outputs call them."""
+
+    BOUNDARY_END = f"fluid carries {BOUNDARY_FLUID_SHARE:.0%} of the load"
+    EQUAL_SHARES = "fluid carries 50% of the load"
+    HYDRODYNAMIC_START = f"asperities cause {HYDRODYNAMIC_CONTACT_SHARE:.0%} of the friction"
+    MINIMUM = "minimum of friction"
 
 
 def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:

@@ -18,7 +18,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.curves.coordinate import Coordinate, Over
 from stribeck.curves.landmarks import Landmark, locate
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.equations.sensitivity import GROUPS, friction_slopes
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
@@ -216,7 +216,7 @@ class StribeckCurve:
             slopes = friction_slopes(point.state, self.boundary_friction, self.beta, self.definition)
             return float(slopes @ self._path.direction)
 
-        return self._landmark("minimum of friction", i - 1, i + 1, slope)
+        return self._landmark(Transition.MINIMUM, i - 1, i + 1, slope)
 
     @cached_property
     def transitions(self) -> tuple[Landmark, ...]:
@@ -229,15 +229,15 @@ class StribeckCurve:
         contact = self.friction_contact / np.maximum(self.friction, 1e-300)
         found = [self.minimum]
 
-        def cross(name: str, line: float, values: Array, of: Callable[[RefinedState], float]) -> None:
+        def cross(name: Transition, line: float, values: Array, of: Callable[[RefinedState], float]) -> None:
             crossings = np.nonzero(np.diff(np.sign(values - line)))[0]
             if len(crossings):
                 i = int(crossings[0])
-                found.append(self._landmark(name.format(line), i, i + 1, lambda point: of(point) - line))
+                found.append(self._landmark(name, i, i + 1, lambda point: of(point) - line))
 
-        cross("fluid carries {:.0%} of the load", BOUNDARY_FLUID_SHARE, fluid, _fluid)
-        cross("fluid carries {:.0%} of the load", 0.5, fluid, _fluid)
-        cross("asperities cause {:.0%} of the friction", HYDRODYNAMIC_CONTACT_SHARE, contact, self._contact_part)
+        cross(Transition.BOUNDARY_END, BOUNDARY_FLUID_SHARE, fluid, _fluid)
+        cross(Transition.EQUAL_SHARES, 0.5, fluid, _fluid)
+        cross(Transition.HYDRODYNAMIC_START, HYDRODYNAMIC_CONTACT_SHARE, contact, self._contact_part)
         return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
 
     def _contact_part(self, point: RefinedState) -> float:
@@ -245,7 +245,7 @@ class StribeckCurve:
         contact = self.boundary_friction * point.values.contact_load_share
         return contact / (contact + self.beta * float(getattr(point.values, f"viscous_{self.definition}")))
 
-    def _landmark(self, name: str, first: int, last: int, function: Callable[[RefinedState], float]) -> Landmark | None:
+    def _landmark(self, name: Transition, first: int, last: int, function: Callable[[RefinedState], float]) -> Landmark | None:
         """Return the landmark where ``function`` of the solved state vanishes between two points, or None."""
         found = locate(function, first, last, coordinate=self._path, values=self.values, points=self._points, rtol=self.rtol)
         if found is None:

@@ -20,6 +20,7 @@ from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.line import Groups
 from stribeck.curves.landmarks import Landmark
+from stribeck.curves.regime import Transition
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.files.writing import MissingExtraError
@@ -74,9 +75,9 @@ def _minimum(groups: Groups, options: dict[str, Any]) -> Landmark | None:
     return _curve(replace(groups, speed=1.0), **_coefficients(options)).minimum
 
 
-def _fluid_share(groups: Groups, share: str) -> Landmark | None:
+def _fluid_share(groups: Groups, name: Transition) -> Landmark | None:
     marks = _curve(replace(groups, speed=1.0), **_coefficients({})).transitions
-    return next((mark for mark in marks if mark.name == f"fluid carries {share} of the load"), None)
+    return next((mark for mark in marks if mark.name == name), None)
 
 
 def _of_landmark(mark: Landmark | None, value: Callable[[Landmark], float]) -> float:
@@ -99,8 +100,8 @@ LOCATED: dict[str, Callable[[Groups, dict[str, Any]], float]] = {
     "speed_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.value),
     "friction_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.friction),
     "lambda_ratio_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.solution.lambda_ratio),
-    "speed_at_5_percent_fluid": lambda g, _: _of_landmark(_fluid_share(g, "5%"), lambda mark: mark.value),
-    "speed_at_half_fluid": lambda g, _: _of_landmark(_fluid_share(g, "50%"), lambda mark: mark.value),
+    "speed_at_5_percent_fluid": lambda g, _: _of_landmark(_fluid_share(g, Transition.BOUNDARY_END), lambda mark: mark.value),
+    "speed_at_half_fluid": lambda g, _: _of_landmark(_fluid_share(g, Transition.EQUAL_SHARES), lambda mark: mark.value),
 }
 """Quantities located on a curve over the speed, which the speed of the groups does not touch."""
 

@@ -12,7 +12,7 @@ class Outcome(Enum):
 
     CONVERGED = "Converged."
     STEP_LIMIT = "Newton reached its largest number of steps; try a nearer guess or smaller parameter steps."
-    SINGULAR = "The Jacobian is singular here; near a fold use pseudo-arclength continuation."
+    SINGULAR = "The Jacobian is singular here; the path may turn back at a fold: try smaller parameter steps."
     NOT_FINITE = "The residual or its Jacobian is not finite here; try a nearer guess."
     STALLED = "The damped Newton step became too small to make progress; try a nearer guess."
     REFINEMENT_LIMIT = "Refining the mesh came to its end before the tolerance held; ask for a larger rtol."

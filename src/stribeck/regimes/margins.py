@@ -13,7 +13,7 @@ from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import LineContact
 from stribeck.curves.coordinate import Over
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
@@ -38,10 +38,6 @@ contact itself: see :func:`physical_bounds`."""
 
 DECADE = math.log(10.0)
 """Length of one step outwards in the logarithm of an input."""
-
-FLUID_MARK = f"fluid carries {BOUNDARY_FLUID_SHARE:.0%} of the load"
-CONTACT_MARK = f"asperities cause {HYDRODYNAMIC_CONTACT_SHARE:.0%} of the friction"
-"""Names that curves give to the passages from regime to regime."""
 
 POINTS = 6
 """States on a decade."""
@@ -354,7 +350,7 @@ class _Scan:
         if curve is None:
             return regime, math.sqrt(near * far)
         regime, near, far = self._first_change(curve, outward) or (regime, near, far)
-        wanted = CONTACT_MARK if "hydrodynamic" in (regime, self.present) else FLUID_MARK
+        wanted = Transition.HYDRODYNAMIC_START if "hydrodynamic" in (regime, self.present) else Transition.BOUNDARY_END
         low, high = sorted((near, far))
         marks = [mark.value for mark in curve.transitions if mark.name == wanted]
         found = next((value for value in marks if low <= value <= high), None)
@@ -364,7 +360,7 @@ class _Scan:
     @staticmethod
     def _nearest_to_bound(curve: StribeckCurve, mark: str, low: float, high: float) -> float:
         """Return that of two values of a curve where the share that a mark is about is nearer to its bound."""
-        if mark == CONTACT_MARK:
+        if mark == Transition.HYDRODYNAMIC_START:
             share, bound = curve.friction_contact / np.maximum(curve.friction, 1e-300), HYDRODYNAMIC_CONTACT_SHARE
         else:
             share, bound = curve.observable("fluid_load_share"), BOUNDARY_FLUID_SHARE

@@ -14,7 +14,7 @@ from stribeck.contact_laws.law import AsperityLaw, check_law
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.line import Groups, LineContact
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime
+from stribeck.curves.regime import Regime, Transition
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
@@ -45,9 +45,9 @@ FIELDS = (
 )
 
 MARKS = {
-    "speed_at_5_percent_fluid": f"fluid carries {BOUNDARY_FLUID_SHARE:.0%} of the load",
-    "speed_at_half_fluid": f"fluid carries {0.5:.0%} of the load",
-    "speed_at_10_percent_contact_friction": f"asperities cause {HYDRODYNAMIC_CONTACT_SHARE:.0%} of the friction",
+    "speed_at_5_percent_fluid": Transition.BOUNDARY_END,
+    "speed_at_half_fluid": Transition.EQUAL_SHARES,
+    "speed_at_10_percent_contact_friction": Transition.HYDRODYNAMIC_START,
 }
 """Variables of a diagram, by the names that curves give to the same transitions."""
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.contacts.line import Groups
+from stribeck.curves.regime import Transition
 from stribeck.curves.result import StribeckCurve
 from stribeck.figures import style
 from stribeck.figures.build import FigureJob, column, dataset
@@ -23,10 +24,10 @@ SPEEDS = 1e-8, 0.1
 MAPPED = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 """Roughness groups at which panel (b) shows where the regimes end, at the same load."""
 
-MARKS = {
-    "fluid carries 5% of the load": "boundary_end",
-    "asperities cause 10% of the friction": "hydrodynamic_begin",
-    "minimum of friction": "minimum",
+MARKS: dict[str, str] = {
+    Transition.BOUNDARY_END: "boundary_end",
+    Transition.HYDRODYNAMIC_START: "hydrodynamic_begin",
+    Transition.MINIMUM: "minimum",
 }
 
 FLOOR, TOP = (-10.0, -3.0, -8.0), (1.5, 0.0, -1.0)
