@@ -101,7 +101,7 @@ def comparison(pairs: dict[float, tuple[Pair, Pair]]) -> str:
         one, other = pairs[load]
         cells = [number(load)]
         for pair in (one, other):
-            cells += [number(pair.rest.lambda_ratio), number(float(pair.curve.friction[0]), 4)]
+            cells += [number(pair.rest.central_separation), number(float(pair.curve.friction[0]), 4)]
             cells += [number(pair.speed(name)) for name in MARKS]
         rows.append(cells)
     head = ["$F$"]
@@ -166,7 +166,7 @@ def minimum_of(problem: sb.Groups | sb.LineContact, **settings: object) -> tuple
         raise RuntimeError("no minimum")
     state = curve.minimum.solution
     friction = state.friction(curve.boundary_friction, curve.beta, "balanced")
-    return curve.minimum.value, curve.minimum.friction, state.lambda_ratio, friction.contact / friction.total
+    return curve.minimum.value, curve.minimum.friction, state.central_separation, friction.contact / friction.total
 
 
 def minima() -> str:
@@ -229,7 +229,7 @@ def draw(pairs: dict[float, tuple[Pair, Pair]]) -> None:
         (0, {"color": "#d55e00", "lw": 1.2, "ls": (0, (5, 2))}),
     ):
         label = style.get("label", "exponential")
-        middle.semilogx(loads, [pairs[load][k].rest.lambda_ratio for load in LOADS], **(style | {"label": label}))
+        middle.semilogx(loads, [pairs[load][k].rest.central_separation for load in LOADS], **(style | {"label": label}))
         for name, colour in zip(MARKS, ("#0072b2", "#cc79a7"), strict=True):
             speeds = [pairs[load][k].speed(name) for load in LOADS]
             shown = {"color": colour, "lw": style["lw"], "ls": style.get("ls", "-")}

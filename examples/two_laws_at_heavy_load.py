@@ -25,7 +25,7 @@ def plot(curves):
     above, below = figure.subplots(2, sharex=True)
     for name, curve in curves.items():
         above.loglog(curve.values, curve.friction, label=name)
-        below.semilogx(curve.values, [s.lambda_ratio for s in curve.solutions], label=name)
+        below.semilogx(curve.values, [s.central_separation for s in curve.solutions], label=name)
     above.set(ylabel="friction coefficient")
     below.set(xlabel=r"speed group $\lambda$", ylabel=r"$\alpha h(0)/h_\mathrm{rms}$", ylim=(-1, 10))
     above.legend()
@@ -35,5 +35,5 @@ def plot(curves):
 if __name__ == "__main__":
     curves = main()
     for name, curve in curves.items():
-        print(f"{name:12} plateau {curve.friction[0]:.3f}, central separation {curve.solutions[0].lambda_ratio:.2f}")
+        print(f"{name:12} plateau {curve.friction[0]:.3f}, central separation {curve.solutions[0].central_separation:.2f}")
     plot(curves).savefig("two_laws_at_heavy_load.png")

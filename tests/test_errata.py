@@ -243,8 +243,8 @@ def test_lambda_holds_alpha_and_the_film_over_the_roughness_does_not():
     contact = pdms(alpha=1.9)
     found = sb.solve(contact)
     film = float(found.to_si(np.array([0.0])).gap[0])
-    assert found.lambda_ratio / (film / contact.roughness) == pytest.approx(1.9, rel=1e-6)
-    assert 3 * 1.9 == pytest.approx(found.lambda_ratio * (3 * contact.roughness / film), rel=1e-6)
+    assert found.central_separation / (film / contact.roughness) == pytest.approx(1.9, rel=1e-6)
+    assert 3 * 1.9 == pytest.approx(found.central_separation * (3 * contact.roughness / film), rel=1e-6)
 
 
 def test_smoothness_is_roughness_over_indentation_and_not_over_radius():
@@ -633,9 +633,9 @@ def test_lambda_is_a_function_of_k_in_the_limit_of_small_roughness_only():
     states = [(load, 1e-3 * (LOAD / load) ** 1.5) for load in (0.5, LOAD, 0.01)]
     k = [float(transitions.weakening_number(sb.Groups(1.0, load, kappa * load))) for load, kappa in states]
     assert k == pytest.approx([8.541e-4] * 3, rel=1e-3)
-    found = [minimum(load, kappa).solution.lambda_ratio for load, kappa in states]
+    found = [minimum(load, kappa).solution.central_separation for load, kappa in states]
     assert found == pytest.approx([7.83, 7.62, 7.09], abs=0.01)
-    law = [transitions.lambda_ratio_at_minimum(sb.Groups(1.0, load, kappa * load), form="exact") for load, kappa in states]
+    law = [transitions.separation_at_minimum(sb.Groups(1.0, load, kappa * load), form="exact") for load, kappa in states]
     assert law == pytest.approx([7.748] * 3, rel=1e-4)
     # On the same k, at load 1e-3, there is no minimum.
     lightest = sb.Groups(1.0, 1e-3, 1e-3)
@@ -787,9 +787,9 @@ def test_the_expansion_of_lambda_follows_its_equation_closely():
     """[BP] Eqs. (Lambda_solution), (Lambda_asymptotic): "matches the full solution remarkably well"."""
     for k, error in ((0.2, 0.0214), (1e-2, 0.0073), (1e-4, 0.0027)):
         groups = sb.Groups(1.0, LOAD, float((k / transitions.weakening_number(sb.Groups(1.0, LOAD, 1.0))) ** 1.5))
-        exact = float(transitions.lambda_ratio_at_minimum(groups, form="exact"))
+        exact = float(transitions.separation_at_minimum(groups, form="exact"))
         assert exact ** (1 / 3) * math.exp(-exact) == pytest.approx(k, rel=1e-9)
-        assert transitions.lambda_ratio_at_minimum(groups, form="expansion") == pytest.approx(exact, rel=error)
+        assert transitions.separation_at_minimum(groups, form="expansion") == pytest.approx(exact, rel=error)
 
 
 def test_the_slope_of_the_pressure_of_second_order_is_as_printed():

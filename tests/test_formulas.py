@@ -70,7 +70,7 @@ SCANNED = {
     "mixed.contact_load_share": 0.0891,
     "mixed.friction": 0.0875,
     "transitions.speed_boundary_to_mixed": 0.716,
-    "transitions.lambda_ratio_at_minimum": 0.0425,
+    "transitions.separation_at_minimum": 0.0425,
     "transitions.speed_at_minimum": 0.067,
     "transitions.friction_at_minimum": 0.0478,
     "load_sharing.speed_at_fluid_share": 0.0759,
@@ -106,7 +106,7 @@ def states(formula):
     drawn = {name: np.exp(rng.uniform(*np.log(ends), 400_000)) for name, ends in SPAN.items()}
     many = sb.Groups(drawn["speed"], drawn["load"], drawn["load"] * drawn["relative_roughness"])
     inside = np.nonzero(formula.valid(many) & in_box(formula, many))[0]
-    wanted = LANDMARK_STATES if formula.predicts.startswith(("speed_at", "friction_at", "lambda_ratio_at")) else STATES
+    wanted = LANDMARK_STATES if formula.predicts.startswith(("speed_at", "friction_at", "separation_at")) else STATES
     assert len(inside) >= wanted, "no states in range: widen SPAN"
     found = []
     for i in inside[:wanted]:

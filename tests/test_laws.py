@@ -178,7 +178,7 @@ def test_at_rest_no_pressure_is_lost_by_the_shift_of_a_law():
     assert with_positive_gap(groups)[1] < 0
     assert one.central_gap + 4.0 * 0.01 == pytest.approx(other.central_gap, rel=1e-7)
     peak = float(one.profile([0.0]).contact_pressure[0])
-    by_law = math.exp(float(sb.GreenwoodTripp().log_pressure(np.array([one.lambda_ratio]))[0])) / math.sqrt(5.0)
+    by_law = math.exp(float(sb.GreenwoodTripp().log_pressure(np.array([one.central_separation]))[0])) / math.sqrt(5.0)
     assert peak == pytest.approx(by_law, rel=1e-5)
 
 
@@ -335,7 +335,7 @@ def test_the_exponential_law_of_a_known_surface_has_an_area_and_the_same_states(
     bare = sb.solve(groups)
     assert with_area.central_gap == bare.central_gap
     assert with_area.law == "exponential"
-    expected = math.erf(laws()["persson"].area_slope * math.exp(-with_area.lambda_ratio))
+    expected = math.erf(laws()["persson"].area_slope * math.exp(-with_area.central_separation))
     assert with_area.central_area_fraction == pytest.approx(expected, rel=1e-12)
     assert sb.atlas.friction(with_area.groups) == sb.atlas.friction(groups)
 

@@ -530,11 +530,31 @@ def test_groups_alone_have_no_si_scales(solved):
         solved(*TYPICAL["mixed"]).to_si()
 
 
-def test_lambda_ratio_and_hersey_number_are_those_of_the_paper(solved):
+def test_central_separation_and_hersey_number_are_those_of_the_paper(solved):
     s = solved(*TYPICAL["mixed"])
-    assert s.lambda_ratio == pytest.approx(s.central_gap / 1e-3, rel=1e-14)
+    assert s.central_separation == pytest.approx(s.central_gap / 1e-3, rel=1e-14)
     assert s.hersey_number == pytest.approx(4 * 0.1 * 1e-5 / (3 * math.pi), rel=1e-14)
     assert solved(1e-2, 0.1, 0.0).lambda_ratio == math.inf
+    assert solved(1e-2, 0.1, 0.0).central_separation == math.inf
+
+
+def test_lambda_ratio_is_the_minimum_film_over_the_rms_height_and_knows_alpha(solved):
+    contact = sb.LineContact(
+        radius=0.01,
+        modulus=2.7e6,
+        load=10.0,
+        viscosity=0.1,
+        speed=0.01,
+        roughness=1e-6,
+        alpha=1.9,
+        beta=0.05,
+        boundary_friction=0.8,
+    )
+    state = sb.solve(contact)
+    film = state.minimum_gap * contact.hertz.indentation
+    assert state.lambda_ratio == pytest.approx(film / contact.roughness, rel=1e-12)
+    alone = solved(*TYPICAL["mixed"])  # groups hold no alpha: in h_rms/alpha
+    assert alone.lambda_ratio == pytest.approx(alone.minimum_gap / 1e-3, rel=1e-14)
 
 
 def test_thin_films_between_rough_surfaces_are_noted():

@@ -108,7 +108,7 @@ def test_lambert_w_gives_the_ratio_at_which_the_slope_vanishes():
     k = transitions.weakening_number(groups, 0.5, 2.0)
     by_hand = 2 / (9 * C ** (5 / 3)) * 4 * groups.roughness ** (2 / 3) * 0.1 ** (1 / 3)
     np.testing.assert_allclose(k, by_hand, rtol=1e-12)
-    ratio = transitions.lambda_ratio_at_minimum.function(groups, 0.5, 2.0, "exact")
+    ratio = transitions.separation_at_minimum.function(groups, 0.5, 2.0, "exact")
     np.testing.assert_allclose(ratio ** (1 / 3) * np.exp(-ratio), k, rtol=1e-12)
     assert (ratio > 1 / 3).all()
     for near in (0.999, 1.001):
@@ -123,7 +123,7 @@ def test_lambert_w_gives_the_ratio_at_which_the_slope_vanishes():
 def test_the_expansion_of_lambert_w_nears_it_as_roughness_vanishes():
     groups = sb.Groups(1.0, 0.1, np.array([1e-12, 1e-8, 1e-4]))
     exact, expansion, leading = (
-        transitions.lambda_ratio_at_minimum.function(groups, form=form) for form in ("exact", "expansion", "leading")
+        transitions.separation_at_minimum.function(groups, form=form) for form in ("exact", "expansion", "leading")
     )
     error = 1 - expansion / exact
     # The next term is ln(-ln k)/(9 (-ln k)), a ninth of the square of the first one's over that.
@@ -138,7 +138,7 @@ def test_beyond_the_branch_of_lambert_w_there_is_no_minimum():
     for factor, present in ((0.999, True), (1.001, False)):
         groups = sb.Groups(1.0, 0.1, factor * edge)
         assert transitions.has_minimum(groups, form="exact") == present
-        ratio = transitions.lambda_ratio_at_minimum.function(groups, form="exact")
+        ratio = transitions.separation_at_minimum.function(groups, form="exact")
         assert np.isreal(ratio) and (ratio > 1 / 3 if present else math.isnan(ratio))
         speeds = np.geomspace(1e-3, 1e5, 4001)
         friction = mixed.friction.function(sb.Groups(speeds, 0.1, factor * edge), film="large")
@@ -153,7 +153,7 @@ def test_our_minimum_is_that_of_the_solver(load, kappa):
     groups = sb.Groups(1.0, load, kappa * load)
     assert transitions.friction_at_minimum(groups) == pytest.approx(found.friction, rel=0.0105)
     assert transitions.speed_at_minimum(groups) == pytest.approx(found.value, rel=0.019)
-    assert transitions.lambda_ratio_at_minimum(groups) == pytest.approx(found.solution.lambda_ratio, rel=0.022)
+    assert transitions.separation_at_minimum(groups) == pytest.approx(found.solution.central_separation, rel=0.022)
     assert transitions.has_minimum(groups)
 
 
@@ -189,13 +189,13 @@ def test_printed_speed_and_ratio_of_the_minimum_are_the_equations_of_the_paper()
     groups = sb.Groups(1.0, 0.1, 1e-4)
     k = 2 / (9 * 0.44 ** (5 / 3)) * 1e-4 ** (2 / 3) * 0.1 ** (1 / 3)
     ratio = -math.log(k) + math.log(-math.log(k)) / 3
-    assert transitions.lambda_ratio_at_minimum(groups, printed=True) == pytest.approx(ratio, rel=1e-12)
+    assert transitions.separation_at_minimum(groups, printed=True) == pytest.approx(ratio, rel=1e-12)
     speed = (1e-3 * -math.log(k) / 0.44) ** (5 / 3)
     assert transitions.speed_at_minimum(groups, printed=True) == pytest.approx(speed, rel=1e-12)
 
 
 def test_an_unknown_form_is_refused_by_name():
-    for call in (transitions.lambda_ratio_at_minimum, transitions.friction_at_minimum, transitions.has_minimum):
+    for call in (transitions.separation_at_minimum, transitions.friction_at_minimum, transitions.has_minimum):
         with pytest.raises(sb.InputError, match="'uniform', 'exact', 'expansion' or 'leading'"):
             call(sb.Groups(1.0, 0.1, 1e-4), form="Lambert")
 

@@ -73,7 +73,7 @@ FORMULAS: tuple[Formula[Any], ...] = (
     mixed.contact_load_share,
     mixed.friction,
     transitions.speed_boundary_to_mixed,
-    transitions.lambda_ratio_at_minimum,
+    transitions.separation_at_minimum,
     transitions.speed_at_minimum,
     transitions.friction_at_minimum,
     load_sharing.speed_at_fluid_share,

@@ -88,7 +88,7 @@ def _of_minimum(formula: Formula[Any], points: tuple[int, int]) -> Callable[[flo
         right = {
             "speed_at_minimum": at.speed,
             "friction_at_minimum": np.take_along_axis(friction, lowest, axis=-1)[..., 0],
-            "lambda_ratio_at_minimum": atlas.central_gap(at) / at.relative_roughness,
+            "separation_at_minimum": atlas.central_gap(at) / at.relative_roughness,
         }[formula.predicts]
         found = np.abs(formula.function(at, 1.0, ratio) / right - 1)
         return np.asarray(np.where(falls.any(axis=-1), found, np.nan))
@@ -103,7 +103,7 @@ JUDGED: dict[str, tuple[Formula[Any], dict[str, Any]]] = {
     "boundary.friction": (boundary.friction, {"viscous": "published"}),
     "speed_at_minimum": (transitions.speed_at_minimum, {}),
     "friction_at_minimum": (transitions.friction_at_minimum, {}),
-    "lambda_ratio_at_minimum": (transitions.lambda_ratio_at_minimum, {}),
+    "separation_at_minimum": (transitions.separation_at_minimum, {}),
 }
 """Formulas with both coefficients, with their options, by what they are called in the table."""
 

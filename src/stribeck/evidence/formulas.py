@@ -99,7 +99,9 @@ OF_STATE: dict[str, Callable[[Solution, dict[str, Any]], float]] = {
 LOCATED: dict[str, Callable[[Groups, dict[str, Any]], float]] = {
     "speed_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.value),
     "friction_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.friction),
-    "lambda_ratio_at_minimum": lambda g, options: _of_landmark(_minimum(g, options), lambda mark: mark.solution.lambda_ratio),
+    "separation_at_minimum": lambda g, options: _of_landmark(
+        _minimum(g, options), lambda mark: mark.solution.central_separation
+    ),
     "speed_at_5_percent_fluid": lambda g, _: _of_landmark(_fluid_share(g, Transition.BOUNDARY_END), lambda mark: mark.value),
     "speed_at_half_fluid": lambda g, _: _of_landmark(_fluid_share(g, Transition.EQUAL_SHARES), lambda mark: mark.value),
 }

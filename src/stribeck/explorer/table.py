@@ -76,7 +76,9 @@ def numbers(answer: Answer) -> list[Row]:
         film, error = getattr(solution, each.name) * scales.indentation, errors[each.name]
         rows.append(_row(each.film, each.label.capitalize(), film, abs(film) * error, "length"))
     ratio = solution.lambda_ratio
-    rows.append(_row("lambda_ratio", "Lambda ratio α h(0)/h<sub>rms</sub>", ratio, abs(ratio) * errors["central_gap"]))
+    rows.append(
+        _row("lambda_ratio", "Lambda ratio h<sub>min</sub>/h<sub>rms</sub>", ratio, abs(ratio) * errors["minimum_gap"])
+    )
     rows.append(_row("hersey_number", "Hersey number ηU/F<sub>N</sub>", contact.hersey_number, 0.0))
     rows += _transition_rows(answer)
     return rows

@@ -65,9 +65,14 @@ ROWS = (
         "minimum_film_position_error",
         "",
     ),
-    Observable("flux_gap", "flux film h*", "flux gap: fluid flux over half the speed", "gap", "flux_film_thickness"),
+    Observable("flux_gap", "flux film h*", "film thickness at the pressure extremum, h*", "gap", "flux_film_thickness"),
     Observable("offset", "offset z0", "height of the undeformed cylinder over the undeformed surface", "gap"),
-    Observable("lambda_ratio", "Lambda (film over h_rms/alpha)", "central gap over h_rms/alpha", error=""),
+    Observable(
+        "lambda_ratio",
+        "Lambda (minimum film over h_rms)",
+        "minimum gap over h_rms; over h_rms/alpha if alpha is unknown",
+        error="",
+    ),
     Observable("viscous_published", "viscous friction, published", "viscous friction as published", "friction", listed=False),
     Observable("viscous_balanced", "viscous friction, balanced", "viscous friction that balances", "friction", listed=False),
     Observable(

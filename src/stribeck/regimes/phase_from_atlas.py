@@ -173,13 +173,16 @@ def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups) -> None:
     fluid, central = np.asarray(atlas.fluid_load_share(groups)), np.asarray(atlas.central_gap(groups))
     contact = boundary_friction * np.asarray(atlas.contact_load_share(groups)) / np.where(friction > 0, friction, 1.0)
     kappa = float(groups.relative_roughness)
+    alpha = 1.0 if diagram.contact is None else diagram.contact.alpha
     values = {
         "friction": friction,
         "friction_error": ERROR * friction,
         "fluid_load_share": fluid,
         "contact_friction_share": contact,
         "central_gap": central,
-        "lambda_ratio": central / kappa if kappa > 0 else np.full_like(central, np.inf),
+        "lambda_ratio": np.asarray(atlas.minimum_gap(groups)) / (alpha * kappa)
+        if kappa > 0
+        else np.full_like(central, np.inf),
         "error_estimate": np.full_like(central, ERROR),
     }
     for name, found in values.items():

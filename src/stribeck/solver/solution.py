@@ -180,10 +180,25 @@ class Solution:
         return [*super().__dir__(), *_OWN]
 
     @property
-    def lambda_ratio(self) -> float:
-        """Central gap over h_rms/alpha [-], the paper's Lambda; infinite for smooth surfaces."""
+    def rigid_separation(self) -> float:
+        """Another name of :attr:`offset` [u_Hz]: positive if the undeformed bodies are apart, negative if they overlap."""
+        return self.offset
+
+    @property
+    def central_separation(self) -> float:
+        """Central gap over h_rms/alpha [-], the Lambda of [BP]; infinite for smooth surfaces."""
         kappa = float(self.groups.relative_roughness)
-        return self.central_gap / kappa if kappa > 0 else float("inf")
+        return self.central_gap / kappa if kappa > 0 else math.inf
+
+    @property
+    def lambda_ratio(self) -> float:
+        """Minimum film thickness over h_rms [-]; infinite for smooth surfaces.
+
+        Groups alone do not hold alpha: without a contact it is taken as one, and this is the minimum gap over h_rms/alpha.
+        """
+        kappa = float(self.groups.relative_roughness)
+        alpha = 1.0 if self.contact is None else self.contact.alpha
+        return self.minimum_gap / (alpha * kappa) if kappa > 0 else math.inf
 
     @property
     def separation(self) -> Array:

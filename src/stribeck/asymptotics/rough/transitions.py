@@ -45,7 +45,7 @@ __all__ = [
     "Form",
     "friction_at_minimum",
     "has_minimum",
-    "lambda_ratio_at_minimum",
+    "separation_at_minimum",
     "roughness_without_minimum",
     "speed_at_minimum",
     "speed_boundary_to_mixed",
@@ -56,13 +56,13 @@ BOX = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 0.01), Limit(
 
 
 @formula(
-    predicts="lambda_ratio_at_minimum",
+    predicts="separation_at_minimum",
     plane="mixed",
     limits=BOX,
     worst=0.044,
     source="ours; [BP] Eqs. (Lambda_solution) and (Lambda_asymptotic)",
 )
-def lambda_ratio_at_minimum(
+def separation_at_minimum(
     groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform", *, printed: bool = False
 ) -> Value:
     r"""Return the central gap over h_rms/alpha at the friction minimum.
@@ -143,7 +143,7 @@ def speed_at_minimum(
     beta : float
         Coefficient of the contact law [-].
     form : {"uniform", "exact", "expansion", "leading"}
-        Of Lambda, as in :func:`lambda_ratio_at_minimum`; for ``"uniform"`` the speed itself.
+        Of Lambda, as in :func:`separation_at_minimum`; for ``"uniform"`` the speed itself.
     printed : bool
         Whether as printed: the leading form with the constant 0.44.
 
@@ -173,7 +173,7 @@ def speed_at_minimum(
     elif printed:
         ratio = _leading_as_printed(groups, boundary_friction, beta)
     else:
-        ratio = lambda_ratio_at_minimum.function(groups, boundary_friction, beta, form)
+        ratio = separation_at_minimum.function(groups, boundary_friction, beta, form)
     with np.errstate(all="ignore"):
         return np.power(kappa * ratio / c, 5 / 3)
 
@@ -204,7 +204,7 @@ def friction_at_minimum(
     beta : float
         Coefficient of the contact law [-].
     form : {"uniform", "exact", "expansion", "leading"}
-        Of Lambda, as in :func:`lambda_ratio_at_minimum`; for ``"uniform"`` the friction of
+        Of Lambda, as in :func:`separation_at_minimum`; for ``"uniform"`` the friction of
         :func:`stribeck.asymptotics.rough.mixed.friction` at its minimum.
     printed : bool
         Whether as printed: the leading form with the constant 0.44 and Lambda to the power -2/3 for 2/3.
@@ -239,7 +239,7 @@ def friction_at_minimum(
     ratio = (
         _leading_as_printed(groups, boundary_friction, beta)
         if printed
-        else lambda_ratio_at_minimum.function(groups, boundary_friction, beta, form)
+        else separation_at_minimum.function(groups, boundary_friction, beta, form)
     )
     scale: Value = 4 * beta / (3 * math.pi * c ** (5 / 3)) * np.power(groups.roughness, 2 / 3) * np.power(groups.load, -1 / 6)
     with np.errstate(all="ignore"):

@@ -78,7 +78,7 @@ def _solution_rows(
     relative = wrong / abs(place) if place != 0 else 0.0
     si = "" if scales is None else length(place * scales.half_width, max(relative, 1e-4))
     yield "position of minimum film", f"{digits(place, max(relative, 1e-4))} a", si, f"{wrong:.0e} a"
-    yield "Lambda (film over h_rms/alpha)", digits(solution.lambda_ratio, 1e-4), "", ""
+    yield "Lambda (minimum film over h_rms)", digits(solution.lambda_ratio, 1e-4), "", ""
     if not math.isnan(solution.central_area_fraction):
         area, error = solution.central_area_fraction, solution.central_area_fraction_error
         yield "real contact area at x = 0", part(area, error), "", error_text(error / area) if area > 0 else ""

@@ -53,13 +53,13 @@ def _compute(report: Report) -> xarray.Dataset:
         "minimum_hersey": [m.solution.hersey_number if m else math.nan for m in minima],
         "minimum_friction": [m.friction if m else math.nan for m in minima],
         "minimum_law": [float(hydrodynamic.friction.function(m.solution.groups)) if m else math.nan for m in minima],
-        "minimum_lambda_ratio": [m.solution.lambda_ratio if m else math.nan for m in minima],
+        "minimum_lambda_ratio": [m.solution.central_separation if m else math.nan for m in minima],
     }
     spread = _spread(hersey, friction, fluid_film)
     slopes = np.gradient(np.log(friction[0]), np.log(hersey[0]))
     slopes = np.where(fluid_film[0], slopes, np.nan)
     groups = Groups(1.0, np.array(LOADS)[:, None], np.geomspace(*PREDICTED, 61))
-    predicted = transitions.lambda_ratio_at_minimum.function(groups)
+    predicted = transitions.separation_at_minimum.function(groups)
     finding = (
         f"over the Hersey number the hydrodynamic branches of loads {LOADS[0]} and {LOADS[1]} differ by up to {spread:.2f} "
         f"times; over mu_f,th they lie from {100 * np.nanmin(off):.1f} to {100 * np.nanmax(off):+.1f} % of the line y = x, "

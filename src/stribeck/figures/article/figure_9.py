@@ -50,12 +50,10 @@ def _compute(report: Report) -> xarray.Dataset:
     expected = np.asarray(transitions.speed_at_minimum.function(at))
     found = [[_minimum(work, LOADS[i], KAPPAS[j], speed) for j, speed in enumerate(row)] for i, row in enumerate(expected)]
     speeds = np.array([[mark.value for mark in row] for row in found])
-    ratio = np.array([[mark.solution.lambda_ratio for mark in row] for row in found])
+    ratio = np.array([[mark.solution.central_separation for mark in row] for row in found])
     lowest = np.array([[mark.friction for mark in row] for row in found])
     film_ratio = FILM_CONSTANT * speeds**0.6 / kappa
-    ratios: dict[str, Array] = {
-        form: np.asarray(transitions.lambda_ratio_at_minimum.function(at, form=form)) for form in FORMS
-    }
+    ratios: dict[str, Array] = {form: np.asarray(transitions.separation_at_minimum.function(at, form=form)) for form in FORMS}
     minima = {
         "friction_exact": np.asarray(transitions.friction_at_minimum.function(at, form="exact")),
         "friction_leading": np.asarray(transitions.friction_at_minimum.function(at, form="leading")),
@@ -65,7 +63,7 @@ def _compute(report: Report) -> xarray.Dataset:
     numbers = np.geomspace(*NUMBERS, 121)
     # At load 1, beta = mu_0 = 1 the number k stands for the roughness alone.
     alone = (numbers / float(transitions.weakening_number(Groups(1.0, 1.0, 1.0)))) ** 1.5
-    against = transitions.lambda_ratio_at_minimum.function(Groups(1.0, 1.0, alone), form="exact")
+    against = transitions.separation_at_minimum.function(Groups(1.0, 1.0, alone), form="exact")
     errors = {f"{name.removeprefix('law_')}_error": law / friction - 1 for name, law in laws.items()}
     near = (film > MIN_FILM) & (film < LARGEST_FILM) & (relative <= LARGEST_KAPPA)
     finding = _finding(errors, near, ratio, ratios, lowest, minima)
@@ -82,9 +80,9 @@ def _compute(report: Report) -> xarray.Dataset:
         "uniform_error": column(grid, errors["uniform_error"], "relative error of law_uniform against the solver"),
         "film_ratio": column(grid, film, "film ratio c lambda^(3/5)/kappa"),
         "speed_at_minimum": column(map_, speeds, "speed group of minimum friction, solved"),
-        "lambda_ratio": column(map_, ratio, "central gap over h_rms/alpha at least friction, solved"),
+        "lambda_ratio": column(map_, ratio, "central gap over h_rms/alpha at the minimum of friction, solved"),
         "film_ratio_at_minimum": column(
-            map_, film_ratio, "c lambda^(3/5)/kappa at least friction, solved: the paper's Lambda"
+            map_, film_ratio, "c lambda^(3/5)/kappa at the minimum of friction, solved: the paper's Lambda"
         ),
         "minimum_friction": column(map_, lowest, "minimum friction coefficient, solved"),
         "number": column(map_, transitions.weakening_number(at), "k of the solved minima"),
