@@ -15,7 +15,11 @@ def main():
     """Return, for each roughness group, the speeds and the relative errors of the formula."""
     curves = [sb.stribeck_curve(load=LOAD, roughness=r, speed=(1e-9, 10.0), points=61) for r in ROUGHNESSES]
     return {
-        curve.groups.roughness.flat[0]: (curve.values, uniform.friction(curve.groups) / curve.friction - 1) for curve in curves
+        curve.groups.roughness.flat[0]: (
+            curve.values,
+            uniform.friction(curve.groups, definition="balanced") / curve.friction - 1,
+        )
+        for curve in curves
     }
 
 

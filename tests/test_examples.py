@@ -54,7 +54,7 @@ def test_friction_of_the_pdms_cylinder_is_lowest_at_28_mm_per_second(results):
     _, curve = results("stribeck_curve")
     assert curve.outcome.ok
     assert curve.minimum.value == pytest.approx(0.02760, rel=2e-3)
-    assert curve.minimum.friction == pytest.approx(0.034891, rel=1e-4)
+    assert curve.minimum.friction == pytest.approx(0.034690, rel=1e-4)
     assert (curve.regimes[0], curve.regimes[-1]) == ("boundary", "hydrodynamic")
 
 
@@ -67,8 +67,8 @@ def test_the_fluid_carries_two_thirds_in_the_mixed_state(results):
 
 def test_roughness_and_load_move_the_minimum_most(results):
     _, exponents = results("what_moves_the_minimum")
-    assert exponents["roughness"] == pytest.approx((0.881, 1.353), abs=2e-3)
-    assert exponents["load"] == pytest.approx((-0.490, 0.364), abs=2e-3)
+    assert exponents["roughness"] == pytest.approx((0.879, 1.350), abs=2e-3)
+    assert exponents["load"] == pytest.approx((-0.491, 0.361), abs=2e-3)
 
 
 def test_viscosity_and_speed_are_one_variable(results):
@@ -102,7 +102,7 @@ def test_the_profile_of_the_example_shows_what_it_was_made_with(results):
 def test_half_the_roughness_of_a_seal_does_more_than_twice_the_viscosity(results):
     _, curves = results("levers_of_a_seal")
     friction = {name: float(np.interp(0.1, curve.values, curve.friction)) for name, curve in curves.items()}
-    assert list(friction.values()) == pytest.approx([0.0344, 0.0251, 0.0119], abs=1e-4)
+    assert list(friction.values()) == pytest.approx([0.0323, 0.0235, 0.0115], abs=1e-4)
     assert curves["oil twice as viscous"].minimum.value == pytest.approx(curves["as it is"].minimum.value / 2, rel=1e-4)
 
 
@@ -124,7 +124,8 @@ def test_a_rougher_contact_changes_its_regimes_at_higher_speeds(results):
 def test_the_formula_of_the_example_errs_by_what_is_stated(results):
     _, errors = results("formula_against_solver")
     worst = max(abs(error).max() for _, error in errors.values())
-    assert 0.05 < worst < 0.072
+    assert worst == pytest.approx(0.0372, abs=2e-4)
+    assert worst < 0.072
 
 
 def test_perssons_law_keeps_the_plateau_where_the_exponential_law_loses_it(results):

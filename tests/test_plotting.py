@@ -105,7 +105,7 @@ def test_minimum_and_equal_shares_are_marked_where_they_were_located(curve):
     hersey = curve.contact.viscosity * curve.minimum.value / curve.contact.load
     np.testing.assert_allclose(mark.get_xdata(), hersey, rtol=1e-12)
     assert mark.get_ydata() == pytest.approx([curve.minimum.friction])
-    assert mark.get_label().endswith("at 27.9 mm/s")
+    assert mark.get_label().endswith("at 27.6 mm/s")
     assert line(axes, "fluid carries half the load").get_label().endswith("at 2.79 mm/s")
 
 

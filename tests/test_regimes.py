@@ -102,7 +102,7 @@ def test_bad_settings_are_refused(arguments):
 # --- the way to the next regime ---
 
 
-def shares(contact, definition="published"):
+def shares(contact, definition="balanced"):
     """Return regime, the fluid's share of the load and the asperities' share of the friction."""
     solution = sb.solve(contact, rtol=1e-8)
     friction = solution.friction(definition=definition)
@@ -288,11 +288,11 @@ def test_the_command_says_what_it_takes_to_reach_each_neighbour(capsys, tmp_path
         "To reach boundary: speed / 2.72 (367.9 µm/s), or roughness x 1.68 (1.679 µm), or viscosity / 2.72 (18.39 mPa*s); "
         "not reachable by load (range searched 7.99 mN/m to 305 N/m)." in text
     )
-    assert "To reach hydrodynamic: speed x 30.4 (30.43 mm/s), or load / 3.75e+03 (7.995 mN/m), or roughness / 10.2" in text
+    assert "To reach hydrodynamic: speed x 30.5 (30.46 mm/s), or load / 3.75e+03 (7.994 mN/m), or roughness / 10.2" in text
     assert "Speed and viscosity count as their product" in text
     rows = {line.split("  ")[0].strip() for line in text.splitlines()}
-    assert {"speed", "load", "viscosity", "modulus", "radius", "roughness", "dry friction coefficient"} <= rows
-    assert {"alpha of the contact law", "beta of the contact law"} <= rows
+    assert {"speed", "load", "viscosity", "effective modulus", "radius", "roughness", "dry friction coefficient"} <= rows
+    assert {"contact-law alpha", "contact-law beta"} <= rows
 
 
 def test_the_command_gives_the_distances_as_json(capsys, tmp_path, mixed):

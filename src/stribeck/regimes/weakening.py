@@ -218,9 +218,10 @@ def roughness_without_minimum(
 
     Notes
     -----
-    Found by bracketing in ln(roughness); each trial is one curve over the speed, about 0.1 s.  For mu0 = beta it is 0.0160 at
-    load 0.1 and 0.00343 at load 0.01, relative roughness 0.16 and 0.34, where the film is no longer that of large deformation:
-    the condition k < 0.4968 of [BP]'s friction would allow 1.40 and 4.44.  From load 1 on asperities are saturated, and the
+    Found by bracketing in ln(roughness); each trial is one curve over the speed, about 0.1 s.  For mu0 = beta it is 0.0175 at
+    load 0.1 and 0.00342 at load 0.01, and 0.0160 and 0.00343 for the published friction.  At these relative roughnesses, 0.17
+    and 0.34, the formula for the film of large deformation no longer holds: the condition k < 0.4968 of [BP]'s friction would
+    allow 1.40 and 4.44.  From load 1 on asperities are saturated, and the
     weakening that disappears may be as small as 1e-4 of the friction.
 
     Source: [BP] Conclusion, in words.

@@ -137,7 +137,7 @@ def minimum_note(groups: Groups, contact: LineContact | None, values: Observable
     friction : float
         Share of the friction that asperities cause [-].
     where : str
-        Where the minimum lies, such as ``"speed 27.9 mm/s"``.
+        Where the minimum lies, such as ``"speed 27.6 mm/s"``.
 
     Returns
     -------

@@ -156,16 +156,18 @@ def roughness_without_minimum(
     -----
     Relative roughness of the merging with mu0 = beta = 1:
 
-    ===================  =====  =====  =====  =====
-    Load                 0.001  0.01   0.1    0.5
-    ===================  =====  =====  =====  =====
-    solver, no minimum   0.784  0.343  0.160  0.103
-    solver, above boundary_friction    0.577  0.254  0.122  0.084
-    uniform              0.813  0.297  0.115  0.040
-    plateau              12.2   2.69   0.645  0.266
-    lines                0.271  0.672  1.59   1.21
-    weakening            14029  444    14.0   1.25
-    ===================  =====  =====  =====  =====
+    ===============================================  =====  =====  =====  =====
+    Load                                             0.001  0.01   0.1    0.5
+    ===============================================  =====  =====  =====  =====
+    solver, no minimum, balanced                     0.778  0.342  0.175  0.151
+    solver, no minimum, published                    0.784  0.343  0.160  0.103
+    solver, minimum at boundary_friction, balanced   0.586  0.267  0.146  0.133
+    solver, minimum at boundary_friction, published  0.577  0.254  0.122  0.084
+    uniform                                          0.813  0.297  0.115  0.040
+    plateau                                          12.2   2.69   0.645  0.266
+    lines                                            0.271  0.672  1.59   1.21
+    weakening                                        14029  444    14.0   1.25
+    ===============================================  =====  =====  =====  =====
 
     The solver's are :func:`stribeck.regimes.weakening.roughness_without_minimum`.
     The limit behind the last three, small relative roughness, excludes what they are asked for.
