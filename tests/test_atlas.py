@@ -165,11 +165,11 @@ def test_arrays_broadcast_and_order_does_not_matter():
 @pytest.mark.parametrize(
     ("speed", "load", "kappa", "words"),
     [
-        (1e-13, 0.1, 1e-3, "speed has the value 1e-13; the atlas holds 1e-12 to 1e+06 and 0"),
+        (1e-13, 0.1, 1e-3, "speed has the value 1e-13; the atlas covers 1e-12 to 1e+06 and 0"),
         (2e6, 0.1, 1e-3, "speed has the value 2e.06"),
-        (1e-3, 2.0, 1e-3, "load has the value 2; the atlas holds 1e-06 to 1. Use solve"),
+        (1e-3, 2.0, 1e-3, "load has the value 2; the atlas covers 1e-06 to 1. Use solve"),
         (1e-3, 1e-7, 1e-3, "load has the value 1e-07"),
-        (1e-3, 0.1, 1e-7, "relative_roughness has the value 1e-07; the atlas holds 1e-06 to 100 and 0"),
+        (1e-3, 0.1, 1e-7, "relative_roughness has the value 1e-07; the atlas covers 1e-06 to 100 and 0"),
         (1e-3, 0.1, 200.0, "relative_roughness has the value 200"),
     ],
 )

@@ -253,7 +253,7 @@ def test_a_measured_curve_is_shown_over_the_model(open_page, tmp_path):
         ("Picture (SVG)", ".svg", b"<?xml"),
         ("Curves (CSV)", ".csv", b"# title: PDMS cylinder"),
         ("Gap and pressure (CSV)", "-profile.csv", b"# title: PDMS cylinder"),
-        ("Case that reproduces it (TOML)", ".toml", b"title = "),
+        ("Case file of this state (TOML)", ".toml", b"title = "),
     ],
 )
 def test_what_is_shown_is_downloaded(open_page, tmp_path, label, ending, begins):

@@ -261,7 +261,7 @@ def test_where_the_law_is_beyond_its_range_every_output_says_so(capsys, tmp_path
     assert sentence in call(capsys, "solve", HEAVY).out
     assert sentence in call(capsys, "solve", HEAVY, "--json").out
     assert sentence in call(capsys, "regimes", HEAVY).out
-    assert "Persson's law, of a table [surface], goes on from there." in call(capsys, "regimes", HEAVY).out
+    assert "Persson's law, from a table [surface], covers that range." in call(capsys, "regimes", HEAVY).out
     assert sentence in call(capsys, "curve", HEAVY, *range_, *files).out
     assert sentence in call(capsys, "curve", HEAVY, *range_, "--json").out
     assert sentence in opened(tmp_path / "curve.nc").attrs["notes"]
@@ -271,12 +271,12 @@ def test_where_the_law_is_beyond_its_range_every_output_says_so(capsys, tmp_path
 
 def test_a_failure_to_write_one_file_does_not_lose_the_other(capsys, tmp_path, monkeypatch):
     def fail(*arguments, **options):
-        raise sb.InputError("curve.nc could not be written (No space left on device); it is as it was before.")
+        raise sb.InputError("curve.nc could not be written (No space left on device); it is unchanged.")
 
     monkeypatch.setattr("stribeck.files.datasets.write_netcdf", fail)
     answer = call(capsys, "curve", *FAST, "-o", tmp_path / "curve.nc", "-o", tmp_path / "curve.csv")
     assert answer.code == 2
-    assert answer.err == "stribeck: curve.nc could not be written (No space left on device); it is as it was before.\n"
+    assert answer.err == "stribeck: curve.nc could not be written (No space left on device); it is unchanged.\n"
     assert os.listdir(tmp_path) == ["curve.csv"]
 
 
@@ -376,7 +376,7 @@ def test_a_curve_that_rounding_ends_is_refused_and_not_written(capsys, tmp_path,
     answer = call(capsys, "curve", PDMS, *FEW, "-o", tmp_path / "curve.nc")
     assert answer.code == 2
     assert answer.err == (
-        "stribeck: rtol = 1e-06 cannot be reached: double precision bounds the error of the states of which the speed "
+        "stribeck: rtol = 1e-06 cannot be reached: double precision limits the error of states whose speed "
         "is below 300 µm/s above it; ask for a larger rtol.\n"
     )
     assert os.listdir(tmp_path) == []

@@ -68,7 +68,7 @@ def test_the_error_of_the_skewness_is_that_of_gaussian_surfaces():
 @pytest.mark.parametrize(
     ("length", "height", "words"),
     [
-        (1e6, 1e3, "The scan is 128 m long, which no instrument measures; check the unit of positions."),
+        (1e6, 1e3, "The scan is 128 m long, longer than any instrument measures; check the unit of positions."),
         (1.0, 1e4, "The rms height is 10 mm, which is not plausible; check the unit of heights."),
         (1.0, 100.0, "steeper than instruments follow"),
         (1.0, 1e-6, "The rms height is 1 pm"),

@@ -238,7 +238,7 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
 @pytest.mark.parametrize(
     ("query", "sentence"),
     [
-        ("law=x", "law = 'x' is not JSON as an address of the explorer has it."),
+        ("law=x", "law = 'x' is not valid JSON."),
         ("law=[1]", "must be an object of law, surface, table"),
         ('law={"law":"table","table":{"file":"/etc/passwd"}}', "a link holds its rows instead"),
         ('law={"law":"persson","surface":{"spectrum":"x.csv"}}', "a link holds its rows instead"),
@@ -248,7 +248,7 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
         ("rtol=2", "rtol"),
         ("pin=x", "pin = 'x' must hold 9 numbers, the definition and a name."),
         ("pin=", "pin = '' must hold 9 numbers"),
-        ("pin=1~1~1~1~1~1~1~1~1~balanced@3~name", "names a contact law that the address does not hold"),
+        ("pin=1~1~1~1~1~1~1~1~1~balanced@3~name", "names a contact law that the address does not contain"),
         ("pinlaw=x", "is not JSON"),
     ],
 )

@@ -322,7 +322,7 @@ def test_a_folder_is_made_but_not_the_folders_above_it(fakes, tmp_path):
 
 def test_a_protected_folder_is_refused_before_any_work(fakes, tmp_path, monkeypatch):
     monkeypatch.setattr("os.access", lambda path, mode: False)
-    with pytest.raises(sb.InputError, match="is protected against writing; choose another folder"):
+    with pytest.raises(sb.InputError, match="is write-protected; choose another folder"):
         make_figures(["3"], tmp_path)
     assert fakes.computed == []
 

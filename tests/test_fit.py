@@ -541,7 +541,10 @@ def test_what_counts_as_known_exactly_is_said(capsys, case):
     fitted = {"boundary_friction", "roughness"} | ({"modulus"} if case == CASE else set())
     held = ["beta 0.06", "alpha 2", "modulus 2.7 MPa", "viscosity of each curve", "load 30 N/m", "radius 10 mm"]
     shown = ", ".join(each for each in held if each.split()[0] not in fitted)
-    assert f"Counted as known exactly: {shown}. No error above holds theirs" in call(capsys, "fit", MEASURED, case).out
+    assert (
+        f"Held fixed: {shown}. Their uncertainty is not included in the errors "
+        f"above" in call(capsys, "fit", MEASURED, case).out
+    )
     found = json.loads(call(capsys, "fit", MEASURED, case, "--json").out)
     known = {each["name"]: (each["values"], each["unit"]) for each in found["held"]}
     assert set(known) == set(FREE) - fitted

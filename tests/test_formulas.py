@@ -1,4 +1,4 @@
-"""All formulas of the table: order and size of the error against the solver, range, printed forms, docstrings."""
+"""All formulas of the table: order and magnitude of the error against the solver, range, printed forms, docstrings."""
 
 import importlib
 import inspect
@@ -255,7 +255,7 @@ def test_a_formula_is_silent_in_its_range(formula):
 def test_a_friction_law_warns_of_coefficients_outside_its_range(law, given):
     groups = states(law)[0]
     value = law.function(groups, **given)
-    what = "has no value, and is nan," if np.isnan(value) else "is used"
+    what = "is undefined (nan)" if np.isnan(value) else "is used"
     with pytest.warns(OutOfRangeWarning, match=f"{what} outside its range: .*beta/mu0"):
         found = law(groups, **given)
     assert found == pytest.approx(value, nan_ok=True)
@@ -275,7 +275,7 @@ def test_a_formula_outside_its_range_or_without_value_warns_once_and_is_never_co
         expected = bool(np.isnan(value)) or not formula.valid(groups)
         assert [w.category for w in caught] == [OutOfRangeWarning] * expected, (groups, [str(w.message) for w in caught])
         if caught:
-            what = "has no value, and is nan," if np.isnan(value) else "is used"
+            what = "is undefined (nan)" if np.isnan(value) else "is used"
             assert str(caught[0].message).startswith(f"{formula.name} {what} outside its range: {formula.range}")
             assert caught[0].filename == __file__
 

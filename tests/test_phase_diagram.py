@@ -385,7 +385,7 @@ def test_the_plane_shows_regions_solved_lines_and_formulas(plot, which, request,
     np.testing.assert_allclose(x, dataset.speed_at_minimum[1])
     np.testing.assert_allclose(y, dataset.roughness * (1 if which == "diagram" else 1e6))
     assert drawn["minimum of friction"].get_linestyle() == "-"
-    assert drawn["the same by our formulas"].get_linestyle() == "--"
+    assert drawn["our formulas"].get_linestyle() == "--"
 
 
 def test_the_regions_are_those_of_the_states(plot, diagram):

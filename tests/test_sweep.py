@@ -190,7 +190,7 @@ def test_failed_states_make_exit_code_1(capsys, tmp_path, monkeypatch):
     [
         ((), "SWEEP is missing; give a sweep file, as in: stribeck sweep sweep.toml --out sweep.zarr."),
         (("FILE",), "out is missing; give the folder of the store with --out."),
-        (("FILE", "--out", "s", "--workers", "two"), "workers = 'two' is not a whole number; write it as 101."),
+        (("FILE", "--out", "s", "--workers", "two"), "workers = 'two' is not a whole number; write, for example, 101."),
         (("FILE", "--out", "s", "--workers", "0"), "workers = 0; it must be a whole number from 1 to 1024."),
         (("FILE", "--out", "s", "--export", "a.csv"), "a.csv has the ending '.csv'; the name of this file must end in .nc."),
         (("FILE", "--out", "FILE"), "sweep.toml is a file; give the folder of a store, or the name of a new one."),
@@ -499,7 +499,7 @@ def test_a_full_disk_is_a_sentence_and_the_store_opens_and_goes_on(tmp_path, wor
         assert re.fullmatch(
             rf"stribeck: {store} could not be written \((No space left on device|File too large)\); "
             r"the states finished until then are kept\. "
-            r"Make room and run the same sweep again: it goes on where it stopped\.\n",
+            r"Make room and run the same sweep again to resume it\.\n",
             err,
         )
         found = sb.open_sweep(store)

@@ -165,6 +165,6 @@ def test_a_scheduler_that_is_lost_ends_the_sweep_with_a_sentence(tmp_path):
         finally:
             process.kill()
     assert process.returncode == 1, err
-    assert "stribeck: The cluster could not go on (the connection to its scheduler was lost); run the same sweep" in err
+    assert "stribeck: The cluster failed (the connection to its scheduler was lost); run the same sweep" in err
     assert 5 <= sb.open_sweep(store).finished < 1024
     assert not (store / LOCK).exists()

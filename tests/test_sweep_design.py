@@ -108,7 +108,7 @@ GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
     [
         ("", "is empty; a sweep file needs at least the table [vary]."),
         (GROUPS, "the table [vary] is missing."),
-        (GROUPS + "[vary]\n", "[vary] is empty; say what varies, for example: load = ['10 N/m', '30 N/m']."),
+        (GROUPS + "[vary]\n", "[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m']."),
         (GROUPS + "[vary]\nspeed = []\n", "[vary] speed = [] is empty; list its values."),
         (GROUPS + "[vary]\nspeed = 3\n", "[vary] speed = 3 must be a list of values, or a range as in"),
         (GROUPS + "[vary]\nspeed = [1, -1]\n", "[vary] speed = -1 must be finite and zero or positive."),
@@ -162,7 +162,7 @@ GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
         ),
         (
             '[groups]\nload = 0.1\n[design]\nkind = "list"\n[vary]\nspeed = [1, 2]\nroughness = [1]\n',
-            "[vary] the lists must be equally long with kind = 'list': speed has 2, roughness has 1.",
+            "[vary] the lists must have the same length with kind = 'list': speed has 2, roughness has 1.",
         ),
         (
             GROUPS + '[vary]\nspeed = { range = [1, 2], points = 3 }\n[design]\nkind = "list"\n',

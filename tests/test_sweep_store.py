@@ -282,7 +282,8 @@ def test_a_flipped_bit_in_the_inputs_is_told_by_the_command_and_at_resume(copy, 
     found = call(capsys, "sweep", file, "--out", store, "--export", tmp_path / "sweep.nc")
     assert (found.code, found.out) == (2, "")
     assert found.err == (
-        f"stribeck: {store} is damaged: inputs/c/0/0 in it is not what was written; take it from a copy, or run the sweep "
+        f"stribeck: {store} is damaged: inputs/c/0/0 in it has changed since it was written; take it "
+        f"from a copy, or run the sweep "
         "again into a new store.\n"
     )
     assert not (tmp_path / "sweep.nc").exists()
@@ -323,7 +324,7 @@ def test_a_chunk_that_cannot_be_removed_or_read_is_a_sentence(copy):
     (store / "done" / "c.7").unlink()
     (store / "values" / "c.7.0").unlink()
     (store / "values" / "c.7.0").mkdir()
-    with pytest.raises(sb.InputError, match=r"cannot be cleared: .*values/c\.7\.0: .*; mend that, or choose a new store\."):
+    with pytest.raises(sb.InputError, match=r"cannot be cleared: .*values/c\.7\.0: .*; correct that, or choose a new store\."):
         sb.sweep(file, store)
     (store / "done" / "c.7").write_bytes(b"1234")
     with pytest.raises(sb.InputError, match=r"cannot be read: .*values/c\.7\.0: Is a directory; mend that, or choose"):
@@ -387,7 +388,7 @@ def test_a_place_that_is_no_store_is_refused_and_kept(tmp_path, taken):
         (out / "mine").write_text("mine")
     else:
         out = tmp_path / "no" / "out"
-    what = {"file": "is a file", "folder": "holds no sweep", "nowhere": "there is no folder"}[taken]
+    what = {"file": "is a file", "folder": "does not contain a sweep", "nowhere": "there is no folder"}[taken]
     with pytest.raises(sb.InputError, match=what):
         sb.sweep(write(tmp_path, SMALL), out)
     assert sorted(os.listdir(tmp_path)) == sorted(["sweep.toml", *(["out"] if taken != "nowhere" else [])])

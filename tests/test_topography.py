@@ -35,7 +35,7 @@ def test_a_map_in_a_real_format_is_read_back(tmp_path, heights, name, write):
 
 def test_a_format_without_units_is_refused_until_they_are_given(tmp_path, heights):
     np.save(tmp_path / "z.npy", heights * 1e9)
-    with pytest.raises(sb.InputError, match="does not say its unit; add --unit um"):
+    with pytest.raises(sb.InputError, match="does not declare its unit; add --unit um"):
         read_topography(tmp_path / "z.npy")
     with pytest.raises(sb.InputError, match="distance between points; add --spacing"):
         read_topography(tmp_path / "z.npy", unit="nm")
@@ -95,7 +95,7 @@ def test_a_zip_archive_is_not_unpacked_where_it_would_fill_the_memory(tmp_path, 
         read_topography(bomb)
     large = tmp_path / "large.opd"
     large.write_bytes(b"x" * 1_000_001)
-    with pytest.raises(sb.InputError, match=r"large\.opd has more than 0 GB; cut out a part of the scan"):
+    with pytest.raises(sb.InputError, match=r"large\.opd has more than 0 GB; crop the scan"):
         read_topography(large)
 
 
@@ -196,7 +196,7 @@ def test_an_uneven_line_is_interpolated_and_says_so(tmp_path):
 
 
 TEXTS = {
-    "no unit": ("1,2\n2,3.5\n3,4\n", {}, "does not say the unit of its heights; add --unit um"),
+    "no unit": ("1,2\n2,3.5\n3,4\n", {}, "does not declare the unit of its heights; add --unit um"),
     "contradiction": (
         "x (um);z (nm)\n1;2\n2;3\n",
         {"height_unit": "um"},

@@ -147,7 +147,7 @@ def test_loads_from_one_on_have_no_value_and_say_so():
         uniform.friction,
         uniform.viscous_friction,
     ):
-        with pytest.warns(OutOfRangeWarning, match="has no value, and is nan, outside its range"):
+        with pytest.warns(OutOfRangeWarning, match="is undefined (nan) outside its range"):
             found = law(sb.Groups([1e-5, 1e-5], [0.1, 1.0], [1e-4, 1e-4]))
         assert np.isfinite(found).tolist() == [True, False]
 

@@ -160,7 +160,7 @@ def test_where_a_formula_has_no_value_the_map_has_none():
     [("load", 0.0), ("load", [0.2, 0.1]), ("relative_roughness", math.inf), ("speed", [-1.0, 1.0]), ("speed", [[1.0]])],
 )
 def test_a_grid_that_is_none_is_refused(axis, value):
-    with pytest.raises(sb.InputError, match=f"^{axis} = .*positive numbers that ascend"):
+    with pytest.raises(sb.InputError, match=f"^{axis} = .*positive increasing numbers"):
         error_map(uniform.friction, **(GRID | {axis: value}))
 
 

@@ -198,7 +198,7 @@ class Formula(Generic[Arguments]):
             value = self.function(*call.args, **call.kwargs)
         given = {name: call.arguments[name] for name in ("boundary_friction", "beta") if name in call.arguments}
         if np.isnan(value).any():
-            self._warn("has no value, and is nan,")
+            self._warn("is undefined (nan)")
         elif not np.all(self.valid(groups, **given)):
             self._warn("is used")
         return value

@@ -418,7 +418,7 @@ def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> t
 
 
 def holds_for(law: AsperityLaw | None) -> bool:
-    """Return whether the atlas holds the rough states of a contact law.
+    """Return whether the atlas covers the rough states of a contact law.
 
     Parameters
     ----------
@@ -434,7 +434,7 @@ def holds_for(law: AsperityLaw | None) -> bool:
 
 
 def covers(groups: Groups) -> Flags:
-    """Return whether the atlas holds states: their contact law, and their groups inside :data:`BOX`.
+    """Return whether the atlas covers states: their contact law, and their groups inside :data:`BOX`.
 
     Parameters
     ----------
@@ -468,7 +468,7 @@ def check_law(groups: Groups) -> None:
         If the atlas does not hold their law.
     """
     if groups.law is not None and not holds_for(groups.law) and np.any(groups.roughness):
-        raise InputError(f"the atlas holds states of the exponential contact law, not of {groups.law.name}; use the solver.")
+        raise InputError(f"the atlas covers states of the exponential contact law, not of {groups.law.name}; use the solver.")
 
 
 def _check(name: str, values: Array, low: float, high: float, zero: bool) -> None:
@@ -479,7 +479,7 @@ def _check(name: str, values: Array, low: float, high: float, zero: bool) -> Non
     if outside.any():
         also = " and 0" if zero else ""
         raise InputError(
-            f"{name} has the value {values[outside][0]:g}; the atlas holds {low:g} to {high:g}{also}. Use solve outside."
+            f"{name} has the value {values[outside][0]:g}; the atlas covers {low:g} to {high:g}{also}. Use solve outside."
         )
 
 

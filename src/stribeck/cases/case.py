@@ -47,8 +47,8 @@ _DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{
 
 # What Python's parser says of slips that are frequent, and what to do about them.
 _SLIPS = {
-    "Expected newline or end of document after a statement": 'a value with a unit stands in quotes, as in radius = "10 mm"',
-    "Cannot overwrite a value": "a key may stand once in its table",
+    "Expected newline or end of document after a statement": 'a value with a unit needs quotes, as in radius = "10 mm"',
+    "Cannot overwrite a value": "a key may occur only once in its table",
 }
 
 
@@ -310,7 +310,7 @@ def parse_toml(content: bytes, path: Path, kind: str = "case file", needed: str 
         If it is too large, empty or no TOML.
     """
     if len(content) > _LARGEST_FILE:
-        raise InputError(f"{path} has more than {_LARGEST_FILE} bytes; a {kind} is a page of TOML.")
+        raise InputError(f"{path} has more than {_LARGEST_FILE} bytes; a {kind} is a short TOML file.")
     try:
         # Some editors write a byte-order mark, which TOML does not know.
         text = content.decode("utf-8-sig")
@@ -318,9 +318,9 @@ def parse_toml(content: bytes, path: Path, kind: str = "case file", needed: str 
             raise ValueError(f"a key has more than {_MOST_PARTS} parts")
         table = tomllib.loads(text)
         if _depth(table) > _DEEPEST:
-            raise ValueError(f"tables or lists lie more than {_DEEPEST} deep in each other")
+            raise ValueError(f"tables or lists are nested more than {_DEEPEST} deep")
     except UnicodeDecodeError as problem:
-        raise InputError(f"{path} is not text (byte {problem.start} is not UTF-8); a {kind} is a page of TOML.") from None
+        raise InputError(f"{path} is not text (byte {problem.start} is not UTF-8); a {kind} is a short TOML file.") from None
     except (ValueError, RecursionError) as problem:
         said = " ".join(str(problem).split())
         advice = "".join(f"; {advice}" for slip, advice in _SLIPS.items() if said.startswith(slip))

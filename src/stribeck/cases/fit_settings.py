@@ -178,7 +178,7 @@ def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
             raise InputError(f"{where} has {show(name)}, which is measured; a common factor on it is that of the viscosity.")
         if meant not in FREE:
             hint = advice_on(str(name), FREE) or f"known are {', '.join(FREE)}"
-            raise InputError(f"{where} has {show(name)}, which is no input that can be fitted; {hint}.")
+            raise InputError(f"{where} has {show(name)}, which cannot be fitted; {hint}.")
         if meant in found:
             raise InputError(f"{where} has {meant} twice; name each input once.")
         found.append(meant)

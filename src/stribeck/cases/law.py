@@ -118,7 +118,7 @@ def law_of_file(law: Law, contact: dict[str, Any], tables: dict[str, dict[str, A
     for name in given:
         if name not in MAY_HAVE[law]:
             users = " and ".join(repr(other) for other in LAWS if name in MAY_HAVE[other])
-            raise InputError(f"the table [{name}] is of no use to law = {show(law)}; it belongs to {users}.")
+            raise InputError(f"the table [{name}] is not used by law = {show(law)}; it belongs to {users}.")
     needed = NEEDED.get(law)
     if needed is not None and needed not in given:
         keys = {"surface": "h_rms, hurst, q0 and q1", "table": "file"}[needed]
@@ -242,7 +242,7 @@ def _lists(table: str, entries: dict[str, Any]) -> list[Array]:
         found.append(np.array(values, dtype=float))
     if len(found[0]) != len(found[1]):
         first, second = ROWS[table][1]
-        raise InputError(f"{first} has {len(found[0])} numbers and {second} {len(found[1])}; they must be equally many.")
+        raise InputError(f"{first} has {len(found[0])} numbers and {second} {len(found[1])}; they must have the same length.")
     return found
 
 

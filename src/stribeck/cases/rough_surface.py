@@ -111,7 +111,7 @@ class RoughSurface:
 def _cut_off(name: str, wavenumber: str | float | None, other: str, wavelength: str | float | None) -> float | None:
     """Return a wave number that may be given as a wavelength, None where neither is given."""
     if wavenumber is not None and wavelength is not None:
-        raise InputError(f"{name} = {show(wavenumber)} and {other} = {show(wavelength)} say the same; give one of them.")
+        raise InputError(f"{name} = {show(wavenumber)} and {other} = {show(wavelength)} mean the same; give one of them.")
     if wavelength is not None:
         return 2 * math.pi / _length(other, wavelength)
     if wavenumber is None:

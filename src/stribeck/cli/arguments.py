@@ -33,9 +33,9 @@ def read_case(
     if path is not None and groups is not None:
         if re.fullmatch(r"[-+0-9.eE]+", str(path)):
             raise InputError(f"--groups has more than {len(groups)} numbers: {' '.join(groups)} {path}; see --help.")
-        raise InputError(f"{path} and --groups are both given; give a case file or groups.")
+        raise InputError(f"{path} and --groups are both given; give one of them.")
     if path is None and groups is None:
-        raise InputError("CASE is missing; give a case file, or groups with --groups.")
+        raise InputError("CASE is missing; give a case file, or dimensionless groups with --groups.")
     if path is None:
         return None
     for name, key, value in (
@@ -63,7 +63,7 @@ def as_group(name: str, text: str) -> float:
 def as_whole(name: str, text: str) -> int:
     """Return the whole number that an option holds."""
     if not re.fullmatch(r"[+-]?[0-9]{1,18}", text.strip()):
-        raise InputError(f"{name} = {show(text)} is not a whole number; write it as 101.")
+        raise InputError(f"{name} = {show(text)} is not a whole number; write, for example, 101.")
     return int(text)
 
 
@@ -141,7 +141,7 @@ def check_outputs(data: Sequence[Path], plot: Path | None, force: bool) -> tuple
     targets = [path.resolve() for path in (*data, *pictures)]
     for path, target in zip((*data, *pictures), targets, strict=True):
         if targets.count(target) > 1:
-            raise InputError(f"{path} is named twice among the outputs; give each its own name.")
+            raise InputError(f"{path} is given twice as an output; give each output its own name.")
     return list(data), pictures
 
 

@@ -35,7 +35,7 @@ HELP = """Friction and film thickness of lubricated rough line contacts, from a 
 
 Example: stribeck curve examples/pdms_cylinder.toml -o curve.nc --plot curve.png
 
-Exit codes: 0 done, 1 the solve failed or the output could not be written, 2 bad input, 130 interrupted."""
+Exit codes: 0 success, 1 the solve failed or the output could not be written, 2 bad input, 130 interrupted."""
 
 
 NARROWEST = 20
@@ -53,7 +53,7 @@ def main(tokens: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 done, 1 the solve failed or the output could not be written, 2 bad input, 130 interrupted, 141 nobody reads the
+        0 success, 1 the solve failed or the output could not be written, 2 bad input, 130 interrupted, 141 nobody reads the
         output any more.
     """
     if tokens is None:
@@ -101,17 +101,17 @@ def _run(tokens: list[str], interrupted: Interrupted) -> int:
         return NOBODY_READS
     except OutputError as problem:
         silence(sys.stdout)
-        return complain(f"What was to be printed could not be ({problem}); files that were asked for are written.", FAILED)
+        return complain(f"The output could not be printed ({problem}); the requested files were written.", FAILED)
     except MemoryError:
-        return complain("The memory of this machine does not suffice; ask for fewer points or a larger rtol.", FAILED)
+        return complain("Out of memory; ask for fewer points or a larger rtol.", FAILED)
     except Exception as problem:
         if interrupted.pressed:
             return complain("Interrupted; nothing was written.", INTERRUPTED)
         if os.environ.get("STRIBECK_DEBUG"):
             raise
         return complain(
-            f"Something went wrong that should not ({type(problem).__name__}: {_line(problem)}) "
-            "Please report it with what STRIBECK_DEBUG=1 in the environment adds.",
+            f"Internal error ({type(problem).__name__}: {_line(problem)}) "
+            "Please report it, with the output after setting STRIBECK_DEBUG=1 in the environment.",
             FAILED,
         )
 
@@ -144,12 +144,12 @@ def make_app() -> App:
 def _parsing(problem: CycloptsError) -> str:
     """Return the sentence for arguments that do not fit together."""
     if isinstance(problem, UnusedCliTokensError) and problem.unused_tokens:
-        return f"{problem.unused_tokens[0]!r} is one argument too many."
+        return f"unexpected argument {problem.unused_tokens[0]!r}."
     if isinstance(problem, MissingArgumentError) and problem.argument is not None:
         count = problem.argument.token_count()[0]
         wanted = f"{count} values" if count > 1 else "a value"
         name = getattr(problem, "keyword", None) or problem.argument.name
-        return f"{name} needs {wanted}, {len(problem.tokens_so_far)} given."
+        return f"{name} needs {wanted}, but {len(problem.tokens_so_far)} given."
     if isinstance(problem, UnknownOptionError) and "--mu0" in str(problem):
         return "Unknown option: --mu0; it is called --boundary-friction."
     return _line(problem)

@@ -56,7 +56,7 @@ def solve_command(
     json: Flag = False,
     force: Flag = False,
 ) -> int:
-    """Solve one state: films, load shares and friction, each with its error.
+    """Solve one state: film thickness, load shares and friction, each with its error.
 
     Example: stribeck solve examples/pdms_cylinder.toml --plot profile.png
 
@@ -65,21 +65,21 @@ def solve_command(
     Parameters
     ----------
     case
-        Case file (TOML); its speed is the sum of the surface speeds, twice a mean (entrainment) speed.
+        Case file (TOML); its speed is the sum of the surface speeds, which is twice the mean (entrainment) speed.
     groups
-        Groups instead of a case: SPEED LOAD ROUGHNESS.
+        Dimensionless groups instead of a case: SPEED LOAD ROUGHNESS.
     boundary_friction
-        Dry friction coefficient; only with --groups, 1 if not given.
+        Dry friction coefficient; only with --groups, default 1.
     beta
-        Coefficient of the contact law; only with --groups, 1 if not given.
+        Contact-law beta; only with --groups, default 1.
     law
-        Contact law: exponential, greenwood-williamson or greenwood-tripp; only with --groups, exponential if not given.
+        Contact law: exponential (default), greenwood-williamson or greenwood-tripp; only with --groups.
     rtol
-        Largest relative error of the results, 1e-11 to 1e-2; that of the case or 1e-6 if not given.
+        Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6.
     plot
         Draw gap and pressure to this file (.png, .svg or .pdf).
     json
-        Print JSON: every observable under its name, friction_published, friction_balanced; with a case SI values.
+        Print JSON: every observable under its name, both friction coefficients and, with a case, SI values.
     force
         Replace an existing file.
     """
@@ -126,7 +126,7 @@ def curve_command(
     json: Flag = False,
     force: Flag = False,
 ) -> int:
-    """Solve a Stribeck curve: friction along speed, load or roughness, its minimum and its regimes.
+    """Solve a Stribeck curve: friction against speed, load or roughness, with its minimum and regimes.
 
     Example: stribeck curve examples/pdms_cylinder.toml -o curve.nc -o curve.csv --plot curve.png
 
@@ -134,7 +134,7 @@ def curve_command(
 
     Example: stribeck curve --groups 0.1 1e-4 --range 1e-9 10 -o curve.nc
 
-    After Ctrl-C the finished points are written, marked incomplete; the exit code is then 130.
+    Ctrl-C writes the finished points, marked as incomplete, and exits with code 130.
 
     Parameters
     ----------
@@ -145,22 +145,22 @@ def curve_command(
     plot
         Draw the curve to this file (.png, .svg or .pdf).
     over
-        What varies: speed, load or roughness; that of the case or speed if not given.
+        What varies: speed, load or roughness; defaults to the value in the case, or speed.
     range
         Lowest and highest value of what varies, with units for a case; for speed, the sum of the surface speeds, found if not
         given.
     points
-        Number of points, 2 to 100000; that of the case or 101 if not given.
+        Number of points, 2 to 100000; defaults to the value in the case, or 101.
     rtol
-        Largest relative error of the results, 1e-11 to 1e-2; that of the case or 1e-6 if not given.
+        Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6.
     groups
-        Groups instead of a case: the two that stay fixed, in the order speed, load, roughness.
+        Dimensionless groups instead of a case: the two that stay fixed, in the order speed, load, roughness.
     boundary_friction
-        Dry friction coefficient; only with --groups, 1 if not given.
+        Dry friction coefficient; only with --groups, default 1.
     beta
-        Coefficient of the contact law; only with --groups, 1 if not given.
+        Contact-law beta; only with --groups, default 1.
     law
-        Contact law: exponential, greenwood-williamson or greenwood-tripp; only with --groups, exponential if not given.
+        Contact law: exponential (default), greenwood-williamson or greenwood-tripp; only with --groups.
     json
         Print the curve as JSON.
     force
@@ -186,7 +186,9 @@ def curve_command(
     if problems:
         return complain("\n".join(problems), BAD_INPUT)
     if curve.outcome is Outcome.INTERRUPTED:
-        kept = f"{' and '.join(written)} hold the points so far, marked incomplete" if written else "no file was asked for"
+        kept = (
+            f"{' and '.join(written)} contain the points so far, marked as incomplete" if written else "no file was asked for"
+        )
         return complain(f"Interrupted after {len(curve)} of {curve.requested} points; {kept}.", INTERRUPTED)
     if not curve.outcome.ok:
         return complain(f"{len(curve)} of {curve.requested} points: {curve.outcome.value}", FAILED)
@@ -194,7 +196,7 @@ def curve_command(
 
 
 def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
-    """Tell the lubrication regime of a contact, how far the next ones are, and what moves its friction.
+    """Report the lubrication regime of a contact, the distance to its neighbours and the sensitivity of friction.
 
     Example: stribeck regimes examples/pdms_cylinder.toml
 
@@ -238,24 +240,24 @@ def figures_command(
     out: Annotated[Path, Parameter(name="--out")] = Path("figures"),
     force: Flag = False,
 ) -> int:
-    """Make figures of the paper from our own solves: PNG, SVG and the data as NetCDF for each.
+    """Reproduce figures of the paper from our own solutions: PNG, SVG and NetCDF data for each.
 
     Example: stribeck figures
 
     Example: stribeck figures 3 5b S1 --out pictures
 
-    Data in the folder are used again as long as the sources that they come from are the same.
+    Data already in the folder are reused unless the source code behind them has changed.
 
-    After Ctrl-C the figures that are finished stay; the exit code is then 130.
+    Ctrl-C keeps the finished figures and exits with code 130.
 
     Parameters
     ----------
     names
-        Figures: 3 to 11 and S1; all of them if none is given.
+        Figures: 3 to 11 and S1; all of them by default.
     out
-        Folder to write to; made if the folder above it exists.
+        Folder to write to; created if its parent folder exists.
     force
-        Solve again what the folder already holds, and replace files that are not of this command.
+        Solve again even if the folder has the data, and replace files that another program wrote.
     """
     from stribeck.figures import make_figures
 
@@ -312,9 +314,9 @@ def _write(
 
 
 def _too_small(curve: StribeckCurve) -> str:
-    where = f"the states of which the {curve.over} is below {_si(curve)}" if len(curve) else "these states"
+    where = f"states whose {curve.over} is below {_si(curve)}" if len(curve) else "these states"
     return (
-        f"rtol = {curve.rtol:g} cannot be reached: double precision bounds the error of {where} above it; "
+        f"rtol = {curve.rtol:g} cannot be reached: double precision limits the error of {where} above it; "
         "ask for a larger rtol."
     )
 

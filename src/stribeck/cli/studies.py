@@ -30,13 +30,13 @@ def sweep_command(
     json: Flag = False,
     force: Flag = False,
 ) -> int:
-    """Solve many states and keep each in a store as it finishes; the same command again goes on where it stopped.
+    """Solve many states and store each as it finishes; after an interruption, run the command again to resume.
 
     Example: stribeck sweep examples/sweep.toml --out sweep.zarr --export sweep.nc
 
     Example: stribeck sweep examples/sweep.toml --out sweep.zarr --workers 2
 
-    With --scheduler, as in --scheduler tcp://node1:8786, the workers of a Dask cluster solve the states.
+    With --scheduler, such as --scheduler tcp://node1:8786, the workers of a Dask cluster solve the states.
 
     After Ctrl-C the finished states are in the store; the exit code is then 130.  It is 1 where states failed; they are in the
     store too, with their outcome.
@@ -46,11 +46,11 @@ def sweep_command(
     design
         Sweep file (TOML): what stays fixed, what varies and how.
     out
-        Folder of the store; made if there is none.
+        Folder of the store; created if it does not exist.
     workers
-        Processes of this machine, 1 if not given.
+        Number of processes on this machine; default 1.
     scheduler
-        Address of a Dask scheduler, whose workers solve the states instead.
+        Address of a Dask scheduler; its workers then solve the states.
     export
         Write all states to this file (.nc) at the end.
     json
@@ -93,7 +93,7 @@ def sweep_command(
     else:
         report_sweep.print_sweep(stdout_console(), found, written)
     if found.interrupted:
-        kept = f"{out} holds them, and the same command goes on from there"
+        kept = f"they are stored in {out}; run the same command again to resume"
         return complain(f"Interrupted after {found.finished} of {len(found)} states; {kept}.", INTERRUPTED)
     if found.failed:
         return complain(f"{found.failed} of {len(found)} states did not converge; each has its outcome in the store.", FAILED)
@@ -113,7 +113,7 @@ def fit_command(
     json: Flag = False,
     force: Flag = False,
 ) -> int:
-    """Fit inputs of a contact to measured friction: values with intervals, and what the data do not say.
+    """Fit inputs to measured friction, with confidence intervals and what the data cannot determine.
 
     Example: stribeck fit examples/pdms_measured.csv examples/pdms_fit.toml --plot fit.png --out fitted.toml
 
@@ -125,17 +125,17 @@ def fit_command(
         Measured friction (text in columns): friction and speed, viscosity times speed or Hersey number, units in the header;
         the speed is the sum of the surface speeds, twice a mean (entrainment) speed.
     case
-        Case file (TOML) with the contact where the fit begins, and in its table [fit] what is asked.
+        Case file (TOML) with the starting values of the contact and, in its table [fit], the settings of the fit.
     free
-        Inputs to fit; those of the case, else boundary_friction and roughness.
+        Inputs to fit; defaults to the list in the case, or boundary_friction and roughness.
     out
         Write the case with the fitted values to this file (.toml).
     plot
         Draw data, fit and residuals to this file (.png, .svg or .pdf).
     robust
-        Keep outliers from steering the fit.
+        Limit the influence of outliers.
     posterior
-        Draw from the posterior with so many steps of emcee, such as 2000.
+        Sample the posterior with this many steps of emcee, such as 2000.
     json
         Print JSON.
     force
@@ -200,7 +200,7 @@ def surface_command(
     json: Flag = False,
     force: Flag = False,
 ) -> int:
-    """Evaluate a measured topography: rms height, spectrum, alpha and beta of the contact law, with errors.
+    """Analyse a measured topography: rms height, spectrum, and contact-law alpha and beta, with errors.
 
     Example: stribeck surface examples/cylinder_profile.csv --plot surface.png --out surface.toml
 
@@ -212,25 +212,25 @@ def surface_command(
     Parameters
     ----------
     file
-        File of heights: a line or a map.
+        File of heights: a profile or a map.
     unit
-        Unit of lengths where the file does not declare it, such as um.
+        Unit of length if the file does not declare it, such as um.
     height_unit
-        Unit of heights, where it is another one.
+        Unit of height, if different.
     spacing
-        Distance between points, such as '0.5 um', where the file has no positions.
+        Distance between points, such as '0.5 um', if the file has no positions.
     channel
-        Name of the channel, where the file has several.
+        Name of the channel, if the file has several.
     trend
-        Shape of the body to take away: none, mean, tilt or curvature; curvature if not given.
+        Form to remove: none, mean, tilt or curvature (default).
     window
-        Window of the spectrum: hann, or none for periodic heights; hann if not given.
+        Window of the spectrum: hann (default), or none for periodic heights.
     resolution
-        Shortest wavelength that the instrument resolves; that of the file or four points if not given.
+        Shortest wavelength that the instrument resolves; defaults to the value in the file, or four points.
     gamma
-        Reduction of the elastic energy in Persson's theory, 0 to 1; 0.45 if not given.
+        Reduction of the elastic energy in Persson's theory, 0 to 1; default 0.45.
     keep_spikes
-        Keep spikes, single points far above or below all neighbours; otherwise they are replaced.
+        Keep spikes (single points far above or below all neighbours) instead of replacing them.
     plot
         Draw heights, spectrum and contact law to this file (.png, .svg or .pdf).
     out
@@ -276,23 +276,23 @@ def explore_command(
     host: Word = None,
     browser: Annotated[bool, Parameter(negative="--no-browser", show_default=False)] = True,
 ) -> int:
-    """Open a page on which the contact is changed by hand and curve, profile, regimes and numbers follow.
+    """Open the interactive explorer: change the inputs, and curve, profiles, regimes and numbers follow.
 
     Example: stribeck explore examples/pdms_cylinder.toml
 
-    The page is served on this machine only, needs no internet and sends nothing away; its address has a token, without which
-    nothing is served.  Ctrl-C ends it.
+    The page is served on this machine only, needs no internet and sends nothing away.  It opens only with the token in its
+    address.  Ctrl-C ends it.
 
     Parameters
     ----------
     case
-        Case file (TOML) to begin with; a soft cylinder if not given.
+        Case file (TOML) to start with; defaults to a soft cylinder.
     port
-        Port of the page; a free one if not given.
+        Port of the page; defaults to a free one.
     host
-        Address of this machine to listen on: 127.0.0.1 (default), ::1 or localhost; no other.
+        Address to listen on: 127.0.0.1 (default), ::1 or localhost.
     browser
-        Open the page in the browser, or only tell its address.
+        Open the page in the browser, or only print its address.
     """
     from stribeck.explorer.server import serve
 

@@ -56,7 +56,7 @@ class FunctionLaw:
         if not (self.lowest <= 0.0 and 0.0 < low < high < math.inf):
             raise InputError(
                 f"lowest = {show(self.lowest)}, checked = {show(self.checked)}; lowest must be 0 or below, "
-                "checked two positive separations that ascend."
+                "checked two increasing positive separations."
             )
         s = np.geomspace(low, high, 400)
         values, slopes = _values("log_pressure", self.log_pressure, s), _values("log_slope", self.log_slope, s)
@@ -66,7 +66,7 @@ class FunctionLaw:
         wrong = (
             np.abs((ahead - behind) / (2 * step) - slopes) > SLOPE_TOLERANCE * np.abs(slopes) + 1e-10 * np.abs(values) / step
         )
-        _refuse("log_slope", slopes, wrong, s, "it must be the derivative of log_pressure, whose differences disagree")
+        _refuse("log_slope", slopes, wrong, s, "it must be the derivative of log_pressure, but finite differences disagree")
 
     @property
     def parameters(self) -> dict[str, float | str]:
@@ -88,7 +88,7 @@ class FunctionLaw:
         """
         if separation >= self.checked[0] or separation < 0:
             return ()
-        return (f"The minimum separation is {separation:.2g}, below those at which the contact law was checked.",)
+        return (f"The minimum separation is {separation:.2g}, below the range in which the contact law was checked.",)
 
 
 def _values(name: str, function: Callable[[Array], Array], s: Array) -> Array:

@@ -131,7 +131,7 @@ class _GaussianHeights:
             return ()
         return (
             f"The minimum separation is {separation:.2g} standard deviations of the asperity heights, below their mean plane: "
-            f"most asperities touch, and the {self.name} law, which takes each for alone, is outside its range.",
+            f"most asperities touch, and the {self.name} law, which treats asperities as independent, is outside its range.",
         )
 
 

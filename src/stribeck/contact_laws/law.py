@@ -103,7 +103,7 @@ def check_law(law: Any) -> AsperityLaw | None:
     if law is None or (isinstance(law, AsperityLaw) and not isinstance(law, type)):
         return law
     advice = f"write {law.__name__}()" if isinstance(law, type) else "give an object such as GreenwoodWilliamson(), or None"
-    raise InputError(f"law = {show(law)} is no contact law; {advice}.")
+    raise InputError(f"law = {show(law)} is not a contact law; {advice}.")
 
 
 def law_attributes(law: AsperityLaw | None, smooth: bool = False) -> dict[str, Any]:

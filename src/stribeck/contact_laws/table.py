@@ -236,13 +236,13 @@ def _column(name: str, values: ArrayLike) -> list[float]:
 def _check_rows(s: Sequence[float], p: Sequence[float]) -> None:
     """Refuse rows that are no contact law, naming the first."""
     if len(s) != len(p):
-        raise InputError(f"separation has {len(s)} rows and pressure {len(p)}; they must be equally many.")
+        raise InputError(f"separation has {len(s)} rows and pressure {len(p)}; they must have the same length.")
     if len(s) < MIN_ROWS:
         raise InputError(f"the table of the contact law has {len(s)} rows; at least {MIN_ROWS} are needed.")
     for i in range(len(s)):
         row = f"row {i + 1} of the contact law's table"
         if not (math.isfinite(s[i]) and math.isfinite(p[i])):
-            raise InputError(f"{row}, {s[i]:g} and {p[i]:g}, is not finite; remove it or repair it.")
+            raise InputError(f"{row}, {s[i]:g} and {p[i]:g}, is not finite; remove or correct it.")
         if p[i] <= 0:
             raise InputError(f"{row}: pressure {p[i]:g} must be positive; end the table where contact ends.")
         if i and s[i] <= s[i - 1]:

@@ -88,7 +88,7 @@ def _dimensions(name: str, value: Any) -> int:
     except ValueError:  # ragged lists
         found = 2
     if found > 1 or isinstance(value, dict | set):
-        raise InputError(f"{name} = {show(value)}; give a number, a range (low, high), or a list of numbers that ascend.")
+        raise InputError(f"{name} = {show(value)}; give a number, a range (low, high), or a list of increasing numbers.")
     return found
 
 
@@ -105,7 +105,7 @@ def _ends(over: Over, value: Any, si: bool) -> Array:
     found = np.asarray(numbers)
     if len(found) < 2 or not np.isfinite(found).all() or not (found > 0).all() or not (np.diff(found) > 0).all():
         raise InputError(
-            f"{over} = {show(value)}; a range is two or more finite positive numbers that ascend, such as (1e-9, 10)."
+            f"{over} = {show(value)}; a range is two or more finite positive increasing numbers, such as (1e-9, 10)."
         )
     return found
 
@@ -114,4 +114,4 @@ def check_inside(coordinate: Coordinate, values: Array) -> None:
     """Refuse a range whose groups cannot be formed."""
     for value in (values[0], values[-1]):
         if coordinate.groups_at(math.log(value)).is_hertzian:
-            raise InputError("speed and roughness are both zero; the dry smooth contact has no curve, use solve.")
+            raise InputError("speed and roughness are both zero; the dry smooth contact has no curve; use solve.")

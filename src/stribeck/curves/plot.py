@@ -105,7 +105,7 @@ def plot_curve(curve: StribeckCurve, path: PathLike | None = None, *, force: boo
     law = curve.hydrodynamic_friction
     if (law > 0).all() and curve.over != "roughness":
         _draw_friction(right, curve, law, parts=False)
-        right.set_xlabel("friction coefficient by the hydrodynamic law")
+        right.set_xlabel("friction coefficient from the hydrodynamic law")
         right.set_ylim(left.get_ylim())
         ends = np.array(right.get_ylim())
         right.plot(
@@ -115,7 +115,7 @@ def plot_curve(curve: StribeckCurve, path: PathLike | None = None, *, force: boo
             lw=1.2,
             ls=(0, (5, 3)),
             zorder=2,
-            label="the law itself, $y = x$",
+            label="hydrodynamic law, $y = x$",
             scalex=False,
         )
     else:
@@ -157,7 +157,7 @@ def _draw_friction(axes: Axes, curve: StribeckCurve, x: Array, *, parts: bool = 
         )
         axes.plot(x, curve.friction_viscous, color=FLUID, lw=1.5, ls="-.", zorder=5, label="from the fluid")
     if (error > 0.01 * total).any():
-        axes.fill_between(x, total - error, total + error, color=INK, alpha=0.2, lw=0, zorder=3, label="its error")
+        axes.fill_between(x, total - error, total + error, color=INK, alpha=0.2, lw=0, zorder=3, label="estimated error")
     if (total > 0).any():
         low, high = total[total > 0].min(), total.max()
         seen = [part.max() for part in (curve.friction_contact, curve.friction_viscous) if part.max() > 1e-4 * high]
@@ -255,7 +255,7 @@ def _footer(curve: StribeckCurve) -> list[tuple[str, str]]:
             first.append(f"{name} group {values[0]:.4g}")
     second = [
         law,
-        f"viscous friction: definition {curve.definition}",
+        f"viscous friction: {curve.definition}",
         f"rtol {curve.rtol:g}",
         f"estimated error {curve.error_estimate:.1e}",
         count,

@@ -84,7 +84,7 @@ def automatic_speed_range(groups: Groups, boundary_friction: float, beta: float,
         raise KeyboardInterrupt
     if not shares:
         raise SolveError(
-            path.outcome, None, f"{describe(groups)}: no speed was found from which a curve can begin; give a range of speeds."
+            path.outcome, None, f"{describe(groups)}: no starting speed was found for the curve; give a range of speeds."
         )
     low = max(MIN_SPEED, math.exp(shares[-1][0]) / MARGIN)
     contact_part = np.array([part for _, _, part in shares])

@@ -71,8 +71,8 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
     """Return values, unit and long name of each variable."""
     columns: dict[str, tuple[Any, str, str]] = {
         "friction": (curve.friction, "1", f"friction coefficient, definition {curve.definition}"),
-        "friction_contact": (curve.friction_contact, "1", "part of the friction coefficient from asperities"),
-        "friction_viscous": (curve.friction_viscous, "1", "part of the friction coefficient from the fluid"),
+        "friction_contact": (curve.friction_contact, "1", "contribution of asperities to the friction coefficient"),
+        "friction_viscous": (curve.friction_viscous, "1", "contribution of the fluid to the friction coefficient"),
         "friction_error": (curve.friction_error, "1", "estimated absolute error of the friction coefficient"),
         "regime": (np.array(curve.regimes, dtype=object), "1", "lubrication regime"),
         "hersey_number": (curve.hersey_number, "1", "Hersey number, viscosity times speed over load"),
@@ -93,7 +93,7 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
         columns[f"{name}_viscous"] = (
             np.array([f.viscous for f in found]),
             "1",
-            f"{label}: part from the fluid",
+            f"{label}: contribution of the fluid",
         )
         columns[f"{name}_error"] = (
             np.array([f.error for f in found]),

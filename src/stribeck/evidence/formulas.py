@@ -303,7 +303,7 @@ def _axes(kind: str, given: dict[str, ArrayLike | None]) -> dict[str, Array]:
         axis = np.atleast_1d(np.asarray(default if value is None else value, dtype=float))
         lowest = 0.0 if name == "speed" else math.ulp(0.0)
         if axis.ndim != 1 or not np.isfinite(axis).all() or not (np.diff(axis) > 0).all() or not (axis >= lowest).all():
-            raise InputError(f"{name} = {show(value)}; a map needs positive numbers that ascend (a speed may be zero).")
+            raise InputError(f"{name} = {show(value)}; a map needs positive increasing numbers (a speed may be zero).")
         found[name] = axis
     return found
 

@@ -65,7 +65,7 @@ def plot_error_maps(
 ) -> Figure:
     """Draw the errors of formulas, each in a panel of its own or, where it depends on speed and roughness, one for each load.
 
-    In a map the colour is the size of the error, with lines at 1 % (white) and 10 % (dark), the range of the formula is
+    In a map the colour is the magnitude of the error, with lines at 1 % (white) and 10 % (dark), the range of the formula is
     framed, and hatching fills what has no value. As a line the error is drawn bold in the range, which is shaded, and thin
     outside it; the stated worst error is dashed.
 
@@ -253,7 +253,7 @@ def _draw_lines(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left
     axes.minorticks_off()
     axes.set_xlabel(SYMBOLS[name])
     if left:
-        axes.set_ylabel("size of the error")
+        axes.set_ylabel("magnitude of the error")
 
 
 def _percent(value: float, _: object = None) -> str:

@@ -157,7 +157,7 @@ def _value(value: Any) -> str:
 def _without_files(name: str, entries: dict[str, Any], key: str) -> dict[str, Any]:
     """Return entries; refuse the name of a file, which a link from elsewhere must not open."""
     if key in entries:
-        raise InputError(f"{name} names the file {show(entries[key])}; a link holds its rows instead.")
+        raise InputError(f"{name} names the file {show(entries[key])}; a link contains its rows instead.")
     return entries
 
 
@@ -168,7 +168,7 @@ def _object(name: str, text: str, known: tuple[str, ...]) -> dict[str, Any]:
     try:
         found = json.loads(text, parse_constant=refuse)
     except (ValueError, RecursionError):
-        raise InputError(f"{name} = {show(text)} is not JSON as an address of the explorer has it.") from None
+        raise InputError(f"{name} = {show(text)} is not valid JSON.") from None
     if not isinstance(found, dict) or not set(found) <= set(known):
         raise InputError(f"{name} = {show(text)} must be an object of {', '.join(known)}.")
     return found

@@ -125,7 +125,7 @@ def _speed_group(contact: LineContact) -> float:
 
 
 def in_atlas(contact: LineContact) -> bool:
-    """Tell whether the atlas holds the contact law, the load and the roughness of a contact."""
+    """Tell whether the atlas covers the contact law, the load and the roughness of a contact."""
     return bool(atlas.covers(replace(contact.groups, speed=0.0)))
 
 
@@ -161,7 +161,7 @@ def curve_from_atlas(contact: LineContact, speeds: tuple[float, float], marks: t
     along = Groups(np.clip(speed * unit, *atlas.BOX["speed"]), groups.load, groups.roughness)
     solid = boundary_friction * np.asarray(atlas.contact_load_share(along))
     friction = {kind: solid + np.asarray(atlas.viscous_friction(along, beta, kind)) for kind in DEFINITIONS}
-    return Curve(speed, friction, solid, marks, f"read off the atlas, within {_power(ERROR)}")
+    return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(ERROR)}")
 
 
 def solved_curve(contact: LineContact, definition: Definition) -> Curve:
@@ -189,7 +189,7 @@ def solved_curve(contact: LineContact, definition: Definition) -> Curve:
         name = "minimum" if mark is found.minimum else known
         if name and (name != "boundary" or " 5%" in mark.name):
             marks.append(Transition(name, mark.value, math.nan))
-    source = f"solved, beyond the atlas; estimated error {_power(found.error_estimate)}"
+    source = f"solved, outside the lookup table; estimated error {_power(found.error_estimate)}"
     return Curve(speeds, friction, np.array([part.contact for part in parts[definition]]), tuple(marks), source)
 
 

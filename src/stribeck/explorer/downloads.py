@@ -30,7 +30,7 @@ KINDS = {
     "Picture (SVG)": "svg",
     "Curves (CSV)": "csv",
     "Gap and pressure (CSV)": "profile.csv",
-    "Case that reproduces it (TOML)": "toml",
+    "Case file of this state (TOML)": "toml",
 }
 """What can be downloaded: label and ending."""
 

@@ -107,7 +107,7 @@ class Page:
                     self.status = ui.label().classes("status").props('role="status"')
                     self.numbers = ui.html("", sanitize=False)
                 with ui.element("section").classes("card more").props('aria-label="Margins"'):
-                    head = f"To the next regimes, by each input <span class='caption waits'>{UPDATING}</span>"
+                    head = f"Distance to the next regimes <span class='caption waits'>{UPDATING}</span>"
                     ui.html(f"<h2>{head}</h2>", sanitize=False)
                     self.margins = ui.html(f'<p class="caption">{UPDATING}</p>', sanitize=False).classes("ways")
                 with ui.element("section").classes("card diagram").props('aria-label="Phase diagram"'):
@@ -127,7 +127,7 @@ class Page:
             )
             with button("Load", "upload_file", "Load a case (TOML) or a measured curve (CSV)") as load:
                 load.on("click", js_handler=f"() => getHtmlElement({self.upload.id}).click()")
-            with button("Save", "download", "Download what is shown"):
+            with button("Save", "download", "Download picture, data or case"):
                 with ui.menu():
                     for label, kind in files.KINDS.items():
                         send = f"() => explorerDownload({self.client_name}, {dumps(kind)})"
@@ -147,7 +147,7 @@ class Page:
         for name in GROUP_FIELDS:
             self.knobs[name] = Slider(name, knob_state(now, name))
         ui.html(
-            '<p class="caption">A group moves load, speed and roughness; the other two groups stay.</p>',
+            '<p class="caption">Changing one group changes speed, load and roughness; the other two groups stay fixed.</p>',
             sanitize=False,
         )
 

@@ -71,9 +71,7 @@ def read_file(kind: Kind, name: str, content: bytes, contact: LineContact, secon
             raise InputError(found)
     except subprocess.TimeoutExpired:
         pass
-    raise InputError(
-        f"{name} could not be read within {seconds:g} s; it should be a page of TOML, or some columns of numbers."
-    )
+    raise InputError(f"{name} could not be read within {seconds:g} s; it should be a short TOML file, or columns of numbers.")
 
 
 def main() -> None:
@@ -96,7 +94,7 @@ def main() -> None:
     except InputError as problem:
         answer = False, str(problem)
     except (MemoryError, RecursionError):
-        answer = False, f"{name} needs more memory than a file of a laboratory should."
+        answer = False, f"{name} needs too much memory; send a smaller file."
     sys.stdout.buffer.write(pickle.dumps(answer))
 
 

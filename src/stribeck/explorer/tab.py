@@ -297,9 +297,9 @@ class Tab:
                 try:
                     self.answer, self.pinned = await self.run(LIVE, self.compute, now, tuple(self.pins))
                 except (InputError, SolveError) as problem:
-                    self.page.status.text = f"{without_rtol(str(problem))} The last picture stays."
+                    self.page.status.text = f"{without_rtol(str(problem))} The last picture is kept."
                 except Exception as problem:  # a page that silently no longer follows would be worse
-                    self.page.status.text = f"Something went wrong that should not ({problem!r}). The last picture stays."
+                    self.page.status.text = f"Internal error ({problem!r}). The last picture is kept."
                 else:
                     self.page.status.text = ""
                 await self.page.draw(self.inputs, self.seen())

@@ -87,8 +87,8 @@ def numbers(answer: Answer) -> list[Row]:
 def _transition_rows(answer: Answer) -> list[Row]:
     """Return by which factor of the speed boundary lubrication ends and hydrodynamic lubrication begins."""
     names = {
-        "boundary": "Boundary ends at speed",
-        "hydrodynamic": "Hydrodynamic from speed",
+        "boundary": "Speed at end of boundary regime",
+        "hydrodynamic": "Speed at start of hydrodynamic regime",
         "minimum": "Speed of minimum friction",
     }
     rows = []
@@ -216,6 +216,6 @@ def margins_html(margins: RegimeMargins) -> str:
                 continue
             value = format_si(mark.value, QUANTITIES[margin.name].dimension).replace("*", "·")
             factor = f"{_times(mark.factor)} " if 0 < mark.factor < math.inf else ""
-            lines.append(f'<td data-value="{mark.factor!r}">{factor}<small>{escape(value)}</small></td>')
+            lines.append(f'<td data-value="{mark.factor!r}">{factor}<small>({escape(value)})</small></td>')
         lines.append("</tr>")
     return "".join([*lines, "</table>", _notes(margins.notes)])

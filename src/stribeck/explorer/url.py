@@ -113,7 +113,8 @@ def check_length(inputs: Inputs, pins: Sequence[Pin] = ()) -> None:
         parts["the pinned curves"] = "".join(pin.law for pin in pins)
         most = max(parts, key=lambda name: len(parts[name]))
         raise InputError(
-            f"the address of this state would have {length} characters, and {LONGEST} are possible; most are those of {most}. "
+            f"the address of this state would have {length} characters, but at most {LONGEST} are "
+            f"possible; most come from {most}. "
             "Shorten them: a contact law or spectrum needs some hundred rows at most."
         )
 
@@ -190,6 +191,6 @@ def _pin(text: str, laws: Sequence[str]) -> Pin:
             raise InputError(f"in pin, {key} = {show(value)} is not a number.") from None
     definition, mark, number = kind.partition("@")
     if mark and number not in map(str, range(len(laws))):
-        raise InputError(f"in pin, {show(kind)} names a contact law that the address does not hold.")
+        raise InputError(f"in pin, {show(kind)} names a contact law that the address does not contain.")
     law = laws[int(number)] if mark else ""
     return Pin(name, LineContact(**numbers, law=shape_of(law)), check_definition(definition), law)

@@ -351,13 +351,13 @@ def _folder(folder: PathLike) -> Path:
         if place.exists() and not place.is_dir():
             raise InputError(f"{place} is a file; give the name of a folder.")
         if not place.exists() and not place.parent.is_dir():
-            raise InputError(f"{place} cannot be made, as there is no folder {place.parent}; make it first.")
+            raise InputError(f"{place} cannot be created because the folder {place.parent} does not exist; create it first.")
         place.mkdir(exist_ok=True)
     except OSError as problem:
         reason = problem.strerror or str(problem)
-        raise InputError(f"{place} cannot be made ({reason}); choose another place.") from None
+        raise InputError(f"{place} cannot be created ({reason}); choose another place.") from None
     if not os.access(place, os.W_OK | os.X_OK):
-        raise InputError(f"{place} is protected against writing; choose another folder.")
+        raise InputError(f"{place} is write-protected; choose another folder.")
     return place
 
 

@@ -113,11 +113,7 @@ def read_table(path: Path, header_row: int | None = None, expected: str = EXPECT
     number, first = filled[0]
     separator = _separator(first)
     header = tuple(cells_of(first, separator, path, number))
-    elsewhere = (
-        ""
-        if header_row or expected != EXPECTED
-        else "; if the header is not in this row, say header_row = its number in [fit]"
-    )
+    elsewhere = "" if header_row or expected != EXPECTED else "; if the header is not in this row, set header_row in [fit]"
     if all(_POINT.fullmatch(cell) or _COMMA.fullmatch(cell) for cell in header):
         raise InputError(f"{path}: row {number} holds numbers, not names of columns; {expected}.")
     if len(header) < 2:

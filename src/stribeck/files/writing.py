@@ -69,9 +69,9 @@ def check_writable(path: PathLike, suffixes: Collection[str], *, force: bool = F
                     "or choose another name."
                 )
             if not os.access(target, os.W_OK):
-                raise InputError(f"{given} is protected against writing; choose another name.")
+                raise InputError(f"{given} is write-protected; choose another name.")
         if not target.parent.is_dir():
-            raise InputError(f"{given} cannot be written, as there is no folder {given.parent}; make it first.")
+            raise InputError(f"{given} cannot be written because the folder {given.parent} does not exist; create it first.")
         probe = _beside(target)
         probe.touch(exist_ok=False)
         probe.unlink()
@@ -117,7 +117,7 @@ def atomic_write(path: PathLike, suffixes: Collection[str], *, force: bool = Fal
         os.replace(temporary, target)
         sync_folder(target.parent)
     except OSError as problem:
-        raise InputError(f"{path} could not be written ({reason_of(problem, temporary)}); it is as it was before.") from None
+        raise InputError(f"{path} could not be written ({reason_of(problem, temporary)}); it is unchanged.") from None
     finally:
         temporary.unlink(missing_ok=True)
 

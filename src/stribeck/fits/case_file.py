@@ -126,7 +126,7 @@ def _fitted_text(text: str, fit: Fit) -> str:
             lines.append(line)
     if table == "contact":
         lines += _added(new, written, fit)
-    said = fit.quality.messages[0] if fit.quality.messages else "Its residuals look like noise."
+    said = fit.quality.messages[0] if fit.quality.messages else "No systematic misfit detected in its residuals."
     about = [f"# Fitted by stribeck {version('stribeck')} to {Path(fit.data.path).name}. {fit.outcome.value} {said}"]
     return "\n".join([*about, *lines]) + "\n"
 

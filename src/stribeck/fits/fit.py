@@ -180,7 +180,7 @@ def _check_enough(data: Measurements, wanted: Sequence[FreeInput]) -> None:
         raise InputError(
             f"{data.path or 'the data'}: {len(data)} rows with speed and friction are too few to fit {len(wanted)} "
             f"input{'s' * (len(wanted) != 1)} ({', '.join(each.name for each in wanted)}); at least {max(3, len(wanted) + 1)} "
-            "are needed, and ten times as many rows as inputs are wise."
+            "are needed, and ten times as many rows as inputs are advisable."
         )
 
 
@@ -429,7 +429,7 @@ def _notes(
         far = np.abs(at.residuals) > 4
         if far.any():
             rows = ", ".join(map(str, sorted(at.objective.model.data.rows[far].tolist())[:10]))
-            notes.append(f"Rows beyond four standard errors, which hardly steer the fit: {rows}.")
+            notes.append(f"Rows beyond four standard errors, which have little weight in the fit: {rows}.")
     return notes
 
 
@@ -442,6 +442,7 @@ def _combination(pair: tuple[str, str], correlation: float, covariance: Array) -
     size = float(math.sqrt(max(values[0], 0.0)) / max(abs(a), abs(b)))
     shown = "" if abs(abs(power) - 1) < 0.02 else f"^{abs(power):.2g}"
     return (
-        f"{pair[0]} and {pair[1]} are correlated by {correlation:.3f}: best known is {first} {'x' if power > 0 else '/'} "
+        f"{pair[0]} and {pair[1]} have correlation {correlation:.3f}: the data determine best {first} "
+        f"{'x' if power > 0 else '/'} "
         f"{second}{shown}, within {100 * size:.2g} %."
     )

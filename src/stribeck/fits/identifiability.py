@@ -117,7 +117,7 @@ def _described(
     names = tuple(labels[i] for i in part)
     exponents = tuple(float(direction[i]) for i in part)
     if len(part) == 1:
-        message = f"{names[0]} is not determined by these data: {_reason(free[part[0]], prediction)}."
+        message = f"{names[0]} cannot be determined from these data: {_reason(free[part[0]], prediction)}."
     else:
         ties = [_tie(names[0], names[j], exponents[0], exponents[j]) for j in range(1, len(part))]
         how = "does not change" if exact else "hardly changes"
@@ -128,7 +128,7 @@ def _described(
         ]
         because = f" ({'; '.join(reasons)})" if reasons else ""
         message = (
-            f"{_listed(names)} are not determined one by one: the predicted friction {how} when {_changed(names, exponents)}"
+            f"{_listed(names)} cannot be determined separately: the predicted friction {how} when {_changed(names, exponents)}"
             f"{because}; the data give only {_listed(ties)}. Fix one of them, or give a prior."
         )
     return Unidentifiable(names, exponents, error, message)
@@ -175,12 +175,15 @@ def _reason(free: FreeInput, prediction: Prediction) -> str:
         )
     loads = prediction.load_share
     if free.name in ("roughness", "alpha") and float(loads.min()) > 0.9:
-        return f"asperities carry at least {_percent(float(loads.min()))} of the load in every row: the gap hardly shows"
+        return (
+            f"asperities carry at least {_percent(float(loads.min()))} of the load in every row: the data "
+            f"say little about the gap"
+        )
     if free.name in ("roughness", "alpha", "beta") and asperities < 0.1:
         return f"asperities cause at most {_percent(asperities)} of the friction in any row"
     if fluid < 0.1 and float(loads.min()) > 0.5:
         return f"the fluid causes at most {_percent(fluid)} of the friction in any row, all of them near the boundary plateau"
-    return "no row answers to it by more than its noise"
+    return "no row changes with it by more than the noise"
 
 
 def _percent(part: float) -> str:

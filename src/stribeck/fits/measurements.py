@@ -217,7 +217,7 @@ class _Reader:
         if self.settings.magnitudes and meaning in (*ABSCISSAS, "friction"):
             value = abs(value)
         if meaning in ABSCISSAS and value <= 0:
-            kind = "negative" if value < 0 else "zero, where friction is that of rest and no point of a curve"
+            kind = "negative" if value < 0 else "zero, which is static friction and not a point of the curve"
             raise InputError(
                 f"{where}: {show(cell)} is {kind}; take the row out, or set magnitudes = true in [fit] where the sign "
                 "is the direction of a stroke."
@@ -231,7 +231,7 @@ class _Reader:
             )
         if meaning == "friction" and value > LARGEST_FRICTION:
             raise InputError(
-                f"{where}: a friction coefficient of {value:g} is not believable; if it is in percent, write [%] in the "
+                f"{where}: a friction coefficient of {value:g} is not plausible; if it is in percent, write [%] in the "
                 'header or friction = "%" in [fit.units].'
             )
         if meaning == "error" and value <= 0:
@@ -376,7 +376,7 @@ def _check_spread(data: Measurements, frictions: list[str]) -> None:
     if len(data) > 2 and np.ptp(data.friction) <= 1e-12 * data.friction.max():
         raise InputError(
             f"{data.path}: column {show(frictions[0])} has the same value {data.friction[0]:g} in all rows {first} to {last}; "
-            "a constant curve tells nothing but a plateau: check the sensor, or measure over more speeds."
+            "a constant curve shows only a plateau: check the sensor, or measure at more speeds."
         )
     if not math.isfinite(float(data.values.max()) / float(data.values.min())):
         raise InputError(f"{data.path}: the {data.abscissa} spans more than double precision holds; check its unit.")

@@ -56,7 +56,7 @@ class Posterior:
 
 
 def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int], object] | None = None) -> Posterior:
-    """Draw from the posterior of a fit with the exponential law, whose states the atlas holds.
+    """Draw from the posterior of a fit with the exponential law, whose states the atlas covers.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int],
     if isinstance(steps, bool) or not isinstance(steps, int) or steps < 100:
         raise InputError(f"steps = {steps!r}; a chain has at least 100.")
     if not fit.converged or fit.robust or fit.law != "exponential":
-        why = fit.outcome.value if not fit.converged else "" if not fit.robust else "The robust loss is no likelihood."
+        why = fit.outcome.value if not fit.converged else "" if not fit.robust else "A robust loss is not a likelihood."
         raise InputError(f"no posterior is drawn. {why or 'The atlas holds the exponential law only.'}")
     at: Minimum = fit._minimum
     p = len(at.theta)

@@ -91,7 +91,7 @@ def judge_residuals(at: Minimum, curve: Indices, degrees_of_freedom: float) -> Q
         elif probability > 1 - SIGNIFICANT / 10:
             messages.append(
                 f"Residuals are smaller than the errors given (chi squared {total:.3g} for {degrees_of_freedom:.3g} degrees "
-                f"of freedom): the errors are too large by a factor {1 / math.sqrt(ratio):.2g}, and with them the intervals."
+                f"of freedom): the errors are too large by a factor {1 / math.sqrt(ratio):.2g}, and so are the intervals."
             )
     autocorrelation, structure = _structure(at, curve)
     if structure < SIGNIFICANT:

@@ -25,12 +25,10 @@ class FitOutcome(Enum):
     """How a fit ended; the value is a sentence."""
 
     CONVERGED = "The fit converged."
-    AT_BOUND = "The fit ended at a bound of its inputs: what is there is no estimate; see the notes."
-    IMPLAUSIBLE = "The fit ended at a boundary friction that no contact has: its inputs are no estimates; see the notes."
-    STEP_LIMIT = "The fit did not converge: the least squares ran out of steps; begin nearer, or free fewer inputs."
-    NOT_AT_OPTIMUM = (
-        "The fit did not converge: the least squares stopped short of the optimum; begin nearer, or free fewer inputs."
-    )
+    AT_BOUND = "The fit ended at a bound of an input, whose value is therefore not an estimate; see the notes."
+    IMPLAUSIBLE = "The fit ended at an impossible boundary friction, so its values are not estimates; see the notes."
+    STEP_LIMIT = "The fit did not converge: least squares reached its step limit; start closer, or free fewer inputs."
+    NOT_AT_OPTIMUM = "The fit did not converge: least squares stopped before the optimum; start closer, or free fewer inputs."
 
     @property
     def ok(self) -> bool:

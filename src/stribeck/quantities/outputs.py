@@ -74,7 +74,7 @@ ROWS = (
         error="",
     ),
     Observable("viscous_published", "viscous friction, published", "viscous friction as published", "friction", listed=False),
-    Observable("viscous_balanced", "viscous friction, balanced", "viscous friction that balances", "friction", listed=False),
+    Observable("viscous_balanced", "viscous friction, balanced", "viscous friction, balanced", "friction", listed=False),
     Observable(
         "error_estimate",
         "estimated error",
@@ -104,7 +104,7 @@ FILMS = {row.film: ("m", row.meaning) for row in ROWS if row.film} | HERTZ
 """What a file of a contact holds in SI units besides: unit and meaning of each."""
 
 AREA = {
-    "central_area_fraction": ("1", "real area of contact over the apparent one, at the centre"),
+    "central_area_fraction": ("1", "real over apparent contact area at the centre"),
     "central_area_fraction_error": ("1", "estimated absolute error of central_area_fraction"),
 }
 """What a solution has besides if the contact law knows the spectrum of the surface."""

@@ -312,7 +312,7 @@ def _from_text(text: str, kind: Dimension, name: str) -> Fraction:
     if not kind.unit:
         percent = _PERCENT.fullmatch(text)
         advice = f"write {float(percent[1]) / 100:.6g}" if percent else _advice(kind)
-        raise InputError(f"{received} is text where a number belongs; {advice}.")
+        raise InputError(f"{received} is text, but a number is expected; {advice}.")
     if kind.unit == "Pa" and _HARDNESS.search(text):
         raise InputError(f"{received} is a hardness, not a modulus; {FROM_HARDNESS}.")
     if "," in text:
@@ -371,7 +371,8 @@ def _refuse_plural_symbol(symbol: str, registry: Any, received: str) -> None:
     prefix, unit, _ = candidates[0]
     if singular == registry.get_symbol(prefix + unit) and singular != unit:
         raise InputError(
-            f"{received} has the unclear unit '{symbol}'; write '{singular}*s' for the product with seconds, or '{singular}'."
+            f"{received} has the ambiguous unit '{symbol}'; write '{singular}*s' for the product with "
+            f"seconds, or '{singular}'."
         )
 
 

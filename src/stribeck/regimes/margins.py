@@ -176,20 +176,23 @@ def regime_margins(
     scan = _Scan(contact, present, rtol, definition, on_point)
     notes = []
     if contact.speed == 0 and contact.roughness > 0:
-        notes.append("At rest neither load nor roughness nor viscosity changes the regime.")
+        notes.append("At zero speed, load, roughness and viscosity do not change the regime.")
     if contact.roughness == 0 and contact.speed > 0:
-        notes.append("Smooth surfaces touch at no speed and no load: there is no boundary and no mixed lubrication.")
+        notes.append("Smooth surfaces never touch: there is no boundary or mixed lubrication.")
     if contact.boundary_friction == 0:
-        notes.append("Without dry friction all friction is that of the fluid, and every state counts as hydrodynamic.")
+        notes.append("Without dry friction, all friction is viscous and every state counts as hydrodynamic.")
     if contact.groups.load >= largest_load(contact.law) and contact.roughness > 0:
-        notes.append("From load group 1 on the fluid must carry a part at any speed; there may be no boundary lubrication.")
+        notes.append(
+            "At load groups of 1 or more, the fluid carries part of the load at every speed; there may be no "
+            "boundary lubrication."
+        )
     found = [scan.along(name) for name in SCANNED]
     found.append(_within(_of_viscosity(contact, found[0]), physical_bounds(contact, "viscosity")))
     if contact.speed > 0:
         found[0] = _within(found[0], physical_bounds(contact, "speed"))
     close = [mark for margin in found for mark in (margin.less, margin.more) if mark is not None and _at_threshold(mark)]
     if close:
-        notes.append(f"The contact stands at the threshold to {close[0].regime} lubrication.")
+        notes.append(f"The contact is at the threshold to {close[0].regime} lubrication.")
     return RegimeMargins(present, tuple(found), tuple(notes))
 
 

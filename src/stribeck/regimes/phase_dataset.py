@@ -31,7 +31,7 @@ FLAGS = {
 LABELS = {
     "friction": "friction coefficient",
     "friction_error": "estimated absolute error of the friction coefficient",
-    "contact_friction_share": "part of the friction that asperities cause",
+    "contact_friction_share": "fraction of the friction that asperities cause",
     **{name: OBSERVABLES[name][1] for name in ("fluid_load_share", "central_gap", "lambda_ratio", "error_estimate")},
     **{variable: f"speed at which {name}, on solved states" for variable, name in MARKS.items()},
     "speed_at_minimum": "speed of the minimum of friction, on solved states",
@@ -83,7 +83,11 @@ def diagram_dataset(diagram: Diagram) -> xarray.Dataset:
     found["velocity_weakening"] = (plane, diagram.velocity_weakening, _flags("velocity_weakening"))
     weakens = np.isfinite(found["formula_speed_at_minimum"][1]).astype(np.int8)
     found["formula_velocity_weakening"] = (plane, weakens, _flags("formula_velocity_weakening"))
-    found["message"] = (plane, diagram.messages, {"units": "1", "long_name": "why results of the row are missing, if any"})
+    found["message"] = (
+        plane,
+        diagram.messages,
+        {"units": "1", "long_name": "why results of the row are missing, if they are"},
+    )
     merging = {"formula_merging_roughness": _formula_merging(diagram)}
     if diagram.merging is not None:
         merging["roughness_without_minimum"] = diagram.merging

@@ -172,7 +172,7 @@ def _axis(name: str, value: Any, si: bool, points: int) -> Array:
     too_low = (found <= 0).any() if lowest == "positive" else (found < 0).any()
     if not len(found) or found.ndim != 1 or not np.isfinite(found).all() or too_low or (np.diff(found) <= 0).any():
         raise InputError(
-            f"{name} = {show(value)}; give one number, a range (low, high), or ascending points, all finite and {lowest}."
+            f"{name} = {show(value)}; give one number, a range (low, high), or increasing points, all finite and {lowest}."
         )
     return np.geomspace(found[0], found[1], points) if len(found) == 2 else found
 

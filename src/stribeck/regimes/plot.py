@@ -46,7 +46,7 @@ SOLVED = {
 }
 """Solved lines: label, colour and width."""
 
-OURS = "the same by our formulas"
+OURS = "our formulas"
 
 FORMULAS = {
     "formula_speed_at_5_percent_fluid": (OURS, INK, (0, (5, 3))),
@@ -203,7 +203,7 @@ def draw_phase_space(axes: Any, dataset: xarray.Dataset) -> None:
     """
     loads = dataset["load"].values
     if len(loads) < 2:
-        raise InputError(f"the diagram holds {len(loads)} load; the space of a phase diagram needs two or more.")
+        raise InputError(f"the diagram has {len(loads)} load; the space of a phase diagram needs two or more.")
     planes = [_plane(dataset, load) for load in loads]
     depth = np.log10(_scaled(planes[0], "load")[0](loads))
     for surface in SURFACES:
@@ -279,7 +279,7 @@ def _plane(dataset: xarray.Dataset, load: float | None) -> xarray.Dataset:
     plane = plane.isel(speed=np.flatnonzero(plane.speed.values > 0), roughness=np.flatnonzero(plane.roughness.values > 0))
     if plane.sizes["speed"] < 2 or plane.sizes["roughness"] < 2:
         raise InputError(
-            f"the diagram holds {plane.sizes['speed']} positive speed and {plane.sizes['roughness']} positive roughness; "
+            f"the diagram has {plane.sizes['speed']} positive speed and {plane.sizes['roughness']} positive roughness; "
             "a picture needs two or more of each."
         )
     return plane
@@ -354,7 +354,7 @@ def _footer(dataset: xarray.Dataset, loads: list[float]) -> list[tuple[str, str]
     count = f"{solved} states" if solved == dataset.regime.size else f"{solved} of {dataset.regime.size} states"
     error = float(np.nanmax(dataset.error_estimate.values, initial=0.0))
     second = [
-        f"viscous friction: definition {attributes['definition']}",
+        f"viscous friction: {attributes['definition']}",
         f"rtol {attributes['rtol']:g}",
         f"estimated error {error:.1e}",
         count,

@@ -57,8 +57,9 @@ def pressure_notes(contact: LineContact | None) -> tuple[str, ...]:
         return ()
     pressure = contact.hertz.pressure
     return (
-        f"{HARD} the Hertz pressure is {pressure / 1e6:.3g} MPa, and this model is for up to {HIGHEST_PRESSURE / 1e6:g} MPa. "
-        f"There an oil of {OIL * 1e9:g} 1/GPa is exp({OIL * pressure:.2g}) times as viscous as at ambient pressure, which is "
+        f"{HARD} the Hertz pressure is {pressure / 1e6:.3g} MPa, but this model applies up to {HIGHEST_PRESSURE / 1e6:g} MPa. "
+        f"At that pressure an oil with {OIL * 1e9:g} 1/GPa is exp({OIL * pressure:.2g}) times as viscous "
+        f"as at ambient pressure, which is "
         "not modelled: with such a fluid film, friction and regimes are not those given here.",
     )
 
@@ -73,8 +74,9 @@ def shape_notes(contact: LineContact | None) -> tuple[str, ...]:
         return notes
     return (
         *notes,
-        f"The contact is wide: the Hertz half-width is {slope:.2g} of the radius. A parabola on a half-space is right up to "
-        f"about 0.1 and coarse at {WIDEST_CONTACT}; check modulus, load and radius.",
+        f"The contact is wide: the Hertz half-width is {slope:.2g} of the radius. The parabola on a "
+        f"half-space is accurate up to "
+        f"about 0.1 and rough at {WIDEST_CONTACT}; check modulus, load and radius.",
     )
 
 
@@ -111,14 +113,14 @@ def law_notes(groups: Groups, contact: LineContact | None, values: Observables) 
         notes.append(
             f"The load group is {float(groups.load):.3g}, not below 1: the exponential contact law is outside its range, "
             "as asperities cannot carry this load at a positive gap. "
-            "Persson's law, of a table [surface], goes on from there."
+            "Persson's law, from a table [surface], covers that range."
         )
     if ratio < 0:
         notes.append("The gap is negative: the exponential contact law is outside its range.")
     elif ratio < LAW_RANGE[0]:
         notes.append(
             f"The central gap is {ratio:.2g} {measured}: the exponential contact law is outside its range, "
-            f"which ends at about {LAW_RANGE[0]} h_rms; the true law stiffens."
+            f"which ends at about {LAW_RANGE[0]} h_rms; real contact is stiffer there."
         )
     return (*notes, *far)
 
@@ -152,7 +154,7 @@ def minimum_note(groups: Groups, contact: LineContact | None, values: Observable
     return (
         f"At the minimum of friction, {where}, the central gap is {ratio:.2g} {measured}, beyond the range of "
         f"{_range(groups)}, while asperities cause {100 * friction:.2g} % of the friction: on a surface with "
-        "fewer high asperities the minimum is lower and at less speed, by a tenth to a fifth in contact_laws.md."
+        "fewer high asperities the minimum is lower and at a lower speed, by 10 to 20 % (contact_laws.md)."
     )
 
 
@@ -191,8 +193,8 @@ def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, 
     supposed = "" if known else f", at boundary friction 1 and beta = {USUAL_BETA:g}"
     return (
         f"The central gap is {ratio:.3g} {measured}, beyond the range of {_range(groups)}, while asperities carry "
-        f"{100 * load:.2g} % of the load and cause {100 * friction:.2g} % of the friction{supposed}: few of them reach so "
-        "high, and a surface may have fewer than the law says.",
+        f"{100 * load:.2g} % of the load and cause {100 * friction:.2g} % of the friction{supposed}: few asperities are so "
+        "high, and a real surface may have fewer than the law assumes.",
     )
 
 
@@ -224,6 +226,7 @@ def cavitation_notes(contact: LineContact | None, fluid_pressure: Array) -> tupl
     # In MPa throughout, so that the notes of a curve differ by their numbers alone.
     return (
         f"Behind the contact the fluid pressure falls {suction / 1e6:.3g} MPa below the ambient, more than one atmosphere: "
-        "in the open the film cavitates there, which is not modelled. Where it breaks at ambient pressure the minimum of "
+        "at atmospheric pressure the film cavitates there, which is not modelled. Where it breaks at "
+        "ambient pressure the minimum of "
         "friction is 9 to 20 % lower, and in boundary lubrication the fluid carries more (when_not_to_use.md).",
     )

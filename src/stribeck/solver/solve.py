@@ -171,7 +171,7 @@ def untested(groups: Groups) -> str:
         value = float(getattr(groups, name))
         if value != 0 and not low <= value <= high:
             outside.append(f"{name.replace('_', ' ')} {value:.4g} (tested: {low:g} to {high:g})")
-    return f" The solver was not tested for {', '.join(outside)}; check the inputs." if outside else ""
+    return f" The solver has not been tested for {', '.join(outside)}; check the inputs." if outside else ""
 
 
 def finish(
@@ -181,7 +181,7 @@ def finish(
     solution = solution_of(point, contact, rtol)
     if solution is not None and (point.outcome.ok or on_failure == "return"):
         return solution
-    reached = "" if solution is None else f" Reached: {solution.error_estimate:.1e}, asked: {rtol:.1e}."
+    reached = "" if solution is None else f" Achieved: {solution.error_estimate:.1e}, requested: {rtol:.1e}."
     raise SolveError(point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}{untested(groups)}")
 
 
@@ -199,9 +199,9 @@ def solution_of(point: RefinedState, contact: LineContact | None, rtol: float) -
     if contact is not None and point.groups.speed > 0:
         notes += cavitation_notes(contact, state.equations.pressures(state.y)[1])
     if math.isnan(values.flux_gap):
-        notes.append("The gap is negative, so that no fluid passes: there is no flux gap.")
+        notes.append("The gap is negative, so no fluid passes and there is no flux gap.")
     if estimate.floor > 0.1 * rtol:
-        notes.append(f"Rounding in double precision bounds the relative error of this state at {estimate.floor:.1e}.")
+        notes.append(f"Rounding in double precision limits the relative error of this state to {estimate.floor:.1e}.")
     return Solution(
         groups=point.groups,
         contact=contact,
@@ -242,7 +242,7 @@ def hertz_solution(groups: Groups, contact: LineContact | None, rtol: float) -> 
         groups=groups,
         contact=contact,
         outcome=Outcome.CONVERGED,
-        notes=("Speed and roughness are zero: the dry contact of Hertz, in closed form.",),
+        notes=("Speed and roughness are zero: dry Hertz contact, in closed form.",),
         rtol=rtol,
         law="dry contact",
         observables=values,

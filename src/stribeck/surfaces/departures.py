@@ -140,7 +140,8 @@ def _size_notes(topography: Topography) -> list[str]:
     longest, height = max(topography.size), float(topography.heights.std())
     if not SMALLEST_SCAN <= longest <= LARGEST_SCAN:
         notes.append(
-            f"The scan is {format_si(longest, 'length')} long, which no instrument measures; check the unit of positions."
+            f"The scan is {format_si(longest, 'length')} long, longer than any instrument measures; "
+            f"check the unit of positions."
         )
     if not SMALLEST_HEIGHT <= height <= LARGEST_HEIGHT:
         notes.append(f"The rms height is {format_si(height, 'length')}, which is not plausible; check the unit of heights.")
@@ -149,7 +150,7 @@ def _size_notes(topography: Topography) -> list[str]:
     if slope > STEEPEST:
         notes.append(
             f"The rms slope between neighbouring points is {slope:.2g}, steeper than instruments follow; check that heights "
-            "and positions have the units that are declared."
+            "and positions have the declared units."
         )
     return notes
 

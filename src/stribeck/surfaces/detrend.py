@@ -134,7 +134,7 @@ def detrended(topography: Topography, trend: Trend = "curvature") -> tuple[Topog
     rest = z - sum(c * column for c, column in zip(coefficients, columns, strict=True))
     span = float(np.nanmax(np.abs(z)))
     if not np.nanmax(np.abs(rest)) > 1e-13 * span:
-        raise InputError(f"{topography.source}: nothing is left after the {trend} is taken away; the scan has no roughness.")
+        raise InputError(f"{topography.source}: nothing is left after removing the {trend}; the scan has no roughness.")
     tilt = tuple(float(c) / h for c, h in zip(coefficients[1 : 1 + z.ndim], half, strict=False)) if trend != "mean" else ()
     flat = replace(topography, heights=rest)
     if trend != "curvature":

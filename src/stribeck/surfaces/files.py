@@ -48,7 +48,7 @@ def read_topography(
     unit : str, optional
         Unit of lengths, such as ``"um"``, where the file does not declare it.
     height_unit : str, optional
-        Unit of heights, where it is another one.
+        Unit of height, if different.
     spacing : str or float, optional
         Distance between points with its unit, or in m, where the file does not hold it.
     channel : str, optional
@@ -68,7 +68,7 @@ def read_topography(
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError(f"{path} is no file; check the name.")
+        raise InputError(f"{path} is not a file; check the name.")
     for name, value in (("unit", unit), ("height_unit", height_unit)):
         if value is not None:
             to_si(f"1 {value}", "length", name)
@@ -96,7 +96,8 @@ def read_topography(
     except ReadFileError as problem:
         detail = "" if "tried " in str(problem) else f" ({_first(problem)})"
         raise InputError(
-            f"{path} is in no format that SurfaceTopography knows, or damaged{detail}; export it as X3P or as text with units."
+            f"{path} is damaged or in a format that SurfaceTopography does not know{detail}; export it "
+            f"as X3P or as text with units."
         ) from None
     except Exception as problem:  # its forty readers leak errors of many kinds, and each means the same to the user
         raise InputError(
@@ -118,7 +119,7 @@ def _check_whole(path: Path) -> None:
     if size == 0:
         raise InputError(f"{path} is empty; copy it from the instrument again.")
     if size > LARGEST_FILE:
-        raise InputError(f"{path} has more than {LARGEST_FILE // 10**9} GB; cut out a part of the scan.")
+        raise InputError(f"{path} has more than {LARGEST_FILE // 10**9} GB; crop the scan.")
     with path.open("rb") as stream:
         if stream.read(4) != b"PK\x03\x04":
             return
@@ -128,21 +129,22 @@ def _check_whole(path: Path) -> None:
             size = sum(part.file_size for part in archive.infolist())
             if size > LARGEST_FILE:
                 raise InputError(
-                    f"{path} would be {size / 1e9:.3g} GB unpacked, more than {LARGEST_FILE // 10**9} GB; "
-                    "cut out a part of the scan."
+                    f"{path} would be {size / 1e9:.3g} GB unpacked, more than {LARGEST_FILE // 10**9} GB; crop the scan."
                 )
             spoilt = archive.testzip()
     except InputError:
         raise
     except (zipfile.BadZipFile, OSError, ValueError):
         raise InputError(
-            f"{path} is cut off or damaged: it begins as a zip archive and has no list of its parts at the end; "
+            f"{path} is cut off or damaged: it starts as a zip archive but has no table of contents at the end; "
             "copy it from the instrument again."
         ) from None
     except (RuntimeError, NotImplementedError) as problem:
         raise InputError(f"{path} is a zip archive that cannot be opened ({_first(problem)}); export it again.") from None
     if spoilt is not None:
-        raise InputError(f"{path} is damaged: {spoilt} in it is not what was written; copy it from the instrument again.")
+        raise InputError(
+            f"{path} is damaged: {spoilt} in it has changed since it was written; copy it from the instrument again."
+        )
 
 
 def _check_format(path: Path, reader: Any) -> None:
@@ -152,7 +154,7 @@ def _check_format(path: Path, reader: Any) -> None:
     ending = path.suffix.lower().lstrip(".")
     if reader.format() in UNSIGNED and any(ending in _endings(known) and known.format() not in UNSIGNED for known in readers):
         raise InputError(
-            f"{path} does not begin as .{ending} files do: it is damaged, or something else under that name; "
+            f"{path} does not start like a .{ending} file: it is damaged, or has the wrong ending; "
             "copy it from the instrument again, or name it .txt if it is text."
         )
 
@@ -183,12 +185,10 @@ def _from_channel(
     format_name = reader.format()
     shape, declared, sizes = tuple(channel.nb_grid_pts), channel.unit, channel.physical_sizes
     if math.prod(shape) > MOST_POINTS:
-        raise InputError(
-            f"{path} has {' x '.join(map(str, shape))} points, more than {MOST_POINTS}; cut out a part of the scan."
-        )
+        raise InputError(f"{path} has {' x '.join(map(str, shape))} points, more than {MOST_POINTS}; crop the scan.")
     if declared is None and unit is None:
         raise InputError(
-            f"{path} does not say its unit; add --unit um, and --height-unit nm where heights have another one "
+            f"{path} does not declare its unit; add --unit um, and --height-unit nm where heights have another one "
             "(in Python unit='um', height_unit='nm')."
         )
     length = to_si(f"1 {declared or unit}", "length", "unit")
@@ -202,12 +202,12 @@ def _from_channel(
     if sizes is None:
         if spacing is None:
             raise InputError(
-                f"{path} does not say the distance between points; add --spacing '0.5 um' (in Python spacing='0.5 um')."
+                f"{path} does not declare the distance between points; add --spacing '0.5 um' (in Python spacing='0.5 um')."
             )
         step = to_si(spacing, "length", "spacing")
         arguments["physical_sizes"] = tuple(n * step / length for n in shape)
     elif spacing is not None:
-        raise InputError(f"{path} says the distance between its points; leave out spacing = {show(spacing)}.")
+        raise InputError(f"{path} declares the distance between its points; leave out spacing = {show(spacing)}.")
     if declared is None:
         arguments["unit"] = unit
     topography = channel.topography(**arguments)

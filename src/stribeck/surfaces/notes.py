@@ -78,10 +78,10 @@ def fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, fi
     if "q1" not in fit.found:
         notes.append(
             f"The spectrum goes on beyond {format_si(2 * math.pi / measured.highest, 'length')} ({measured.highest_reason}): "
-            "slope, curvature and contact area would grow with finer steps, alpha and beta hardly."
+            "slope, curvature and contact area would grow with finer sampling; alpha and beta would hardly change."
         )
     if "noise" in fit.found:
-        notes.append("The spectrum flattens at short wavelengths as by noise of the instrument, which was taken away.")
+        notes.append("The spectrum flattens at short wavelengths as instrument noise does; the noise was subtracted.")
     if fit.deviance > MISFIT:
         notes.append(
             f"The spectrum is not self-affine: its deviance is {fit.deviance:.1f} times that of chance, and the errors were "
@@ -107,5 +107,5 @@ def fit_notes(topography: Topography, body: Form, measured: MeasuredSpectrum, fi
     if radius is not None:
         error = body.radius_error(fit.roughness, topography)
         if error is not None and error > 0.5 * radius:
-            notes.append("The curvature of the body is within what the roughness makes by chance: the scan is flat.")
+            notes.append("The fitted curvature is no larger than roughness alone produces by chance: the surface is flat.")
     return notes

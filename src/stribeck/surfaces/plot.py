@@ -80,7 +80,7 @@ def _draw_heights(figure: Figure, axes: Axes, surface: Surface) -> None:
     if surface.topography.is_line:
         x = np.arange(z.size) * surface.topography.spacing[0]
         axes.plot(x * factor, z * height, color=INK, lw=0.7)
-        axes.set_ylabel(f"height without trend ({height_unit})")
+        axes.set_ylabel(f"height, form removed ({height_unit})")
         axes.set_xlim(0, x[-1] * factor)
         axes.set_title("Profile", size=10, color=GREY, loc="left")
         return
@@ -96,7 +96,7 @@ def _draw_heights(figure: Figure, axes: Axes, surface: Surface) -> None:
         interpolation="nearest",
     )
     axes.set_ylabel(f"$y$ ({unit})")
-    axes.set_title(f"Height without trend ({height_unit})", size=10, color=GREY, loc="left")
+    axes.set_title(f"Height, form removed ({height_unit})", size=10, color=GREY, loc="left")
     figure.colorbar(image, ax=axes, fraction=0.046, pad=0.03)
 
 
@@ -158,7 +158,7 @@ def _draw_law(axes: Axes, surface: Surface) -> None:
     area = axes.twinx()
     area.plot(height, law.area_fraction(s), color=GREY, lw=1.2, ls=":", label="contact area")
     area.set_ylim(0, 1.02)
-    area.set_ylabel("real over apparent contact area (dotted)", color=GREY, size=8)
+    area.set_ylabel("real / apparent contact area (dotted)", color=GREY, size=8)
     area.tick_params(colors=GREY, labelsize=8)
     axes.set_title("Contact law", size=10, color=GREY, loc="left")
 

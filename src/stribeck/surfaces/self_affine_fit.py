@@ -71,7 +71,7 @@ def fit_self_affine(measured: MeasuredSpectrum) -> SelfAffineFit:
     fit = _result(chosen, data, measured, q)
     if fit.noise > 0 and fit.noise > fit.at(q[:1] * (1 + 1e-9), is_line=data.is_line, noise=False)[0]:
         raise InputError(
-            f"the scan shows nothing but white noise at wavelengths from {2 * math.pi / q[-1]:.3g} m to "
+            f"the scan shows only white noise at wavelengths from {2 * math.pi / q[-1]:.3g} m to "
             f"{2 * math.pi / q[0]:.3g} m; check that the channel holds heights, or measure a larger area."
         )
     return fit

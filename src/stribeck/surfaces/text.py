@@ -90,12 +90,12 @@ def read_text(
         # A row of the file is a line of the scan, and the first axis is along it.
         return Topography(z[:, 0] if columns == 1 else z.T, (step,) * (1 if columns == 1 else 2), source=path.name)
     if spacing is not None:
-        raise InputError(f"{path} has positions, so spacing = {show(spacing)} says something twice; leave it out.")
+        raise InputError(f"{path} has positions, so spacing = {show(spacing)} is redundant; leave it out.")
     x_factors = [_factor(path, "unit", unit, table.units[i], "positions") for i in range(positions)]
     places = table.values[:, :positions] * np.array(x_factors)
     bad = np.isnan(places).any(axis=1)
     if bad.any():
-        raise InputError(f"{path}: line {table.lines[int(np.argmax(bad))]} has no position; remove the line or mend it.")
+        raise InputError(f"{path}: line {table.lines[int(np.argmax(bad))]} has no position; remove or correct the line.")
     z = table.values[:, positions] * z_factor
     return _line(path, places[:, 0], z, table.lines) if positions == 1 else _map(path, places, z, table.lines)
 
@@ -103,7 +103,7 @@ def read_text(
 def _line(path: Path, x: Array, z: Array, lines: list[int]) -> Topography:
     order, notes = np.argsort(x, kind="stable"), []
     if np.any(np.diff(order) != 1) and np.any(np.diff(order) != -1):
-        notes.append("Positions were not in order and have been sorted.")
+        notes.append("Positions were not in order; they were sorted.")
     x, z = x[order], z[order]
     steps = np.diff(x)
     if x.size < 2 or not np.all(steps > 0):
@@ -150,7 +150,7 @@ def _map(path: Path, places: Array, z: Array, lines: list[int]) -> Topography:
         shape.append(int(nearest.max()) + 1)
     if shape[0] * shape[1] > 4 * z.size:
         raise InputError(
-            f"{path}: {z.size} points on a grid of {shape[0]} x {shape[1]} leave most of it empty; check x and y."
+            f"{path}: {z.size} points on a grid of {shape[0]} x {shape[1]} leave most of the grid empty; check x and y."
         )
     flat = index[0] * shape[1] + index[1]
     _, first, counts = np.unique(flat, return_index=True, return_counts=True)
@@ -166,7 +166,8 @@ def _factor(path: Path, name: str, given: str | None, declared: str | None, what
     """Return the length in m of one unit, from the option or from the header."""
     if given is None and declared is None:
         raise InputError(
-            f"{path} does not say the unit of its {what}; add --unit um, and --height-unit nm where heights have another one "
+            f"{path} does not declare the unit of its {what}; add --unit um, and --height-unit nm where "
+            f"heights have another one "
             "(in Python unit='um', height_unit='nm'), or write it in the header as in 'x (um), z (nm)'."
         )
     factors = [
@@ -180,7 +181,7 @@ def _factor(path: Path, name: str, given: str | None, declared: str | None, what
 
 
 def _table(path: Path) -> _Table:
-    text = text_of(path, LARGEST_FILE, "cut out a part of the scan", "a text file of heights")
+    text = text_of(path, LARGEST_FILE, "crop the scan", "a text file of heights")
     rows = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1)]
     rows = [(i, line) for i, line in rows if line]
     start = next((k for k, (_, line) in enumerate(rows) if _is_data(line)), None)
@@ -196,7 +197,7 @@ def _table(path: Path) -> _Table:
         if len(row) != width:
             raise InputError(
                 f"{path}: line {number} has {len(row)} columns where the lines above have {width}; "
-                "mend the line, or check separator and decimal comma."
+                "correct the line, or check separator and decimal comma."
             )
     header = [line.lstrip("#%; ") for _, line in rows[:start]]
     values = values_of(path, cells, numbers, comma=comma)

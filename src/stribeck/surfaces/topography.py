@@ -65,7 +65,9 @@ class Topography:
         z = np.array(self.heights, dtype=float)
         where = f"{self.source}: " if self.source else ""
         if z.ndim not in (1, 2) or len(self.spacing) != z.ndim:
-            raise InputError(f"{where}heights of shape {z.shape} with {len(self.spacing)} spacings are no line and no map.")
+            raise InputError(
+                f"{where}heights of shape {z.shape} with {len(self.spacing)} spacings are neither a profile nor a map."
+            )
         if min(z.shape) < FEWEST[z.ndim]:
             kind = "a line" if z.ndim == 1 else "a map"
             raise InputError(
@@ -79,7 +81,7 @@ class Topography:
         if share > MOST_MISSING:
             raise InputError(
                 f"{where}{100 * share:.0f} % of the points are missing, more than {100 * MOST_MISSING:.0f} %; "
-                "cut out a part of the scan that was measured."
+                "crop the scan to the measured area."
             )
         if not np.nanmax(z) > np.nanmin(z):
             raise InputError(f"{where}all heights are the same; there is no roughness to evaluate.")
@@ -140,7 +142,7 @@ class Topography:
             notes.append(f"{what}, far above or below all neighbours, and replaced by their heights.")
         holes = dead | spikes
         if holes.mean() > MOST_MISSING:
-            raise InputError(f"{self.source}: {100 * holes.mean():.0f} % of the points are dead or missing; measure again.")
+            raise InputError(f"{self.source}: {100 * holes.mean():.0f} % of the points are treated as missing; measure again.")
         return replace(self, heights=_filled(self.heights, holes), notes=tuple(notes))
 
 

@@ -44,11 +44,11 @@ def columns_of(si: bool, law: AsperityLaw | None = None) -> dict[str, tuple[str,
         if name in OBSERVABLES:
             kind = "absolute" if name in ABSOLUTE else "relative"
             found[f"{name}_error"] = ("1", f"estimated {kind} error of {name}")
-    found["friction_contact"] = ("1", "part of the friction coefficient from asperities")
+    found["friction_contact"] = ("1", "contribution of asperities to the friction coefficient")
     for definition in DEFINITIONS:
         label = f"friction coefficient, definition {definition}"
         found[f"friction_{definition}"] = ("1", label)
-        found[f"friction_{definition}_viscous"] = ("1", f"{label}: part from the fluid")
+        found[f"friction_{definition}_viscous"] = ("1", f"{label}: contribution of the fluid")
         found[f"friction_{definition}_error"] = ("1", f"{label}: estimated absolute error")
     found["hersey_number"] = ("1", "Hersey number, viscosity times speed (sum of the surface speeds) over load")
     if si:

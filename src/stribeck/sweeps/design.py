@@ -150,7 +150,7 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
             except InputError as problem:
                 problems.append(f"[vary] {problem}")
         if not raw_vary:
-            problems.append("[vary] is empty; say what varies, for example: load = ['10 N/m', '30 N/m'].")
+            problems.append("[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m'].")
         base = table.get("contact" if si else "groups", {})
         given = FROM_TABLES if si and ("surface" in table or "asperities" in table) else ()
         problems += _missing(base if isinstance(base, dict) else {}, raw_vary, si, given)
@@ -313,7 +313,7 @@ def _design_problems(design: dict[str, Any], axes: list[Axis]) -> list[str]:
     problems = []
     if kind in RANDOM:
         if points is None:
-            problems.append(f"[design] points is missing; say how many states kind = '{kind}' draws, as in points = 256.")
+            problems.append(f"[design] points is missing; set how many states kind = '{kind}' draws, as in points = 256.")
         elif kind == "sobol" and points & (points - 1):
             near = 2 ** round(math.log2(points))
             problems.append(f"[design] points = {points} must be a power of two for kind = 'sobol', such as {near}.")
@@ -324,7 +324,7 @@ def _design_problems(design: dict[str, Any], axes: list[Axis]) -> list[str]:
     sizes = {axis.name: len(axis) for axis in axes}
     if kind == "list" and len(set(sizes.values())) > 1:
         counts = ", ".join(f"{name} has {size}" for name, size in sizes.items())
-        problems.append(f"[vary] the lists must be equally long with kind = 'list': {counts}.")
+        problems.append(f"[vary] the lists must have the same length with kind = 'list': {counts}.")
     states = math.prod(sizes.values()) if kind == "grid" else max(sizes.values())
     if states > MOST_STATES:
         problems.append(f"[vary] makes {states} states; at most {MOST_STATES} are possible in one sweep.")

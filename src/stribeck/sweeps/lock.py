@@ -60,10 +60,12 @@ def locked(folder: Path) -> Iterator[str]:
     except Timeout:
         raise InputError(_in_use(file)) from None
     except OSError as problem:
-        raise InputError(f"{folder} cannot be written ({reason_of(problem)}); choose another place or free it.") from None
+        raise InputError(f"{folder} cannot be written ({reason_of(problem)}); choose another place.") from None
     note = ""
     if before is not None:
-        note = f"An earlier sweep on this store (process {before[0]}) ended without a word; its lock was taken over."
+        note = (
+            f"An earlier sweep on this store (process {before[0]}) ended without releasing its lock; the lock was taken over."
+        )
     try:
         yield note
     finally:
@@ -78,7 +80,7 @@ def _in_use(file: Path) -> str:
     pid, host = holder
     if host.partition("?")[0] == socket.gethostname() and _runs(pid):  # the library adds a mark in containers
         return (
-            f"{file.parent} is in use: process {pid} on this machine sweeps on it; wait for it, stop it with Ctrl-C, "
+            f"{file.parent} is in use by process {pid} on this machine; wait for it, stop it with Ctrl-C, "
             "or choose another store."
         )
     return (

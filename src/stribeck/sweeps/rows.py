@@ -75,7 +75,7 @@ class Writer:
             remedy = "Make room" if problem.errno in FULL else "Mend that"
             raise SweepError(
                 f"{self.path} could not be written ({reason_of(problem)}); the states finished until then are kept. "
-                f"{remedy} and run the same sweep again: it goes on where it stopped."
+                f"{remedy} and run the same sweep again to resume it."
             ) from None
 
     def _put(self, array: str, chunk: str, content: bytes) -> None:
@@ -177,7 +177,7 @@ def _told(path: Path, what: str) -> Iterator[None]:
     except OSError as problem:
         place = problem.filename or path
         raise InputError(
-            f"{path} cannot be {what}: {place}: {reason_of(problem)}; mend that, or choose a new store."
+            f"{path} cannot be {what}: {place}: {reason_of(problem)}; correct that, or choose a new store."
         ) from None
 
 

@@ -58,7 +58,7 @@ def read_sealed(store: Path, name: str) -> bytes:
     found = re.search(rf"^([0-9a-f]{{64}})  {re.escape(name)}$", sums.decode("ascii", errors="replace"), re.MULTILINE)
     content = _read(store, name, LARGEST)
     if found is None or found[1] != _sum(content):
-        raise InputError(f"{store} is damaged: {name} in it is not what was written; {ADVICE}.")
+        raise InputError(f"{store} is damaged: {name} in it has changed since it was written; {ADVICE}.")
     return content
 
 

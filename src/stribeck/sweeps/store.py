@@ -83,7 +83,7 @@ def create_or_open(path: PathLike, design: SweepDesign) -> Path:
             _check_same(store, design)
             return store
     if not store.absolute().parent.is_dir():
-        raise InputError(f"{store} cannot be made, as there is no folder {store.parent}; make it first.")
+        raise InputError(f"{store} cannot be created because the folder {store.parent} does not exist; create it first.")
     temporary = store.with_name(f".stribeck-{secrets.token_hex(6)}")
     try:
         try:
@@ -95,7 +95,7 @@ def create_or_open(path: PathLike, design: SweepDesign) -> Path:
     except OSError as problem:
         if store.exists():  # somebody else was faster
             return create_or_open(store, design)
-        raise InputError(f"{store} cannot be made ({reason_of(problem)}); choose another place.") from None
+        raise InputError(f"{store} cannot be created ({reason_of(problem)}); choose another place.") from None
     return store
 
 
@@ -168,11 +168,13 @@ def describe_store(path: PathLike) -> dict[str, Any]:
         known = json.loads(read_bounded(store / "zarr.json", LARGEST_DESCRIPTION))["attributes"]["stribeck_sweep"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         if (store / SUMS).exists():
-            raise InputError(f"{store} is damaged: zarr.json in it is not what was written; {ADVICE}.") from None
-        kind = "is a file" if store.is_file() else "holds no sweep" if store.exists() else "does not exist"
+            raise InputError(f"{store} is damaged: zarr.json in it has changed since it was written; {ADVICE}.") from None
+        kind = "is a file" if store.is_file() else "does not contain a sweep" if store.exists() else "does not exist"
         raise InputError(f"{store} {kind}; give the folder of a store, or the name of a new one.") from None
     if known != FORMAT:
-        raise InputError(f"{store} has the format {known!r}, of another version of stribeck; this one reads format {FORMAT}.")
+        raise InputError(
+            f"{store} has the format {known!r}, of another version of stribeck; this version reads format {FORMAT}."
+        )
     found = {name: json.loads(read_sealed(store, name)) for name in SEALED if name.endswith(".json")}
     read_inputs(store, found["inputs/zarr.json"]["shape"])
     about: dict[str, Any] = found["zarr.json"]["attributes"]
@@ -208,13 +210,14 @@ def _check_same(store: Path, design: SweepDesign) -> None:
     about, running = describe_store(store), version("stribeck")
     if about["fingerprint"] != design.fingerprint:
         raise InputError(
-            f"{store} holds another sweep than {design.path}: the states or the tolerance differ. Choose another store; "
+            f"{store} contains a different sweep from {design.path}: the states or the tolerance differ. "
+            f"Choose another store; "
             f"{store / DESIGN} is the file it was made from."
         )
     if about["version"] != running:
         raise InputError(
-            f"{store} was begun with stribeck {about['version']}, this is {running}: their numbers may differ. "
-            "Go on with that version, or choose another store."
+            f"{store} was started with stribeck {about['version']}, this is {running}: their numbers may differ. "
+            "Continue with that version, or choose another store."
         )
 
 

@@ -115,7 +115,7 @@ def sweep(
         run = _Run(plan, store, workers, scheduler, on_progress)
         interrupted = run.to_the_end()
     if not interrupted and not run.rows.done.all():
-        raise SweepError("The run ended without an error, yet states are missing; please report it.")
+        raise SweepError("The run ended without an error, but states are missing; please report it.")
     return Sweep(store, describe_store(store), run.rows, interrupted, run.computed, time.monotonic() - began, note)
 
 

@@ -216,7 +216,7 @@ def _gather(client: Any, write: Writer, chains: Chains, finished: Finished, paus
             elif news.status == "error" and type(news.exception()).__name__ == "KilledWorker":
                 died += 1
             else:
-                raise SweepError(f"The cluster could not go on ({_reason(news)}); run the same sweep again to resume it.")
+                raise SweepError(f"The cluster failed ({_reason(news)}); run the same sweep again to resume it.")
         pause()
     finally:
         client.cancel(list(waiting))

@@ -96,7 +96,7 @@ def speed_at_fluid_share(groups: Groups, share: float = 0.5) -> Value:
     """
     wanted = real_array("share", share)
     if not ((wanted > 0) & (wanted < 1)).all():
-        raise InputError(f"share = {show(share)}; a part of the load lies between 0 and 1, both excluded.")
+        raise InputError(f"share = {show(share)}; a fraction of the load lies between 0 and 1, both excluded.")
     found = _speed(np.log(wanted / (1 - wanted)), np.asarray(groups.load), np.asarray(groups.relative_roughness))
     return np.where(np.equal(groups.roughness, 0), math.nan, found)[()]
 

@@ -100,7 +100,7 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
     # Groups know what a load is.
     values = Groups(0.0, load, 0.0).load
     if np.any(np.greater_equal(values, 1)):
-        message = "phi has no value, and is nan, from load 1 on, where there is no positive gap at rest."
+        message = "phi is undefined (nan) at load groups of 1 or more, where the static contact has no positive gap."
         warnings.warn(message, OutOfRangeWarning, stacklevel=2)
     return phi_of(values, form)
 

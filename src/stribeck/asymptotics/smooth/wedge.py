@@ -94,7 +94,7 @@ def wedge(load: float, fluid_number: float) -> Wedge:
     """
     if not 0 < load < 1:
         raise InputError(
-            f"load = {show(load)}; nearly smooth contacts have a positive gap at rest for loads between 0 and 1 only."
+            f"load = {show(load)}; nearly smooth static contacts have a positive gap only for loads between 0 and 1."
         )
     if not 0 <= fluid_number < math.inf:
         raise InputError(f"fluid_number = {show(fluid_number)}; it must be a finite number, not negative.")

@@ -71,9 +71,9 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
     shift = (
         ""
         if math.isnan(fit.solver_shift)
-        else f"; iterated on the atlas, from which it moved by {fit.solver_shift:.1g} errors"
+        else f"; replacing the lookup table by the solver moved it by {fit.solver_shift:.1g} standard errors"
     )
-    say(f"Fitted friction is solved, within {fit.model_error:.1g}{shift}.")
+    say(f"The fitted friction comes from the solver, with relative error {fit.model_error:.1g}{shift}.")
     if posterior:
         say(posterior.message)
     for sentence in fit.quality.messages:
@@ -131,14 +131,15 @@ def _held(fit: Fit) -> str:
         known = format_si(values.pop(), QUANTITIES[name].dimension, 4) if len(values) == 1 else "of each curve"
         shown.append(f"{name} {known}")
     return (
-        f"Counted as known exactly: {', '.join(shown)}. "
-        "No error above holds theirs; in the table [fit] of the case, free and priors bring them in."
+        f"Held fixed: {', '.join(shown)}. "
+        "Their uncertainty is not included in the errors above; to include it, use free or priors in the "
+        "table [fit] of the case."
     )
 
 
 def _noise(fit: Fit) -> str:
     quality = fit.quality
-    said = "their order looks like noise" if quality.structure_probability >= 0.01 else "their order is not that of noise"
+    said = "no systematic misfit detected" if quality.structure_probability >= 0.01 else "systematic misfit detected"
     if math.isnan(fit.noise):
         return (
             f"Residuals: chi squared {quality.chi_squared:.3g} for {quality.degrees_of_freedom:.3g} degrees of freedom "

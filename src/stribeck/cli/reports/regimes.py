@@ -63,23 +63,23 @@ def print_regimes(
     speed = format_si(contact.speed, "speed")
     say(
         console,
-        f"At {speed} lubrication is {regime_now(solution, curve.definition)}: the fluid carries "
-        f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load, asperities cause "
-        f"{format_share(contact_part(friction), part_error(friction))} of the friction coefficient {friction.total:.4g}.",
+        f"{regime_now(solution, curve.definition).capitalize()} lubrication at {speed}: friction {friction.total:.4g} "
+        f"({format_share(contact_part(friction), part_error(friction))} from asperities); the fluid carries "
+        f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load.",
     )
     for line in _ways(margins):
         say(console, line)
     if curve.transitions:
-        table = table_of("where", "speed", "from here", "friction", right=(1, 3))
+        table = table_of("transition", "speed", "change", "friction", right=(1, 3))
         for mark in curve.transitions:
             table.add_row(mark.name, place(curve, mark.value, 4), _way(mark, contact.speed), f"{mark.friction:.4g}")
         console.print(table)
     else:
         say(
             console,
-            "No transition lies between the boundary plateau and the hydrodynamic branch of this contact.",
+            "This contact has no transition between the boundary plateau and the hydrodynamic branch.",
         )
-    table = table_of("input", "value", "sensitivity", "10 % more gives", right=(1, 2, 3))
+    table = table_of("input", "value", "sensitivity", "10 % increase gives", right=(1, 2, 3))
     for name in sorted(sensitivities, key=lambda name: -abs(sensitivities[name])):
         value, slope = getattr(contact, name), sensitivities[name]
         text = format_si(value, QUANTITIES[name].dimension)
@@ -93,7 +93,7 @@ def print_regimes(
         name = QUANTITIES[most].label
         say(
             console,
-            f"The {name} moves friction most: 10 % {way} of it lowers friction by {gain}, all else kept.",
+            f"Friction is most sensitive to {name}: 10 % {way} lowers friction by {gain}, other inputs fixed.",
         )
     notes = [*solution.notes, *curve.minimum_notes, *margins.notes]
     print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), notes)
@@ -106,22 +106,22 @@ def _ways(margins: RegimeMargins) -> Iterator[str]:
         ways = [f"{margin.name} {_step(margin.name, mark)}" for margin, mark in found if mark is not None]
         barren = [_searched(margin) for margin, mark in found if mark is None]
         if not ways:
-            yield f"To reach {regime}: not reachable by {', '.join(barren)}."
+            yield f"To reach {regime} lubrication: not reachable by changing {', '.join(barren)}."
             continue
-        rest = f"; not reachable by {', '.join(barren)}" if barren else ""
-        yield f"To reach {regime}: {', or '.join(ways)}{rest}."
+        rest = f"; not reachable by changing {', '.join(barren)}" if barren else ""
+        yield f"To reach {regime} lubrication: {', or '.join(ways)}{rest}."
     if any(margin.name == "viscosity" and (margin.less or margin.more) for margin in margins.margins):
-        yield "Speed and viscosity count as their product, so that their factors are the same."
+        yield "Only the product of speed and viscosity matters, so their factors are equal."
 
 
 def _step(name: str, mark: Crossing) -> str:
     """Return how far an input is to be changed, as ``x 3.1 (0.31 m/s)``."""
     if mark.value == 0:
-        return "of any size"
+        return "of any value"
     value = format_si(mark.value, QUANTITIES[name].dimension, 4)
     if math.isinf(mark.factor):
         return f"from zero to {value}"
-    return f"x {mark.factor:.3g} ({value})" if mark.factor >= 1 else f"/ {1 / mark.factor:.3g} ({value})"
+    return f"x {mark.factor:.3g} (to {value})" if mark.factor >= 1 else f"/ {1 / mark.factor:.3g} (to {value})"
 
 
 def _searched(margin: Margin) -> str:

@@ -109,9 +109,9 @@ def print_curve(console: Console, curve: StribeckCurve, title: str, files: Seque
         table.add_row(regime, place(curve, first), place(curve, last))
     console.print(table)
     if curve.transitions:
-        table = table_of("where", curve.over, "friction", right=(1, 2))
+        table = table_of("transition", curve.over, "friction", right=(1, 2))
         for mark in curve.transitions:
-            table.add_row(mark.name, place(curve, mark.value, 7), f"{mark.friction:.7g}")
+            table.add_row(mark.name, place(curve, mark.value, 4), f"{mark.friction:.4g}")
         console.print(table)
     if curve.minimum is None:
         say(console, "Friction has no minimum inside this range.")

@@ -46,7 +46,7 @@ def surface_lines(surface: Surface) -> list[str]:
     if found["body_radius"] is not None:
         bulge = "convex" if surface.shape.curvatures[0] < 0 else "concave"
         lines.append(_length("radius of the body", found["body_radius"], found["body_radius_error"], bulge))
-    lines.append(_length("rms height of the scan", found["scan_rms_height"], None, "about that shape"))
+    lines.append(_length("rms height of the scan", found["scan_rms_height"], None, "about that form"))
     if surface.spikes:
         number = f"{surface.spikes} spike{'s' * (surface.spikes > 1)}"
         lines.append(_length(f"  with its {number}", found["scan_rms_height_with_spikes"], None, "replaced above"))
@@ -56,7 +56,7 @@ def surface_lines(surface: Surface) -> list[str]:
     ratio, direction = found["aspect_ratio"], found["texture_direction"]
     if ratio is not None:
         at = (
-            "no direction stands out"
+            "no preferred direction"
             if direction is None
             else f"longer at {math.degrees(direction):.0f} degrees to the first axis"
         )
@@ -66,9 +66,9 @@ def surface_lines(surface: Surface) -> list[str]:
     lines.append(_length("rms height h_rms", r.h_rms, found["h_rms_error"], ""))
     lines.append(_row("Hurst exponent", f"{r.hurst:.3f}", f"+- {found['hurst_error']:.2g}"))
     for name, label, end in (
-        ("q0", "longest wavelength 2 pi/q0", "end of the scan, not of the surface"),
+        ("q0", "longest wavelength 2 pi/q0", "limited by the scan, not the surface"),
         ("roll_off", "roll-off wavelength", "none seen"),
-        ("q1", "shortest wavelength 2 pi/q1", "end of the reliable range, not of the surface"),
+        ("q1", "shortest wavelength 2 pi/q1", "limited by the reliable range, not the surface"),
     ):
         q, error = found[name], found[f"{name}_error"]
         if name == "roll_off" and error is None:

@@ -78,8 +78,8 @@ def length(value: float, error: float) -> str:
 
 
 def _count(error: float) -> int:
-    """Return how many digits a relative error allows, 3 to 9."""
-    return 9 if error <= 0 else min(9, max(3, math.ceil(-math.log10(error))))
+    """Return how many digits a relative error allows, 3 to 4: files and JSON have all of them."""
+    return 4 if error <= 0 else min(4, max(3, math.ceil(-math.log10(error))))
 
 
 def error_text(relative: float) -> str:

@@ -215,7 +215,7 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
         lowest = np.where((lowest > low) & (lowest < high), lowest, np.nan)
         series.append(line("minimum", "minimum friction", lowest, rows, palette.mark, 1.6, [2, 3]))
     height = min(max(1e6 * contact.roughness, float(roughness[0])), float(roughness[-1]))
-    series.append(line("path", "path of the speed", np.array([low, high]), np.full(2, height), palette.grey, 1.0, [4, 4]))
+    series.append(line("path", "changing speed", np.array([low, high]), np.full(2, height), palette.grey, 1.0, [4, 4]))
     series.append(marker("point", [min(max(contact.speed, low), high), height], palette))
     x = with_unit("diagram", log_axis("sliding speed U (m/s)", low, high, palette))
     y = log_axis("roughness (µm)", float(roughness[0]), float(roughness[-1]), palette)

@@ -42,8 +42,8 @@ HEADERS = {
 }
 
 WITHOUT_TOKEN = (
-    "This explorer opens with the whole address that its terminal shows, which ends in ?token=...\n"
-    "Open that address once in this browser; links to states of the page work afterwards.\n"
+    "Open this explorer with the complete address shown in its terminal, which ends in ?token=...\n"
+    "Open that address once in this browser; links to states then work.\n"
 )
 
 
@@ -71,7 +71,7 @@ def check_host(host: str) -> str:
         own = False
     if not own:
         raise InputError(
-            f"host = {show(host)} is not this machine alone; the explorer is served on 127.0.0.1, ::1 or localhost only. "
+            f"host = {show(host)} is not a local address; the explorer is served on 127.0.0.1, ::1 or localhost only. "
             "To use it from another machine, forward its port: ssh -L 8765:127.0.0.1:8765 NAME-OF-THIS-MACHINE."
         )
     return host
@@ -120,9 +120,9 @@ class Guard:
         """Return why a request does not come from this machine, or None."""
         hosts = headers.get("host", [])
         if len(hosts) != 1 or _name(hosts[0]) not in NAMES:
-            return 400, "The explorer answers to 127.0.0.1 and localhost only.\n"
+            return 400, "The explorer answers only to 127.0.0.1 and localhost.\n"
         if any(origin != f"http://{hosts[0]}" for origin in headers.get("origin", [])):
-            return 403, "The explorer answers to its own page only.\n"
+            return 403, "The explorer answers only to its own page.\n"
         return None
 
     def has_token(self, scope: Scope) -> bool:
@@ -177,7 +177,7 @@ class Guard:
         return [(b"location", f"/{'?' if rest else ''}{rest}".encode()), (b"set-cookie", cookie.encode())]
 
 
-TOO_LARGE = (413, f"A file may have {LARGEST_REQUEST // 1_000_000} MB.\n")
+TOO_LARGE = (413, f"A file may have at most {LARGEST_REQUEST // 1_000_000} MB.\n")
 
 
 def _too_large(headers: dict[str, list[str]]) -> tuple[int, str] | None:

@@ -51,7 +51,7 @@ def _compute(report: Report) -> xarray.Dataset:
         "hersey_number": column(speed, curve.hersey_number, "Hersey number eta U/F_N for beta = 1"),
         "friction_published": column(speed, curve.friction, "friction coefficient, definition published"),
         "friction_balanced": column(speed, balanced.friction, "friction coefficient, definition balanced"),
-        "friction_contact": column(speed, curve.friction_contact, "part of the friction coefficient from asperities"),
+        "friction_contact": column(speed, curve.friction_contact, "contribution of asperities to the friction coefficient"),
         "viscous_published": column(speed, curve.friction_viscous, "part from the fluid, definition published"),
         "viscous_balanced": column(speed, balanced.friction_viscous, "part from the fluid, definition balanced"),
         "contact_load_share": column(speed, curve.observable("contact_load_share"), "part of the load on asperities"),
