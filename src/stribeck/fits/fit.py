@@ -442,7 +442,6 @@ def _combination(pair: tuple[str, str], correlation: float, covariance: Array) -
     size = float(math.sqrt(max(values[0], 0.0)) / max(abs(a), abs(b)))
     shown = "" if abs(abs(power) - 1) < 0.02 else f"^{abs(power):.2g}"
     return (
-        f"{pair[0]} and {pair[1]} have correlation {correlation:.3f}: the data determine best {first} "
-        f"{'x' if power > 0 else '/'} "
-        f"{second}{shown}, within {100 * size:.2g} %."
+        f"{pair[0]} and {pair[1]} have correlation {correlation:.3f}: the data determine "
+        f"{first} {'x' if power > 0 else '/'} {second}{shown} best, within {100 * size:.2g} %."
     )

@@ -12,7 +12,7 @@ class Outcome(Enum):
 
     CONVERGED = "Converged."
     STEP_LIMIT = "Newton's method reached its step limit; try a closer initial guess or smaller parameter steps."
-    SINGULAR = "The Jacobian is singular here; the path may turn back at a fold: try smaller parameter steps."
+    SINGULAR = "The Jacobian is singular; the path may turn back at a fold: try smaller parameter steps."
     NOT_FINITE = "The residual or its Jacobian is not finite; try a closer initial guess."
     STALLED = "The damped Newton step became too small to make progress; try a closer initial guess."
     REFINEMENT_LIMIT = "Mesh refinement reached its limit before the tolerance was met; ask for a larger rtol."

@@ -13,6 +13,7 @@ from stribeck.cli.reports.words import (
     place,
     print_head,
     print_outcome,
+    print_table,
     regime_now,
     say,
     strongest,
@@ -73,7 +74,7 @@ def print_regimes(
         table = table_of("transition", "speed", "change", "friction", right=(1, 3))
         for mark in curve.transitions:
             table.add_row(mark.name, place(curve, mark.value, 4), _way(mark, contact.speed), f"{mark.friction:.4g}")
-        console.print(table)
+        print_table(console, table)
     else:
         say(
             console,
@@ -84,7 +85,7 @@ def print_regimes(
         value, slope = getattr(contact, name), sensitivities[name]
         text = format_si(value, QUANTITIES[name].dimension)
         table.add_row(QUANTITIES[name].label, text, f"{slope:+.3f}", f"{100 * _change(1.1, slope):+.2g} % friction")
-    console.print(table)
+    print_table(console, table)
     most = strongest(sensitivities)
     if most is not None:
         slope = sensitivities[most]

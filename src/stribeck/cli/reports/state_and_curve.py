@@ -16,6 +16,7 @@ from stribeck.cli.reports.words import (
     place,
     print_head,
     print_outcome,
+    print_table,
     say,
     table_of,
 )
@@ -52,7 +53,7 @@ def print_solution(
     table = table_of(*(("quantity", "value", "in SI", "error")[i] for i in columns))
     for row in _solution_rows(solution, boundary_friction, beta):
         table.add_row(*(row[i] for i in columns))
-    console.print(table)
+    print_table(console, table)
     print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes)
 
 
@@ -75,9 +76,10 @@ def _solution_rows(
         unit = " u_Hz" if math.isfinite(value) else ""
         yield row.label, f"{digits(value, error)}{unit}", si, error_text(error)
     place, wrong = solution.minimum_position, solution.minimum_position_error
-    relative = wrong / abs(place) if place != 0 else 0.0
-    si = "" if scales is None else length(place * scales.half_width, max(relative, 1e-4))
-    yield "position of minimum film", f"{digits(place, max(relative, 1e-4))} a", si, f"{wrong:.0e} a"
+    # To 1e-4 of the half-width: of a symmetric film only rounding remains, and a position in picometres says nothing.
+    place = round(place, 4) + 0.0
+    si = "" if scales is None else length(place * scales.half_width, 1e-4)
+    yield "position of minimum film", f"{place:.4g} a", si, f"{wrong:.0e} a"
     yield "Lambda (minimum film over h_rms)", digits(solution.lambda_ratio, 1e-4), "", ""
     if not math.isnan(solution.central_area_fraction):
         area, error = solution.central_area_fraction, solution.central_area_fraction_error
@@ -107,12 +109,12 @@ def print_curve(console: Console, curve: StribeckCurve, title: str, files: Seque
     table = table_of("regime", "from", "to", right=(1, 2))
     for regime, first, last in curve.regime_ranges:
         table.add_row(regime, place(curve, first), place(curve, last))
-    console.print(table)
+    print_table(console, table)
     if curve.transitions:
         table = table_of("transition", curve.over, "friction", right=(1, 2))
         for mark in curve.transitions:
             table.add_row(mark.name, place(curve, mark.value, 4), f"{mark.friction:.4g}")
-        console.print(table)
+        print_table(console, table)
     if curve.minimum is None:
         say(console, "Friction has no minimum inside this range.")
     print_outcome(console, curve.outcome.value, curve.error_estimate, curve.notes)

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 HANDS_ON = tuple(row.name for row in ROWS if not row.derived and not row.follows_surface)
 """Inputs that one may change; alpha and beta follow from the surface."""
 
+WIDTH = 100
+"""Columns that a table may take in a narrower terminal."""
+
 Sensitivities = dict[str, float]
 
 
@@ -172,3 +175,10 @@ def table_of(*columns: str, right: Sequence[int] = ()) -> Any:
     for i, name in enumerate(columns):
         table.add_column(name, justify="right" if i in right else "left", no_wrap=True)
     return table
+
+
+def print_table(console: Console, table: Any) -> None:
+    """Print a table, wider than a narrow terminal rather than cut: a heading or number without its end says nothing."""
+    from rich.console import Console as Wide
+
+    Wide(file=console.file, width=max(WIDTH, console.width), color_system=None).print(table)
