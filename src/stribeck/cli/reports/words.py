@@ -181,4 +181,4 @@ def print_table(console: Console, table: Any) -> None:
     """Print a table, wider than a narrow terminal rather than cut: a heading or number without its end says nothing."""
     from rich.console import Console as Wide
 
-    Wide(file=console.file, width=max(WIDTH, console.width), color_system=None).print(table)
+    Wide(file=console.file, width=max(WIDTH, console.width)).print(table)
