@@ -42,22 +42,26 @@ segments end at, twice the logarithm of the speed is taken off the first."""
 FILE = "atlas.npz"
 
 SOLVER = (
-    "contact_laws",
-    "continuation",
-    "elasticity",
-    "equations",
-    "estimate",
-    "fill",
-    "follow",
-    "follower",
-    "mesh",
-    "newton",
-    "observables",
-    "refine",
-    "reynolds",
-    "start",
-    "states",
-    "together",
+    "contact_laws/exponential",
+    "contacts/groups",
+    "equations/error_estimate",
+    "equations/gap",
+    "equations/line",
+    "equations/observables",
+    "equations/prediction",
+    "equations/state",
+    "fluids/newtonian",
+    "numerics/continuation",
+    "numerics/newton",
+    "numerics/panels",
+    "numerics/running_integral",
+    "solids/half_plane",
+    "solver/cold_start",
+    "solver/corrector",
+    "solver/infill",
+    "solver/judgement",
+    "solver/path",
+    "solver/refinement",
 )
 """The modules whose hash says which solver made a table."""
 
@@ -310,8 +314,9 @@ def unpack(data: Any) -> Table:
 def solver_hash() -> str:
     """Return the SHA-256 of the sources of the solver."""
     found = hashlib.sha256()
+    package = Path(__file__).parents[1]
     for name in SOLVER:
-        found.update(Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8").encode())
+        found.update((package / f"{name}.py").read_text(encoding="utf-8").encode())
     return found.hexdigest()
 
 
