@@ -2,6 +2,7 @@
 
 import ast
 import dataclasses
+import pkgutil
 import re
 import shlex
 import shutil
@@ -194,3 +195,16 @@ def test_a_page_for_developers_names_files_that_exist(page):
     assert {
         name for name in named if not any((folder / name).exists() for folder in (ROOT, ROOT / "src" / "stribeck"))
     } == set()
+
+
+def test_every_name_of_the_reference_exists():
+    module, missing = "stribeck", []
+    for line in (ROOT / "docs" / "api.rst").read_text().splitlines():
+        if line.startswith(".. currentmodule:: "):
+            module = line.split()[-1]
+        elif re.fullmatch(r"   [a-zA-Z_][\w.]*", line):
+            try:
+                pkgutil.resolve_name(f"{module}.{line.strip()}")
+            except (AttributeError, ImportError):
+                missing.append(line.strip())
+    assert missing == []
