@@ -130,7 +130,7 @@ def test_a_case_knows_every_quantity(write):
         ({"contact": {"radius": "0"}}, "[contact] radius = 0 must be positive."),
         ({"contact": {"speed": '"1 m"'}}, "[contact] speed = '1 m' is a length; expected a speed such as"),
         ({"contact": {"roughness": "nan"}}, "[contact] roughness = nan is not a finite number"),
-        ({"contact": {"alpha": '"two"'}}, "[contact] alpha = 'two' is text where a number belongs"),
+        ({"contact": {"alpha": '"two"'}}, "[contact] alpha = 'two' is text, but a number is expected"),
         (
             {"contact": {"load": "2024-01-01"}},
             "[contact] load = datetime.date(2024, 1, 1) is not a single real",
@@ -256,7 +256,7 @@ def test_all_problems_are_told_at_once(problems):
         (
             b"[contact]\nradius = 1 mm\n",
             "is not valid TOML: Expected newline or end of document after a statement (at line 2, column 12); "
-            "a value with a unit stands in quotes",
+            "a value with a unit needs quotes",
         ),
         (b"a = " + b"[" * 50_000, "is not valid TOML"),
         (b"a = " + b"9" * 5_000, "is not valid TOML"),

@@ -114,7 +114,7 @@ def test_a_table_is_read_beside_its_case_with_or_without_units(case):
             {"surface": SURFACE | {"Hurst": "0.8"}},
             "[surface] Hurst = 0.8 is not a known key; did you mean",
         ),
-        ("persson", {}, {"asperities": ASPERITIES}, "the table [asperities] is of no use to law = 'persson'; it belongs to"),
+        ("persson", {}, {"asperities": ASPERITIES}, "the table [asperities] is not used by law = 'persson'; it belongs to"),
         ("greenwood-tripp", {}, {"asperities": ASPERITIES | {"radius": None}}, "[asperities] radius is missing; add radius"),
         ("greenwood-tripp", {}, {"asperities": ASPERITIES | {"density": "0"}}, "[asperities] density = 0 must be positive"),
         ("greenwood-tripp", {"beta": None}, {}, "[contact] beta is missing; add"),

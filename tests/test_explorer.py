@@ -91,7 +91,7 @@ def test_another_unit_keeps_the_value():
             "boundary_friction = 70 is above 10, the largest the explorer takes; write 0.7 for 70 %.",
         ),
         ("radius", "", "radius = '' does not begin with a number;"),
-        ("beta", "x", "beta = 'x' is text where a number belongs; write a bare number"),
+        ("beta", "x", "beta = 'x' is text, but a number is expected; write a bare number"),
         ("alpha", "0", "alpha = 0.0 must be positive."),
         ("speed_group", "-1", "speed = -1.0 must be finite and zero or positive."),
         ("load_group", "lots", "load = 'lots' is not a number; write it as 0.001 or 1e-3."),
@@ -240,10 +240,10 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
     [
         ("law=x", "law = 'x' is not valid JSON."),
         ("law=[1]", "must be an object of law, surface, table"),
-        ('law={"law":"table","table":{"file":"/etc/passwd"}}', "a link holds its rows instead"),
-        ('law={"law":"persson","surface":{"spectrum":"x.csv"}}', "a link holds its rows instead"),
+        ('law={"law":"table","table":{"file":"/etc/passwd"}}', "a link contains its rows instead"),
+        ('law={"law":"persson","surface":{"spectrum":"x.csv"}}', "a link contains its rows instead"),
         ('law={"law":"hertz"}', "law = 'hertz' must be one of"),
-        ('rest={"fit":{"free":["x"]}}', "no input that can be fitted"),
+        ('rest={"fit":{"free":["x"]}}', "which cannot be fitted"),
         ('rest={"points":NaN}', "is not JSON"),
         ("rtol=2", "rtol"),
         ("pin=x", "pin = 'x' must hold 9 numbers, the definition and a name."),
@@ -266,7 +266,7 @@ def test_what_no_address_can_hold_is_refused_at_load(tmp_path):
     contact = {"law": "table", **{name: getattr(START.contact, name) for name in inputs.FIELDS}}
     path.write_text(carried.toml_text({"contact": contact, "table": tables}))
     with pytest.raises(
-        sb.InputError, match=r"would have .* characters, and 60000 are possible; most are those of the contact law"
+        sb.InputError, match=r"would have .* characters, but at most 60000 are possible; most come from the contact law"
     ):
         url.check_length(inputs.from_case(sb.load_case(path)))
 

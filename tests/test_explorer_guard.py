@@ -111,7 +111,7 @@ def test_a_request_beyond_the_limit_is_cut_whether_it_says_its_length_or_not():
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.0.2", "example.com", "", "127.0.0.1 "])
 def test_an_address_that_others_reach_is_refused_with_the_way_that_works(host):
-    with pytest.raises(sb.InputError, match=r"is not this machine alone; .*ssh -L"):
+    with pytest.raises(sb.InputError, match=r"is not a local address; .*ssh -L"):
         check_host(host)
 
 

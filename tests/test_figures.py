@@ -307,7 +307,7 @@ def test_the_data_of_another_figure_are_nobody_s_licence(fakes, tmp_path):
 
 
 def test_a_folder_is_made_but_not_the_folders_above_it(fakes, tmp_path):
-    with pytest.raises(sb.InputError, match="there is no folder .*/a; make it first"):
+    with pytest.raises(sb.InputError, match="the folder .*/a does not exist; create it first"):
         make_figures(["3"], tmp_path / "a" / "b")
     assert os.listdir(tmp_path) == []
     (tmp_path / "file").touch()
@@ -428,7 +428,7 @@ def test_the_command_makes_all_figures_into_the_folder_figures(fakes, tmp_path, 
     ("tokens", "sentence"),
     [
         (("12",), "figure '12' is not one of 3, 4, 5, 6, 7, 8, 9, 10, 11, S1; 1 and 2 of the paper hold no results."),
-        (("3", "--out", "no/such"), "no/such cannot be made, as there is no folder no; make it first."),
+        (("3", "--out", "no/such"), "no/such cannot be created because the folder no does not exist; create it first."),
         (("3", "--out", "file"), "file is a file; give the name of a folder."),
     ],
 )

@@ -220,7 +220,7 @@ def test_a_boundary_friction_that_no_contact_has_is_named(capsys):
     assert found.outcome is sb.FitOutcome.IMPLAUSIBLE and found.to_dict()["outcome"] == "IMPLAUSIBLE"
     assert any("boundary_friction 6.9 is larger than any dry friction" in note for note in found.notes)
     print_fit(Console(), found, "")
-    assert "The fit ended at a boundary friction that no contact has" in capsys.readouterr().out
+    assert "The fit ended at an impossible boundary friction" in capsys.readouterr().out
     assert sb.fit(measured(*exact()), TRUE, free=["boundary_friction"], intervals=False).outcome is sb.FitOutcome.CONVERGED
 
 

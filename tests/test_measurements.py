@@ -183,7 +183,7 @@ def test_signs_of_strokes_are_dropped_on_demand(read):
 
 REFUSED = {
     "negative speed": (PLAIN + "\n-2;0.1", "row 6, column 'speed [m/s]'", "negative"),
-    "speed zero": (PLAIN + "\n0;0.1", "row 6, column 'speed [m/s]'", "rest"),
+    "speed zero": (PLAIN + "\n0;0.1", "row 6, column 'speed [m/s]'", "static friction"),
     "negative friction": (PLAIN + "\n2;-0.1", "row 6, column 'friction'", "positive"),
     "percent unsaid": (PLAIN + "\n2;35", "row 6, column 'friction'", "percent"),
     "text": (PLAIN + "\n2;stick", "row 6, column 'friction'", "'stick' is not a number"),

@@ -86,7 +86,7 @@ def test_a_state_far_from_any_contact_ends_in_a_result_or_in_words(speed, load, 
         except sb.SolveError as error:
             assert not error.outcome.ok
             assert says_why(error)
-            assert "The solver was not tested for" in str(error)
+            assert "The solver has not been tested for" in str(error)
         else:
             assert solution.outcome.ok and math.isfinite(solution.central_gap)
 

@@ -188,7 +188,7 @@ def test_a_contact_on_the_threshold_is_said_to_stand_there(mixed):
     for factor in (1, 1 + 1e-9):
         found = regime_margins(there.replace(speed=factor * there.speed))
         other = {"mixed": "hydrodynamic", "hydrodynamic": "mixed"}[found.regime]
-        assert found.notes == (f"The contact stands at the threshold to {other} lubrication.",)
+        assert found.notes == (f"The contact is at the threshold to {other} lubrication.",)
         assert found.margins[0].crossing_into(other).factor == pytest.approx(1, abs=1e-6)
     assert mixed.notes == ()
 
@@ -289,7 +289,7 @@ def test_the_command_says_what_it_takes_to_reach_each_neighbour(capsys, tmp_path
         "not reachable by load (range searched 7.99 mN/m to 305 N/m)." in text
     )
     assert "To reach hydrodynamic: speed x 30.5 (30.46 mm/s), or load / 3.75e+03 (7.994 mN/m), or roughness / 10.2" in text
-    assert "Speed and viscosity count as their product" in text
+    assert "Only the product of speed and viscosity matters" in text
     rows = {line.split("  ")[0].strip() for line in text.splitlines()}
     assert {"speed", "load", "viscosity", "effective modulus", "radius", "roughness", "dry friction coefficient"} <= rows
     assert {"contact-law alpha", "contact-law beta"} <= rows

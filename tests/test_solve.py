@@ -672,14 +672,14 @@ def test_positions_must_be_finite_and_in_one_dimension(x, solved):
 
 
 def test_where_rounding_bounds_the_error_the_solve_says_so_and_keeps_what_it_has():
-    with pytest.raises(sb.SolveError, match="Double precision bounds the error") as caught:
+    with pytest.raises(sb.SolveError, match="Double precision keeps the error") as caught:
         sb.solve(sb.Groups(1e-12, 0.1, 0.0), rtol=1e-11)
     error = caught.value
     assert error.outcome is Outcome.ROUNDING
     assert error.solution.outcome is Outcome.ROUNDING
     assert "speed 1e-12" in str(error) and "asked: 1.0e-11" in str(error)
     assert 1e-11 < error.solution.rounding_floor <= error.solution.error_estimate < 1e-6
-    assert any("Rounding in double precision bounds" in note for note in error.solution.notes)
+    assert any("Rounding in double precision limits" in note for note in error.solution.notes)
     returned = sb.solve(sb.Groups(1e-12, 0.1, 0.0), rtol=1e-11, on_failure="return")
     assert returned.outcome is Outcome.ROUNDING
     assert returned.central_gap == error.solution.central_gap
@@ -689,7 +689,7 @@ def test_where_refinement_ends_early_the_solve_says_so_and_keeps_what_it_has(mon
     mesh_for = refine.mesh_for
     monkeypatch.setattr(refine, "mesh_for", lambda *arguments: mesh_for(*arguments[:4], 1e-2))
     groups = sb.Groups(1e-6, 0.1, 1e-5)
-    with pytest.raises(sb.SolveError, match="Refining the mesh came to its end") as caught:
+    with pytest.raises(sb.SolveError, match="Mesh refinement reached its limit") as caught:
         sb.solve(groups, rtol=1e-9)
     assert caught.value.outcome is Outcome.REFINEMENT_LIMIT
     assert caught.value.solution.error_estimate > 1e-9

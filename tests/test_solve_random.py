@@ -47,7 +47,7 @@ def check(states, true_errors, rtol=1e-6):
         errors = true_errors(s)
         ratios.append(np.nanmax(errors) / s.error_estimate)
         singles.append(np.nanmax(errors / s.relative_errors))
-        noted = any(note.startswith("Rounding in double precision bounds") for note in s.notes)
+        noted = any(note.startswith("Rounding in double precision limits") for note in s.notes)
         assert noted == (s.rounding_floor > 0.1 * rtol)
         bounded += noted
         assert ratios[-1] < 10, (groups, dict(zip(NAMES, errors, strict=True)), s.error_estimate)

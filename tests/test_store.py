@@ -262,12 +262,12 @@ def test_an_existing_file_is_kept_unless_forced(dataset, tmp_path, ending):
     ("name", "words"),
     [
         ("folder.nc", "is a directory"),
-        ("missing/curve.nc", "there is no folder"),
+        ("missing/curve.nc", "does not exist"),
         ("curve.txt", r"has the ending '\.txt'; the name of this file must end in \.nc or \.csv"),
         ("curve", "has no ending"),
         ("x" * 300 + ".nc", "cannot be written"),
         ("pipe.nc", "is not an ordinary file"),
-        ("file.nc/curve.nc", "there is no folder"),
+        ("file.nc/curve.nc", "does not exist"),
         ("loop.nc", "cannot be written|is not an ordinary file"),
     ],
 )
@@ -318,7 +318,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, failure):
         temporary.write_text("half")
         raise failure
     if isinstance(failure, OSError):
-        assert "could not be written (No space left on device); it is as it was before" in str(caught.value)
+        assert "could not be written (No space left on device); it is unchanged" in str(caught.value)
     assert path.read_text() == "precious"
     assert os.listdir(tmp_path) == ["curve.csv"]
 
@@ -372,7 +372,7 @@ def test_a_full_disk_leaves_the_old_file_and_a_sentence(tmp_path, ending):
     path.write_text("precious")
     answer = run_python(FULL, path)
     assert answer.code == 0, answer.err
-    assert re.fullmatch(r".*could not be written \(File too large\); it is as it was before\.\n", answer.out)
+    assert re.fullmatch(r".*could not be written \(File too large\); it is unchanged\.\n", answer.out)
     assert path.read_text() == "precious"
     assert os.listdir(tmp_path) == [path.name]
 

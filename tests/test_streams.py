@@ -53,7 +53,7 @@ def test_what_a_full_disk_does_not_take_is_told(options):
     reason = "No space left on device"
     assert (code, err) == (
         1,
-        f"stribeck: What was to be printed could not be ({reason}); files that were asked for are written.\n",
+        f"stribeck: The output could not be printed ({reason}); the requested files were written.\n",
     )
 
 
@@ -61,7 +61,7 @@ def test_a_closed_stdout_is_told_and_its_number_given_to_no_file(tmp_path):
     picture = tmp_path / "a.svg"
     code, _, err = run(*SOLVE, "--plot", picture, stdout=None, prepare=lambda: os.close(1), MPLBACKEND="nonsense")
     assert (code, err[:39]) == (1, "stribeck: What was to be printed could ")
-    assert err.endswith("not be (Bad file descriptor); files that were asked for are written.\n")
+    assert err.endswith("not be printed (Bad file descriptor); the requested files were written.\n")
     assert picture.read_text().rstrip().endswith("</svg>")
 
 
@@ -176,7 +176,7 @@ def test_what_is_no_ordinary_file_is_refused_and_not_waited_for(capsys, odd, com
     answer = call(capsys, command, place, *tokens)
     assert answer.code == 2
     said = (
-        "is no file; check the name"
+        "is not a file; check the name"
         if command == "surface"
         else rf"cannot be read \(it is a {kind}, not an ordinary file\); give"
     )
@@ -213,7 +213,7 @@ def test_a_case_file_that_is_too_deep_is_refused_before_it_takes_minutes(capsys,
     answer = call(capsys, "solve", file)
     assert answer.code == 2
     assert re.fullmatch(
-        r"stribeck: .*deep.toml is not valid TOML: (a key has|tables or lists lie|maximum recursion) .*\.\n", answer.err
+        r"stribeck: .*deep.toml is not valid TOML: (a key has|tables or lists are|maximum recursion) .*\.\n", answer.err
     )
 
 

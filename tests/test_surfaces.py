@@ -239,7 +239,7 @@ def test_a_tilted_scan_has_the_roughness_of_a_level_one():
     assert analyse(tilted).roughness.h_rms == pytest.approx(analyse(level).roughness.h_rms, rel=1e-6, abs=0)
     curved = analyse(on_cylinder(level, 1e-3, angle=1.0))
     assert curved.roughness.hurst == pytest.approx(analyse(level).roughness.hurst, rel=1e-5, abs=0)
-    assert analyse(level).notes[-1].endswith("the scan is flat.")
+    assert analyse(level).notes[-1].endswith("the surface is flat.")
 
 
 def test_a_profile_across_the_cylinder_gives_its_radius():
@@ -302,7 +302,7 @@ def test_an_impossible_argument_is_refused(options, words):
 
 def test_a_plane_has_no_roughness():
     plane = np.arange(64.0)[:, None] + np.zeros(64)
-    with pytest.raises(sb.InputError, match="nothing is left after the tilt"):
+    with pytest.raises(sb.InputError, match="nothing is left after removing the tilt"):
         detrended(Topography(plane, (1.0, 1.0)), "tilt")
 
 

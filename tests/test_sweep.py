@@ -312,8 +312,8 @@ def test_ctrl_c_keeps_what_is_finished_and_the_same_command_goes_on(tmp_path, wo
     found = sb.open_sweep(store)
     assert 20 < found.finished < 1024
     assert err == (
-        f"stribeck: Interrupted after {found.finished} of 1024 states; {store} holds them, "
-        "and the same command goes on from there.\n"
+        f"stribeck: Interrupted after {found.finished} of 1024 states; they are stored in {store}; "
+        "run the same command again to resume.\n"
     )
     assert f"Computed now: {found.finished}, " in out
     assert not (store / LOCK).exists()
@@ -340,7 +340,7 @@ def test_ctrl_c_while_the_workers_start_is_quiet(tmp_path):
     finally:
         process.kill()
     assert process.returncode == 130
-    assert re.fullmatch(r"stribeck: Interrupted after [0-9]+ of 1024 states; .* goes on from there\.\n", err)
+    assert re.fullmatch(r"stribeck: Interrupted after [0-9]+ of 1024 states; .* run the same command again to resume\.\n", err)
 
 
 def test_workers_stop_after_the_present_state(tmp_path):
@@ -371,7 +371,7 @@ def kill_and_resume(tmp_path, text, total, kill_at, workers):
     assert kill_at <= kept.finished < total
     assert (store / LOCK).exists()
     again = sb.sweep(file, store)
-    assert "its lock was taken over" in again.note
+    assert "the lock was taken over" in again.note
     assert again.finished == total
     assert again.computed == total - kept.finished
     after = chunks(store)
@@ -450,7 +450,7 @@ def test_a_second_sweep_on_the_store_is_refused_while_the_first_runs(capsys, tmp
         answer = call(capsys, "sweep", file, "--out", store)
         assert process.poll() is None
         assert answer.code == 2
-        assert f"{store} is in use: process {process.pid} on this machine sweeps on it" in answer.err
+        assert f"{store} is in use by process {process.pid} on this machine" in answer.err
         assert 0 < sb.open_sweep(store).finished < 1024  # reading is free
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)

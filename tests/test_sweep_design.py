@@ -143,7 +143,7 @@ GROUPS = "[groups]\nload = 0.1\nroughness = 1e-3\n"
             "state 0: the dimensionless groups of this contact",
         ),
         (GROUPS + "[vary]\nspeed = [1]\n[design]\npoints = 4\n", "[design] points = 4 is for random, latin-hypercube, sobol;"),
-        (GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "sobol"\n', "[design] points is missing; say how many states"),
+        (GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "sobol"\n', "[design] points is missing; set how many states"),
         (
             GROUPS + '[vary]\nspeed = [1]\n[design]\nkind = "sobol"\npoints = 100\n',
             "must be a power of two for kind = 'sobol'",

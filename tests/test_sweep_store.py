@@ -327,7 +327,7 @@ def test_a_chunk_that_cannot_be_removed_or_read_is_a_sentence(copy):
     with pytest.raises(sb.InputError, match=r"cannot be cleared: .*values/c\.7\.0: .*; correct that, or choose a new store\."):
         sb.sweep(file, store)
     (store / "done" / "c.7").write_bytes(b"1234")
-    with pytest.raises(sb.InputError, match=r"cannot be read: .*values/c\.7\.0: Is a directory; mend that, or choose"):
+    with pytest.raises(sb.InputError, match=r"cannot be read: .*values/c\.7\.0: Is a directory; correct that, or choose"):
         sb.open_sweep(store)
 
 
@@ -361,7 +361,9 @@ def test_another_design_is_refused(copy, tmp_path):
     store, _ = copy
     before = chunks(store)
     for name, changed in (("a", SMALL.replace("0.8", "0.9")), ("b", SMALL + "[solver]\nrtol = 1e-5\n")):
-        with pytest.raises(sb.InputError, match=r"store holds another sweep than .*: the states or the tolerance differ\."):
+        with pytest.raises(
+            sb.InputError, match=r"store contains a different sweep from .*: the states or the tolerance differ\."
+        ):
             sb.sweep(write(tmp_path, changed, f"{name}.toml"), store)
     assert chunks(store) == before
 
@@ -369,7 +371,7 @@ def test_another_design_is_refused(copy, tmp_path):
 def test_another_version_is_refused(copy, monkeypatch):
     store, file = copy
     monkeypatch.setattr(sweep_store, "version", lambda name: "9.9.9")
-    with pytest.raises(sb.InputError, match=r"was begun with stribeck 0\.[0-9.]+, this is 9\.9\.9"):
+    with pytest.raises(sb.InputError, match=r"was started with stribeck 0\.[0-9.]+, this is 9\.9\.9"):
         sb.sweep(file, store)
 
 
@@ -388,7 +390,7 @@ def test_a_place_that_is_no_store_is_refused_and_kept(tmp_path, taken):
         (out / "mine").write_text("mine")
     else:
         out = tmp_path / "no" / "out"
-    what = {"file": "is a file", "folder": "does not contain a sweep", "nowhere": "there is no folder"}[taken]
+    what = {"file": "is a file", "folder": "does not contain a sweep", "nowhere": "does not exist"}[taken]
     with pytest.raises(sb.InputError, match=what):
         sb.sweep(write(tmp_path, SMALL), out)
     assert sorted(os.listdir(tmp_path)) == sorted(["sweep.toml", *(["out"] if taken != "nowhere" else [])])
@@ -442,7 +444,7 @@ def lock_of(store, process=None, host=None, born=None):
 def test_a_store_that_a_living_process_sweeps_on_is_refused(copy):
     store, file = copy
     lock_of(store)
-    with pytest.raises(sb.InputError, match=rf"is in use: process {os.getpid()} on this machine sweeps on it; wait for it"):
+    with pytest.raises(sb.InputError, match=rf"is in use by process {os.getpid()} on this machine; wait for it"):
         sb.sweep(file, store)
     assert (store / LOCK).exists()
 
@@ -467,7 +469,9 @@ def test_the_lock_of_a_dead_process_is_taken_over_with_a_note(copy, how):
     store, file = copy
     lock_of(store, **({"process": dead_process()} if how == "ended" else {"born": 17}))
     found = sb.sweep(file, store)
-    assert re.fullmatch(r"An earlier sweep on this store \(process \d+\) ended without a word; its .* over\.", found.note)
+    assert re.fullmatch(
+        r"An earlier sweep on this store \(process \d+\) ended without releasing its lock; .* over\.", found.note
+    )
     assert not list(store.glob(f"*{LOCK}*"))
 
 
