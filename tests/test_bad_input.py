@@ -169,7 +169,7 @@ BAD_ARGUMENTS = [
     (["solve", "case.toml", "--groups", "1", "1", "1"], "case.toml and --groups are both given"),
     (["solve", "case.toml", "--boundary-friction", "0.5"], "--boundary-friction = 0.5 goes with --groups only"),
     (["curve", "case.toml", "--beta", "0.5"], "--beta = 0.5 goes with --groups only"),
-    (["solve", "--groups", "1", "1"], "--groups needs 3 values, 2 given"),
+    (["solve", "--groups", "1", "1"], "--groups needs 3 values, but 2 given"),
     (["solve", "--groups", "1", "1", "1", "1"], "--groups has more than 3 numbers: 1 1 1 1"),
     (["solve", "--groups", "-1", "0.1", "1e-3"], "speed = -1.0 must be finite and zero or positive"),
     (["solve", "--groups", "1", "0", "1e-3"], "load = 0.0 must be finite and positive"),
@@ -191,7 +191,7 @@ BAD_ARGUMENTS = [
     ([*CURVE, "--range", "1", "1"], "range = [1.0, 1.0] must increase"),
     ([*CURVE, "--range", "1 mm", "1 m"], "in range, speed = '1 mm' is a length"),
     ([*CURVE, "--range", "-1", "1"], "in range, speed = -1.0 must be zero or positive"),
-    ([*CURVE, "--range", "1 mm/s"], "--range needs 2 values, 1 given"),
+    ([*CURVE, "--range", "1 mm/s"], "--range needs 2 values, but 1 given"),
     ([*CURVE, "--over", "load"], "range is missing; a curve over load needs --range"),
     ([*CURVE, "--over", "time"], "over = 'time' must be 'speed', 'load' or 'roughness'"),
     ([*OF_GROUPS, "--range", "1", "1e-3"], "speed = (1.0, 0.001); a range is two or more finite"),
@@ -213,7 +213,7 @@ BAD_ARGUMENTS = [
     ([*CURVE, "-o", "new.xlsx"], "new.xlsx has the ending '.xlsx'; the name of this file must end in .nc or .csv"),
     ([*CURVE, "--plot", "new.bmp"], "new.bmp has the ending '.bmp'; the name of this file must end in .png, .svg"),
     ([*CURVE, "-o", "new.nc", "-o", "./new.nc"], "new.nc is given twice as an output"),
-    ([*CURVE, "-o"], "needs a value, 0 given"),
+    ([*CURVE, "-o"], "needs a value, but 0 given"),
 ]
 
 

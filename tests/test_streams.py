@@ -60,7 +60,7 @@ def test_what_a_full_disk_does_not_take_is_told(options):
 def test_a_closed_stdout_is_told_and_its_number_given_to_no_file(tmp_path):
     picture = tmp_path / "a.svg"
     code, _, err = run(*SOLVE, "--plot", picture, stdout=None, prepare=lambda: os.close(1), MPLBACKEND="nonsense")
-    assert (code, err[:39]) == (1, "stribeck: What was to be printed could ")
+    assert (code, err[:41]) == (1, "stribeck: The output could not be printed")
     assert err.endswith("not be printed (Bad file descriptor); the requested files were written.\n")
     assert picture.read_text().rstrip().endswith("</svg>")
 

@@ -20,7 +20,7 @@ SLOPE_TOLERANCE = 1e-5
 
 @dataclass(frozen=True)
 class FunctionLaw:
-    r"""Contact law by two functions, of ln(Phi) and of its derivative.
+    r"""Contact law given by two functions: ln(Phi) and its derivative.
 
     .. math:: p_c = \beta E^* \exp[f(s)], \qquad s = \alpha h/h_\mathrm{rms}
 

@@ -185,7 +185,7 @@ class GreenwoodWilliamson(_GaussianHeights):
 
 @dataclass(frozen=True)
 class GreenwoodTripp(_GaussianHeights):
-    r"""Contact law of two rough surfaces alike, asperities being paraboloids of one radius with Gaussian heights.
+    r"""Contact law of two similar rough surfaces whose asperities are paraboloids of one radius with Gaussian heights.
 
     .. math:: \Phi(s) = F_{5/2}(s), \qquad p_c = \beta E^* F_{5/2}(h/\sigma), \qquad
         \beta = \frac{16 \sqrt2 \pi}{15} (\eta_s R_s \sigma)^2 \sqrt{\sigma/R_s}

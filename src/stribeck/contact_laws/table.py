@@ -38,7 +38,7 @@ LEFT_OVER = 1e-3
 
 @dataclass(frozen=True)
 class TableLaw:
-    r"""Contact law through the rows of a table.
+    r"""Contact law interpolated between the rows of a table.
 
     .. math:: \Phi(s_i) = p_i/(\beta E^*), \qquad s_i = \alpha h_i/h_\mathrm{rms}
 

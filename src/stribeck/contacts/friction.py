@@ -19,7 +19,7 @@ DEFINITIONS: tuple[Definition, ...] = ("balanced", "published")
 
 @dataclass(frozen=True)
 class Friction:
-    """Friction coefficient and its two parts.
+    """Friction coefficient and its contributions from asperities and fluid.
 
     Attributes
     ----------

@@ -149,7 +149,7 @@ class Groups:
         return 2 * quantity("beta", beta) * self.load**0.5
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether the groups have the same shapes and values."""
+        """Return whether the groups have the same shapes and values."""
         if not isinstance(other, Groups):
             return NotImplemented
         names = ("speed", "load", "roughness")

@@ -28,7 +28,7 @@ WIDENINGS = (0, 2, 8, 32, 128)
 
 @dataclass(frozen=True)
 class Landmark:
-    """A state of note on a curve: where it lies and the solution there.
+    """A characteristic point of a curve: its position and the solution there.
 
     Attributes
     ----------

@@ -31,7 +31,7 @@ class Transition(StrEnum):
 
 
 def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:
-    """Return the regime from the part of the load on the fluid and the part of the friction from asperities.
+    """Return the regime from the fluid load share and the fraction of friction that asperities cause.
 
     Parameters
     ----------

@@ -125,7 +125,7 @@ def _speed_group(contact: LineContact) -> float:
 
 
 def in_atlas(contact: LineContact) -> bool:
-    """Tell whether the atlas covers the contact law, the load and the roughness of a contact."""
+    """Return whether the atlas covers the contact law, the load and the roughness of a contact."""
     return bool(atlas.covers(replace(contact.groups, speed=0.0)))
 
 

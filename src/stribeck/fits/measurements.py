@@ -57,7 +57,7 @@ _HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 
 @dataclass(frozen=True, eq=False)
 class Measurements:
-    """Measured friction, in SI units, each curve by ascending speed.
+    """Measured friction in SI units, each curve in order of increasing speed.
 
     Attributes
     ----------

@@ -82,7 +82,7 @@ class FittedInput:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Inputs of a contact fitted to measured friction.
+    """Inputs of a contact fitted to measured friction, with their intervals.
 
     Attributes
     ----------

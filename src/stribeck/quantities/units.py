@@ -32,7 +32,7 @@ __all__ = [
 
 
 class InputError(ValueError):
-    """A value given by the user cannot be used; the message is made of sentences for that user."""
+    """A value given by the user cannot be used; the message says why and what to try."""
 
 
 @dataclass(frozen=True)

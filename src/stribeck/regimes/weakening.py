@@ -121,7 +121,7 @@ def weakening(
     *,
     rtol: float = 1e-6,
 ) -> Weakening:
-    r"""Tell whether friction falls with speed anywhere on a Stribeck curve, by the minimum slope on solved states.
+    r"""Return whether friction falls with speed anywhere on a Stribeck curve, by the minimum slope on solved states.
 
     .. math:: \min_\lambda \frac{1}{\mu_f} \frac{d\mu}{d\ln\lambda} < 0
 

@@ -93,7 +93,7 @@ class WarmStartSolver:
 
 
 def _near(last: Groups, new: Groups) -> bool:
-    """Tell whether no group changed by too much, nor between zero and more."""
+    """Return whether no group changed by too much, nor between zero and more."""
     for name in ("speed", "load", "roughness"):
         before, after = float(getattr(last, name)), float(getattr(new, name))
         if (before == 0) != (after == 0) or (before and abs(math.log(after / before)) > math.log(LARGEST_CHANGE)):

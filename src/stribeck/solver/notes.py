@@ -174,7 +174,7 @@ def _shares(contact: LineContact | None, values: Observables) -> tuple[float, fl
 
 
 def _is_limit_of_persson(groups: Groups) -> bool:
-    """Tell whether the law of a state falls exponentially far apart as Persson's does."""
+    """Return whether the law of a state falls exponentially far apart as Persson's does."""
     return is_exponential(groups.law) or (groups.law is not None and groups.law.name == "persson")
 
 

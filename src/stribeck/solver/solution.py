@@ -58,7 +58,7 @@ class Profile:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    r"""One state of the contact.
+    r"""One solved state of the contact.
 
     Lengths along the contact are in Hertz half-widths a, gaps in indentations u_Hz, pressures in p_Hz.
 

@@ -45,7 +45,7 @@ TESTED = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e
 
 
 class SolveError(RuntimeError):
-    """A solve that did not reach its tolerance.
+    """The solver did not reach the tolerance.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ PENDING = "NOT_COMPUTED"
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """The states of a store, as they were when it was read.
+    """The states of a store at the time it was read.
 
     Attributes
     ----------

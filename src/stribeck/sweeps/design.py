@@ -39,7 +39,7 @@ CHOICES = {name for other in ALTERNATIVES for name in (other.of, *other.inputs)}
 
 @dataclass(frozen=True, eq=False)
 class SweepDesign:
-    """Many states to solve, each checked.
+    """The states that a sweep is to solve, each checked.
 
     Attributes
     ----------

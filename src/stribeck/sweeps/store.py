@@ -40,7 +40,7 @@ DESIGN = "sweep.toml"
 
 
 class SweepError(RuntimeError):
-    """A sweep that could not go on; what it finished is in its store, and it can be resumed.
+    """A sweep failed; the finished states are in its store, and it can be resumed.
 
     Parameters
     ----------

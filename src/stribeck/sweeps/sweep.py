@@ -36,7 +36,7 @@ WINDOW = 60.0
 
 @dataclass(frozen=True)
 class SweepProgress:
-    """How far a sweep is.
+    """The progress of a sweep.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ def sweep(
     scheduler: str | None = None,
     on_progress: Callable[[SweepProgress], object] | None = None,
 ) -> Sweep:
-    """Solve all states of a design and keep each in a store as it finishes; go on where an earlier run stopped.
+    """Solve all states of a design and store each as it finishes; resume an interrupted run.
 
     Parameters
     ----------

@@ -126,7 +126,7 @@ class Guard:
         return None
 
     def has_token(self, scope: Scope) -> bool:
-        """Tell whether a page is asked for with the token in its address."""
+        """Return whether a page is asked for with the token in its address."""
         if scope["type"] != "http" or scope["path"] != "/":
             return False
         return any(key == "token" and self._is_token(value) for key, value in _query(scope))
