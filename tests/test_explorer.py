@@ -244,12 +244,12 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
         ('law={"law":"persson","surface":{"spectrum":"x.csv"}}', "a link contains its rows instead"),
         ('law={"law":"hertz"}', "law = 'hertz' must be one of"),
         ('rest={"fit":{"free":["x"]}}', "which cannot be fitted"),
-        ('rest={"points":NaN}', "is not JSON"),
+        ('rest={"points":NaN}', "is not valid JSON"),
         ("rtol=2", "rtol"),
         ("pin=x", "pin = 'x' must hold 9 numbers, the definition and a name."),
         ("pin=", "pin = '' must hold 9 numbers"),
         ("pin=1~1~1~1~1~1~1~1~1~balanced@3~name", "names a contact law that the address does not contain"),
-        ("pinlaw=x", "is not JSON"),
+        ("pinlaw=x", "is not valid JSON"),
     ],
 )
 def test_what_an_address_cannot_mean_is_told(query, sentence):

@@ -200,7 +200,7 @@ def test_at_rest_only_speed_leads_on():
     assert (speed.less, speed.more.regime, speed.more.factor) == (None, "mixed", math.inf)
     assert shares(CONTACT.replace(speed=speed.more.value))[1] == pytest.approx(0.05, abs=1e-7)
     assert all(margin.less is margin.more is None for margin in others)
-    assert any("At rest" in note for note in found.notes)
+    assert any("At zero speed" in note for note in found.notes)
 
 
 def test_smooth_surfaces_are_never_boundary_lubricated():
@@ -224,7 +224,7 @@ def test_a_saturated_contact_at_rest_leaves_boundary_lubrication_as_soon_as_it_m
     contact = CONTACT.replace(load=1200.0, speed=0, roughness=1e-5)
     found = regime_margins(contact)
     assert (found.margins[0].more.regime, found.margins[0].more.value) == ("mixed", 0.0)
-    assert any("load group 1" in note for note in found.notes)
+    assert any("load groups of 1 or more" in note for note in found.notes)
     assert shares(contact.replace(speed=1e-5))[0] == "mixed"
 
 
@@ -285,10 +285,14 @@ def test_the_command_says_what_it_takes_to_reach_each_neighbour(capsys, tmp_path
     monkeypatch.setenv("COLUMNS", "200")
     text = command(capsys, tmp_path)
     assert (
-        "To reach boundary: speed / 2.72 (367.9 µm/s), or roughness x 1.68 (1.679 µm), or viscosity / 2.72 (18.39 mPa*s); "
-        "not reachable by load (range searched 7.99 mN/m to 305 N/m)." in text
+        "To reach boundary lubrication: speed / 2.72 (to 367.9 µm/s), or roughness x 1.68 (to 1.679 µm), or "
+        "viscosity / 2.72 (to 18.39 mPa*s); "
+        "not reachable by changing load (range searched 7.99 mN/m to 305 N/m)." in text
     )
-    assert "To reach hydrodynamic: speed x 30.5 (30.46 mm/s), or load / 3.75e+03 (7.994 mN/m), or roughness / 10.2" in text
+    assert (
+        "To reach hydrodynamic lubrication: speed x 30.5 (to 30.46 mm/s), or load / 3.75e+03 (to 7.994 mN/m), or roughness"
+        in text
+    )
     assert "Only the product of speed and viscosity matters" in text
     rows = {line.split("  ")[0].strip() for line in text.splitlines()}
     assert {"speed", "load", "viscosity", "effective modulus", "radius", "roughness", "dry friction coefficient"} <= rows
@@ -314,10 +318,19 @@ def test_the_command_gives_the_distances_as_json(capsys, tmp_path, mixed):
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"speed": 0.0}, "To reach mixed: speed from zero to 367.9 µm/s; not reachable by load, roughness, viscosity."),
-        ({"roughness": 0.0}, "To reach mixed: roughness from zero to 97.71 nm; not reachable by speed, load, viscosity."),
-        ({"speed": 0.0, "roughness": 0.0}, "To reach hydrodynamic: speed of any size"),
-        ({"boundary_friction": 0.0}, "To reach mixed: not reachable by speed, load, roughness, viscosity."),
+        (
+            {"speed": 0.0},
+            "To reach mixed lubrication: speed from zero to 367.9 µm/s; not reachable by changing load, roughness, viscosity.",
+        ),
+        (
+            {"roughness": 0.0},
+            "To reach mixed lubrication: roughness from zero to 97.71 nm; not reachable by changing speed, load, viscosity.",
+        ),
+        ({"speed": 0.0, "roughness": 0.0}, "To reach hydrodynamic lubrication: speed to any value above zero"),
+        (
+            {"boundary_friction": 0.0},
+            "To reach mixed lubrication: not reachable by changing speed, load, roughness, viscosity.",
+        ),
     ],
 )
 def test_the_command_has_words_for_the_corners(capsys, tmp_path, changes, sentence):

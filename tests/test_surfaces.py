@@ -202,7 +202,7 @@ def test_a_cut_off_that_was_seen_leaves_no_doubt_about_longer_waves():
 
 def test_what_is_not_self_affine_is_said_to_be_so():
     noise = np.random.default_rng(105).standard_normal((64, 64)) * 1e-7
-    with pytest.raises(sb.InputError, match="nothing but white noise"):
+    with pytest.raises(sb.InputError, match="only white noise"):
         analyse(Topography(noise, (STEP, STEP)))
     wave = analyse(Topography(1e-6 * np.sin(np.arange(256) / 5) + 1e-2 * noise.ravel()[:256], (STEP,)))
     assert any("The spectrum is not self-affine" in note for note in wave.notes)
@@ -351,7 +351,7 @@ def test_the_command_prints_and_writes_what_analyse_finds(capsys, scan, tmp_path
     ("tokens", "words"),
     [
         ((), "FILE is missing"),
-        (("none.csv",), "none.csv is no file"),
+        (("none.csv",), "none.csv is not a file"),
         (("SCAN", "--unit", "mm"), "declares its"),
         (("SCAN", "--trend", "cubic"), "detrend = 'cubic'"),
         (("SCAN", "--gamma", "x"), "gamma = 'x' is not a number"),

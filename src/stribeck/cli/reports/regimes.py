@@ -118,7 +118,7 @@ def _ways(margins: RegimeMargins) -> Iterator[str]:
 def _step(name: str, mark: Crossing) -> str:
     """Return how far an input is to be changed, as ``x 3.1 (0.31 m/s)``."""
     if mark.value == 0:
-        return "of any value"
+        return "to any value above zero"
     value = format_si(mark.value, QUANTITIES[name].dimension, 4)
     if math.isinf(mark.factor):
         return f"from zero to {value}"
