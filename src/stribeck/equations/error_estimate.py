@@ -253,7 +253,7 @@ def interpolation_errors(states: StackedStates, minimum_positions: Array) -> Arr
 
 
 def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float) -> bool:
-    """Return whether central and minimum gap are interpolated to ``rtol``: what a mesh kept loses first."""
+    """Return whether central and minimum gap are interpolated to ``rtol``: a reused mesh loses them first."""
     panels = [int(np.searchsorted(mesh.edges, 0.0)), int(np.argmin(gap)) // mesh.order]
     return bool((_between_nodes(mesh, gap.reshape(mesh.panels, -1)[panels], panels) <= rtol).all())
 
