@@ -151,7 +151,7 @@ def test_covariance_is_that_of_the_linearised_least_squares(fitted):
 def test_an_end_of_an_interval_is_where_the_best_fit_is_worse_by_the_quantile(fitted):
     from scipy.stats import t
 
-    goal = replace(fitted._minimum.objective, parts_of=atlas_parts("published"))
+    goal = replace(fitted._minimum.objective, parts_of=atlas_parts("balanced"))
     at = minimise(goal, fitted._minimum.theta)
     for i, each in enumerate(fitted.inputs):
         for level, ends in ((0.682689492137086, each.interval_68), (0.95, each.interval_95)):

@@ -18,8 +18,16 @@ __all__ = ["FREE", "FitSettings", "Prior", "check_fit_table", "free_names"]
 
 Noise = Literal["relative", "absolute"]
 
-FREE = tuple(row.name for row in reversed(ROWS) if not row.derived and row.name != "speed")
-"""Inputs that may be fitted; all of them enter friction through groups, boundary friction and beta."""
+USUAL = ("boundary_friction", "roughness", "beta", "alpha", "modulus", "viscosity", "load", "radius")
+"""Inputs from what a fit is mostly after to what is mostly known: the order in which results name them."""
+
+FREE = tuple(
+    sorted(
+        (row.name for row in ROWS if not row.derived and row.name != "speed"),
+        key=lambda name: USUAL.index(name) if name in USUAL else len(USUAL),
+    )
+)
+"""Inputs that may be fitted, in that order; all of them enter friction through groups, boundary friction and beta."""
 
 DEFAULT_FREE = ("boundary_friction", "roughness")
 
