@@ -26,9 +26,12 @@ import stribeck as sb
 
 scan = sb.surfaces.read_topography("../../examples/cylinder_profile.csv")
 surface = sb.surfaces.analyse(scan)
-for name in ("body_radius", "h_rms", "hurst", "roll_off", "alpha", "beta"):
-    found = surface.to_dict()
+found = surface.to_dict()
+for name in ("body_radius", "h_rms", "hurst", "roll_off"):
     print(f"{name:12} {found[name]:.4g} +- {found[name + '_error']:.1g}")
+for name in ("alpha", "beta"):
+    low, high = found[name + "_interval"]
+    print(f"{name:12} {found[name]:.4g}, {low:.3g} to {high:.3g} at 95 %")
 assert abs(surface.roughness.hurst - 0.8) < 2 * surface.fit.errors["hurst"]
 
 # %% [markdown]
