@@ -313,7 +313,7 @@ def test_a_folder_is_made_but_not_the_folders_above_it(fakes, tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(sb.InputError, match="file is a file; give the name of a folder"):
         make_figures(["3"], tmp_path / "file")
-    with pytest.raises(sb.InputError, match="cannot be made"):
+    with pytest.raises(sb.InputError, match="cannot be created"):
         make_figures(["3"], tmp_path / "file" / "below")
     with pytest.raises(sb.InputError, match="File name too long"):
         make_figures(["3"], tmp_path / ("n" * 300))

@@ -462,7 +462,7 @@ def test_the_posterior_agrees_with_the_profile(fitted):
 
 def test_the_posterior_of_a_robust_fit_is_refused():
     found = sb.fit(noisy(1), TRUE, robust=True, intervals=False)
-    with pytest.raises(sb.InputError, match="no likelihood"):
+    with pytest.raises(sb.InputError, match="not a likelihood"):
         draw_posterior(found)
 
 

@@ -677,7 +677,7 @@ def test_where_rounding_bounds_the_error_the_solve_says_so_and_keeps_what_it_has
     error = caught.value
     assert error.outcome is Outcome.ROUNDING
     assert error.solution.outcome is Outcome.ROUNDING
-    assert "speed 1e-12" in str(error) and "asked: 1.0e-11" in str(error)
+    assert "speed 1e-12" in str(error) and "requested: 1.0e-11" in str(error)
     assert 1e-11 < error.solution.rounding_floor <= error.solution.error_estimate < 1e-6
     assert any("Rounding in double precision limits" in note for note in error.solution.notes)
     returned = sb.solve(sb.Groups(1e-12, 0.1, 0.0), rtol=1e-11, on_failure="return")
