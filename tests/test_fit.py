@@ -525,7 +525,7 @@ def test_the_table_says_how_the_fit_ended_and_warns(tmp_path, capsys):
     answer = call(capsys, "fit", tmp_path / "lab.csv", EXAMPLES / "pdms_cylinder.toml", "--free", "mu0", "h_rms", "--robust")
     assert answer.code == 0
     assert "The fit converged." in answer.out
-    assert re.search("Warning: boundary_friction .*not determined.*boundary plateau", answer.out)
+    assert re.search("Warning: boundary_friction .*cannot be determined.*boundary plateau", answer.out)
 
 
 def test_files_in_each_others_place_are_told_with_the_right_order(tmp_path):

@@ -261,7 +261,7 @@ def test_without_roughness_or_speed_a_layer_has_no_value_and_says_so(field, x):
 def test_a_solve_that_fails_says_so(name, monkeypatch):
     for module in (edge_layer, film_layers):
         monkeypatch.setattr(module, "root_find", lambda problem, start, _: root_find(problem, start, StepControl(max_steps=1)))
-    with pytest.raises(RuntimeError, match=r"layer with reach = 1234, .*largest number of steps"):
+    with pytest.raises(RuntimeError, match=r"layer with reach = 1234, .*step limit"):
         LAYERS[name](1234.0)
 
 

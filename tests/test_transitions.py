@@ -94,7 +94,7 @@ def test_an_unknown_film_is_refused_by_name():
 
 
 def test_a_dry_smooth_contact_has_no_contact_share_by_formula():
-    with pytest.warns(OutOfRangeWarning, match="has no value"):
+    with pytest.warns(OutOfRangeWarning, match="is undefined"):
         assert math.isnan(mixed.contact_load_share(sb.Groups(0.0, 0.1, 0.0)))
     with pytest.warns(OutOfRangeWarning, match="is used outside"):
         assert mixed.contact_load_share(sb.Groups(1e-3, 0.1, 0.0)) == 0
@@ -143,7 +143,7 @@ def test_beyond_the_branch_of_lambert_w_there_is_no_minimum():
         speeds = np.geomspace(1e-3, 1e5, 4001)
         friction = mixed.friction.function(sb.Groups(speeds, 0.1, factor * edge), film="large")
         assert (np.diff(friction) < 0).any() == present
-    with pytest.warns(OutOfRangeWarning, match="has no value"):
+    with pytest.warns(OutOfRangeWarning, match="is undefined"):
         assert math.isnan(transitions.speed_at_minimum(sb.Groups(1.0, 0.1, 1.001 * edge), form="exact"))
 
 
@@ -203,7 +203,7 @@ def test_an_unknown_form_is_refused_by_name():
 def test_a_smooth_contact_has_no_minimum():
     smooth = sb.Groups(1.0, 0.1, 0.0)
     assert not transitions.has_minimum(smooth)
-    with pytest.warns(OutOfRangeWarning, match="has no value"):
+    with pytest.warns(OutOfRangeWarning, match="is undefined"):
         assert math.isnan(transitions.friction_at_minimum(smooth))
 
 
@@ -230,7 +230,7 @@ def test_the_printed_speed_from_boundary_to_mixed_falls_where_it_should_grow():
 
 
 def test_from_load_one_there_is_no_speed_from_boundary_to_mixed():
-    with pytest.warns(OutOfRangeWarning, match="has no value"):
+    with pytest.warns(OutOfRangeWarning, match="is undefined"):
         found = transitions.speed_boundary_to_mixed(sb.Groups(1.0, np.array([0.1, 1.0, 3.0]), 1e-5))
     assert np.isnan(found).tolist() == [False, True, True]
 
