@@ -87,7 +87,7 @@ def test_the_second_panel_shows_friction_against_the_hydrodynamic_law_beside_the
     axes = plot_curve(curve).axes[1]
     np.testing.assert_array_equal(line(axes, "friction").get_xdata(), curve.hydrodynamic_friction)
     np.testing.assert_array_equal(line(axes, "friction").get_ydata(), curve.friction)
-    law = line(axes, "the law itself")
+    law = line(axes, "hydrodynamic law")
     np.testing.assert_array_equal(law.get_xdata(), law.get_ydata())
 
 
@@ -160,7 +160,7 @@ def test_the_footer_holds_inputs_law_tolerance_and_version(curve):
     found = words(plot_curve(curve, title="A title"))
     for part in ("A title", "$R$ = 10 mm", "= 2.7 MPa", "$F_N$ = 30 N/m", "= 50 mPa·s", "exponential contact law"):
         assert part in found
-    for part in ("definition balanced", "rtol 1e-06", "estimated error", "9 points", "stribeck 0."):
+    for part in ("viscous friction: balanced", "rtol 1e-06", "estimated error", "9 points", "stribeck 0."):
         assert part in found
     assert "$U$ =" not in found  # it varies
 
@@ -179,7 +179,7 @@ def test_an_interrupted_curve_says_how_many_points_it_has():
 
     found = words(plot_curve(sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1, 10), points=5, on_point=stop)))
     assert "2 of 5 points" in found
-    assert "Interrupted before the end" in found
+    assert "Interrupted; the finished points are kept" in found
 
 
 # --- legibility ---

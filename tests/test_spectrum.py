@@ -139,7 +139,7 @@ def test_wavelengths_and_wave_numbers_say_the_same():
     [
         ({"q0": None}, "q0 is missing"),
         ({"q1": None}, "q1 is missing"),
-        ({"longest_wavelength": "1 mm"}, "say the same"),
+        ({"longest_wavelength": "1 mm"}, "mean the same"),
         ({"q0": "60 um"}, "q0 = '60 um' is a length; expected a wave number such as"),
         ({"q0": "-1 1/m"}, "not above zero"),
         ({"gamma": 0.0}, "gamma = 0 must be above 0"),

@@ -295,7 +295,7 @@ def test_a_folder_without_permission_is_refused(tmp_path, monkeypatch):
 def test_a_protected_file_is_kept_even_when_forced(tmp_path, monkeypatch):
     (tmp_path / "curve.nc").write_text("precious")
     monkeypatch.setattr("os.access", lambda path, mode: False)
-    with pytest.raises(sb.InputError, match="protected against writing"):
+    with pytest.raises(sb.InputError, match="write-protected"):
         check_writable(tmp_path / "curve.nc", (".nc",), force=True)
 
 

@@ -148,7 +148,7 @@ def test_a_state_that_rounding_bounds_keeps_its_value_with_its_error(tmp_path):
     assert bounded.any()
     assert (found.error_estimate.values[bounded] > 1e-11).all()
     assert np.isfinite(found.friction_published.values[bounded]).all()
-    assert all("Double precision bounds" in text for text in found.message.values[bounded])
+    assert all("Double precision keeps the error" in text for text in found.message.values[bounded])
 
 
 def test_failures_are_not_tried_again(tmp_path, monkeypatch):

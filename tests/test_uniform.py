@@ -147,14 +147,14 @@ def test_loads_from_one_on_have_no_value_and_say_so():
         uniform.friction,
         uniform.viscous_friction,
     ):
-        with pytest.warns(OutOfRangeWarning, match="is undefined (nan) outside its range"):
+        with pytest.warns(OutOfRangeWarning, match="is undefined .nan. outside its range"):
             found = law(sb.Groups([1e-5, 1e-5], [0.1, 1.0], [1e-4, 1e-4]))
         assert np.isfinite(found).tolist() == [True, False]
 
 
 @pytest.mark.parametrize("share", [0.0, 1.0, -0.1, float("nan"), [0.5, 2.0]])
 def test_a_share_that_is_none_is_refused(share):
-    with pytest.raises(sb.InputError, match="a part of the load lies between 0 and 1"):
+    with pytest.raises(sb.InputError, match="a fraction of the load lies between 0 and 1"):
         load_sharing.speed_at_fluid_share(sb.Groups(1.0, 0.1, 1e-4), share)
 
 

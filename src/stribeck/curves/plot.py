@@ -115,7 +115,7 @@ def plot_curve(curve: StribeckCurve, path: PathLike | None = None, *, force: boo
             lw=1.2,
             ls=(0, (5, 3)),
             zorder=2,
-            label="hydrodynamic law, $y = x$",
+            label="hydrodynamic law",
             scalex=False,
         )
     else:
