@@ -37,6 +37,9 @@ def plot(surface):
 
 if __name__ == "__main__":
     found = main()
-    for name in ("body_radius", "h_rms", "hurst", "alpha", "beta"):
-        print(f"{name}: {found.to_dict()[name]:.4g} +- {found.to_dict()[name + '_error']:.1g}")
+    values = found.to_dict()
+    for name in ("body_radius", "h_rms", "hurst"):
+        print(f"{name}: {values[name]:.4g} +- {values[name + '_error']:.1g}")
+    for name in ("alpha", "beta"):
+        print(f"{name}: {values[name]:.3g}, 95 % interval {values[name + '_interval']}")
     plot(found).savefig("contact_law.png")

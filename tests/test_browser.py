@@ -283,10 +283,18 @@ def test_a_shared_address_opens_as_it_was_left(open_page):
     assert contact_of(other) == now
     check_numbers(other, now)
     assert other.locator(".chips .q-chip").inner_text() == page.locator(".chips .q-chip").inner_text()
-    data = [
-        [s["data"] for s in each.evaluate(CHART, "friction")["series"] if s["id"] in ("pin0", "friction")]
-        for each in (page, other)
-    ]
+
+    def drawn(each):
+        """Return the points of the pinned and the present curve, which come with the first frame."""
+        for _ in range(100):
+            series = each.evaluate(CHART, "friction")["series"]
+            points = [s["data"] for s in series if s["id"] in ("pin0", "friction")]
+            if points and all(points):
+                break
+            each.wait_for_timeout(100)
+        return points
+
+    data = [drawn(each) for each in (page, other)]
     assert data[0] == data[1] and len(data[0]) == 2
 
 
