@@ -32,7 +32,7 @@ OBSERVABLES = (
 )
 """Names of the observables.
 
-``minimum_radius`` [a] and ``minimum_angle`` [radian, 0 downstream on the middle line, at most pi, the film being symmetric] place
+``minimum_radius`` [a] and ``minimum_angle`` [radian, 0 downstream on the middle line, at most pi by symmetry] place
 the minimum of the gap; ``minimum_gap_on_axis`` is that of the middle line.  The J are the finite parts of the friction
 integrals, ``lim J(r < X) - (16/15) pi lambda ln X``; J_balanced is the force on the flat, J_published that on the ball
 without the contact pressure along x, which is J_pcx.
