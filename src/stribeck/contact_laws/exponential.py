@@ -45,7 +45,9 @@ class NoContact:
 class ExponentialLaw:
     r"""Contact pressure that falls exponentially with the gap.
 
-    .. math:: p_c = \bar F_N^{-1/2} \exp(-h/\kappa), \qquad \kappa = \bar h_\mathrm{rms}/\bar F_N
+    .. math:: p_c = \bar F_N^{-e} \exp(-h/\kappa), \qquad \kappa = \bar h_\mathrm{rms}/\bar F_N^{2e}
+
+    with e = 1/2 on the line and 1/3 on the ball.
 
     Parameters
     ----------
@@ -53,6 +55,8 @@ class ExponentialLaw:
         Load group [-]; for stacked states a column of them.
     decay_length : float or ndarray
         Relative roughness kappa, the length of the decay [u_Hz], likewise.
+    pressure_exponent : float
+        e.
 
     Notes
     -----
@@ -63,6 +67,7 @@ class ExponentialLaw:
 
     load: Numbers
     decay_length: Numbers
+    pressure_exponent: float = 0.5
     name: str = "exponential"
     constant_decay: bool = True
 
@@ -75,16 +80,16 @@ class ExponentialLaw:
         return np.asarray(np.exp(self.log_pressure(gap)))
 
     def log_pressure(self, gap: Array) -> Array:
-        """Return ``-h/kappa - ln(F)/2``."""
-        return np.asarray(gap / -self.decay_length - 0.5 * np.log(self.load))
+        """Return ``-h/kappa - e ln(F)``."""
+        return np.asarray(gap / -self.decay_length - self.pressure_exponent * np.log(self.load))
 
     def slope(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dh`` = -p_c/kappa."""
         return pressure / -self.decay_length
 
     def load_derivative(self, gap: Array, pressure: Array) -> Array:
-        """Return ``dp_c/dlnF`` = p_c (-1/2 - h/kappa), the roughness group held."""
-        return -pressure * (0.5 + gap / self.decay_length)
+        """Return ``dp_c/dlnF`` = -e p_c (1 + 2 h/kappa), the roughness group held."""
+        return -pressure * self.pressure_exponent * (1 + 2 * gap / self.decay_length)
 
     def roughness_derivative(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dln h_rms`` = p_c h/kappa."""

@@ -28,7 +28,9 @@ NAMED: dict[str, AsperityLaw | None] = {
 class ScaledLaw:
     r"""Contact law of any shape.
 
-    .. math:: p_c = \bar F_N^{-1/2} \, \Phi(h/\kappa), \qquad \kappa = \bar h_\mathrm{rms}/\bar F_N
+    .. math:: p_c = \bar F_N^{-e} \, \Phi(h/\kappa), \qquad \kappa = \bar h_\mathrm{rms}/\bar F_N^{2e}
+
+    with e = 1/2 on the line and 1/3 on the ball.
 
     Parameters
     ----------
@@ -38,6 +40,8 @@ class ScaledLaw:
         Load group [-]; for stacked states a column of them.
     decay_length : float or ndarray
         Relative roughness kappa, the unit of separations [u_Hz], likewise.
+    pressure_exponent : float
+        e.
 
     Notes
     -----
@@ -47,6 +51,7 @@ class ScaledLaw:
     shape: AsperityLaw
     load: Numbers
     decay_length: Numbers
+    pressure_exponent: float = 0.5
     constant_decay: bool = False
 
     @property
@@ -64,16 +69,16 @@ class ScaledLaw:
         return np.asarray(np.exp(self.log_pressure(gap)))
 
     def log_pressure(self, gap: Array) -> Array:
-        """Return ``ln Phi(h/kappa) - ln(F)/2``."""
-        return np.asarray(self.shape.log_pressure(gap / self.decay_length) - 0.5 * np.log(self.load))
+        """Return ``ln Phi(h/kappa) - e ln(F)``."""
+        return np.asarray(self.shape.log_pressure(gap / self.decay_length) - self.pressure_exponent * np.log(self.load))
 
     def slope(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dh`` = p_c (d ln Phi/ds)/kappa."""
         return np.asarray(pressure * self.shape.log_slope(gap / self.decay_length) / self.decay_length)
 
     def load_derivative(self, gap: Array, pressure: Array) -> Array:
-        """Return ``dp_c/dlnF`` = p_c (-1/2 + s d ln Phi/ds), the roughness group held."""
-        return np.asarray(pressure * (-0.5 + self._elasticity(gap)))
+        """Return ``dp_c/dlnF`` = e p_c (-1 + 2 s d ln Phi/ds), the roughness group held."""
+        return np.asarray(pressure * self.pressure_exponent * (-1 + 2 * self._elasticity(gap)))
 
     def roughness_derivative(self, gap: Array, pressure: Array) -> Array:
         """Return ``dp_c/dln h_rms`` = -p_c s d ln Phi/ds."""

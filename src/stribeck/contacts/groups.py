@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal, TypedDict
 
 import numpy as np
 
@@ -16,10 +16,15 @@ from stribeck._types import Array
 from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
 from stribeck.contact_laws.law import AsperityLaw, ContactLaw, check_law, has_constant_decay
 from stribeck.contact_laws.scaled import ScaledLaw
+from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.scaling import SCALINGS, Scaling
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["LARGEST", "SMALLEST", "Groups"]
+__all__ = ["LARGEST", "SMALLEST", "Geometry", "Groups", "Physics"]
+
+Geometry = Literal["line", "point"]
+"""What touches: a cylinder or a ball."""
 
 
 SMALLEST, LARGEST = 1e-300, 1e300
@@ -27,6 +32,14 @@ SMALLEST, LARGEST = 1e-300, 1e300
 
 SLACK = 1e-9
 """By how much a group may exceed its bound, as the exponential of its logarithm does."""
+
+
+class Physics(TypedDict):
+    """All of :class:`Groups` but the numbers: what states of one curve, sweep or diagram have in common."""
+
+    law: AsperityLaw | None
+    geometry: Geometry
+    model: Model
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -51,6 +64,16 @@ class Groups:
     law : AsperityLaw, optional
         Contact law :math:`\Phi`, the pressure over :math:`\beta E^*` at the separation :math:`\alpha h/h_\mathrm{rms}`; the
         exponential law of the paper by default.
+    geometry : {"line", "point"}
+        A cylinder, for which the definitions above hold, or a ball, for which
+
+        .. math::
+
+            \lambda = \frac{3 \pi \eta U R^3}{E^* a^4}, \quad \bar F_N = \frac{6 F_N}{\pi^3 \beta^3 R^2 E^*}, \quad
+            \bar h_\mathrm{rms} = \frac{4 h_\mathrm{rms}}{\pi^2 \alpha \beta^2 R}, \qquad
+            a = \left(\frac{3 F_N R}{4 E^*}\right)^{1/3}
+    model : Model
+        Fluid, cavitation, solid and motion, in Hertz units; those of the article by default.
 
     Raises
     ------
@@ -70,11 +93,18 @@ class Groups:
     load: float | Array
     roughness: float | Array
     law: AsperityLaw | None = field(default=None, kw_only=True)
+    geometry: Geometry = field(default="line", kw_only=True)
+    model: Model = field(default=ARTICLE, kw_only=True)
 
     def __post_init__(self) -> None:
         """Check the groups and make them floats or read-only arrays."""
         if self.law is not None:
             check_law(self.law)
+        if not isinstance(self.geometry, str) or self.geometry not in SCALINGS:
+            known = " or ".join(map(repr, SCALINGS))
+            raise InputError(f"geometry = {show(self.geometry)}; it must be {known}: a cylinder or a ball.")
+        if not isinstance(self.model, Model):
+            raise InputError(f"model = {show(self.model)}; it must be a stribeck.contacts.model.Model.")
         for name, positive in (("speed", False), ("load", True), ("roughness", False)):
             object.__setattr__(self, name, _group(name, getattr(self, name), positive))
         try:
@@ -82,7 +112,17 @@ class Groups:
         except ValueError:
             shapes = ", ".join(f"{name} {np.shape(getattr(self, name))}" for name in ("speed", "load", "roughness"))
             raise InputError(f"the shapes of the groups do not broadcast: {shapes}.") from None
-        _check_ratio(self.roughness, self.load)
+        _check_ratio(self.roughness, self.load, self.scaling.roughness_exponent)
+
+    @property
+    def scaling(self) -> Scaling:
+        """How the groups of this geometry scale."""
+        return SCALINGS[self.geometry]
+
+    @property
+    def physics(self) -> Physics:
+        """Law, geometry and model, as keywords of other groups that share them."""
+        return {"law": self.law, "geometry": self.geometry, "model": self.model}
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -98,14 +138,25 @@ class Groups:
 
     @property
     def relative_roughness(self) -> float | Array:
-        r"""Roughness over Hertz indentation, :math:`\kappa = \bar h_\mathrm{rms}/\bar F_N` [-]."""
+        r"""Roughness over Hertz indentation [-], :math:`\kappa = h_\mathrm{rms}/\alpha u_\mathrm{Hz}`.
+
+        :math:`\bar h_\mathrm{rms}/\bar F_N` on the line, :math:`\bar h_\mathrm{rms}/\bar F_N^{2/3}` on the ball.
+        """
         with np.errstate(all="ignore"):
-            return self.roughness / self.load
+            return self.roughness / self.load**self.scaling.roughness_exponent
+
+    @property
+    def pressure_scale(self) -> float | Array:
+        r"""The largest Hertz pressure over that of the contact law [-], :math:`p_\mathrm{Hz}/\beta E^*`."""
+        return self.load**self.scaling.pressure_exponent
 
     def hersey_number(self, beta: float = 1.0) -> float | Array:
         r"""Return the Hersey number.
 
-        .. math:: \frac{\eta U}{F_N} = \frac{4 \beta^2 \bar F_N \lambda}{3 \pi}
+        .. math::
+
+            \frac{\eta U}{F_N} = \frac{4 \beta^2 \bar F_N \lambda}{3 \pi} \text{ on the line}, \qquad
+            \frac{\eta U R}{F_N} = \frac{\lambda}{4 \pi} \frac{a}{R} \text{ on the ball}
 
         Parameters
         ----------
@@ -124,12 +175,17 @@ class Groups:
         """
         beta = quantity("beta", beta)
         with np.errstate(all="ignore"):
-            return 4 * beta * beta * self.load * self.speed / (3 * math.pi)
+            if self.geometry == "line":
+                return 4 * beta * beta * self.load * self.speed / (3 * math.pi)
+            return self.speed * self.slope(beta) ** self.scaling.hersey_power / self.scaling.hersey_divisor
 
     def slope(self, beta: float = 1.0) -> float | Array:
-        r"""Return the slope of the cylinder at the edge of the Hertz contact.
+        r"""Return the slope of the cylinder or ball at the edge of the Hertz contact.
 
-        .. math:: \frac{a}{R} = 2 \beta \bar F_N^{1/2}
+        .. math::
+
+            \frac{a}{R} = 2 \beta \bar F_N^{1/2} \text{ on the line}, \qquad
+            \frac{a}{R} = \frac{\pi}{2} \beta \bar F_N^{1/3} \text{ on the ball}
 
         Parameters
         ----------
@@ -139,14 +195,14 @@ class Groups:
         Returns
         -------
         float or ndarray
-            Half-width of the Hertz contact over the radius [-], of the shape of ``load``.
+            Half-width of the Hertz contact, or its radius, over the radius of curvature [-], of the shape of ``load``.
 
         Raises
         ------
         InputError
             Where ``beta`` is not a positive number.
         """
-        return 2 * quantity("beta", beta) * self.load**0.5
+        return self.scaling.slope_factor * quantity("beta", beta) * self.pressure_scale
 
     def __eq__(self, other: object) -> bool:
         """Return whether the groups have the same shapes and values."""
@@ -154,17 +210,18 @@ class Groups:
             return NotImplemented
         names = ("speed", "load", "roughness")
         same = all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
-        return same and self.law == other.law
+        return same and self.physics == other.physics
 
     def __hash__(self) -> int:
         """Hash by value."""
         values = (np.asarray(value) for value in (self.speed, self.load, self.roughness))
-        return hash((*((value.shape, value.tobytes()) for value in values), self.law))
+        return hash((*((value.shape, value.tobytes()) for value in values), *self.physics.values()))
 
     def __repr__(self) -> str:
-        """Return the groups, and the law where it is not the exponential one."""
-        law = "" if self.law is None else f", law={self.law!r}"
-        return f"Groups(speed={self.speed!r}, load={self.load!r}, roughness={self.roughness!r}{law})"
+        """Return the groups, and law, geometry and model if they are not those of the article."""
+        own = {"law": None, "geometry": "line", "model": ARTICLE}
+        others = "".join(f", {name}={value!r}" for name, value in self.physics.items() if value != own[name])
+        return f"Groups(speed={self.speed!r}, load={self.load!r}, roughness={self.roughness!r}{others})"
 
 
 def _group(name: str, value: Any, positive: bool) -> float | Array:
@@ -206,20 +263,20 @@ def contact_law(groups: Groups) -> ContactLaw:
     if not np.any(groups.roughness):
         return NoContact()
     if groups.law is None or has_constant_decay(groups.law):
-        return ExponentialLaw(groups.load, groups.relative_roughness)
-    return ScaledLaw(groups.law, groups.load, groups.relative_roughness)
+        return ExponentialLaw(groups.load, groups.relative_roughness, groups.scaling.pressure_exponent)
+    return ScaledLaw(groups.law, groups.load, groups.relative_roughness, groups.scaling.pressure_exponent)
 
 
-def _check_ratio(roughness: float | Array, load: float | Array) -> None:
+def _check_ratio(roughness: float | Array, load: float | Array, exponent: float) -> None:
     """Refuse a relative roughness that double precision loses although roughness and load are in their ranges."""
     if isinstance(roughness, float) and isinstance(load, float):
-        if roughness == 0.0 or SMALLEST <= roughness / load <= LARGEST:
+        if roughness == 0.0 or SMALLEST <= roughness / load**exponent <= LARGEST:
             return
     with np.errstate(all="ignore"):
-        ratio = np.asarray(roughness) / np.asarray(load)
+        ratio = np.asarray(roughness) / np.asarray(load) ** exponent
     wrong = np.not_equal(roughness, 0) & ((ratio < SMALLEST * (1 - SLACK)) | (ratio > LARGEST * (1 + SLACK)))
     if np.any(wrong):
         raise InputError(
-            f"the relative roughness, roughness over load, has the value {ratio[wrong].flat[0]:g} and must be zero or "
+            f"the relative roughness has the value {ratio[wrong].flat[0]:g} and must be zero or "
             f"from {SMALLEST:g} to {LARGEST:g}; check the units of the inputs."
         )

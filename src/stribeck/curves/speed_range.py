@@ -58,7 +58,7 @@ def automatic_speed_range(groups: Groups, boundary_friction: float, beta: float,
             mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
         except MeshTooLargeError:
             return None
-        return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
+        return solve_state(here, Operators(mesh, here.model), guess, NEWTON_TOLERANCE)
 
     shares: list[tuple[float, float, float]] = []
 

@@ -34,8 +34,8 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
 
     .. math::
 
-        \Delta h = -\frac{\kappa}{2} \ln \frac{\bar F_N}{\bar F_N'}, \qquad
-        \Delta h = -\kappa \max(0, s_0 - \Phi^{-1}(\bar F_N^{1/2}))
+        \Delta h = -e \kappa \ln \frac{\bar F_N}{\bar F_N'}, \qquad
+        \Delta h = -\kappa \max(0, s_0 - \Phi^{-1}(\bar F_N^e))
 
     A sliding contact is solved as it is.  At rest the load only shifts gap and offset: a heavy contact of the exponential law
     is solved at :data:`STATIC_LOAD`, one of another law at separations so much larger that at the pressure of the smooth
@@ -47,11 +47,14 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
     if shape is None or has_constant_decay(shape):
         if groups.load <= STATIC_LOAD:
             return groups, 0.0
-        lighter = replace(groups, load=STATIC_LOAD, roughness=STATIC_LOAD * groups.relative_roughness)
-        return lighter, -0.5 * float(groups.relative_roughness) * math.log(float(groups.load / lighter.load))
+        exponents = groups.scaling
+        roughness = STATIC_LOAD**exponents.roughness_exponent * groups.relative_roughness
+        lighter = replace(groups, load=STATIC_LOAD, roughness=roughness)
+        heavier = exponents.pressure_exponent * math.log(float(groups.load / lighter.load))
+        return lighter, -float(groups.relative_roughness) * heavier
     if shape.lowest > -np.inf or isinstance(shape, ShiftedLaw):
         return groups, 0.0
-    shift = max(0.0, SAFE_SEPARATION - separation_at(shape, 0.5 * float(np.log(groups.load))))
+    shift = max(0.0, SAFE_SEPARATION - separation_at(shape, float(np.log(groups.pressure_scale))))
     if shift == 0.0:
         return groups, 0.0
     return replace(groups, law=ShiftedLaw(shape, shift)), -shift * float(groups.relative_roughness)

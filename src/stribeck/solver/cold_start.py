@@ -87,12 +87,12 @@ class RigidGuess:
 def unloaded(groups: Groups, log_factor: float) -> Groups:
     """Return the groups at the load divided by ``exp(log_factor)``, all else being held."""
     factor = math.exp(log_factor)
-    return Groups(groups.speed * factor * factor, groups.load / factor, groups.roughness, law=groups.law)
+    return Groups(groups.speed * factor * factor, groups.load / factor, groups.roughness, **groups.physics)
 
 
 def faster(groups: Groups, log_factor: float) -> Groups:
     """Return the groups at the speed times ``exp(2 log_factor)``, all else being held."""
-    return Groups(groups.speed * math.exp(2 * log_factor), groups.load, groups.roughness, law=groups.law)
+    return Groups(groups.speed * math.exp(2 * log_factor), groups.load, groups.roughness, **groups.physics)
 
 
 def rigid_guess(groups: Groups) -> RigidGuess | None:
@@ -159,7 +159,7 @@ def cold_start(groups: Groups) -> Path[State]:
             mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
         except MeshTooLargeError:
             return None
-        state = solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
+        state = solve_state(here, Operators(mesh, here.model), guess, NEWTON_TOLERANCE)
         steps += state.root.steps
         return state
 
@@ -193,6 +193,6 @@ def start_by_exponential(groups: Groups) -> Path[State]:
             mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
         except MeshTooLargeError:
             return None
-        return solve_state(here, Operators(mesh), guess, NEWTON_TOLERANCE)
+        return solve_state(here, Operators(mesh, here.model), guess, NEWTON_TOLERANCE)
 
     return march(correct, 0.0, 1.0, Steps(0.25, 0.5, 1e-4))

@@ -23,7 +23,7 @@ from stribeck.solver.refinement import RefinedState, reached
 def stacked(groups: Sequence[Groups], operators: Operators, flux_scales: Array) -> tuple[Equations, Array]:
     """Return the equations of moving contacts, one a row, and their load groups in a column; ``flux_scales`` is one too."""
     speed, load, roughness = (np.array([[float(getattr(g, name))] for g in groups]) for name in ("speed", "load", "roughness"))
-    law = contact_law(Groups(speed, load, roughness, law=groups[0].law))
+    law = contact_law(Groups(speed, load, roughness, **groups[0].physics))
     return Equations(operators, speed, law, flux_scales), load
 
 

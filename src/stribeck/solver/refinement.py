@@ -89,7 +89,7 @@ def converge(
             profile_tolerance *= 10.0
             tail *= 3.0 if profile_tolerance > 10 * tail else 1.0
             continue
-        state = solve_state(base, Operators(mesh), guess, newton_tolerance(rtol))
+        state = solve_state(base, Operators(mesh, base.model), guess, newton_tolerance(rtol))
         if not state.outcome.ok:
             outcome = state.outcome
             break

@@ -211,7 +211,7 @@ class Solution:
         """Real area of contact over the apparent one at :attr:`x` [-]; None where the law knows no spectrum of the surface."""
         if not isinstance(self.groups.law, WithArea) or self.groups.roughness == 0:
             return None
-        return self.groups.law.area_fraction_at(self.contact_pressure * math.sqrt(float(self.groups.load)))
+        return self.groups.law.area_fraction_at(self.contact_pressure * float(self.groups.pressure_scale))
 
     @property
     def central_area_fraction(self) -> float:

@@ -1,0 +1,61 @@
+r"""How the groups of a geometry scale: one row for the cylinder, one for the ball.
+
+With the dry smooth contact of Hertz as the unit, its half-width or radius a, indentation :math:`u = a^2/R` and largest
+pressure :math:`p_\mathrm{Hz}`,
+
+.. math::
+
+    \frac{p_\mathrm{Hz}}{\beta E^*} = \bar F_N^{e}, \qquad \kappa = \frac{h_\mathrm{rms}}{\alpha u}
+    = \frac{\bar h_\mathrm{rms}}{\bar F_N^{2e}}, \qquad \frac{a}{R} = c \, \beta \bar F_N^{e}
+
+with e = 1/2, c = 2 on the line and e = 1/3, c = pi/2 on the ball.
+
+Source: [Bertin & Pouliquen] Eq. (Hertz_scales) for the line; the same with Hertz's contact of a sphere for the ball.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+__all__ = ["SCALINGS", "Scaling"]
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """How the groups of one geometry scale.
+
+    Attributes
+    ----------
+    name : str
+        Name of the geometry.
+    total_load : float
+        Integral of the pressure in Hertz units.
+    pressure_exponent : float
+        e.
+    slope_factor : float
+        c.
+    hersey_power : int
+        Power of a/R in the Hersey number over the speed group.
+    hersey_divisor : float
+        What that is divided by.
+    """
+
+    name: str
+    total_load: float
+    pressure_exponent: float
+    slope_factor: float
+    hersey_power: int
+    hersey_divisor: float
+
+    @property
+    def roughness_exponent(self) -> float:
+        """Power of the load by which the roughness group is divided in the relative roughness, 2e."""
+        return 2 * self.pressure_exponent
+
+
+SCALINGS = {
+    "line": Scaling("line", 0.5 * math.pi, 0.5, 2.0, 2, 3 * math.pi),
+    "point": Scaling("point", 2 * math.pi / 3, 1 / 3, 0.5 * math.pi, 1, 4 * math.pi),
+}
+"""The geometries by name: a cylinder, whose load is per unit length, and a ball."""
