@@ -31,8 +31,8 @@ class Scaling:
         Name of the geometry.
     total_load : float
         Integral of the pressure in Hertz units.
-    pressure_exponent : float
-        e.
+    pressure_exponent, roughness_exponent : float
+        e and 2e.
     slope_factor : float
         c.
     hersey_power : int
@@ -44,18 +44,14 @@ class Scaling:
     name: str
     total_load: float
     pressure_exponent: float
+    roughness_exponent: float
     slope_factor: float
     hersey_power: int
     hersey_divisor: float
 
-    @property
-    def roughness_exponent(self) -> float:
-        """Power of the load by which the roughness group is divided in the relative roughness, 2e."""
-        return 2 * self.pressure_exponent
-
 
 SCALINGS = {
-    "line": Scaling("line", 0.5 * math.pi, 0.5, 2.0, 2, 3 * math.pi),
-    "point": Scaling("point", 2 * math.pi / 3, 1 / 3, 0.5 * math.pi, 1, 4 * math.pi),
+    "line": Scaling("line", 0.5 * math.pi, 0.5, 1.0, 2.0, 2, 3 * math.pi),
+    "point": Scaling("point", 2 * math.pi / 3, 1 / 3, 2 / 3, 0.5 * math.pi, 1, 4 * math.pi),
 }
 """The geometries by name: a cylinder, whose load is per unit length, and a ball."""
