@@ -87,12 +87,12 @@ class RigidGuess:
 def unloaded(groups: Groups, log_factor: float) -> Groups:
     """Return the groups at the load divided by ``exp(log_factor)``, all else being held."""
     factor = math.exp(log_factor)
-    return Groups(groups.speed * factor * factor, groups.load / factor, groups.roughness, **groups.physics)
+    return replace(groups, speed=groups.speed * factor * factor, load=groups.load / factor)
 
 
 def faster(groups: Groups, log_factor: float) -> Groups:
     """Return the groups at the speed times ``exp(2 log_factor)``, all else being held."""
-    return Groups(groups.speed * math.exp(2 * log_factor), groups.load, groups.roughness, **groups.physics)
+    return replace(groups, speed=groups.speed * math.exp(2 * log_factor))
 
 
 def rigid_guess(groups: Groups) -> RigidGuess | None:
