@@ -30,6 +30,7 @@ from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.unknowns import Layout
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Film
 from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral, Volterra
@@ -141,9 +142,14 @@ class Equations:
         """The unknowns by name."""
         return self.operators.layout
 
+    @cached_property
+    def film(self) -> Film:
+        """The film at this speed."""
+        return self.operators.model.film.at(self.speed)
+
     def pressures(self, y: Array) -> tuple[Array, Array]:
         """Return the contact and the fluid pressure at the nodes [p_Hz]."""
-        at, film = self.layout, self.operators.model.film
+        at, film = self.layout, self.film
         h = y[..., at.gap]
         if film.uses_pressure:
             return self.law.pressure(h), y[..., at.pressure]
@@ -157,7 +163,7 @@ class Equations:
 
     def residual(self, y: Array) -> Array:
         """Return the residual at ``y``, in its layout."""
-        op, at, film = self.operators, self.layout, self.operators.model.film
+        op, at, film = self.operators, self.layout, self.film
         h, z0, h_star = y[..., at.gap], y[..., at.offset], y[..., at.flux_gap]
         p_f = y[..., at.pressure] if film.uses_pressure else None
         g = film.gradient(h, p_f, h_star)
@@ -194,7 +200,7 @@ class Equations:
 
     def inverse(self, y: Array) -> Inverse:
         """Return the inverse of the Jacobian in :meth:`units` of the unknowns, by LU factors."""
-        if self.operators.model.film.uses_pressure:
+        if self.film.uses_pressure:
             return _Eliminated(self, y)
         return LU.of(self.jacobian(y, self.units(y)), overwrite=True)
 
@@ -211,13 +217,13 @@ class Equations:
         The last row and column are those of a free exit, with e the value there.  A fluid pressure among the unknowns is
         eliminated: A is then ``(I - lambda A diag(dG/dp))**-1 A``.
         """
-        op, at, film = self.operators, self.layout, self.operators.model.film
+        op, at, film = self.operators, self.layout, self.film
         n = op.mesh.size
         h = y[at.gap]
         u, v = (np.ones(n), np.ones(3)) if units is None else (units[at.gap], units[at.numbers])
         p_slope = self.law.slope(h, self.law.pressure(h)) * u
         p_f = y[at.pressure] if film.uses_pressure else None
-        by_h, by_p, by_flux = film.slopes(h, p_f, y[at.flux_gap])
+        by_h, by_p, by_flux, _ = film.slopes(h, p_f, y[at.flux_gap])
         g_h, g_flux = by_h * u, by_flux * v[1]
         ends = [op.integral.weights, op.at_exit] if op.has_exit else [op.integral.weights]
         size = n + 2 + op.has_exit
@@ -256,11 +262,17 @@ class Equations:
         name : {"speed", "load", "roughness"}
             The group; the other two are held.
         """
-        op, at, film = self.operators, self.layout, self.operators.model.film
+        op, at, film = self.operators, self.layout, self.film
         h, found = y[at.gap], np.zeros_like(y)
         if name == "speed":
             p_f = y[at.pressure] if film.uses_pressure else None
             g = self.speed * film.gradient(h, p_f, y[at.flux_gap])
+            by_speed = film.slopes(h, p_f, y[at.flux_gap]).by_speed
+            if by_speed is not None:
+                g = g + self.speed * by_speed
+                found[at.flux_gap] = self.flux_scale * (by_speed @ op.integral.weights)
+                if op.has_exit:
+                    found[at.exit] = self.flux_scale * (by_speed @ op.at_exit)
             if p_f is not None:
                 found[at.pressure] = -op.integral(g)
             else:
@@ -327,7 +339,7 @@ class _Eliminated:
 
     def __init__(self, equations: Equations, y: Array) -> None:
         self.equations = equations
-        op, at, film = equations.operators, equations.layout, equations.operators.model.film
+        op, at, film = equations.operators, equations.layout, equations.film
         self.units = equations.units(y)
         self.slopes = film.slopes(y[at.gap], y[at.pressure], y[at.flux_gap])
         assert self.slopes.by_pressure is not None

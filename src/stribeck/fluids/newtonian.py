@@ -11,11 +11,18 @@ Source: [BP] Eq. (thin-film_dl); isoviscous fluid, no flow factors.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
 from stribeck._types import Array, Numbers
+from stribeck.fluids.density import Incompressible
+from stribeck.fluids.flow_factors import Smooth
 from stribeck.fluids.fluid import Slopes
+from stribeck.fluids.laws import DensityLaw, FlowFactors, ViscosityLaw, joined_names, joined_parameters, notes_of
+from stribeck.fluids.viscosity import Constant
+
+ONE, ZERO = np.ones(()), np.zeros(())
 
 
 def gradient(gap: Array, flux_gap: Numbers) -> Array:
@@ -35,23 +42,148 @@ def flux_derivative(gap: Array) -> Array:
 
 @dataclass(frozen=True)
 class Newtonian:
-    """The fluid of constant viscosity and density."""
+    r"""The fluid whose viscosity does not depend on the shear rate.
 
-    name: str = "newtonian"
-    uses_pressure: bool = False
+    .. math:: G = \frac{\eta(p) \, [h + s S(h) - m/\rho(p)]}{\phi_x(h) \, h^3}
+
+    Viscosity :math:`\eta` and density :math:`\rho` are relative to those at ambient pressure; :math:`S = \sigma \phi_s` and
+    :math:`\phi_x` are the flow factors of rough surfaces.
+
+    Parameters
+    ----------
+    viscosity : ViscosityLaw
+        Viscosity as a function of pressure.
+    density : DensityLaw
+        Density as a function of pressure.
+    flow : FlowFactors
+        Of rough surfaces.
+    slide : float
+        Half the slide-to-roll ratio, ``s = (u1 - u2)/(u1 + u2)``.
+    """
+
+    viscosity: ViscosityLaw = Constant()
+    density: DensityLaw = Incompressible()
+    flow: FlowFactors = Smooth()
+    slide: float = 1.0
+
+    @property
+    def name(self) -> str:
+        """The names of the laws that are not constant."""
+        return joined_names("newtonian", self.viscosity, self.density, self.flow)
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """None."""
-        return {}
+        """Those of the laws."""
+        return joined_parameters(self.viscosity, self.density, self.flow)
+
+    @property
+    def uses_pressure(self) -> bool:
+        """Whether viscosity or density depend on the pressure."""
+        return not (isinstance(self.viscosity, Constant) and isinstance(self.density, Incompressible))
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether viscosity and density are constant and the surfaces smooth."""
+        return not self.uses_pressure and isinstance(self.flow, Smooth)
+
+    def at(self, speed: Numbers) -> Self:
+        """Return the film itself: no speed matters."""
+        return self
 
     def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
-        """Return :func:`gradient`."""
-        return gradient(gap, flux_gap)
+        """Return G."""
+        if self.is_plain:
+            return gradient(gap, flux_gap)
+        return self._parts(gap, pressure, flux_gap)[0]
 
     def slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
-        """Return :func:`gap_derivative` and :func:`flux_derivative`."""
-        return Slopes(gap_derivative(gap, flux_gap), None, flux_derivative(gap))
+        """Return the derivatives of G."""
+        if self.is_plain:
+            return Slopes(gap_derivative(gap, flux_gap), None, flux_derivative(gap))
+        return self._parts(gap, pressure, flux_gap)[1]
+
+    def tractions(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Array]:
+        r"""Return :math:`(\phi_f \pm \phi_{fs}) \eta s/h \pm 3 \phi_{fp} h G`, at the substrate and at the cylinder."""
+        shear, pull, _, _ = self._drag(gap, pressure, flux_gap)
+        return shear[0] + pull, shear[1] - pull
+
+    def traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Slopes, Slopes]:
+        """Return the derivatives of both tractions."""
+        _, _, shear, pull = self._drag(gap, pressure, flux_gap)
+        return _sum(shear[0], pull, 1.0), _sum(shear[1], pull, -1.0)
+
+    def cavity_traction(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
+        r"""Return :math:`\eta s m/(\rho h^2)`."""
+        eta, _, rho, _ = self._of_pressure(pressure)
+        return np.asarray(self.slide * eta / rho * flux_gap / gap**2)
+
+    def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
+        """Return the derivatives of :meth:`cavity_traction`."""
+        eta, eta_slope, rho, rho_slope = self._of_pressure(pressure)
+        traction = self.cavity_traction(gap, pressure, flux_gap)
+        by_pressure = traction * (eta_slope - rho_slope / rho) if self.uses_pressure else None
+        return Slopes(-2 * traction / gap, by_pressure, self.slide * eta / rho / gap**2)
+
+    def flux_gap_at_exit(self, gap: Array, pressure: Array | None) -> tuple[Array, Array, Array | None]:
+        r"""Return :math:`m = \rho \, (h + s S)`."""
+        _, _, rho, rho_slope = self._of_pressure(pressure)
+        carried, carried_slope = self.flow.shear(gap)
+        width = gap + self.slide * carried
+        return rho * width, rho * (1 + self.slide * carried_slope), rho_slope * width if self.uses_pressure else None
+
+    def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
+        """Return where the state leaves the range of the laws."""
+        return notes_of(self.viscosity, self.density, self.flow, gap=gap, pressure=pressure)
+
+    def _of_pressure(self, pressure: Array | None) -> tuple[Array, Array, Array, Array]:
+        """Return viscosity, slope of its logarithm, density and its slope."""
+        if not self.uses_pressure:
+            return ONE, ZERO, ONE, ZERO
+        assert pressure is not None
+        log, log_slope = self.viscosity.log(pressure)
+        return np.exp(log), log_slope, *self.density.ratio(pressure)
+
+    def _parts(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Slopes]:
+        """Return G and its derivatives."""
+        h, m, s = gap, flux_gap, self.slide
+        eta, eta_slope, rho, rho_slope = self._of_pressure(pressure)
+        phi, phi_slope = self.flow.pressure(h)
+        carried, carried_slope = self.flow.shear(h)
+        resistance = eta / (phi * h**3)
+        g = resistance * (h - m / rho + s * carried)
+        by_gap = resistance * (1 + s * carried_slope) - g * (phi_slope / phi + 3 / h)
+        by_pressure = eta_slope * g + resistance * m * rho_slope / rho**2 if self.uses_pressure else None
+        return np.asarray(g), Slopes(by_gap, by_pressure, -resistance / rho)
+
+    def _drag(
+        self, gap: Array, pressure: Array | None, flux_gap: Numbers
+    ) -> tuple[tuple[Array, Array], Array, tuple[Slopes, Slopes], Slopes]:
+        """Return the drag of sliding on both walls and the pull of the pressure gradient, and their derivatives."""
+        h, s = gap, self.slide
+        eta, eta_slope, _, _ = self._of_pressure(pressure)
+        (f, f_slope), (fs, fs_slope), (fp, fp_slope) = self.flow.friction(h)
+        rate = eta * s / h
+        none = np.zeros_like(h)
+        shears, slopes = [], []
+        for factor, factor_slope in ((f + fs, f_slope + fs_slope), (f - fs, f_slope - fs_slope)):
+            shear = factor * rate
+            shears.append(np.asarray(shear))
+            slopes.append(Slopes(factor_slope * rate - shear / h, eta_slope * shear if self.uses_pressure else None, none))
+        g, of_g = self.gradient(h, pressure, flux_gap), self.slopes(h, pressure, flux_gap)
+        pull = Slopes(
+            3 * (fp * (g + h * of_g.by_gap) + fp_slope * h * g),
+            None if of_g.by_pressure is None else 3 * fp * h * of_g.by_pressure,
+            3 * fp * h * of_g.by_flux,
+        )
+        return (shears[0], shears[1]), 3 * fp * h * g, (slopes[0], slopes[1]), pull
+
+
+def _sum(shear: Slopes, pull: Slopes, sign: float) -> Slopes:
+    """Return the derivatives of the drag of sliding and ``sign`` times the pull."""
+    by_pressure = None
+    if shear.by_pressure is not None and pull.by_pressure is not None:
+        by_pressure = shear.by_pressure + sign * pull.by_pressure
+    return Slopes(shear.by_gap + sign * pull.by_gap, by_pressure, shear.by_flux + sign * pull.by_flux)
 
 
 def flux_gap(gap: Array, weights: Array) -> float:

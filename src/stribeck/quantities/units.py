@@ -72,6 +72,10 @@ DIMENSIONS = {
     "drag": Dimension("a viscosity times a speed", "Pa*m", "2 mPa*m", _prefixed("Pa*m", (-9, -6, -3, 0, 3))),
     "spectral density": Dimension("a spectral density of heights", "m^4", "1e-20 m^4", {0: "m^4"}),
     "per area": Dimension("a number per area", "1/m^2", "1e10 1/m^2", {0: "1/m^2"}),
+    "time": Dimension("a time", "s", "1 ms", _prefixed("s", (-9, -6, -3, 0))),
+    "pressure coefficient": Dimension(
+        "an inverse pressure", "1/Pa", "15 1/GPa", {-9: "1/GPa", -6: "1/MPa", -3: "1/kPa", 0: "1/Pa"}
+    ),
     "number": Dimension("a bare number", "", "0.5", {0: ""}),
 }
 
@@ -86,6 +90,7 @@ _NOUNS = {
     "s": "a time",
     "1/s": "a rate",
     "Pa": "a pressure",
+    "1/Pa": "an inverse pressure",
     "Pa*s": "a dynamic viscosity",
     "m^2/s": "a kinematic viscosity",
     "N/m": "a load per unit length",

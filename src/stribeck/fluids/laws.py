@@ -1,0 +1,126 @@
+"""What a film is put together from: laws of viscosity, density, shear rate and flow between rough surfaces.
+
+Each is a frozen class whose numbers are in SI units, and in a film in Hertz units: :meth:`Law.scaled` goes from the first to
+the second.  A new law is one class with the members of its protocol.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol, Self
+
+import numpy as np
+
+from stribeck._types import Array
+
+
+class FilmUnits(NamedTuple):
+    r"""What the numbers of a law are divided by to be in Hertz units.
+
+    Attributes
+    ----------
+    pressure : float
+        :math:`p_\mathrm{Hz}` [Pa].
+    time : float
+        :math:`6 \eta_0 a/(p_\mathrm{Hz} u_\mathrm{Hz})` [s]: a relaxation time over it is the Weissenberg number
+        at lambda = 1.
+    gap : float
+        :math:`u_\mathrm{Hz}` [m].
+    viscosity : float
+        :math:`\eta_0`, the viscosity at ambient pressure and low rate [Pa s].
+    decay_length : float
+        :math:`h_\mathrm{rms}/\alpha`, which the roughness is where :math:`\alpha = 1` [m].
+    alpha : float, optional
+        :math:`\alpha` of the contact; None where a law must know it itself.
+    """
+
+    pressure: float
+    time: float
+    gap: float
+    viscosity: float
+    decay_length: float = 0.0
+    alpha: float | None = None
+
+    @property
+    def stress(self) -> float:
+        r"""Unit of shear stresses, :math:`p_\mathrm{Hz} u_\mathrm{Hz}/(6 a)` [Pa]."""
+        return self.viscosity / self.time
+
+
+HERTZ = FilmUnits(1.0, 1.0, 1.0, 1.0)
+"""Units of laws that are in Hertz units already."""
+
+
+class Law(Protocol):
+    """What all laws have: a name, parameters, and their form in Hertz units."""
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print; empty for what does nothing."""
+        return ""
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """What distinguishes this law from others of its name, for outputs."""
+        return {}
+
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return the law in Hertz units."""
+        return self
+
+    def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
+        """Return sentences on where a state leaves the range of the law, in Hertz units; mostly none."""
+        return ()
+
+
+class ViscosityLaw(Law, Protocol):
+    """Viscosity as a function of pressure."""
+
+    def log(self, pressure: Array) -> tuple[Array, Array]:
+        """Return ln(eta/eta0) and its slope."""
+
+
+class DensityLaw(Law, Protocol):
+    """Density as a function of pressure."""
+
+    def ratio(self, pressure: Array) -> tuple[Array, Array]:
+        """Return rho/rho0 and its slope."""
+
+
+class FlowFactors(Law, Protocol):
+    """What roughness does to the flow, as a function of the mean gap."""
+
+    def pressure(self, gap: Array) -> tuple[Array, Array]:
+        """Return the flow under a pressure gradient over that between smooth surfaces, phi_x > 0, and its slope."""
+
+    def shear(self, gap: Array) -> tuple[Array, Array]:
+        """Return what sliding carries along in valleys, sigma phi_s [u_Hz], and its slope."""
+
+    def friction(self, gap: Array) -> tuple[tuple[Array, Array], tuple[Array, Array], tuple[Array, Array]]:
+        """Return phi_f, phi_fs and phi_fp, the factors of the drag, each with its slope; by default those of smooth walls."""
+        one, zero = np.ones_like(gap), np.zeros_like(gap)
+        return (one, zero), (zero, zero), (one, zero)
+
+
+class RateLaw(Law, Protocol):
+    """Shear stress as a function of the shear rate, odd and rising; viscosity one at rate zero if there is such."""
+
+    def stress(self, rate: Array) -> tuple[Array, Array]:
+        """Return the stress and its slope, at rates in units of 1/relaxation time, >= 0."""
+
+    def moments(self, rate: Array) -> tuple[Array, Array]:
+        r"""Return :math:`\int \dot\gamma \, d\tau` and :math:`\int \tau \dot\gamma \, d\tau` from zero to this rate >= 0."""
+
+
+def joined_names(base: str, *laws: Law) -> str:
+    """Return the name of a film: its own and those of its laws that have one."""
+    return " + ".join([base, *(law.name for law in laws if law.name)])
+
+
+def joined_parameters(*laws: Law) -> dict[str, float | str]:
+    """Return the parameters of the laws of a film."""
+    return {name: value for law in laws for name, value in law.parameters.items()}
+
+
+def notes_of(*laws: Law, gap: Array, pressure: Array | None) -> tuple[str, ...]:
+    """Return the notes of the laws of a film."""
+    return tuple(note for law in laws for note in law.notes(gap, pressure))
