@@ -145,7 +145,8 @@ class Equations:
     @cached_property
     def film(self) -> Film:
         """The film at this speed."""
-        return self.operators.model.film.at(self.speed)
+        film = self.operators.model.film
+        return film.at(self.speed) if film.uses_speed else film
 
     def pressures(self, y: Array) -> tuple[Array, Array]:
         """Return the contact and the fluid pressure at the nodes [p_Hz]."""

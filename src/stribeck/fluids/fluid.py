@@ -50,11 +50,15 @@ class Film(Protocol):
         """Whether the gradient depends on the pressure, which then is an unknown of its own."""
 
     @property
+    def uses_speed(self) -> bool:
+        """Whether the gradient depends on the speed beyond the factor lambda; then :meth:`at` is asked for the film at one."""
+
+    @property
     def slide(self) -> float:
         """Sliding over the sum of the speeds, ``s = (u1 - u2)/(u1 + u2)``, half the slide-to-roll ratio."""
 
     def at(self, speed: Numbers) -> Self:
-        """Return the film at a speed group, or a column of them: what all below are asked of; itself if no speed matters."""
+        """Return the film at a speed group, or a column of them: what all below are asked of."""
 
     def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
         """Return G, the pressure gradient over lambda [u_Hz**-2]."""

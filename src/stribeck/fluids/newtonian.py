@@ -10,8 +10,8 @@ Source: [BP] Eq. (thin-film_dl); isoviscous fluid, no flow factors.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Self
+from dataclasses import dataclass, field
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -65,6 +65,15 @@ class Newtonian:
     density: DensityLaw = Incompressible()
     flow: FlowFactors = Smooth()
     slide: float = 1.0
+    uses_pressure: bool = field(init=False, repr=False, compare=False)
+    is_plain: bool = field(init=False, repr=False, compare=False)
+    uses_speed: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        """Note whether viscosity or density depend on the pressure, and whether all is constant and smooth."""
+        uses_pressure = not (isinstance(self.viscosity, Constant) and isinstance(self.density, Incompressible))
+        object.__setattr__(self, "uses_pressure", uses_pressure)
+        object.__setattr__(self, "is_plain", not uses_pressure and isinstance(self.flow, Smooth))
 
     @property
     def name(self) -> str:
@@ -75,16 +84,6 @@ class Newtonian:
     def parameters(self) -> dict[str, float | str]:
         """Those of the laws."""
         return joined_parameters(self.viscosity, self.density, self.flow)
-
-    @property
-    def uses_pressure(self) -> bool:
-        """Whether viscosity or density depend on the pressure."""
-        return not (isinstance(self.viscosity, Constant) and isinstance(self.density, Incompressible))
-
-    @property
-    def is_plain(self) -> bool:
-        """Whether viscosity and density are constant and the surfaces smooth."""
-        return not self.uses_pressure and isinstance(self.flow, Smooth)
 
     def at(self, speed: Numbers) -> Self:
         """Return the film itself: no speed matters."""
