@@ -506,7 +506,7 @@ class Wall:
 
 def test_the_roughness_without_a_minimum_depends_on_the_law():
     law = sb.GreenwoodTripp()
-    roughness = roughness_without_minimum(0.1, law=law, rtol=1e-3)
+    roughness = roughness_without_minimum(0.1, physics=sb.Groups(1.0, 0.1, 0.1, law=law).physics, rtol=1e-3)
     assert roughness != pytest.approx(roughness_without_minimum(0.1, rtol=1e-3), rel=0.05)
     below, above = (weakening(sb.Groups(1.0, 0.1, roughness * factor, law=law)).present for factor in (0.95, 1.05))
     assert below and not above

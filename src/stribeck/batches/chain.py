@@ -10,8 +10,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.batches.order import coordinates
-from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.groups import Groups
+from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.line import LineContact
 from stribeck.numerics.continuation import Steps, march
 from stribeck.numerics.threads import one_blas_thread
@@ -55,7 +54,7 @@ class Ended:
 
 def solve_in_order(
     states: Array,
-    law: AsperityLaw | None,
+    physics: Physics,
     rtol: float,
     on_state: Callable[[int, Ended], object],
     contact_of: Callable[[int], LineContact | None] = lambda _: None,
@@ -66,8 +65,8 @@ def solve_in_order(
     ----------
     states : ndarray, shape (n, 3)
         Speed, load and roughness group of each.
-    law : AsperityLaw or None
-        Contact law of all; None is the exponential one.
+    physics : Physics
+        Contact law, geometry and model of all.
     rtol : float
         Relative tolerance of each state.
     on_state : callable
@@ -80,7 +79,7 @@ def solve_in_order(
     KeyboardInterrupt
         If the user interrupted it.
     """
-    _Chain(states, law, rtol, on_state, contact_of).run()
+    _Chain(states, physics, rtol, on_state, contact_of).run()
 
 
 class _Chain:
@@ -89,16 +88,16 @@ class _Chain:
     def __init__(
         self,
         states: Array,
-        law: AsperityLaw | None,
+        physics: Physics,
         rtol: float,
         on_state: Callable[[int, Ended], object],
         contact_of: Callable[[int], LineContact | None],
     ) -> None:
-        self.states, self.law, self.rtol, self.on_state, self.contact_of = states, law, rtol, on_state, contact_of
+        self.states, self.physics, self.rtol, self.on_state, self.contact_of = states, physics, rtol, on_state, contact_of
 
     def groups(self, i: int) -> Groups:
         """Return the groups of the i-th state."""
-        return Groups(*self.states[i].tolist(), law=self.law)
+        return Groups(*self.states[i].tolist(), **self.physics)
 
     @one_blas_thread
     def run(self) -> None:
@@ -111,7 +110,7 @@ class _Chain:
                 self.on_state(first, Ended(solution.outcome, solution))
                 first += 1
                 continue
-            finished, failed = self._follow(first, _Polyline(self.states[first : _end(self.states, first)], self.law))
+            finished, failed = self._follow(first, _Polyline(self.states[first : _end(self.states, first)], self.physics))
             first += finished
             if finished == 0:
                 self.on_state(first, failed)
@@ -180,8 +179,8 @@ def _end(groups: Array, first: int) -> int:
 class _Polyline:
     """The way from state to state, straight in the logarithms of the groups that are not zero."""
 
-    def __init__(self, groups: Array, law: AsperityLaw | None) -> None:
-        self.groups, self.law = groups, law
+    def __init__(self, groups: Array, physics: Physics) -> None:
+        self.groups, self.physics = groups, physics
         self.z = np.log(np.where(groups > 0, groups, 1.0))
         steps = np.diff(self.z, axis=0)
         lengths = np.abs(steps).max(axis=1) if len(steps) else np.zeros(0)
@@ -217,8 +216,8 @@ class _Polyline:
         """Return the groups at ``s``, exactly those of a state where it is one."""
         i = int(np.searchsorted(self.knots, s))
         if i < len(self) and self.knots[i] == s:
-            return Groups(*self.groups[i].tolist(), law=self.law)
+            return Groups(*self.groups[i].tolist(), **self.physics)
         k = self._step(s)
         part = (s - self.knots[k]) / (self.knots[k + 1] - self.knots[k])
         here = np.exp((1 - part) * self.z[k] + part * self.z[k + 1])
-        return Groups(*np.where(self.groups[k] > 0, here, 0.0).tolist(), law=self.law)
+        return Groups(*np.where(self.groups[k] > 0, here, 0.0).tolist(), **self.physics)

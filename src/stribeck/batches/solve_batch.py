@@ -167,7 +167,7 @@ def solve_batch(groups: Groups, *, rtol: float = 1e-6, on_progress: Progress | N
 
     try:
         for chain in chains_of(states, shape if is_grid else ()):
-            solve_in_order(states[chain], groups.law, rtol, partial(keep, chain))
+            solve_in_order(states[chain], groups.physics, rtol, partial(keep, chain))
     except KeyboardInterrupt:
         pass
     found = {f.name: value.reshape(shape) for f, value in zip(fields(Observables), values, strict=True)}

@@ -46,7 +46,7 @@ class Coordinate:
     def groups_along(self, values: Array) -> Groups:
         """Return the groups at many values of what varies, as arrays."""
         groups = [self.groups_at(s) for s in np.log(values).tolist()]
-        return Groups(*(np.array([float(getattr(g, name)) for g in groups]) for name in GROUPS), law=self.base.law)
+        return Groups(*(np.array([float(getattr(g, name)) for g in groups]) for name in GROUPS), **groups[0].physics)
 
     @property
     def direction(self) -> Array:

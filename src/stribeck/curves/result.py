@@ -80,7 +80,7 @@ class StribeckCurve:
     def groups(self) -> Groups:
         """Groups of the points, as arrays."""
         columns = (np.array([float(getattr(s.groups, name)) for s in self.solutions]) for name in GROUPS)
-        return Groups(*columns, law=self.law)
+        return Groups(*columns, **self._path.groups_at(0.0).physics)
 
     @property
     def law(self) -> AsperityLaw | None:

@@ -134,7 +134,7 @@ def fit(
     model = FrictionModel(contact, data, wanted)
     _check_enough(data, wanted)
     report = on_step or (lambda what, count: None)
-    solved = solved_parts(definition, problem.rtol, contact.law)
+    solved = solved_parts(definition, problem.rtol)
     by_atlas = atlas.holds_for(contact.law)
     quick = atlas_or_solved_parts(definition, problem.rtol) if by_atlas else solved
     goal = objective(model, quick, settings, settings.robust)

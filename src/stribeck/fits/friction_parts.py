@@ -12,12 +12,12 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
-from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.line import Groups, InputError
+from stribeck.contacts.groups import Groups, Physics
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.equations.sensitivity import log_derivatives
 from stribeck.quantities.outputs import NAMES
+from stribeck.quantities.units import InputError
 from stribeck.solver.solve import SolveError
 
 __all__ = ["FrictionParts", "PartsOf", "atlas_parts", "atlas_or_solved_parts", "solved_parts"]
@@ -59,7 +59,7 @@ def atlas_parts(definition: Definition) -> PartsOf:
     return parts
 
 
-def solved_parts(definition: Definition, rtol: float, law: AsperityLaw | None = None) -> PartsOf:
+def solved_parts(definition: Definition, rtol: float) -> PartsOf:
     """Return the function that solves states, those that differ in speed alone as one curve.
 
     Parameters
@@ -68,8 +68,6 @@ def solved_parts(definition: Definition, rtol: float, law: AsperityLaw | None = 
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of each state.
-    law : AsperityLaw, optional
-        Contact law; the exponential one by default.
 
     Returns
     -------
@@ -85,7 +83,7 @@ def solved_parts(definition: Definition, rtol: float, law: AsperityLaw | None = 
         for k, (F, h_rms) in enumerate(pairs):
             rows = np.nonzero(pair_of.ravel() == k)[0]
             speeds, at = np.unique(speed[rows], return_inverse=True)
-            found = _along(speeds, float(F), float(h_rms), definition, rtol, law)
+            found = _along(speeds, float(F), float(h_rms), definition, rtol, groups.physics)
             values[:, rows], slopes[:, :, rows], errors[:, rows] = (array[..., at.ravel()] for array in found)
         return FrictionParts(values, slopes, errors)
 
@@ -106,14 +104,13 @@ def atlas_or_solved_parts(definition: Definition, rtol: float) -> PartsOf:
 
 
 def _along(
-    speeds: Array, load: float, roughness: float, definition: Definition, rtol: float, law: AsperityLaw | None
+    speeds: Array, load: float, roughness: float, definition: Definition, rtol: float, physics: Physics
 ) -> tuple[Array, Array, Array]:
     """Return values, slopes and errors of the states of a curve at ascending speeds."""
     # A pair would be taken as a range, and one speed is no curve.
     points = speeds if len(speeds) > 1 else np.append(speeds, 1.1 * speeds)
-    curve = stribeck_curve(
-        load=load, roughness=roughness, speed=points, points=len(points), rtol=rtol, definition=definition, law=law
-    )
+    groups = Groups(points[0], load, roughness, **physics)
+    curve = stribeck_curve(groups, speed=points, points=len(points), rtol=rtol, definition=definition)
     row = NAMES.index(f"viscous_{definition}")
     n = len(speeds)
     if len(curve) < len(points):

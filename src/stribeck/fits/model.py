@@ -253,7 +253,7 @@ class FrictionModel:
         curve, logs = (self.data.curve, self.logs) if at is None else (at[0], self.logs_at(*at))
         A = self.exponents[curve]
         x = np.exp(logs + np.einsum("p,npk->nk", theta, A))
-        found: FrictionParts = parts_of(Groups(x[:, 0], x[:, 1], x[:, 2]))
+        found: FrictionParts = parts_of(Groups(x[:, 0], x[:, 1], x[:, 2], **self.contact.groups.physics))
         contact, viscous = x[:, 3] * found.values[0], x[:, 4] * found.values[1]
         by_groups = x[:, 3] * found.slopes[0] + x[:, 4] * found.slopes[1]
         by_logs = np.concatenate([by_groups, contact[None], viscous[None]])

@@ -141,7 +141,7 @@ def _row_groups(diagram: Diagram) -> tuple[Groups, Array]:
     rows, columns = (len(diagram.axes[name]) for name in AXES[:2])
     states = [[diagram.problem(i, j)[1] for j in range(columns)] for i in range(rows)]
     speed, load, roughness = (np.array([[getattr(g, name) for g in row] for row in states], dtype=float) for name in GROUPS)
-    return Groups(speed, load, roughness, law=states[0][0].law), speed
+    return Groups(speed, load, roughness, **states[0][0].physics), speed
 
 
 def _formula_speeds(diagram: Diagram) -> dict[str, Array]:

@@ -228,7 +228,7 @@ def _merging_line(diagram: Diagram) -> Array:
         _, groups, _ = diagram.problem(i, 0)
         try:
             group = roughness_without_minimum(
-                float(groups.load), diagram.boundary_friction, diagram.beta, diagram.definition, law=groups.law
+                float(groups.load), diagram.boundary_friction, diagram.beta, diagram.definition, physics=groups.physics
             )
         except SolveError:
             continue

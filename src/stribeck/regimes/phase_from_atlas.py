@@ -160,7 +160,7 @@ def fill(diagram: Diagram) -> None:
     for i in range(len(diagram.axes["load"])):
         for j in range(len(diagram.axes["roughness"])):
             _, groups, unit = diagram.problem(i, j)
-            _enter(diagram, (i, j), Groups(unit * speeds, groups.load, groups.roughness, law=groups.law))
+            _enter(diagram, (i, j), Groups(unit * speeds, groups.load, groups.roughness, **groups.physics))
             diagram.velocity_weakening[i, j] = 0
             if float(groups.roughness) > 0:
                 _enter_lines(diagram, (i, j), groups, unit)
@@ -198,7 +198,7 @@ def _enter_lines(diagram: Diagram, row: tuple[int, int], groups: Groups, unit: f
     low, high = atlas.BOX["speed"]
 
     def groups_at(speed: Array) -> Groups:
-        return Groups(speed, groups.load, groups.roughness, law=groups.law)
+        return Groups(speed, groups.load, groups.roughness, **groups.physics)
 
     speeds = np.geomspace(low, high, 1 + DENSITY * round(np.log10(high / low)))
     curve = AtlasCurve("speed", speeds, groups_at, None, diagram.boundary_friction, diagram.beta, diagram.definition)

@@ -13,7 +13,8 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw, check_law
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.friction import Definition, check_definition, coefficients
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.groups import Groups, Physics
+from stribeck.contacts.line import LineContact
 from stribeck.curves.regime import Regime, Transition
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.quantities.inputs import QUANTITIES
@@ -70,8 +71,8 @@ class Diagram:
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of the states.
-    law : AsperityLaw or None
-        Contact law; None is the exponential one.
+    physics : Physics
+        Contact law, geometry and model of all states.
     outcome : Outcome
         CONVERGED, or INTERRUPTED.
     """
@@ -82,7 +83,7 @@ class Diagram:
     beta: float
     definition: Definition
     rtol: float
-    law: AsperityLaw | None = None
+    physics: Physics
     outcome: Outcome = Outcome.CONVERGED
     fields: dict[str, Array] = field(init=False)
     regime: Any = field(init=False)
@@ -106,7 +107,7 @@ class Diagram:
         """Return contact or groups of a row at speed 1 of its axis, the groups, and the speed group for that speed."""
         load, roughness = float(self.axes["load"][i]), float(self.axes["roughness"][j])
         if self.contact is None:
-            groups = Groups(1.0, load, roughness, law=self.law)
+            groups = Groups(1.0, load, roughness, **self.physics)
             return groups, groups, 1.0
         row = self.contact.replace(load=load, roughness=roughness, speed=1.0)
         return row, row.groups, float(row.groups.speed)
@@ -135,15 +136,18 @@ def empty_diagram(
         raise InputError(f"{' and '.join(missing)} missing; give numbers or ranges, or a LineContact.")
     counts = _points(points)
     axes = {name: _axis(name, given[name], contact is not None, counts[name]) for name in ("load", "roughness")}
-    law = named_law(law) if isinstance(law, str) else check_law(law)
-    if law is None and problem is not None:
-        law = problem.law
-    corners = Diagram(contact, axes | {"speed": np.ones(1)}, boundary_friction, beta, definition, rtol, law)
+    physics = (as_groups(problem)[0] if problem is not None else _unit_groups(law)).physics
+    corners = Diagram(contact, axes | {"speed": np.ones(1)}, boundary_friction, beta, definition, rtol, physics)
     if given["speed"] is None:
         axes["speed"] = _automatic_axis(corners, counts["speed"])
     else:
         axes["speed"] = _axis("speed", given["speed"], contact is not None, counts["speed"])
-    return Diagram(contact, axes, boundary_friction, beta, definition, rtol, law)
+    return Diagram(contact, axes, boundary_friction, beta, definition, rtol, physics)
+
+
+def _unit_groups(law: str | AsperityLaw | None) -> Groups:
+    """Return groups that have a contact law, for what they have beside their numbers."""
+    return Groups(1.0, 1.0, 1.0, law=named_law(law) if isinstance(law, str) else check_law(law))
 
 
 def _points(points: int | Mapping[str, int] | None) -> dict[str, int]:

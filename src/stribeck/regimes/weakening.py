@@ -16,9 +16,8 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.friction import Definition, check_definition, coefficients
-from stribeck.contacts.line import Groups
+from stribeck.contacts.groups import Groups, Physics
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
@@ -183,7 +182,7 @@ def roughness_without_minimum(
     *,
     criterion: Criterion = "slope",
     rtol: float = 1e-6,
-    law: AsperityLaw | None = None,
+    physics: Physics | None = None,
 ) -> float:
     r"""Return the roughness at which the solved Stribeck curve loses its minimum, and the lines of transition merge.
 
@@ -200,8 +199,8 @@ def roughness_without_minimum(
         where there still is one, lies above boundary_friction (the words of [BP]); always the smaller.
     rtol : float
         Relative tolerance of the states, and of the result.
-    law : AsperityLaw, optional
-        Contact law; the exponential one if omitted.
+    physics : Physics, optional
+        Contact law, geometry and model of the states; those of the article if omitted.
 
     Returns
     -------
@@ -230,21 +229,22 @@ def roughness_without_minimum(
         raise InputError(f"criterion = {show(criterion)}; it must be 'slope' or 'plateau'.")
     check_rtol(rtol)
     boundary_friction, beta = coefficients(None, boundary_friction, beta)
-    F = float(as_groups(Groups(1.0, load, 1.0))[0].load)
+    unit, _ = as_groups(Groups(1.0, load, 1.0) if physics is None else Groups(1.0, load, 1.0, **physics))
     if boundary_friction == 0:
         return 0.0
 
     def excess(log_kappa: float) -> float:
-        found = weakening(Groups(1.0, F, F * math.exp(log_kappa), law=law), boundary_friction, beta, definition, rtol=rtol)
+        groups = replace(unit, roughness=math.exp(log_kappa) / float(unit.relative_roughness))
+        found = weakening(groups, boundary_friction, beta, definition, rtol=rtol)
         if criterion == "slope" or not found.present:
             return found.slope
         return found.minimum_friction / boundary_friction - 1
 
-    return _root(excess, F, rtol)
+    return _root(excess, rtol) / float(unit.relative_roughness)
 
 
-def _root(excess: Callable[[float], float], load: float, rtol: float) -> float:
-    """Return the roughness group at which ``excess``, growing with ln(kappa), vanishes; nan where that is not found."""
+def _root(excess: Callable[[float], float], rtol: float) -> float:
+    """Return the relative roughness at which ``excess``, growing with its logarithm, vanishes; nan if it is not found."""
     from scipy.optimize import brentq
 
     known = {math.log(KAPPA_START): excess(math.log(KAPPA_START))}
@@ -264,4 +264,4 @@ def _root(excess: Callable[[float], float], load: float, rtol: float) -> float:
     def remembered(s: float) -> float:
         return known[s] if s in known else excess(s)
 
-    return load * math.exp(float(brentq(remembered, min(here, there), max(here, there), xtol=max(rtol, 1e-9))))
+    return math.exp(float(brentq(remembered, min(here, there), max(here, there), xtol=max(rtol, 1e-9))))

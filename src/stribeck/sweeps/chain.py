@@ -9,8 +9,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.batches.chain import Ended, solve_in_order
-from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.groups import Groups, Physics
+from stribeck.contacts.line import LineContact
 from stribeck.quantities.inputs import INPUTS
 from stribeck.solver.solve import describe
 from stribeck.sweeps.columns import ERROR, failed_row, row_of
@@ -36,8 +36,8 @@ class Chain:
         Which of the two.
     rtol : float
         Relative tolerance of each state.
-    law : AsperityLaw or None
-        Contact law of all; None is the exponential one.
+    physics : Physics
+        Contact law, geometry and model of all.
     """
 
     rows: tuple[int, ...]
@@ -45,13 +45,13 @@ class Chain:
     inputs: dict[str, tuple[float, ...]]
     si: bool
     rtol: float
-    law: AsperityLaw | None = None
+    physics: Physics
 
     def contact(self, i: int) -> LineContact | None:
         """Return the contact of the i-th state, where it has one."""
         if not self.si:
             return None
-        return LineContact(**{name: self.inputs[name][i] for name in INPUTS}, law=self.law)
+        return LineContact(**{name: self.inputs[name][i] for name in INPUTS}, law=self.physics["law"])
 
     def coefficients(self, i: int) -> tuple[float, float]:
         """Return boundary_friction and beta of the i-th state."""
@@ -60,9 +60,11 @@ class Chain:
     def row(self, i: int, ended: Ended) -> tuple[Array, str]:
         """Return the numbers that a sweep keeps of the i-th state, and what there is to say about it."""
         if ended.solution is None:
-            return failed_row(self.contact(i), self.law, ERROR if ended.fault else ended.outcome.name, ended.message)
+            return failed_row(
+                self.contact(i), self.physics["law"], ERROR if ended.fault else ended.outcome.name, ended.message
+            )
         values, text = row_of(ended.solution, *self.coefficients(i))
-        return values, text if ended.outcome.ok else f"{describe(Groups(*self.groups[i], law=self.law))}: {text}"
+        return values, text if ended.outcome.ok else f"{describe(Groups(*self.groups[i], **self.physics))}: {text}"
 
 
 def solve_chain(chain: Chain, on_row: OnRow) -> None:
@@ -85,4 +87,4 @@ def solve_chain(chain: Chain, on_row: OnRow) -> None:
     def on_state(i: int, ended: Ended) -> None:
         on_row(chain.rows[i], *chain.row(i, ended))
 
-    solve_in_order(np.array(chain.groups), chain.law, chain.rtol, on_state, chain.contact)
+    solve_in_order(np.array(chain.groups), chain.physics, chain.rtol, on_state, chain.contact)

@@ -19,7 +19,8 @@ from stribeck._types import Array
 from stribeck.cases.case import Case, contact_inputs, error_sentence, example_of, group_inputs, read_toml, surface_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.groups import Groups, Physics
+from stribeck.contacts.line import LineContact
 from stribeck.quantities.hints import advice_on
 from stribeck.quantities.inputs import ALTERNATIVES, INPUTS, QUANTITIES, ROWS, check_alternatives, quantity
 from stribeck.quantities.units import InputError, show
@@ -65,8 +66,8 @@ class SweepDesign:
         Relative tolerance of each state.
     law : {"exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"}
         Name of the contact law.
-    contact_law : AsperityLaw or None
-        The law itself; None is the exponential one.
+    physics : Physics
+        What the states have in common beside their groups: the law itself, geometry and model.
     """
 
     path: Path
@@ -80,7 +81,12 @@ class SweepDesign:
     si: bool
     rtol: float
     law: Law
-    contact_law: AsperityLaw | None = None
+    physics: Physics = field(repr=False)
+
+    @property
+    def contact_law(self) -> AsperityLaw | None:
+        """The contact law itself; None is the exponential one."""
+        return self.physics["law"]
 
     def __len__(self) -> int:
         """Return the number of states."""
@@ -188,7 +194,7 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         si=si,
         rtol=checked["solver"]["rtol"],
         law=law,
-        contact_law=shape,
+        physics=Groups(1.0, 1.0, 1.0, law=shape).physics,
     )
 
 

@@ -193,7 +193,7 @@ class _Run:
             if len(left):
                 groups = tuple((speed, load, roughness) for speed, load, roughness in self.plan.groups[left].tolist())
                 inputs = {name: tuple(column[left].tolist()) for name, column in self.plan.inputs.items()}
-                found.append(Chain(tuple(left.tolist()), groups, inputs, self.plan.si, self.plan.rtol, self.plan.contact_law))
+                found.append(Chain(tuple(left.tolist()), groups, inputs, self.plan.si, self.plan.rtol, self.plan.physics))
         return found
 
     def _finished(self, states: int, failed: int) -> None:
