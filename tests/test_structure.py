@@ -31,6 +31,7 @@ LAYERS = (
     ("__init__", "__main__", "cli", "evidence"),
     ("explorer", "figures"),
     ("fits", "sweeps", "regimes"),
+    ("checks",),
     ("curves", "batches"),
     ("solver", "surfaces"),
     ("equations", "atlas", "asymptotics", "cases"),

@@ -71,6 +71,11 @@ DIMENSIONS = {
     "load": Dimension("a load per unit length", "N/m", "50 N/m", _prefixed("N/m", (-6, -3, 0, 3, 6))),
     "drag": Dimension("a viscosity times a speed", "Pa*m", "2 mPa*m", _prefixed("Pa*m", (-9, -6, -3, 0, 3))),
     "spectral density": Dimension("a spectral density of heights", "m^4", "1e-20 m^4", {0: "m^4"}),
+    "compliance": Dimension("an inverse pressure", "1/Pa", "20 1/GPa", {-9: "1/GPa", -6: "1/MPa", 0: "1/Pa"}),
+    "rate": Dimension("a rate", "1/s", "1e6 1/s", {0: "1/s"}),
+    "density": Dimension("a density", "kg/m^3", "870 kg/m^3", {0: "kg/m^3"}),
+    "conductivity": Dimension("a thermal conductivity", "W/m/K", "0.15 W/m/K", {0: "W/m/K"}),
+    "per kelvin": Dimension("a relative change per kelvin", "1/K", "0.04 1/K", {0: "1/K"}),
     "per area": Dimension("a number per area", "1/m^2", "1e10 1/m^2", {0: "1/m^2"}),
     "time": Dimension("a time", "s", "1 ms", _prefixed("s", (-9, -6, -3, 0))),
     "pressure coefficient": Dimension(

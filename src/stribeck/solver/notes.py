@@ -7,7 +7,16 @@ from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import Observables
 
-__all__ = ["HARD", "cavitation_notes", "law_notes", "minimum_note", "pressure_notes", "shape_notes"]
+__all__ = [
+    "HARD",
+    "cavitation_notes",
+    "law_notes",
+    "matters",
+    "minimum_note",
+    "pressure_notes",
+    "shape_notes",
+    "width_notes",
+]
 
 HARD = "Hard elastohydrodynamics:"
 """How the sentence of :func:`pressure_notes` begins; outputs show it before all else."""
@@ -68,12 +77,15 @@ def shape_notes(contact: LineContact | None) -> tuple[str, ...]:
     """Return the sentences about the dry contact alone: its pressure, and its width where that is too much for a parabola."""
     if contact is None:
         return ()
-    notes = pressure_notes(contact)
+    return (*pressure_notes(contact), *width_notes(contact))
+
+
+def width_notes(contact: LineContact) -> tuple[str, ...]:
+    """Return the sentence about a contact that is wide for a parabola on a half-space; none up to 0.3 of the radius."""
     slope = contact.hertz.half_width / contact.radius
     if not slope > WIDEST_CONTACT:
-        return notes
+        return ()
     return (
-        *notes,
         f"The contact is wide: the Hertz half-width is {slope:.2g} of the radius. The parabola on a "
         f"half-space is accurate up to "
         f"about 0.1 and rough at {WIDEST_CONTACT}; check modulus, load and radius.",
@@ -100,7 +112,7 @@ def law_notes(groups: Groups, contact: LineContact | None, values: Observables) 
     if groups.roughness == 0:
         return ()
     shares = _shares(contact, values)
-    if max(shares) <= NEGLIGIBLE_SHARE:
+    if not matters(contact, values):
         return ()
     ratio, measured = _gap_ratio(groups, contact, values)
     far = _far_note(groups, ratio, measured, shares, contact is not None)
@@ -123,6 +135,11 @@ def law_notes(groups: Groups, contact: LineContact | None, values: Observables) 
             f"which ends at about {LAW_RANGE[0]} h_rms; real contact is stiffer there."
         )
     return (*notes, *far)
+
+
+def matters(contact: LineContact | None, values: Observables) -> bool:
+    """Return whether asperities have more than 1 % of load or friction, so that it matters by which law they carry it."""
+    return max(_shares(contact, values)) > NEGLIGIBLE_SHARE
 
 
 def minimum_note(groups: Groups, contact: LineContact | None, values: Observables, friction: float, where: str) -> str:
@@ -154,7 +171,7 @@ def minimum_note(groups: Groups, contact: LineContact | None, values: Observable
     return (
         f"At the minimum of friction, {where}, the central gap is {ratio:.2g} {measured}, beyond the range of "
         f"{_range(groups)}, while asperities cause {100 * friction:.2g} % of the friction: on a surface with "
-        "fewer high asperities the minimum is lower and at a lower speed, by 10 to 20 % (contact_laws.md)."
+        "fewer high asperities the minimum is lower and at a lower speed, by 10 to 20 % (stribeck check tells by how much)."
     )
 
 

@@ -1,0 +1,113 @@
+"""Checks of the bodies: pressure, stiffness, width, layer, loss."""
+
+from __future__ import annotations
+
+import math
+
+from stribeck.checks.check import Check, verdict_of
+from stribeck.checks.subject import Subject
+from stribeck.solver.notes import HARD, HIGHEST_PRESSURE, OIL, WIDEST_CONTACT, pressure_notes, width_notes
+
+FINE_STIFFENING, STIFFENING = 0.1, 1.0
+"""Pressure coefficient times Hertz pressure that is fine, and beyond which the film is another one: 12 % thicker, its friction
+88 % larger (when_not_to_use.md)."""
+
+SOFT, HARD_MODULUS = 5e9, 1e10
+"""E* up to which a body counts as soft, and from which it is metal, glass or ceramic [Pa]."""
+
+FINE_WIDTH = 0.1
+"""Half-width over the radius up to which a parabola on a half-space is accurate."""
+
+FINE_LAYER, THIN_LAYER = 0.3, 1.0
+"""Half-width over thickness up to which a layer is a half-space within about a tenth, and beyond which it is none."""
+
+FINE_LOSS, LOSS = 0.1, 0.3
+"""Loss tangents up to which hysteresis is small, and beyond which the contact is not symmetric at rest any more."""
+
+
+def pressure(subject: Subject) -> Check:
+    """Return the check of the Hertz pressure against the growth of viscosity with pressure."""
+    p = subject.contact.hertz.pressure
+    given = subject.fact("pressure_viscosity")
+    coefficient = OIL if given is None else given
+    growth = coefficient * p
+    limit = FINE_STIFFENING / coefficient if coefficient > 0 else math.inf
+    modelled = subject.models("fluid")
+    uses_pressure = bool(getattr(getattr(subject.contact, "fluid", None), "uses_pressure", False))
+    if uses_pressure:
+        return Check("Hertz pressure", p, math.inf, "fine", f"The growth of viscosity with pressure is solved ({modelled}).", "Pa")
+    verdict = verdict_of(growth, FINE_STIFFENING, STIFFENING * (1 + 1e-12))
+    if given is None and verdict == "outside":
+        [sentence] = pressure_notes(subject.contact)
+    else:
+        about = f"of an oil, {OIL * 1e9:g} 1/GPa (give pressure_viscosity)" if given is None else f"{given * 1e9:.3g} 1/GPa"
+        begin = f"{HARD} at" if verdict == "outside" else "At"
+        sentence = (
+            f"{begin} the Hertz pressure of {p / 1e6:.3g} MPa viscosity is exp({growth:.2g}) times that at ambient pressure "
+            f"by the pressure-viscosity coefficient {about}; the model has one viscosity."
+        )
+    return Check("Hertz pressure", p, limit, verdict, sentence, "Pa")
+
+
+def stiffness(subject: Subject) -> Check:
+    """Return the check of the modulus: whether the body is soft."""
+    E = subject.contact.modulus
+    verdict = verdict_of(E, SOFT, HARD_MODULUS)
+    if verdict == "fine":
+        sentence = "The bodies are soft enough for elastic asperities and moderate pressures."
+    else:
+        sentence = (
+            f"{HARD} " if verdict == "outside" else ""
+        ) + (
+            f"E* = {E / 1e9:.3g} GPa is that of {'metal, glass or ceramic' if verdict == 'outside' else 'a hard plastic'}: "
+            "asperities yield, which the contact law does not know, and where they touch a film its viscosity rises with "
+            "pressure. The model is for rubber, gels, plastics and tissue."
+        )
+    return Check("stiffness", E, SOFT, verdict, sentence, "Pa")
+
+
+def width(subject: Subject) -> Check:
+    """Return the check of the half-width over the radius."""
+    contact = subject.contact
+    slope = contact.hertz.half_width / contact.radius
+    verdict = verdict_of(slope, FINE_WIDTH, 2 * WIDEST_CONTACT)
+    notes = width_notes(contact)
+    sentence = notes[0] if notes else f"The half-width is {slope:.2g} of the radius; a parabola on a half-space is right to 0.1."
+    return Check("contact width a/R", slope, FINE_WIDTH, verdict, sentence)
+
+
+def layer(subject: Subject) -> Check | None:
+    """Return the check of the layer: half-width over its thickness; None where the thickness is not known."""
+    thickness = subject.fact("layer_thickness")
+    if subject.models("solid") and getattr(getattr(subject.contact, "solid", None), "thickness", None) is not None:
+        return Check("layer a/thickness", math.nan, FINE_LAYER, "fine", "The layer is solved as one.")
+    if thickness is None or thickness == 0:
+        return None
+    a = subject.contact.hertz.half_width
+    ratio = a / thickness
+    verdict = verdict_of(ratio, FINE_LAYER, THIN_LAYER)
+    meaning = {
+        "fine": "The layer is as good as a half-space.",
+        "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than solved.",
+        "outside": "The layer is thinner than the contact is wide: it is no half-space, and its films are others.",
+    }[verdict]
+    return Check("layer a/thickness", ratio, FINE_LAYER, verdict, f"The half-width is {ratio:.2g} of the thickness. {meaning}")
+
+
+def loss(subject: Subject) -> Check | None:
+    """Return the check of the loss tangent; None where it is not known."""
+    tangent = subject.fact("loss_tangent")
+    if tangent is None:
+        return None
+    contact = subject.contact
+    frequency = contact.speed / contact.hertz.half_width
+    verdict = verdict_of(tangent, FINE_LOSS, LOSS)
+    if subject.models("solid") and getattr(getattr(contact, "solid", None), "loss_tangent", None) is not None:
+        return Check("loss tangent", tangent, FINE_LOSS, "fine", "The loss of the solid is solved.")
+    meaning = {
+        "fine": "hysteresis is small.",
+        "doubtful": "hysteresis adds friction that is not solved.",
+        "outside": "hysteresis adds friction and shifts the contact, which is not solved; the solid is not elastic.",
+    }[verdict]
+    sentence = f"The loss tangent is {tangent:.2g} (it counts at U/a = {frequency:.2g} 1/s): {meaning}"
+    return Check("loss tangent", tangent, FINE_LOSS, verdict, sentence)

@@ -1,0 +1,195 @@
+"""What a check says, and what all checks of a contact say together."""
+
+from __future__ import annotations
+
+import html
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+__all__ = ["OUTSIDE", "Check", "Checks", "Verdict", "number_text", "verdict_of"]
+
+Verdict = Literal["fine", "doubtful", "outside"]
+
+ORDER: tuple[Verdict, ...] = ("fine", "doubtful", "outside")
+
+OUTSIDE = "Outside the model"
+"""How the first line of an output begins where a check says that the model does not apply."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """One check of whether the model applies to a contact.
+
+    Attributes
+    ----------
+    name : str
+        What is checked.
+    value : float
+        Its value for this contact, in ``unit``.
+    limit : float
+        Up to where it is fine, in ``unit``.
+    verdict : {"fine", "doubtful", "outside"}
+        Whether the model applies.
+    sentence : str
+        What that means.
+    unit : str
+        Unit of value and limit; empty for a bare number.
+    """
+
+    name: str
+    value: float
+    limit: float
+    verdict: Verdict
+    sentence: str
+    unit: str = ""
+
+    @property
+    def texts(self) -> tuple[str, str]:
+        """Value and limit with their unit, for tables."""
+        return number_text(self.value, self.unit), number_text(self.limit, self.unit)
+
+
+@dataclass(frozen=True)
+class Checks:
+    """The checks of one contact.
+
+    Attributes
+    ----------
+    checks : tuple of Check
+        Those that could be made, in the order of the table.
+    unchecked : tuple of str
+        What could not be checked, and what is missing for it, one sentence each.
+    """
+
+    checks: tuple[Check, ...]
+    unchecked: tuple[str, ...] = ()
+
+    def __iter__(self) -> Iterator[Check]:
+        """Iterate over the checks."""
+        return iter(self.checks)
+
+    def __len__(self) -> int:
+        """Return their number."""
+        return len(self.checks)
+
+    def __getitem__(self, name: str) -> Check:
+        """Return the check of a name."""
+        for each in self.checks:
+            if each.name == name:
+                return each
+        raise KeyError(f"{name!r}; there are {', '.join(each.name for each in self.checks)}")
+
+    @property
+    def verdict(self) -> Verdict:
+        """The worst verdict of all."""
+        return max((each.verdict for each in self.checks), key=ORDER.index, default="fine")
+
+    @property
+    def applies(self) -> bool:
+        """Whether the model applies: no check is outside."""
+        return self.verdict != "outside"
+
+    def with_verdict(self, verdict: Verdict) -> tuple[Check, ...]:
+        """Return the checks of one verdict.
+
+        Parameters
+        ----------
+        verdict : {"fine", "doubtful", "outside"}
+            Which.
+
+        Returns
+        -------
+        tuple of Check
+            They, in the order of the table.
+        """
+        return tuple(each for each in self.checks if each.verdict == verdict)
+
+    @property
+    def headline(self) -> str:
+        """One sentence: whether the model applies, and which checks say that it does not."""
+        outside, doubtful = self.with_verdict("outside"), self.with_verdict("doubtful")
+        if outside:
+            return f"{OUTSIDE} by {_names(outside)}{f'; doubtful by {_names(doubtful)}' if doubtful else ''}."
+        if doubtful:
+            return f"The model applies, with doubts about {_names(doubtful)}."
+        return f"The model applies: all {len(self.checks)} checks are fine."
+
+    @property
+    def first_line(self) -> str:
+        """What outputs print before any number: nothing unless a check is outside."""
+        outside = self.with_verdict("outside")
+        return f"{OUTSIDE}: {' '.join(each.sentence for each in outside)}" if outside else ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return ``applies`` and ``checks``, ready for JSON."""
+        return {
+            "applies": self.applies,
+            "checks": [asdict(each) for each in self.checks],
+            "unchecked": list(self.unchecked),
+        }
+
+    def __str__(self) -> str:
+        """Return headline and table as text."""
+        rows = [("check", "value", "limit", "verdict"), *((each.name, *each.texts, each.verdict) for each in self.checks)]
+        widths = [max(len(row[i]) for row in rows) for i in range(4)]
+        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+        said = [each.sentence for each in self.checks if each.verdict != "fine"]
+        return "\n".join([self.headline, "", *lines, *([""] if said else []), *said])
+
+    def _repr_html_(self) -> str:
+        """Return the table for notebooks."""
+        rows = "".join(
+            f"<tr><td>{'</td><td>'.join(html.escape(cell) for cell in (each.name, *each.texts, each.verdict, each.sentence))}"
+            "</td></tr>"
+            for each in self.checks
+        )
+        head = "".join(f"<th>{name}</th>" for name in ("check", "value", "limit", "verdict", "meaning"))
+        return f"<p>{html.escape(self.headline)}</p><table><tr>{head}</tr>{rows}</table>"
+
+
+def verdict_of(value: float, fine: float, outside: float = math.inf) -> Verdict:
+    """Return the verdict on a value that is fine up to one bound and outside beyond another.
+
+    Parameters
+    ----------
+    value, fine, outside : float
+        The value and the two bounds, in one unit.
+
+    Returns
+    -------
+    {"fine", "doubtful", "outside"}
+        The verdict; "outside" where the value is nan.
+    """
+    if value <= fine:
+        return "fine"
+    return "doubtful" if value <= outside else "outside"
+
+
+def number_text(value: float, unit: str) -> str:
+    """Return a number with three digits, and its unit with a fitting prefix.
+
+    Parameters
+    ----------
+    value : float
+        The number, in ``unit``.
+    unit : str
+        ``"Pa"``, ``"m"``, ``"1/s"`` ... ; empty for a bare number.
+
+    Returns
+    -------
+    str
+        The text.
+    """
+    from stribeck.quantities.units import DIMENSIONS, format_si
+
+    kind = next((name for name, each in DIMENSIONS.items() if unit and each.unit == unit), None)
+    if kind is None or not math.isfinite(value):
+        return f"{value:.3g} {unit}".rstrip()
+    return format_si(value, kind)
+
+
+def _names(checks: Sequence[Check]) -> str:
+    names = [each.name for each in checks]
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -1,0 +1,135 @@
+"""Checks of the film: suction, shear rate, supply, molecules, heating, inertia."""
+
+from __future__ import annotations
+
+import math
+
+from stribeck.checks.check import Check, number_text, verdict_of
+from stribeck.checks.subject import Subject
+from stribeck.solver.notes import ATMOSPHERE, cavitation_notes
+
+USUAL_THINNING = 1e6
+"""Shear rate up to which base oils, water and glycerol keep their viscosity [1/s]; improvers and polymers thin earlier."""
+
+THINNED = 10.0
+"""Times the rate at which a fluid begins to thin from which it is another fluid."""
+
+FINE_SUPPLY, STARVED = 0.5, 1.0
+"""Film that passes, h*/2, over the film that arrives: flooded, and more than there is."""
+
+USUAL_MOLECULE = 1e-9
+"""Size of an oil's molecules [m]."""
+
+FINE_LAYERS, LAYERS = 10.0, 3.0
+"""Molecules across the thinnest film: enough for a viscosity, and too few."""
+
+USUAL_CONDUCTIVITY, USUAL_THERMAL_THINNING = 0.15, 0.04
+"""Of oils [W/(m K)], [1/K]."""
+
+FINE_HEATING, HEATING = 0.1, 1.0
+"""Relative loss of viscosity by shear heating."""
+
+USUAL_DENSITY = 1000.0
+"""Of water [kg/m^3]."""
+
+FINE_INERTIA, INERTIA = 0.1, 1.0
+"""Reduced Reynolds number."""
+
+
+def suction(subject: Subject) -> Check:
+    """Return the check of the suction behind the contact against the pressure of the atmosphere."""
+    contact = subject.contact
+    if subject.models("cavitation"):
+        return Check("suction", 0.0, ATMOSPHERE, "fine", f"Cavitation is solved ({subject.models('cavitation')}).", "Pa")
+    if contact.speed == 0:
+        return Check("suction", 0.0, ATMOSPHERE, "fine", "At rest there is no suction.", "Pa")
+    fluid = subject.solution.fluid_pressure
+    value = max(0.0, -float(fluid.min()) * contact.hertz.pressure)
+    notes = cavitation_notes(contact, fluid)
+    sentence = notes[0] if notes else (
+        f"Suction behind the contact is {number_text(value, 'Pa')}, less than an atmosphere; with air at the outlet the film may "
+        "break even so."
+    )
+    return Check("suction", value, ATMOSPHERE, verdict_of(value, ATMOSPHERE), sentence, "Pa")
+
+
+def shear_rate(subject: Subject) -> Check:
+    """Return the check of the shear rate at the minimum film against that at which the fluid thins."""
+    contact, film = subject.contact, _minimum_film(subject)
+    rate = contact.speed / film if film > 0 else math.inf
+    given = subject.fact("thinning_rate")
+    limit = USUAL_THINNING if given is None else given
+    if subject.models("fluid") and not getattr(getattr(contact, "fluid", None), "uses_pressure", False):
+        return Check("shear rate", rate, math.inf, "fine", f"Thinning is solved ({subject.models('fluid')}).", "1/s")
+    outside = math.inf if given is None else THINNED * limit
+    verdict = verdict_of(rate, limit, outside)
+    about = f"The shear rate at the minimum film is {rate:.2g} 1/s"
+    if verdict == "fine":
+        sentence = f"{about}, below {limit:.2g} 1/s at which {'oils may begin to thin' if given is None else 'the fluid thins'}."
+    else:
+        who = "oils with improvers and all polymer solutions are thinner" if given is None else "the fluid is thinner"
+        sentence = f"{about}: {who} there than at rest. Give the viscosity at that rate, and look at the film again."
+    return Check("shear rate", rate, limit, verdict, sentence, "1/s")
+
+
+def supply(subject: Subject) -> Check | None:
+    """Return the check of the film that passes against the film that arrives; None where that is not known."""
+    arriving = subject.fact("supply_film")
+    if arriving is None or subject.contact.speed == 0:
+        return None
+    passing = subject.film(subject.solution.flux_gap) / 2
+    ratio = passing / arriving if arriving > 0 else math.inf
+    verdict = verdict_of(ratio, FINE_SUPPLY, STARVED)
+    meaning = {
+        "fine": "the inlet is flooded.",
+        "doubtful": "the inlet is close to starving: the film is thinner than solved.",
+        "outside": "that is more than arrives. The contact is starved, and its film is what the supply lets through.",
+    }[verdict]
+    sentence = f"Half of h*, {number_text(passing, 'm')}, passes the contact and {number_text(arriving, 'm')} arrives: {meaning}"
+    return Check("supply h*/(2 supply)", ratio, FINE_SUPPLY, verdict, sentence)
+
+
+def molecules(subject: Subject) -> Check:
+    """Return the check of the thinnest film against the size of molecules."""
+    given = subject.fact("molecular_size")
+    size = USUAL_MOLECULE if given is None else given
+    film = _minimum_film(subject)
+    limit = FINE_LAYERS * size
+    verdict = "fine" if film >= limit else "doubtful" if film >= LAYERS * size else "outside"
+    meaning = {
+        "fine": "the fluid is a continuum.",
+        "doubtful": "layers of molecules begin to count.",
+        "outside": "a viscosity means little there.",
+    }[verdict]
+    about = f"The minimum film is {number_text(film, 'm')}, {film / size:.2g} molecules of {number_text(size, 'm')}"
+    return Check("film against molecules", film, limit, verdict, f"{about}: {meaning}", "m")
+
+
+def heating(subject: Subject) -> Check:
+    r"""Return the check of shear heating: the viscosity lost, :math:`\beta_T \eta U^2/(8 k)`."""
+    contact = subject.contact
+    k = subject.fact("thermal_conductivity") or USUAL_CONDUCTIVITY
+    slope = subject.fact("thermal_thinning")
+    slope = USUAL_THERMAL_THINNING if slope is None else slope
+    kelvin = contact.viscosity * contact.speed**2 / (8 * k)
+    lost = slope * kelvin
+    verdict = verdict_of(lost, FINE_HEATING, HEATING)
+    sentence = f"Shear heats the film by up to {kelvin:.2g} K, which costs {100 * lost:.2g} % of its viscosity" + (
+        "." if verdict == "fine" else "; the model is isothermal: give the viscosity at the temperature of the film."
+    )
+    return Check("viscous heating", lost, FINE_HEATING, verdict, sentence)
+
+
+def inertia(subject: Subject) -> Check:
+    r"""Return the check of the fluid's inertia: the reduced Reynolds number :math:`\rho U h^{*2}/(\eta a)`."""
+    contact = subject.contact
+    density = subject.fact("density") or USUAL_DENSITY
+    film = subject.film(subject.solution.flux_gap)
+    number = density * contact.speed * film**2 / (contact.viscosity * contact.hertz.half_width)
+    verdict = verdict_of(number, FINE_INERTIA, INERTIA)
+    meaning = "the inertia of the fluid is negligible" if verdict == "fine" else "Reynolds' equation neglects inertia, which counts here"
+    return Check("inertia", number, FINE_INERTIA, verdict, f"The reduced Reynolds number is {number:.2g}: {meaning}.")
+
+
+def _minimum_film(subject: Subject) -> float:
+    return subject.film(subject.solution.minimum_gap)

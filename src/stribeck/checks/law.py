@@ -1,0 +1,96 @@
+"""Checks of the contact law: its range at the centre and at the minimum of friction, and what its tail decides."""
+
+from __future__ import annotations
+
+import math
+
+from stribeck.checks.check import Check, Verdict, verdict_of
+from stribeck.checks.subject import Subject
+from stribeck.contact_laws.finite_surface import has_endless_tail
+from stribeck.contact_laws.law import is_exponential
+from stribeck.quantities.units import format_si
+from stribeck.solver.notes import LAW_RANGE, law_notes, matters, minimum_note
+from stribeck.solver.solution import Solution
+
+FINE_TAIL = 0.05
+"""Relative change of the minimum and of transitions by the tail of the law that is fine: about what experiments resolve."""
+
+
+def range_at_centre(subject: Subject) -> Check | None:
+    """Return the check of the central gap against the range of the contact law; None for smooth surfaces."""
+    contact = subject.contact
+    if contact.roughness == 0:
+        return None
+    state = subject.solution
+    ratio = _ratio(subject, state)
+    low, high = _range(subject)
+    notes = law_notes(state.groups, contact, state.observables)
+    verdict: Verdict = "fine"
+    if notes:
+        verdict = "doubtful" if ratio >= low and state.groups.load < _largest(subject) else "outside"
+    limit = high if ratio > low else low
+    if notes:
+        sentence = " ".join(notes)
+    elif matters(contact, state.observables):
+        sentence = f"The central gap is {ratio:.3g} h_rms, inside the range of the contact law."
+    else:
+        sentence = f"The central gap is {ratio:.3g} h_rms; asperities carry too little for the law to count."
+    return Check("contact law at the centre", ratio, limit, verdict, sentence, "h_rms")
+
+
+def range_at_minimum(subject: Subject) -> Check | None:
+    """Return the check of the central gap at the minimum of friction; None where there is none, or surfaces are smooth."""
+    contact = subject.contact
+    if contact.roughness == 0 or subject.minimum is None:
+        return None
+    state = subject.minimum.solution
+    friction = state.friction(definition=subject.definition)
+    share = friction.contact / friction.total if friction.total > 0 else 0.0
+    ratio = _ratio(subject, state)
+    where = f"speed {format_si(subject.minimum.value, 'speed')}"
+    note = minimum_note(state.groups, state.contact, state.observables, share, where)
+    sentence = note or f"At the minimum of friction, {where}, the central gap is {ratio:.3g} h_rms."
+    if not note and not has_endless_tail(contact.law):
+        sentence += " The law has a tail of its own."
+    return Check("contact law at the minimum", ratio, _range(subject)[1], "doubtful" if note else "fine", sentence, "h_rms")
+
+
+def tail(subject: Subject) -> Check | None:
+    """Return the check of how far minimum and transitions move if the law ends as that of a finite surface does."""
+    contact = subject.contact
+    if contact.roughness == 0 or not has_endless_tail(contact.law):
+        return None
+    before = {mark.name: mark for mark in subject.curve.transitions}
+    after = {mark.name: mark for mark in subject.cut_curve.transitions}
+    moves = {
+        name: (after[name].value / mark.value - 1, after[name].friction / mark.friction - 1)
+        for name, mark in before.items()
+        if name in after
+    }
+    if not moves:
+        return None
+    largest = max(abs(change) for pair in moves.values() for change in pair)
+    said = "; ".join(f"{name} {100 * speed:+.0f} % in speed, {100 * friction:+.0f} % in friction" for name, (speed, friction) in moves.items())
+    sentence = (
+        f"If the highest asperities end as on a surface of finite size, these move: {said}. How high the highest asperities are, "
+        "no spectrum tells."
+    )
+    return Check("tail of the contact law", largest, FINE_TAIL, verdict_of(largest, FINE_TAIL), sentence)
+
+
+def _ratio(subject: Subject, state: Solution) -> float:
+    """Return the central gap over h_rms."""
+    return subject.film(state.central_gap) / subject.contact.roughness
+
+
+def _range(subject: Subject) -> tuple[float, float]:
+    """Return the gaps over h_rms between which the contact's law holds."""
+    law = subject.contact.law
+    high = LAW_RANGE[1] if has_endless_tail(law) else math.inf
+    return (LAW_RANGE[0] if is_exponential(law) else 0.0), high
+
+
+def _largest(subject: Subject) -> float:
+    from stribeck.contact_laws.law import largest_load
+
+    return largest_load(subject.contact.law)

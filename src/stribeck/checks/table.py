@@ -1,0 +1,186 @@
+"""The table of checks, and the function that makes them: a new check is one function and one row."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from stribeck.checks import body, film, law
+from stribeck.checks.check import Check, Checks
+from stribeck.checks.subject import Subject
+from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.line import LineContact
+from stribeck.curves.result import StribeckCurve
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.facts import fact_values
+from stribeck.quantities.units import InputError, show
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import SolveError
+
+__all__ = ["ROWS", "Effort", "Row", "check", "checks_of"]
+
+Effort = Literal["contact", "state", "curve", "tail"]
+
+EFFORTS: tuple[Effort, ...] = ("contact", "state", "curve", "tail")
+"""What a check needs: the inputs, the state, the curve over the speed, and that of another law too."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One check.
+
+    Attributes
+    ----------
+    name : str
+        What is checked.
+    check : callable
+        Returns the :class:`Check` of a :class:`Subject`, or None where it does not arise.
+    effort : {"contact", "state", "curve", "tail"}
+        What must be solved for it.
+    missing : str
+        The fact without which it cannot be made; empty if it needs none.
+    """
+
+    name: str
+    check: Callable[[Subject], Check | None]
+    effort: Effort
+    missing: str = ""
+
+
+ROWS = (
+    Row("Hertz pressure", body.pressure, "contact"),
+    Row("stiffness", body.stiffness, "contact"),
+    Row("contact width", body.width, "contact"),
+    Row("layer", body.layer, "contact", "layer_thickness"),
+    Row("loss tangent", body.loss, "contact", "loss_tangent"),
+    Row("viscous heating", film.heating, "contact"),
+    Row("contact law at the centre", law.range_at_centre, "state"),
+    Row("suction", film.suction, "state"),
+    Row("shear rate", film.shear_rate, "state"),
+    Row("supply", film.supply, "state", "supply_film"),
+    Row("film against molecules", film.molecules, "state"),
+    Row("inertia", film.inertia, "state"),
+    Row("contact law at the minimum", law.range_at_minimum, "curve"),
+    Row("tail of the contact law", law.tail, "tail"),
+)
+"""All checks, from the cheapest to the dearest."""
+
+
+@one_blas_thread
+def check(contact: LineContact, *, definition: Definition = "balanced", **facts: Any) -> Checks:
+    """Check whether the model applies to a contact.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction, which the minimum depends on.
+    **facts : str or float
+        What is known of the contact besides: ``pressure_viscosity``, ``layer_thickness``, ``loss_tangent``, ``supply_film``,
+        ``thinning_rate``, ``molecular_size``, ``thermal_conductivity``, ``thermal_thinning``, ``density``; text with units, or
+        numbers in SI units.
+
+    Returns
+    -------
+    Checks
+        A :class:`Check` for each row of the table: value, limit, verdict and sentence; printed, a table.
+
+    Raises
+    ------
+    InputError
+        If the contact is none, or a fact is unknown or impossible.
+
+    Notes
+    -----
+    It solves the state, and its curve over the speed twice, once with the tail of a finite surface: about two seconds.
+    What cannot be solved is named among :attr:`Checks.unchecked`.
+    Source of the limits: docs/checks.md.
+    """
+    if not hasattr(contact, "hertz"):
+        raise InputError(f"contact = {show(contact)}; give a LineContact, whose inputs are in SI units.")
+    return checks_of(Subject(contact, fact_values(facts), check_definition(definition)))
+
+
+def checks_of(subject: Subject, effort: Effort = "tail") -> Checks:
+    """Return the checks of a subject that take at most an effort.
+
+    Parameters
+    ----------
+    subject : Subject
+        The contact, with what is solved already.
+    effort : {"contact", "state", "curve", "tail"}
+        What may be solved.
+
+    Returns
+    -------
+    Checks
+        The checks.
+    """
+    found, unchecked = [], []
+    for row in ROWS:
+        if EFFORTS.index(row.effort) > EFFORTS.index(effort):
+            continue
+        try:
+            made = row.check(subject)
+        except (SolveError, InputError) as problem:
+            unchecked.append(f"{row.name}: {problem}")
+            continue
+        if made is not None:
+            found.append(made)
+        elif row.missing:
+            unchecked.append(f"{row.name}: give {row.missing}.")
+    return Checks(tuple(found), tuple(unchecked))
+
+
+def checks_of_solution(solution: Solution, facts: dict[str, float] | None = None) -> Checks | None:
+    """Return the checks of a solved state; None of groups alone.
+
+    Parameters
+    ----------
+    solution : Solution
+        The state.
+    facts : dict, optional
+        Facts in SI units.
+
+    Returns
+    -------
+    Checks or None
+        Those that need no other state.
+    """
+    if solution.contact is None:
+        return None
+    return checks_of(Subject(solution.contact, facts or {}, solved=solution), "state")
+
+
+def checks_of_curve(
+    curve: StribeckCurve, facts: dict[str, float] | None = None, solution: Solution | None = None
+) -> Checks | None:
+    """Return the checks of a solved curve, at the last of its points over a load; None of groups alone.
+
+    Parameters
+    ----------
+    curve : StribeckCurve
+        The curve.
+    facts : dict, optional
+        Facts in SI units.
+    solution : Solution, optional
+        The state of its contact, which is then checked too.
+
+    Returns
+    -------
+    Checks or None
+        Those that need no other state.
+    """
+    if curve.contact is None or not len(curve):
+        return None
+    over_speed = curve.over == "speed"
+    contact = curve.contact if over_speed else curve.solutions[-1].contact
+    assert contact is not None
+    subject = Subject(contact, facts or {}, curve.definition, solution, curve if over_speed else None)
+    found = checks_of(subject, "curve" if over_speed and solution is not None else "state" if solution is not None else "contact")
+    if over_speed and solution is None:
+        minimum = law.range_at_minimum(subject)
+        found = Checks((*found.checks, *([minimum] if minimum is not None else [])), found.unchecked)
+    return found
