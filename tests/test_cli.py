@@ -67,6 +67,8 @@ def test_solve_prints_the_dictionary_of_the_solution_as_json(capsys):
 def test_the_json_of_a_state_has_exactly_these_keys(capsys):
     found = strict_json(call(capsys, "solve", PDMS, "--json").out)
     assert list(found) == [
+        "applies",
+        "checks",
         "speed",
         "load",
         "roughness",
@@ -223,6 +225,8 @@ def test_the_json_of_a_curve_holds_its_points_and_landmarks(capsys, tmp_path):
     found = strict_json(call(capsys, "curve", PDMS, *FEW, "--json", "-o", tmp_path / "curve.csv").out)
     assert set(found) == {
         *(
+            "applies",
+            "checks",
             "title",
             "over",
             "unit",

@@ -4,6 +4,9 @@ from stribeck import asymptotics, atlas, surfaces
 from stribeck.batches.solve_batch import BatchSolution, solve_batch
 from stribeck.cases.case import Case, load_case
 from stribeck.cases.fit_settings import FitSettings
+from stribeck.checks.check import Check, Checks
+from stribeck.checks.table import check
+from stribeck.contact_laws.finite_surface import FiniteSurface
 from stribeck.contact_laws.function import FunctionLaw
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.table import TableLaw
@@ -28,6 +31,9 @@ from stribeck.sweeps.sweep import SweepProgress, sweep
 __all__ = [
     "BatchSolution",
     "Case",
+    "Check",
+    "Checks",
+    "FiniteSurface",
     "Fit",
     "FitOutcome",
     "FitSettings",
@@ -54,6 +60,7 @@ __all__ = [
     "TableLaw",
     "asymptotics",
     "atlas",
+    "check",
     "fit",
     "load_case",
     "load_sweep",

@@ -16,6 +16,7 @@ from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
 from stribeck.contacts.line import InputError, LineContact
 from stribeck.files.reading import read_bounded
+from stribeck.quantities.facts import FACTS, fact_values
 from stribeck.quantities.hints import MEANT, advice_on
 from stribeck.quantities.inputs import ALTERNATIVES, QUANTITIES, ROWS, check_alternatives, quantity
 from stribeck.quantities.units import DIMENSIONS, show
@@ -95,6 +96,8 @@ class Case:
         Free text; empty where the file has none.
     fit : FitSettings
         The ``[fit]`` table, for :func:`stribeck.fit`.
+    facts : dict
+        The ``[check]`` table, for :func:`stribeck.check`, in SI units.
     tables : dict
         All tables and keys of the file as they stand there.
     """
@@ -108,6 +111,7 @@ class Case:
     title: str = ""
     notes: str = ""
     fit: FitSettings = field(default_factory=FitSettings)
+    facts: dict[str, float] = field(default_factory=dict)
     tables: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
 
@@ -120,7 +124,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         A TOML file: a table ``[contact]`` (the arguments of :class:`LineContact`, and ``law`` by its name), a table
         ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and where wanted ``[curve]``
         (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md),
-        ``title`` and ``notes``.
+        ``[check]`` (facts that :func:`stribeck.check` judges by), ``title`` and ``notes``.
 
     Returns
     -------
@@ -173,6 +177,14 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     except pydantic.ValidationError as failure:
         problems += [error_sentence(model, error) for error in failure.errors(include_url=False)]
     problems += _elasticity_problem(table.get("contact")) + _missing_from_surface(table)
+    facts: dict[str, float] = {}
+    if isinstance(table.get("check"), dict):
+        for name, value in table["check"].items():
+            if name in FACTS:
+                try:
+                    facts |= fact_values({name: value})
+                except InputError as problem:
+                    problems.append(f"[check] {problem}")
     if not problems:
         law = checked["contact"]["law"]
         try:
@@ -190,6 +202,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         title=checked["title"],
         notes=checked["notes"],
         fit=fit,
+        facts=facts,
         tables=tables,
         **checked["solver"],
     )
@@ -383,6 +396,7 @@ def _model() -> Any:
         solver: Annotated[Solver, Field(description="a table, [solver]", default_factory=Solver)]
         surface: Annotated[surface_table(SURFACE), Field(description="a table, [surface]")] = None  # type: ignore[valid-type]
         asperities: Annotated[surface_table(ASPERITIES), Field(description="a table, [asperities]")] = None  # type: ignore[valid-type]
+        check: Annotated[surface_table(tuple(FACTS)), Field(description="a table, [check]")] = None  # type: ignore[valid-type]
         table: Annotated[surface_table(TABLE), Field(description="a table, [table]")] = None  # type: ignore[valid-type]
         title: text = Case.title
         notes: text = Case.notes

@@ -6,7 +6,7 @@ import math
 
 from stribeck.checks.check import Check, verdict_of
 from stribeck.checks.subject import Subject
-from stribeck.solver.notes import HARD, HIGHEST_PRESSURE, OIL, WIDEST_CONTACT, pressure_notes, width_notes
+from stribeck.solver.notes import HARD, OIL, pressure_notes, width_notes
 
 FINE_STIFFENING, STIFFENING = 0.1, 1.0
 """Pressure coefficient times Hertz pressure that is fine, and beyond which the film is another one: 12 % thicker, its friction
@@ -15,8 +15,8 @@ FINE_STIFFENING, STIFFENING = 0.1, 1.0
 SOFT, HARD_MODULUS = 5e9, 1e10
 """E* up to which a body counts as soft, and from which it is metal, glass or ceramic [Pa]."""
 
-FINE_WIDTH = 0.1
-"""Half-width over the radius up to which a parabola on a half-space is accurate."""
+FINE_WIDTH, TOO_WIDE = 0.1, 0.5
+"""Half-width over the radius up to which a parabola on a half-space is accurate, and beyond which it is none."""
 
 FINE_LAYER, THIN_LAYER = 0.3, 1.0
 """Half-width over thickness up to which a layer is a half-space within about a tenth, and beyond which it is none."""
@@ -35,7 +35,9 @@ def pressure(subject: Subject) -> Check:
     modelled = subject.models("fluid")
     uses_pressure = bool(getattr(getattr(subject.contact, "fluid", None), "uses_pressure", False))
     if uses_pressure:
-        return Check("Hertz pressure", p, math.inf, "fine", f"The growth of viscosity with pressure is solved ({modelled}).", "Pa")
+        return Check(
+            "Hertz pressure", p, math.inf, "fine", f"The growth of viscosity with pressure is solved ({modelled}).", "Pa"
+        )
     verdict = verdict_of(growth, FINE_STIFFENING, STIFFENING * (1 + 1e-12))
     if given is None and verdict == "outside":
         [sentence] = pressure_notes(subject.contact)
@@ -57,8 +59,6 @@ def stiffness(subject: Subject) -> Check:
         sentence = "The bodies are soft enough for elastic asperities and moderate pressures."
     else:
         sentence = (
-            f"{HARD} " if verdict == "outside" else ""
-        ) + (
             f"E* = {E / 1e9:.3g} GPa is that of {'metal, glass or ceramic' if verdict == 'outside' else 'a hard plastic'}: "
             "asperities yield, which the contact law does not know, and where they touch a film its viscosity rises with "
             "pressure. The model is for rubber, gels, plastics and tissue."
@@ -70,9 +70,10 @@ def width(subject: Subject) -> Check:
     """Return the check of the half-width over the radius."""
     contact = subject.contact
     slope = contact.hertz.half_width / contact.radius
-    verdict = verdict_of(slope, FINE_WIDTH, 2 * WIDEST_CONTACT)
+    verdict = verdict_of(slope, FINE_WIDTH, TOO_WIDE)
     notes = width_notes(contact)
-    sentence = notes[0] if notes else f"The half-width is {slope:.2g} of the radius; a parabola on a half-space is right to 0.1."
+    about = f"The half-width is {slope:.2g} of the radius; a parabola on a half-space is accurate up to 0.1 and "
+    sentence = notes[0] if notes else f"{about}coarse at 0.3."
     return Check("contact width a/R", slope, FINE_WIDTH, verdict, sentence)
 
 

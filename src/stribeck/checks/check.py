@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import math
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
@@ -122,13 +123,31 @@ class Checks:
         outside = self.with_verdict("outside")
         return f"{OUTSIDE}: {' '.join(each.sentence for each in outside)}" if outside else ""
 
+    def covers(self, note: str) -> bool:
+        """Return whether the first line has said what a note says, its numbers apart.
+
+        Parameters
+        ----------
+        note : str
+            A note of a solution, a curve or a fit.
+
+        Returns
+        -------
+        bool
+            Whether to leave it out below that line.
+        """
+        said = [_words(each.sentence) for each in self.with_verdict("outside")]
+        return any(_words(note)[: len(text)] in text for text in said)
+
     def to_dict(self) -> dict[str, Any]:
-        """Return ``applies`` and ``checks``, ready for JSON."""
-        return {
-            "applies": self.applies,
-            "checks": [asdict(each) for each in self.checks],
-            "unchecked": list(self.unchecked),
-        }
+        """Return verdict and checks, ready for JSON.
+
+        Returns
+        -------
+        dict
+            ``applies``, and under ``checks`` a dictionary of each.
+        """
+        return {"applies": self.applies, "checks": [asdict(each) for each in self.checks]}
 
     def __str__(self) -> str:
         """Return headline and table as text."""
@@ -188,6 +207,11 @@ def number_text(value: float, unit: str) -> str:
     if kind is None or not math.isfinite(value):
         return f"{value:.3g} {unit}".rstrip()
     return format_si(value, kind)
+
+
+def _words(text: str) -> str:
+    """Return a sentence without the numbers in it, which differ from state to state."""
+    return re.sub(r"[-+]?[0-9][-+.0-9e]*", "", text)
 
 
 def _names(checks: Sequence[Check]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stribeck.checks.check import Check, number_text, verdict_of
+from stribeck.checks.check import Check, Verdict, number_text, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.solver.notes import ATMOSPHERE, cavitation_notes
 
@@ -46,9 +46,13 @@ def suction(subject: Subject) -> Check:
     fluid = subject.solution.fluid_pressure
     value = max(0.0, -float(fluid.min()) * contact.hertz.pressure)
     notes = cavitation_notes(contact, fluid)
-    sentence = notes[0] if notes else (
-        f"Suction behind the contact is {number_text(value, 'Pa')}, less than an atmosphere; with air at the outlet the film may "
-        "break even so."
+    sentence = (
+        notes[0]
+        if notes
+        else (
+            f"Suction behind the contact is {number_text(value, 'Pa')}, less than an atmosphere; with air at the outlet "
+            "the film may break even so."
+        )
     )
     return Check("suction", value, ATMOSPHERE, verdict_of(value, ATMOSPHERE), sentence, "Pa")
 
@@ -65,7 +69,9 @@ def shear_rate(subject: Subject) -> Check:
     verdict = verdict_of(rate, limit, outside)
     about = f"The shear rate at the minimum film is {rate:.2g} 1/s"
     if verdict == "fine":
-        sentence = f"{about}, below {limit:.2g} 1/s at which {'oils may begin to thin' if given is None else 'the fluid thins'}."
+        sentence = (
+            f"{about}, below {limit:.2g} 1/s at which {'oils may begin to thin' if given is None else 'the fluid thins'}."
+        )
     else:
         who = "oils with improvers and all polymer solutions are thinner" if given is None else "the fluid is thinner"
         sentence = f"{about}: {who} there than at rest. Give the viscosity at that rate, and look at the film again."
@@ -85,7 +91,9 @@ def supply(subject: Subject) -> Check | None:
         "doubtful": "the inlet is close to starving: the film is thinner than solved.",
         "outside": "that is more than arrives. The contact is starved, and its film is what the supply lets through.",
     }[verdict]
-    sentence = f"Half of h*, {number_text(passing, 'm')}, passes the contact and {number_text(arriving, 'm')} arrives: {meaning}"
+    sentence = (
+        f"Half of h*, {number_text(passing, 'm')}, passes the contact and {number_text(arriving, 'm')} arrives: {meaning}"
+    )
     return Check("supply h*/(2 supply)", ratio, FINE_SUPPLY, verdict, sentence)
 
 
@@ -95,7 +103,7 @@ def molecules(subject: Subject) -> Check:
     size = USUAL_MOLECULE if given is None else given
     film = _minimum_film(subject)
     limit = FINE_LAYERS * size
-    verdict = "fine" if film >= limit else "doubtful" if film >= LAYERS * size else "outside"
+    verdict: Verdict = "fine" if film >= limit else "doubtful" if film >= LAYERS * size else "outside"
     meaning = {
         "fine": "the fluid is a continuum.",
         "doubtful": "layers of molecules begin to count.",
@@ -127,7 +135,11 @@ def inertia(subject: Subject) -> Check:
     film = subject.film(subject.solution.flux_gap)
     number = density * contact.speed * film**2 / (contact.viscosity * contact.hertz.half_width)
     verdict = verdict_of(number, FINE_INERTIA, INERTIA)
-    meaning = "the inertia of the fluid is negligible" if verdict == "fine" else "Reynolds' equation neglects inertia, which counts here"
+    meaning = (
+        "the inertia of the fluid is negligible"
+        if verdict == "fine"
+        else "Reynolds' equation neglects inertia, which counts here"
+    )
     return Check("inertia", number, FINE_INERTIA, verdict, f"The reduced Reynolds number is {number:.2g}: {meaning}.")
 
 

@@ -7,10 +7,14 @@ import math
 from stribeck.checks.check import Check, Verdict, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.contact_laws.finite_surface import has_endless_tail
-from stribeck.contact_laws.law import is_exponential
+from stribeck.contact_laws.law import is_exponential, largest_load
+from stribeck.curves.regime import Transition
 from stribeck.quantities.units import format_si
-from stribeck.solver.notes import LAW_RANGE, law_notes, matters, minimum_note
+from stribeck.solver.notes import ADVICE, LAW_RANGE, law_notes, matters, minimum_note
 from stribeck.solver.solution import Solution
+
+WORTH_SAYING = 0.005
+"""Relative change that a sentence names."""
 
 FINE_TAIL = 0.05
 """Relative change of the minimum and of transitions by the tail of the law that is fine: about what experiments resolve."""
@@ -27,7 +31,7 @@ def range_at_centre(subject: Subject) -> Check | None:
     notes = law_notes(state.groups, contact, state.observables)
     verdict: Verdict = "fine"
     if notes:
-        verdict = "doubtful" if ratio >= low and state.groups.load < _largest(subject) else "outside"
+        verdict = "doubtful" if ratio >= low and state.groups.load < largest_load(contact.law) else "outside"
     limit = high if ratio > low else low
     if notes:
         sentence = " ".join(notes)
@@ -49,7 +53,7 @@ def range_at_minimum(subject: Subject) -> Check | None:
     ratio = _ratio(subject, state)
     where = f"speed {format_si(subject.minimum.value, 'speed')}"
     note = minimum_note(state.groups, state.contact, state.observables, share, where)
-    sentence = note or f"At the minimum of friction, {where}, the central gap is {ratio:.3g} h_rms."
+    sentence = note.replace(ADVICE, ".") or f"At the minimum of friction, {where}, the central gap is {ratio:.3g} h_rms."
     if not note and not has_endless_tail(contact.law):
         sentence += " The law has a tail of its own."
     return Check("contact law at the minimum", ratio, _range(subject)[1], "doubtful" if note else "fine", sentence, "h_rms")
@@ -70,12 +74,19 @@ def tail(subject: Subject) -> Check | None:
     if not moves:
         return None
     largest = max(abs(change) for pair in moves.values() for change in pair)
-    said = "; ".join(f"{name} {100 * speed:+.0f} % in speed, {100 * friction:+.0f} % in friction" for name, (speed, friction) in moves.items())
-    sentence = (
-        f"If the highest asperities end as on a surface of finite size, these move: {said}. How high the highest asperities are, "
-        "no spectrum tells."
+    said = "; ".join(
+        f"{_place(name)}, speed {100 * speed:+.0f} % and friction {100 * friction:+.0f} %"
+        for name, (speed, friction) in moves.items()
+        if max(abs(speed), abs(friction)) >= WORTH_SAYING
     )
+    moved = f"these move: {said}" if said else "nothing moves by 1 % or more"
+    sentence = f"With the highest asperities of a finite surface {moved}. No spectrum tells how high they are."
     return Check("tail of the contact law", largest, FINE_TAIL, verdict_of(largest, FINE_TAIL), sentence)
+
+
+def _place(name: str) -> str:
+    """Return the name of a landmark such that a sentence may go on with what happens there."""
+    return f"at the {name}" if name == Transition.MINIMUM else f"where {name}"
 
 
 def _ratio(subject: Subject, state: Solution) -> float:
@@ -88,9 +99,3 @@ def _range(subject: Subject) -> tuple[float, float]:
     law = subject.contact.law
     high = LAW_RANGE[1] if has_endless_tail(law) else math.inf
     return (LAW_RANGE[0] if is_exponential(law) else 0.0), high
-
-
-def _largest(subject: Subject) -> float:
-    from stribeck.contact_laws.law import largest_load
-
-    return largest_load(subject.contact.law)

@@ -1,4 +1,4 @@
-"""What checks look at: a contact, what is known of it besides, and the states that are solved only if a check asks for them."""
+"""What checks look at: a contact, what is known of it, and the states that are solved only if a check asks for them."""
 
 from __future__ import annotations
 

@@ -179,7 +179,9 @@ def checks_of_curve(
     contact = curve.contact if over_speed else curve.solutions[-1].contact
     assert contact is not None
     subject = Subject(contact, facts or {}, curve.definition, solution, curve if over_speed else None)
-    found = checks_of(subject, "curve" if over_speed and solution is not None else "state" if solution is not None else "contact")
+    found = checks_of(
+        subject, "curve" if over_speed and solution is not None else "state" if solution is not None else "contact"
+    )
     if over_speed and solution is None:
         minimum = law.range_at_minimum(subject)
         found = Checks((*found.checks, *([minimum] if minimum is not None else [])), found.unchecked)

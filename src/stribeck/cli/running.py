@@ -24,7 +24,7 @@ from stribeck.cli.exits import (
     silence,
     stdout_console,
 )
-from stribeck.cli.solving import curve_command, figures_command, regimes_command, solve_command
+from stribeck.cli.solving import check_command, curve_command, figures_command, regimes_command, solve_command
 from stribeck.cli.studies import explore_command, fit_command, surface_command, sweep_command
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
@@ -127,6 +127,7 @@ def make_app() -> App:
         console=stdout_console(),
     )
     for command in (
+        check_command,
         solve_command,
         curve_command,
         regimes_command,
@@ -161,7 +162,7 @@ def _line(problem: BaseException) -> str:
 
 
 def _command(tokens: Sequence[str]) -> str:
-    known = ("solve", "curve", "regimes", "figures", "sweep", "surface", "fit", "explore")
+    known = ("check", "solve", "curve", "regimes", "figures", "sweep", "surface", "fit", "explore")
     return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
 
 

@@ -9,6 +9,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from stribeck.cases.case import load_case
+from stribeck.checks.subject import Subject
+from stribeck.checks.table import checks_of, checks_of_curve, checks_of_solution
 from stribeck.cli.arguments import (
     AXES,
     CaseFile,
@@ -99,11 +101,12 @@ def solve_command(
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
 
+    checks = checks_of_solution(solution, loaded.facts if loaded else None)
     if json:
-        print(report_json.dump(report_json.solution_json(solution, mu, b)))
+        print(report_json.dump(report_json.solution_json(solution, mu, b, checks)))
         return 0
     console = stdout_console()
-    report.print_solution(console, solution, title, mu, b)
+    report.print_solution(console, solution, title, mu, b, checks)
     for picture in pictures:
         console.print(f"Written: {picture}", markup=False, highlight=False, soft_wrap=True)
     return 0
@@ -179,10 +182,11 @@ def curve_command(
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
 
+    checks = checks_of_curve(curve, loaded.facts if loaded else None)
     if json:
-        print(report_json.dump(report_json.curve_json(curve, title, written)))
+        print(report_json.dump(report_json.curve_json(curve, title, written, checks)))
     else:
-        report.print_curve(stdout_console(), curve, title, written)
+        report.print_curve(stdout_console(), curve, title, written, checks)
     if problems:
         return complain("\n".join(problems), BAD_INPUT)
     if curve.outcome is Outcome.INTERRUPTED:
@@ -226,11 +230,43 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import regimes as report_regimes
 
+    checks = checks_of_curve(curve, loaded.facts, solution)
     if json:
-        print(report_json.dump(report_json.regimes_json(solution, sensitivities, curve, margins, loaded.title)))
+        print(report_json.dump(report_json.regimes_json(solution, sensitivities, curve, margins, loaded.title, checks)))
     else:
-        report_regimes.print_regimes(stdout_console(), solution, sensitivities, curve, margins, loaded.title)
+        report_regimes.print_regimes(stdout_console(), solution, sensitivities, curve, margins, loaded.title, checks)
     return 0 if curve.outcome.ok else complain(curve.outcome.value, FAILED)
+
+
+def check_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
+    """Check whether the model applies to a contact: value, limit and verdict of each condition, with a sentence.
+
+    Example: stribeck check examples/rod_seal.toml
+
+    What only checks need goes into the table [check] of the case: pressure_viscosity, layer_thickness, loss_tangent,
+    supply_film, thinning_rate, molecular_size, thermal_conductivity, thermal_thinning, density.
+
+    The exit code is 0 whatever the verdict.
+
+    Parameters
+    ----------
+    case
+        Case file (TOML).
+    json
+        Print JSON.
+    """
+    if case is None:
+        raise InputError("CASE is missing; give a case file, as in: stribeck check case.toml.")
+    from stribeck.cli.reports import checks as report_checks
+    from stribeck.cli.reports import json as report_json
+
+    loaded = load_case(case)
+    found = checks_of(Subject(loaded.contact, loaded.facts, loaded.definition))
+    if json:
+        print(report_json.dump({"title": loaded.title} | found.to_dict() | {"unchecked": list(found.unchecked)}))
+    else:
+        report_checks.print_checks(stdout_console(), found, loaded.title)
+    return 0
 
 
 def figures_command(

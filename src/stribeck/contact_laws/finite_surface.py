@@ -117,11 +117,33 @@ class FiniteSurface:
         return np.asarray(base - 3 * TAIL / self.alpha * np.maximum(s / self.alpha, 0.0) ** 2)
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return those of the law."""
+        """Return what the law says of a state.
+
+        Parameters
+        ----------
+        separation : float
+            Its minimum separation [-].
+
+        Returns
+        -------
+        tuple of str
+            The notes of the base; none of the exponential law.
+        """
         return () if self.base is None else self.base.notes(separation)
 
     def area_fraction_at(self, pressure: Array) -> Array:
-        """Return the real area of contact over the apparent one at the pressure Phi; nan where the law knows none."""
+        """Return the real area of contact over the apparent one.
+
+        Parameters
+        ----------
+        pressure : ndarray
+            Contact pressure Phi, of any shape [-].
+
+        Returns
+        -------
+        ndarray
+            That of the base; nan where it knows none.
+        """
         if isinstance(self.base, WithArea):
             return self.base.area_fraction_at(pressure)
         return np.full_like(np.asarray(pressure, dtype=float), np.nan)

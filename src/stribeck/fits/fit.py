@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from stribeck import atlas
 from stribeck._types import Array
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings, free_names
+from stribeck.checks.subject import Subject
+from stribeck.checks.table import checks_of
 from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import LineContact
@@ -33,7 +35,6 @@ from stribeck.fits.result import Fit, FitOutcome, FittedInput, unit_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import si_text
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.notes import pressure_notes
 
 __all__ = ["fit"]
 
@@ -163,6 +164,7 @@ class _Problem:
     settings: FitSettings
     definition: Definition
     rtol: float
+    facts: dict[str, float] = field(default_factory=dict)
 
 
 def _problem(data: object, case: str | os.PathLike[str] | Case | LineContact) -> _Problem:
@@ -172,7 +174,7 @@ def _problem(data: object, case: str | os.PathLike[str] | Case | LineContact) ->
         if not isinstance(case, str | os.PathLike):
             raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case or a LineContact.")
         case = load_fit_case(data, case)
-    return _Problem(case.contact, case.fit, case.definition, case.rtol)
+    return _Problem(case.contact, case.fit, case.definition, case.rtol, case.facts)
 
 
 def _check_enough(data: Measurements, wanted: Sequence[FreeInput]) -> None:
@@ -360,7 +362,10 @@ def _result(
         robust=at.objective.robust,
         quality=judge_residuals(at, data.curve, freedom),
         undetermined=weak,
-        notes=(*_pressure_notes(contacts), *data.notes, *_notes(at, inputs, correlation, covariance, weak, contacts)),
+        checks=checks_of(
+            Subject(max(contacts, key=lambda each: each.hertz.pressure), problem.facts, problem.definition), "contact"
+        ),
+        notes=(*data.notes, *_notes(at, inputs, correlation, covariance, weak, contacts)),
         solver_shift=float(np.nanmax(moved)) if np.isfinite(moved).any() else math.nan,
         model_error=float(errors.max()),
         evaluations=at.evaluations,
@@ -384,11 +389,6 @@ def _implausible(each: FittedInput) -> bool:
 def _interval(free: FreeInput, ends: Ends) -> tuple[float, float]:
     low = 0.0 if math.isinf(ends.low) else free.value(ends.low)
     return low, math.inf if math.isinf(ends.high) else free.value(ends.high)
-
-
-def _pressure_notes(contacts: Sequence[LineContact]) -> tuple[str, ...]:
-    """Return what the highest Hertz pressure of all curves asks to be said before all else."""
-    return pressure_notes(max(contacts, key=lambda contact: contact.hertz.pressure))
 
 
 def _notes(

@@ -10,6 +10,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FREE
+from stribeck.checks.check import Checks
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import LineContact
 from stribeck.fits.identifiability import Unidentifiable
@@ -117,6 +118,8 @@ class Fit:
         What the residuals say.
     undetermined : tuple of Unidentifiable
         Combinations of inputs that the data do not determine.
+    checks : Checks
+        Whether the model applies to the contact of the highest pressure, as far as its inputs tell.
     notes : tuple of str
         What to know before using the values, one sentence each.
     solver_shift : float
@@ -144,6 +147,7 @@ class Fit:
     robust: bool
     quality: Quality
     undetermined: tuple[Unidentifiable, ...]
+    checks: Checks
     notes: tuple[str, ...]
     solver_shift: float
     model_error: float

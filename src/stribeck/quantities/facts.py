@@ -1,4 +1,4 @@
-"""The table of facts: what is known of a contact that no equation takes, but by which the checks judge whether the model holds.
+"""The table of facts: what is known of a contact that no equation takes, but by which checks judge whether the model holds.
 
 The table ``[check]`` of case files and :func:`stribeck.check` read it: one row is one fact everywhere.
 """

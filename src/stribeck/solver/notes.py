@@ -8,6 +8,7 @@ from stribeck.contacts.line import Groups, LineContact
 from stribeck.equations.observables import Observables
 
 __all__ = [
+    "ADVICE",
     "HARD",
     "cavitation_notes",
     "law_notes",
@@ -38,6 +39,9 @@ USUAL_ALPHA, USUAL_BETA = 2.0, 0.05
 
 NEGLIGIBLE_SHARE = 0.01
 """Share of load and of friction up to which it does not matter by which law asperities carry them."""
+
+ADVICE = ", by 10 to 20 % (stribeck check tells by how much)."
+"""How the sentence on a minimum ends that only the tail of the law decides."""
 
 ATMOSPHERE = 1.01325e5
 """Ambient pressure of a contact in the open [Pa], by which the fluid pressure may fall before nothing is left."""
@@ -171,7 +175,7 @@ def minimum_note(groups: Groups, contact: LineContact | None, values: Observable
     return (
         f"At the minimum of friction, {where}, the central gap is {ratio:.2g} {measured}, beyond the range of "
         f"{_range(groups)}, while asperities cause {100 * friction:.2g} % of the friction: on a surface with "
-        "fewer high asperities the minimum is lower and at a lower speed, by 10 to 20 % (stribeck check tells by how much)."
+        f"fewer high asperities the minimum is lower and at a lower speed{ADVICE}"
     )
 
 

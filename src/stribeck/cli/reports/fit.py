@@ -12,7 +12,6 @@ from stribeck.fits.posterior import Posterior
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.units import format_si
-from stribeck.solver.notes import HARD
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -46,7 +45,7 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
     def say(text: str, style: str = "") -> None:
         console.print(text, style=style or None, markup=False, highlight=False, soft_wrap=True)
 
-    print_first(console, fit.notes)
+    print_first(console, fit.checks)
     if title:
         say(title, "bold")
     data = fit.data
@@ -82,7 +81,7 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
         message = each_weak.message
         say(f"Warning: {message}", "bold yellow")
     for note in fit.notes:
-        if not note.startswith(HARD):
+        if not fit.checks.covers(note):
             say(f"Note: {note}", "yellow")
     for name in files:
         say(f"Written: {name}")
@@ -107,7 +106,7 @@ def fit_json(fit: Fit, title: str, files: Sequence[str] = (), posterior: Posteri
     dict
         Ready for :func:`stribeck.cli.reports.json.dump`.
     """
-    found: dict[str, Any] = {"title": title} | fit.to_dict() | {"files": list(files)}
+    found: dict[str, Any] = fit.checks.to_dict() | {"title": title} | fit.to_dict() | {"files": list(files)}
     if posterior is not None:
         names = ("acceptance", "autocorrelation_time", "converged", "message")
         found["posterior"] = {name: getattr(posterior, name) for name in names} | {

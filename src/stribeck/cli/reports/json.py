@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from stribeck.checks.check import Checks
 from stribeck.cli.reports.words import Sensitivities, contact_part, hersey_of, part_error, regime_now, strongest
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.line import LineContact
@@ -50,7 +51,9 @@ def _plain(content: Any) -> Any:
     return content
 
 
-def solution_json(solution: Solution, boundary_friction: float | None = None, beta: float | None = None) -> dict[str, Any]:
+def solution_json(
+    solution: Solution, boundary_friction: float | None = None, beta: float | None = None, checks: Checks | None = None
+) -> dict[str, Any]:
     """Return :meth:`Solution.to_dict`, and under ``si`` inputs and films of the contact, if any, in SI units.
 
     Parameters
@@ -59,13 +62,15 @@ def solution_json(solution: Solution, boundary_friction: float | None = None, be
         The state.
     boundary_friction, beta : float, optional
         As in :meth:`Solution.friction`.
+    checks : Checks, optional
+        Those of its contact.
 
     Returns
     -------
     dict
         Ready for :func:`dump`.
     """
-    found: dict[str, Any] = solution.to_dict(boundary_friction, beta)
+    found: dict[str, Any] = checks_json(checks) | solution.to_dict(boundary_friction, beta)
     found["hersey_number"] = hersey_of(solution, beta)
     if solution.contact is not None:
         films = si_films(solution)
@@ -77,7 +82,7 @@ def solution_json(solution: Solution, boundary_friction: float | None = None, be
     return found
 
 
-def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[str, Any]:
+def curve_json(curve: StribeckCurve, title: str, files: Sequence[str], checks: Checks | None = None) -> dict[str, Any]:
     """Return a curve with its settings, landmarks and points.
 
     Parameters
@@ -88,6 +93,8 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[s
         Headline.
     files : sequence of str
         Files that were written.
+    checks : Checks, optional
+        Those of its contact.
 
     Returns
     -------
@@ -96,6 +103,7 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[s
     """
     names = tuple(OBSERVABLES)
     return {
+        **checks_json(checks),
         "title": title,
         "over": curve.over,
         "unit": "1" if curve.contact is None else unit_of(curve.over),
@@ -132,7 +140,12 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str]) -> dict[s
 
 
 def regimes_json(
-    solution: Solution, sensitivities: Sensitivities, curve: StribeckCurve, margins: RegimeMargins, title: str = ""
+    solution: Solution,
+    sensitivities: Sensitivities,
+    curve: StribeckCurve,
+    margins: RegimeMargins,
+    title: str = "",
+    checks: Checks | None = None,
 ) -> dict[str, Any]:
     """Return the regime of a state, the transitions around it and what moves its friction.
 
@@ -148,6 +161,8 @@ def regimes_json(
         The way to the next regimes.
     title : str
         Headline.
+    checks : Checks, optional
+        Those of the contact.
 
     Returns
     -------
@@ -158,6 +173,7 @@ def regimes_json(
     friction = solution.friction(definition=curve.definition)
     speed = solution.contact.speed
     return {
+        **checks_json(checks),
         "title": title,
         "regime": regime_now(solution, curve.definition),
         "speed": speed,
@@ -184,6 +200,11 @@ def regimes_json(
         "message": curve.outcome.value,
         "notes": [*solution.notes, *curve.minimum_notes, *margins.notes],
     }
+
+
+def checks_json(checks: Checks | None) -> dict[str, Any]:
+    """Return whether the model applies and the checks that say so; nothing of groups alone."""
+    return {} if checks is None else checks.to_dict()
 
 
 def law_json(law: AsperityLaw | None) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from stribeck.checks.check import Checks
 from stribeck.cli.reports.words import (
     Sensitivities,
     contact_part,
@@ -39,6 +40,7 @@ def print_regimes(
     curve: StribeckCurve,
     margins: RegimeMargins,
     title: str,
+    checks: Checks | None = None,
 ) -> None:
     """Print in which regime a contact runs, where the transitions lie, and what moves its friction.
 
@@ -56,10 +58,12 @@ def print_regimes(
         The way to the next regimes.
     title : str
         Headline.
+    checks : Checks, optional
+        Those of the contact.
     """
     contact = solution.contact
     assert contact is not None
-    print_head(console, title, contact, solution.groups, notes=solution.notes)
+    print_head(console, title, contact, solution.groups, checks=checks)
     friction = solution.friction(definition=curve.definition)
     speed = format_si(contact.speed, "speed")
     say(
@@ -97,7 +101,7 @@ def print_regimes(
             f"Friction is most sensitive to {name}: 10 % {way} lowers friction by {gain}, other inputs fixed.",
         )
     notes = [*solution.notes, *curve.minimum_notes, *margins.notes]
-    print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), notes)
+    print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), notes, checks)
 
 
 def _ways(margins: RegimeMargins) -> Iterator[str]:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from stribeck.checks.check import Checks
 from stribeck.cli.reports.words import (
     contact_part,
     digits,
@@ -33,7 +34,12 @@ __all__ = ["print_curve", "print_solution"]
 
 
 def print_solution(
-    console: Console, solution: Solution, title: str, boundary_friction: float | None = None, beta: float | None = None
+    console: Console,
+    solution: Solution,
+    title: str,
+    boundary_friction: float | None = None,
+    beta: float | None = None,
+    checks: Checks | None = None,
 ) -> None:
     """Print one state as a table with units and errors.
 
@@ -47,14 +53,16 @@ def print_solution(
         Headline.
     boundary_friction, beta : float, optional
         As in :meth:`Solution.friction`.
+    checks : Checks, optional
+        Those of its contact.
     """
-    print_head(console, title, solution.contact, solution.groups, notes=solution.notes)
+    print_head(console, title, solution.contact, solution.groups, checks=checks)
     columns = (0, 1, 3) if solution.contact is None else (0, 1, 2, 3)
     table = table_of(*(("quantity", "value", "in SI", "error")[i] for i in columns))
     for row in _solution_rows(solution, boundary_friction, beta):
         table.add_row(*(row[i] for i in columns))
     print_table(console, table)
-    print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes)
+    print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes, checks)
 
 
 def _solution_rows(
@@ -89,7 +97,9 @@ def _solution_rows(
     yield "regime", regime, "", ""
 
 
-def print_curve(console: Console, curve: StribeckCurve, title: str, files: Sequence[str]) -> None:
+def print_curve(
+    console: Console, curve: StribeckCurve, title: str, files: Sequence[str], checks: Checks | None = None
+) -> None:
     """Print what a curve holds: inputs, regimes, transitions, error, notes, files.
 
     Parameters
@@ -102,8 +112,10 @@ def print_curve(console: Console, curve: StribeckCurve, title: str, files: Seque
         Headline.
     files : sequence of str
         Files that were written.
+    checks : Checks, optional
+        Those of its contact.
     """
-    print_head(console, title, curve.contact, curve.groups, curve.over, curve.notes)
+    print_head(console, title, curve.contact, curve.groups, curve.over, checks)
     low, high = place(curve, curve.values[0]), place(curve, curve.values[-1])
     say(console, f"{len(curve)} point{'s' * (len(curve) > 1)}, {curve.over} {low} to {high}.")
     table = table_of("regime", "from", "to", right=(1, 2))
@@ -117,6 +129,6 @@ def print_curve(console: Console, curve: StribeckCurve, title: str, files: Seque
         print_table(console, table)
     if curve.minimum is None:
         say(console, "Friction has no minimum inside this range.")
-    print_outcome(console, curve.outcome.value, curve.error_estimate, curve.notes)
+    print_outcome(console, curve.outcome.value, curve.error_estimate, curve.notes, checks)
     for name in files:
         say(console, f"Written: {name}")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stribeck.checks.check import Checks
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.friction import Definition, Friction
 from stribeck.contacts.line import Groups, LineContact
@@ -16,7 +17,6 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import INPUTS, QUANTITIES, ROWS
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import format_bound, format_si
-from stribeck.solver.notes import HARD
 from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:
@@ -103,10 +103,10 @@ def print_head(
     contact: LineContact | None,
     groups: Groups,
     over: str | None = None,
-    notes: Sequence[str] = (),
+    checks: Checks | None = None,
 ) -> None:
-    """Print what concerns all else of the notes, the headline, the inputs and the groups, without those that vary."""
-    print_first(console, notes)
+    """Print whether the model applies if it does not, the headline, the inputs and the groups, without those that vary."""
+    print_first(console, checks)
     if title:
         console.print(title, style="bold", markup=False, highlight=False)
     if contact is not None:
@@ -146,19 +146,18 @@ def law_sentence(law: AsperityLaw) -> str:
     return f"Contact law: {law.name}{f' ({numbers})' if numbers else ''}."
 
 
-def print_outcome(console: Console, outcome: str, error: float, notes: Sequence[str]) -> None:
+def print_outcome(console: Console, outcome: str, error: float, notes: Sequence[str], checks: Checks | None = None) -> None:
     """Print how a solve ended, its error and the notes that :func:`print_first` leaves."""
     say(console, f"{outcome} Largest estimated relative error: {error:.1e}.")
     for note in notes:
-        if not note.startswith(HARD):
+        if checks is None or not checks.covers(note):
             console.print(f"Note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
 
 
-def print_first(console: Console, notes: Sequence[str]) -> None:
-    """Print the notes that say that the model is not for this contact, above all else."""
-    for note in notes:
-        if note.startswith(HARD):
-            console.print(note, style="bold red", markup=False, highlight=False, soft_wrap=True)
+def print_first(console: Console, checks: Checks | None) -> None:
+    """Print above all else that the model is not for this contact, where a check says so."""
+    if checks is not None and checks.first_line:
+        console.print(checks.first_line, style="bold red", markup=False, highlight=False, soft_wrap=True)
 
 
 def say(console: Console, text: str) -> None:

@@ -1,0 +1,43 @@
+"""The checks of a contact in words: the headline, a table, and a sentence for each that is not fine."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from stribeck.checks.check import Checks
+from stribeck.cli.reports.words import print_table, say, table_of
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+__all__ = ["print_checks"]
+
+STYLES = {"fine": "green", "doubtful": "yellow", "outside": "bold red"}
+"""Colours of the verdicts."""
+
+
+def print_checks(console: Console, checks: Checks, title: str) -> None:
+    """Print whether the model applies and why.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    checks : Checks
+        The checks.
+    title : str
+        Headline.
+    """
+    console.print(checks.headline, style=STYLES[checks.verdict], markup=False, highlight=False, soft_wrap=True)
+    if title:
+        console.print(title, style="bold", markup=False, highlight=False)
+    table = table_of("check", "value", "fine up to", "verdict", right=(1, 2))
+    for each in checks:
+        value, limit = each.texts
+        table.add_row(each.name, value, limit, each.verdict, style=None if each.verdict == "fine" else STYLES[each.verdict])
+    print_table(console, table)
+    for verdict in ("outside", "doubtful"):
+        for each in checks.with_verdict(verdict):
+            say(console, f"{verdict.capitalize()}: {each.sentence}")
+    for sentence in checks.unchecked:
+        say(console, f"Not checked: {sentence}")

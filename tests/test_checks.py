@@ -1,0 +1,197 @@
+"""Checks: each verdict turns where its limit says, outputs begin with what is outside, and the exit code stays 0."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from command_line import EXAMPLES, FEW, PDMS, call, case_text
+from fit_data import TRUE
+
+import stribeck as sb
+from stribeck.checks.subject import Subject
+from stribeck.checks.table import ROWS, checks_of
+from stribeck.contact_laws.finite_surface import FiniteSurface
+from stribeck.quantities.facts import ROWS as FACTS
+from stribeck.surfaces import SelfAffine, persson_law
+
+STEEL = sb.LineContact(
+    radius="10 mm",
+    youngs_modulus="210 GPa",
+    poisson_ratio=0.3,
+    load="1 kN/m",
+    viscosity="40 mPa*s",
+    speed="1 m/s",
+    roughness="0.3 um",
+    alpha=2.0,
+    beta=0.02,
+    boundary_friction=0.12,
+)
+STEEL_LIP = """
+[contact]
+radius = "10 mm"
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+load = "1 kN/m"
+viscosity = "40 mPa*s"
+speed = "1 m/s"
+roughness = "0.3 um"
+alpha = 2.0
+beta = 0.02
+boundary_friction = 0.12
+"""
+ORDER = ["fine", "doubtful", "outside"]
+
+
+def verdicts(contact, effort="contact", **facts):
+    """Return the verdicts by name."""
+    return {each.name: each.verdict for each in checks_of(Subject(contact, facts), effort)}
+
+
+@pytest.mark.quick
+def test_a_soft_contact_is_fine_and_steel_is_outside():
+    assert set(verdicts(TRUE).values()) == {"fine"}
+    found = checks_of(Subject(STEEL), "contact")
+    assert found["stiffness"].verdict == "outside" and not found.applies
+    assert found.first_line.startswith("Outside the model: ") and "metal" in found.first_line
+    assert checks_of(Subject(TRUE), "contact").first_line == ""
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("name", "fact", "values"),
+    [
+        ("Hertz pressure", "pressure_viscosity", (0.09, 0.11, 1.1)),
+        ("layer a/thickness", "layer_thickness", (1 / 0.29, 1 / 0.31, 1 / 1.1)),
+        ("loss tangent", "loss_tangent", (0.09, 0.11, 0.31)),
+        ("viscous heating", "thermal_thinning", (0.09, 0.11, 1.1)),
+    ],
+)
+def test_a_verdict_turns_at_its_limits(name, fact, values):
+    scale = {
+        "pressure_viscosity": 1 / TRUE.hertz.pressure,
+        "layer_thickness": TRUE.hertz.half_width,
+        "loss_tangent": 1.0,
+        "thermal_thinning": 8 * 0.15 / (TRUE.viscosity * TRUE.speed**2),
+    }[fact]
+    for value, verdict in zip(values, ORDER, strict=True):
+        found = checks_of(Subject(TRUE, {fact: value * scale}), "contact")[name]
+        assert found.verdict == verdict, value
+        assert (found.value <= found.limit * (1 + 1e-12)) == (verdict == "fine") or name == "film against molecules"
+
+
+def test_the_film_is_checked_against_supply_molecules_and_thinning():
+    state = sb.solve(TRUE, rtol=1e-4)
+    minimum, flux = (value * TRUE.hertz.indentation for value in (state.minimum_gap, state.flux_gap))
+
+    def verdict(name, **facts):
+        return checks_of(Subject(TRUE, facts, solved=state), "state")[name].verdict
+
+    rate = TRUE.speed / minimum
+    assert [verdict("shear rate", thinning_rate=rate * f) for f in (1.1, 0.9, 0.09)] == ORDER
+    assert [verdict("supply h*/(2 supply)", supply_film=flux * f) for f in (1.1, 0.9, 0.4)] == ORDER
+    assert [verdict("film against molecules", molecular_size=minimum / f) for f in (11, 9, 2)] == ORDER
+
+
+def test_negative_gaps_are_outside_and_gaps_beyond_the_law_doubtful():
+    heavy = checks_of(Subject(TRUE.replace(load=600.0, speed="1 um/s")), "state")["contact law at the centre"]
+    assert heavy.verdict == "outside" and heavy.value < 0.1 and heavy.limit == 0.4
+    thin = checks_of(Subject(TRUE.replace(speed="20 mm/s")), "state")["contact law at the centre"]
+    assert thin.verdict == "doubtful" and thin.value > thin.limit == 2
+
+
+def test_the_tail_of_the_law_moves_the_minimum_of_the_demo_by_a_fifth():
+    found = sb.check(sb.load_case(PDMS).contact)
+    tail = found["tail of the contact law"]
+    assert tail.verdict == "doubtful" and 0.2 < tail.value < 0.3
+    assert "at the minimum of friction, speed -19 % and friction -16 %" in tail.sentence
+    assert found["contact law at the minimum"].value == pytest.approx(3.55, abs=0.01)
+    assert found.verdict == "doubtful" and found.applies and "doubts about" in found.headline
+    assert "stribeck check" not in str(found)
+    gaussian = TRUE.replace(alpha=1.0, law=sb.GreenwoodTripp())  # its tail is its own
+    assert "tail of the contact law" not in verdicts(gaussian, "tail")
+
+
+@pytest.mark.quick
+def test_the_finite_surface_has_the_pressures_of_the_simulation():
+    law = persson_law(SelfAffine(h_rms=6e-6, q0=1e4, q1=1e6, hurst=0.8))
+    finite = FiniteSurface(law.alpha, law)
+    rows = sb.TableLaw.read(EXAMPLES / "gfmd_mean_gap.csv")
+    for gap, pressure in list(zip(rows.separation, rows.pressure, strict=True))[-2:]:
+        assert law.beta * np.exp(finite.log_pressure(law.alpha * gap)) == pytest.approx(pressure, rel=0.02)
+        assert law.beta * np.exp(law.log_pressure(law.alpha * gap)) > 1.4 * pressure
+    s = np.linspace(-1, 9, 41)
+    for shape in (FiniteSurface(2.0), FiniteSurface(2.0, law)):
+        inside = s[s > 0] if shape.base else s
+        step = 1e-5
+        differences = (shape.log_pressure(inside + step) - shape.log_pressure(inside - step)) / (2 * step)
+        assert shape.log_slope(inside) == pytest.approx(differences, rel=1e-6, abs=1e-6)
+    with pytest.raises(sb.InputError, match="a tail of its own"):
+        FiniteSurface(2.0, sb.GreenwoodTripp())
+    with pytest.raises(sb.InputError, match="positive number"):
+        FiniteSurface(0)
+
+
+def test_steel_is_said_to_be_outside_before_any_number(tmp_path, capsys):
+    case = tmp_path / "lip.toml"
+    case.write_text(STEEL_LIP)
+    for tokens in (("check", case), ("solve", case), ("curve", case, *FEW[:-1], "4")):
+        answer = call(capsys, *tokens)
+        assert (answer.code, answer.err) == (0, "")
+        assert answer.out.startswith("Outside the model"), tokens
+        found = json.loads(call(capsys, *tokens, "--json").out)
+        assert found["applies"] is False and answer.out.count("is that of metal") == 1
+        assert {each["verdict"] for each in found["checks"]} >= {"fine", "outside"}
+        assert set(found["checks"][0]) == {"name", "value", "limit", "verdict", "sentence", "unit"}
+    assert json.loads(call(capsys, "solve", PDMS, "--json").out)["applies"] is True
+
+
+@pytest.mark.quick
+def test_facts_come_from_the_table_check_and_are_refused_if_impossible(tmp_path):
+    case = tmp_path / "case.toml"
+    case.write_text(case_text(check={"pressure_viscosity": '"20 1/GPa"', "layer_thickness": '"2 mm"'}))
+    assert sb.load_case(case).facts == {"pressure_viscosity": pytest.approx(2e-8), "layer_thickness": 0.002}
+    case.write_text(case_text(check={"layer_thickness": '"2 kg"', "layer": "3"}))
+    with pytest.raises(sb.InputError, match=r"\[check\] layer_thickness = '2 kg' is a mass") as problem:
+        sb.load_case(case)
+    assert "[check] layer = 3 is not a known key" in str(problem.value)
+    with pytest.raises(sb.InputError, match="did you mean loss_tangent"):
+        sb.check(TRUE, loss_tangens=0.1)
+    with pytest.raises(sb.InputError, match="give a LineContact"):
+        sb.check("case.toml")
+
+
+def test_every_fact_is_used_and_every_row_says_what_it_misses():
+    names = {row.name for row in FACTS}
+    assert {row.missing for row in ROWS if row.missing} <= names
+    asked = set()
+
+    class Listening(Subject):
+        def fact(self, name):
+            asked.add(name)
+            return super().fact(name)
+
+    found = checks_of(Listening(TRUE), "state")
+    assert asked == names
+    assert [line.partition(":")[0] for line in found.unchecked] == [row.name for row in ROWS if row.missing]
+    assert all(each.sentence.endswith(".") and (math.isfinite(each.value) or each.value > 0) for each in found)
+    assert "<table>" in found._repr_html_()
+
+
+@pytest.mark.quick
+def test_what_a_later_fluid_or_solid_solves_counts_as_fine():
+    class Part:
+        name = "carreau"
+        uses_pressure = True
+        thickness = 1e-4
+
+    class Later:
+        def __init__(self, contact):
+            self.contact, self.fluid, self.solid, self.cavitation = contact, Part(), Part(), Part()
+
+        def __getattr__(self, name):
+            return getattr(self.contact, name)
+
+    found = checks_of(Subject(Later(TRUE.replace(modulus="5 GPa", load="60 kN/m"))), "contact")
+    assert found["Hertz pressure"].verdict == "fine" and "is solved (carreau)" in found["Hertz pressure"].sentence
+    assert found["layer a/thickness"].verdict == "fine"
