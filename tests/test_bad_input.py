@@ -9,7 +9,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import stribeck as sb
-from stribeck.cli import solving
 
 
 @pytest.fixture(autouse=True)
@@ -19,8 +18,8 @@ def nothing_is_solved(monkeypatch):
     def solve(*arguments, **options):
         raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "this was not refused")
 
-    monkeypatch.setattr(solving, "solve", solve)
-    monkeypatch.setattr(solving, "friction_sensitivities", solve)
+    monkeypatch.setattr(sb, "solve", solve)
+    monkeypatch.setattr("stribeck.curves.sensitivities.friction_sensitivities", solve)
     checked = sb.stribeck_curve
 
     def curve(*arguments, **options):
@@ -30,7 +29,7 @@ def nothing_is_solved(monkeypatch):
             patch.setattr("stribeck.curves.stribeck_curve.automatic_speed_range", solve)
             return checked(*arguments, **options)
 
-    monkeypatch.setattr(solving, "stribeck_curve", curve)
+    monkeypatch.setattr(sb, "stribeck_curve", curve)
 
 
 @pytest.fixture

@@ -30,7 +30,7 @@ from command_line import (
 )
 
 import stribeck as sb
-from stribeck.cli import arguments, solving
+from stribeck.cli import arguments
 from stribeck.cli import progress as progress_module
 from stribeck.cli.reports.words import digits
 from stribeck.quantities.outcome import Outcome
@@ -359,8 +359,8 @@ def failing(outcome):
 
 
 def test_a_solve_that_fails_exits_with_1_and_its_outcome(capsys, tmp_path, monkeypatch):
-    monkeypatch.setattr(solving, "solve", failing(Outcome.STEP_LIMIT))
-    monkeypatch.setattr(solving, "stribeck_curve", failing(Outcome.PATH_LOST))
+    monkeypatch.setattr(sb, "solve", failing(Outcome.STEP_LIMIT))
+    monkeypatch.setattr(sb, "stribeck_curve", failing(Outcome.PATH_LOST))
     answer = call(capsys, "solve", *GROUPS)
     assert answer.code == 1
     assert answer.err == f"stribeck: speed 1, load 1, roughness 1: {Outcome.STEP_LIMIT.value}\n"
@@ -379,7 +379,7 @@ def test_a_curve_whose_path_is_lost_keeps_its_points_and_exits_with_1(capsys, tm
         object.__setattr__(curve, "requested", 9)
         return curve
 
-    monkeypatch.setattr(solving, "stribeck_curve", lost)
+    monkeypatch.setattr(sb, "stribeck_curve", lost)
     answer = call(capsys, "curve", *FAST, "-o", tmp_path / "curve.nc")
     assert answer.code == 1
     assert answer.err == f"stribeck: 3 of 9 points: {Outcome.PATH_LOST.value}\n"
@@ -394,7 +394,7 @@ def test_a_curve_that_rounding_ends_is_refused_and_not_written(capsys, tmp_path,
         object.__setattr__(curve, "outcome", Outcome.ROUNDING)
         return curve
 
-    monkeypatch.setattr(solving, "stribeck_curve", rounded)
+    monkeypatch.setattr(sb, "stribeck_curve", rounded)
     answer = call(capsys, "curve", PDMS, *FEW, "-o", tmp_path / "curve.nc")
     assert answer.code == 2
     assert answer.err == (
@@ -409,7 +409,7 @@ def test_an_unexpected_error_is_one_sentence_unless_debugging(capsys, monkeypatc
     def bug(*arguments, **options):
         raise ZeroDivisionError("division\nby zero")
 
-    monkeypatch.setattr(solving, "solve", bug)
+    monkeypatch.setattr(sb, "solve", bug)
     monkeypatch.delenv("STRIBECK_DEBUG", raising=False)
     answer = call(capsys, "solve", *GROUPS)
     assert answer.code == 1
@@ -423,7 +423,7 @@ def test_too_little_memory_is_one_sentence(capsys, monkeypatch):
     def full(*arguments, **options):
         raise MemoryError
 
-    monkeypatch.setattr(solving, "solve", full)
+    monkeypatch.setattr(sb, "solve", full)
     answer = call(capsys, "solve", *GROUPS)
     assert answer.code == 1
     assert re.fullmatch(r"stribeck: Out of memory; .*\.\n", answer.err)
@@ -432,7 +432,7 @@ def test_too_little_memory_is_one_sentence(capsys, monkeypatch):
 @pytest.mark.parametrize(("library", "option"), [("xarray", "-o"), ("netCDF4", "-o"), ("matplotlib", "--plot")])
 def test_a_missing_extra_is_told_before_anything_is_solved(capsys, tmp_path, monkeypatch, library, option):
     monkeypatch.setattr(arguments.importlib.util, "find_spec", lambda name: None if name == library else True)
-    monkeypatch.setattr(solving, "stribeck_curve", failing(Outcome.STEP_LIMIT))
+    monkeypatch.setattr(sb, "stribeck_curve", failing(Outcome.STEP_LIMIT))
     path = tmp_path / ("curve.png" if option == "--plot" else "curve.nc")
     answer = call(capsys, "curve", *FAST, option, path)
     assert answer.code == 2
@@ -442,7 +442,7 @@ def test_a_missing_extra_is_told_before_anything_is_solved(capsys, tmp_path, mon
 def test_a_reader_that_has_gone_causes_no_traceback():
     ours, theirs = os.pipe()
     os.close(ours)
-    command = (sys.executable, "-m", "stribeck_command", "solve", *GROUPS)
+    command = (sys.executable, "-m", "stribeck", "solve", *GROUPS)
     run = subprocess.run(command, stdout=theirs, stderr=subprocess.PIPE, env=environment(), timeout=60)
     os.close(theirs)
     assert (run.returncode, run.stderr) == (141, b"")  # 1 would say that the solve failed

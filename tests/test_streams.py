@@ -15,12 +15,11 @@ from command_line import PDMS, call, environment
 
 import stribeck as sb
 from stribeck.cases.case import read_toml
-from stribeck.cli import solving
 from stribeck.cli.exits import complain
 from stribeck.files import pictures
 from stribeck.files.reading import read_bounded
 
-COMMAND = (sys.executable, "-m", "stribeck_command")
+COMMAND = (sys.executable, "-m", "stribeck")
 SOLVE = (*COMMAND, "solve", "--groups", "1e-4", "0.1", "1e-3")
 
 
@@ -38,8 +37,8 @@ def run(*tokens, prepare=heed, stdout=subprocess.PIPE, **extra):
 
 def test_the_installed_command_is_the_one_that_is_tested_here():
     project = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())
-    assert project["project"]["scripts"] == {"stribeck": "stribeck_command:main"}
-    assert project["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"] == ["src/stribeck", "src/stribeck_command"]
+    assert project["project"]["scripts"] == {"stribeck": "stribeck.__main__:main"}
+    assert project["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"] == ["src/stribeck"]
 
 
 # --- streams ---
@@ -110,13 +109,13 @@ class Press:
             raise ImportError("as a library may say that was interrupted")
 sys.meta_path.insert(0, Press())
 sys.argv[0] = "stribeck"
-runpy.run_module("stribeck_command", run_name="__main__")
+runpy.run_module("stribeck", run_name="__main__")
 """
 
 
-@pytest.mark.parametrize("library", ["mmap", "numpy", "pydantic"])
+@pytest.mark.parametrize("library", ["mmap", "numpy", "pydantic", "scipy", "scipy.linalg"])
 def test_ctrl_c_while_libraries_are_loaded_is_a_sentence_and_130(library):
-    """The last is loaded by the command itself, the others before there is one."""
+    """The first two are loaded before there is a command, the others by the command itself."""
     if library == "mmap":
         library = "stribeck"
     code, out, err = run(sys.executable, "-c", PRESSED.format(library=library), "solve", PDMS)
@@ -130,7 +129,7 @@ def test_ctrl_c_that_a_library_turns_into_another_error_is_an_interruption(capsy
         except KeyboardInterrupt:
             raise ImportError("cannot import name") from None
 
-    monkeypatch.setattr(solving, "solve", solve)
+    monkeypatch.setattr(sb, "solve", solve)
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         answer = call(capsys, "solve", "--groups", "1e-4", "0.1", "1e-3")

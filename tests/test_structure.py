@@ -7,6 +7,7 @@ import importlib
 import importlib.metadata
 import inspect
 import json
+import pydoc
 import subprocess
 import sys
 import textwrap
@@ -163,6 +164,69 @@ def test_importing_the_package_is_silent_and_leaves_heavy_libraries_alone():
     loaded = set(json.loads(line))
     assert "stribeck" in loaded
     assert loaded & HEAVY == set()
+
+
+LOADED = """
+import contextlib, io, json, sys
+from stribeck.__main__ import main
+sys.argv[1:] = {arguments!r}
+with contextlib.redirect_stdout(io.StringIO()):
+    assert main() == 0
+json.dump(list(sys.modules), sys.stderr)
+"""
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("arguments", "unloaded"),
+    [
+        (["--help"], {"numpy.fft", "scipy", "pydantic", "stribeck.solver", "stribeck.curves"}),
+        (
+            ["solve", str(PACKAGE.parents[1] / "examples" / "pdms_cylinder.toml")],
+            {"scipy.optimize", "stribeck.fits", "xarray"},
+        ),
+    ],
+)
+def test_the_command_loads_what_it_uses(arguments, unloaded):
+    """Half of the time of a short command was the import of what it did not use."""
+    run = subprocess.run([sys.executable, "-c", LOADED.format(arguments=arguments)], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    assert (unloaded | {"pint", "matplotlib", "stribeck.sweeps", "stribeck.explorer"}) & set(json.loads(run.stderr)) == set()
+
+
+@pytest.mark.quick
+def test_public_names_are_loaded_on_first_use_and_alone_are_listed():
+    code = """
+        import json, sys
+        import stribeck
+        before = [name for name in sys.modules if name.startswith(("stribeck.", "numpy"))]
+        stribeck.Outcome, stribeck.__version__
+        print(json.dumps([before, dir(stribeck), "stribeck.quantities.outcome" in sys.modules]))
+    """
+    run = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, check=True)
+    assert json.loads(run.stdout) == [[], sorted(stribeck.__all__), True]
+    text = pydoc.plaintext.document(stribeck)
+    for name in ("solve", "LineContact", "StribeckCurve", "phase_diagram"):
+        assert name in text
+    for name in ("import_module", "HOMES", "__getattr__"):
+        assert name not in text
+    with pytest.raises(AttributeError, match="has no attribute 'stribek_curve'"):
+        stribeck.stribek_curve
+
+
+@pytest.mark.quick
+def test_the_stub_of_the_package_has_the_names_of_the_package():
+    tree = ast.parse((PACKAGE / "__init__.pyi").read_text())
+    stub = {
+        alias.name: getattr(importlib.import_module(node.module), alias.name)
+        for node in tree.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+        if node.module != "stribeck" or importlib.import_module(f"stribeck.{alias.name}")
+    }
+    assert stub == {name: getattr(stribeck, name) for name in stribeck.__all__}
+    [names] = [ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign)]
+    assert sorted(names) == stribeck.__all__
 
 
 # --- docstrings ---

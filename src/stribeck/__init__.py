@@ -1,85 +1,53 @@
 """Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
 
-from stribeck import asymptotics, atlas, surfaces
-from stribeck.batches.solve_batch import BatchSolution, solve_batch
-from stribeck.cases.case import Case, load_case
-from stribeck.cases.fit_settings import FitSettings
-from stribeck.checks.check import Check, Checks
-from stribeck.checks.table import check
-from stribeck.contact_laws.finite_surface import FiniteSurface
-from stribeck.contact_laws.function import FunctionLaw
-from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
-from stribeck.contact_laws.table import TableLaw
-from stribeck.contacts.friction import Friction
-from stribeck.contacts.line import Groups, HertzScales, InputError, LineContact
-from stribeck.curves.landmarks import Landmark
-from stribeck.curves.regime import regime_of
-from stribeck.curves.result import StribeckCurve
-from stribeck.curves.stribeck_curve import stribeck_curve
-from stribeck.fits.fit import fit
-from stribeck.fits.measurements import Measurements, read_measurements
-from stribeck.fits.result import Fit, FitOutcome, FittedInput
-from stribeck.quantities.outcome import Outcome
-from stribeck.regimes.phase_diagram import phase_diagram
-from stribeck.solver.solution import Profile, Solution
-from stribeck.solver.solve import SolveError, solve
-from stribeck.sweeps.dataset import Sweep, open_sweep
-from stribeck.sweeps.design import SweepDesign, load_sweep
-from stribeck.sweeps.store import SweepError
-from stribeck.sweeps.sweep import SweepProgress, sweep
+from importlib import import_module as _import_module
 
-__all__ = [
-    "BatchSolution",
-    "Case",
-    "Check",
-    "Checks",
-    "FiniteSurface",
-    "Fit",
-    "FitOutcome",
-    "FitSettings",
-    "FittedInput",
-    "Friction",
-    "FunctionLaw",
-    "GreenwoodTripp",
-    "GreenwoodWilliamson",
-    "Groups",
-    "HertzScales",
-    "InputError",
-    "Landmark",
-    "LineContact",
-    "Measurements",
-    "Outcome",
-    "Profile",
-    "Solution",
-    "SolveError",
-    "StribeckCurve",
-    "Sweep",
-    "SweepDesign",
-    "SweepError",
-    "SweepProgress",
-    "TableLaw",
-    "asymptotics",
-    "atlas",
-    "check",
-    "fit",
-    "load_case",
-    "load_sweep",
-    "open_sweep",
-    "phase_diagram",
-    "read_measurements",
-    "regime_of",
-    "solve",
-    "solve_batch",
-    "stribeck_curve",
-    "surfaces",
-    "sweep",
-]
+_PACKAGES = ("asymptotics", "atlas", "surfaces")
+_HOMES = {
+    "batches.solve_batch": ("BatchSolution", "solve_batch"),
+    "cases.case": ("Case", "load_case"),
+    "cases.fit_settings": ("FitSettings",),
+    "checks.check": ("Check", "Checks"),
+    "checks.table": ("check",),
+    "contact_laws.finite_surface": ("FiniteSurface",),
+    "contact_laws.function": ("FunctionLaw",),
+    "contact_laws.greenwood": ("GreenwoodTripp", "GreenwoodWilliamson"),
+    "contact_laws.table": ("TableLaw",),
+    "contacts.friction": ("Friction",),
+    "contacts.line": ("Groups", "HertzScales", "InputError", "LineContact"),
+    "curves.landmarks": ("Landmark",),
+    "curves.regime": ("regime_of",),
+    "curves.result": ("StribeckCurve",),
+    "curves.stribeck_curve": ("stribeck_curve",),
+    "fits.fit": ("fit",),
+    "fits.measurements": ("Measurements", "read_measurements"),
+    "fits.result": ("Fit", "FitOutcome", "FittedInput"),
+    "quantities.outcome": ("Outcome",),
+    "regimes.phase_diagram": ("phase_diagram",),
+    "solver.solution": ("Profile", "Solution"),
+    "solver.solve": ("SolveError", "solve"),
+    "sweeps.dataset": ("Sweep", "open_sweep"),
+    "sweeps.design": ("SweepDesign", "load_sweep"),
+    "sweeps.store": ("SweepError",),
+    "sweeps.sweep": ("SweepProgress", "sweep"),
+}
+__all__ = sorted([*_PACKAGES, *(name for names in _HOMES.values() for name in names)])
 
 
-def __getattr__(name: str) -> str:
-    """Return the version, read from the installed package only when asked for."""
+def __getattr__(name: str) -> object:
+    """Import a public name on its first use, and read the version from the installed package when asked for."""
     if name == "__version__":
         from importlib.metadata import version
 
         return version("stribeck")
+    if name in _PACKAGES:
+        return _import_module(f"stribeck.{name}")
+    for module, names in _HOMES.items():
+        if name in names:
+            found = globals()[name] = getattr(_import_module(f"stribeck.{module}"), name)
+            return found
     raise AttributeError(f"module 'stribeck' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -6,16 +6,16 @@ import importlib.util
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from stribeck.cases.case import Case, curve_range, load_case
-from stribeck.curves.coordinate import Over
+import stribeck as sb
 from stribeck.files.writing import MissingExtraError, check_writable
 from stribeck.quantities.units import InputError, read_number, show
 
-AXES: tuple[Over, ...] = ("speed", "load", "roughness")
+Axis = Literal["speed", "load", "roughness"]
+AXES: tuple[Axis, ...] = ("speed", "load", "roughness")
 
 CaseFile = Annotated[Path | None, Parameter(name="CASE", show_default=False)]
 Word = Annotated[str | None, Parameter(show_default=False)]
@@ -28,7 +28,7 @@ Triple = Annotated[tuple[str, str, str] | None, Parameter(allow_leading_hyphen=T
 
 def read_case(
     path: Path | None, groups: Sequence[str] | None, boundary_friction: str | None, beta: str | None, law: str | None
-) -> Case | None:
+) -> sb.Case | None:
     """Return the case, or None where groups are given instead."""
     if path is not None and groups is not None:
         if re.fullmatch(r"[-+0-9.eE]+", str(path)):
@@ -45,7 +45,7 @@ def read_case(
     ):
         if value is not None:
             raise InputError(f"{name} = {value} goes with --groups only; in {path} it is the key {key}.")
-    return load_case(path)
+    return sb.load_case(path)
 
 
 def as_number(name: str, text: str | None) -> float | None:
@@ -67,14 +67,14 @@ def as_whole(name: str, text: str) -> int:
     return int(text)
 
 
-def as_rtol(text: str | None, case: Case | None) -> float:
+def as_rtol(text: str | None, case: sb.Case | None) -> float:
     """Return the relative tolerance: that of the option, else of the case, else the default."""
     given = as_number("rtol", text)
-    return given if given is not None else case.rtol if case else Case.rtol
+    return given if given is not None else case.rtol if case else sb.Case.rtol
 
 
 def curve_arguments(
-    case: Case | None,
+    case: sb.Case | None,
     over: str | None,
     ends: tuple[str, str] | None,
     points: str | None,
@@ -84,10 +84,10 @@ def curve_arguments(
     beta: str | None,
 ) -> dict[str, Any]:
     """Return the arguments of :func:`stribeck_curve` that a command line asks for."""
-    from stribeck.cases.case import CurveSettings
+    from stribeck.cases.case import CurveSettings, curve_range
 
     settings = case.curve if case else CurveSettings()
-    varied: Over = settings.over if over is None else _axis(over)
+    varied: Axis = settings.over if over is None else _axis(over)
     found: dict[str, Any] = {
         "points": settings.points if points is None else as_whole("points", points),
         "rtol": as_rtol(rtol, case),
@@ -112,7 +112,7 @@ def curve_arguments(
     return found
 
 
-def _axis(text: str) -> Over:
+def _axis(text: str) -> Axis:
     for axis in AXES:
         if text == axis:
             return axis

@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
+import stribeck as sb
 from stribeck.cli.exits import Interrupted
-from stribeck.solver.solve import SolveError
 
 
 class Progress:
@@ -55,7 +55,7 @@ def interruptible(sigterm: bool = False) -> Iterator[Progress]:
     try:
         with _bar(progress):
             yield progress
-    except SolveError:
+    except sb.SolveError:
         # Also a path that was lost because it was interrupted.
         if progress.wanted:
             raise KeyboardInterrupt from None

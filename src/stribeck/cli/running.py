@@ -8,10 +8,10 @@ import sys
 import threading
 import warnings
 from collections.abc import Sequence
-from importlib.metadata import version
 
 from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionError, UnusedCliTokensError
 
+import stribeck as sb
 from stribeck.cli.exits import (
     BAD_INPUT,
     FAILED,
@@ -28,8 +28,6 @@ from stribeck.cli.solving import check_command, curve_command, figures_command, 
 from stribeck.cli.studies import explore_command, fit_command, surface_command, sweep_command
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
-from stribeck.solver.solve import SolveError
-from stribeck.sweeps.store import SweepError
 
 HELP = """Friction and film thickness of lubricated rough line contacts, from a TOML file with units.
 
@@ -88,12 +86,6 @@ def _run(tokens: list[str], interrupted: Interrupted) -> int:
         return complain(f"{_parsing(problem)} See {_command(tokens)} --help.", BAD_INPUT)
     except InputError as problem:
         return complain(str(problem), BAD_INPUT)
-    except SolveError as problem:
-        if problem.outcome is Outcome.ROUNDING and problem.solution is not None:
-            return complain(f"rtol = {problem.solution.rtol:g} cannot be reached at {problem}", BAD_INPUT)
-        return complain(str(problem), FAILED)
-    except SweepError as problem:
-        return complain(str(problem), FAILED)
     except KeyboardInterrupt:
         return complain("Interrupted; nothing was written.", INTERRUPTED)
     except BrokenPipeError:  # the reader, such as head, had enough
@@ -104,6 +96,12 @@ def _run(tokens: list[str], interrupted: Interrupted) -> int:
         return complain(f"The output could not be printed ({problem}); the requested files were written.", FAILED)
     except MemoryError:
         return complain("Out of memory; ask for fewer points or a larger rtol.", FAILED)
+    except sb.SolveError as problem:
+        if problem.outcome is Outcome.ROUNDING and problem.solution is not None:
+            return complain(f"rtol = {problem.solution.rtol:g} cannot be reached at {problem}", BAD_INPUT)
+        return complain(str(problem), FAILED)
+    except sb.SweepError as problem:
+        return complain(str(problem), FAILED)
     except Exception as problem:
         if interrupted.pressed:
             return complain("Interrupted; nothing was written.", INTERRUPTED)
@@ -121,7 +119,7 @@ def make_app() -> App:
     app = App(
         name="stribeck",
         help=HELP,
-        version=version("stribeck"),
+        version=lambda: sb.__version__,
         help_format="plaintext",
         suppress_keyboard_interrupt=False,
         console=stdout_console(),

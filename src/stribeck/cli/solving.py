@@ -8,9 +8,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from stribeck.cases.case import load_case
-from stribeck.checks.subject import Subject
-from stribeck.checks.table import checks_of, checks_of_curve, checks_of_solution
+import stribeck as sb
 from stribeck.cli.arguments import (
     AXES,
     CaseFile,
@@ -30,16 +28,9 @@ from stribeck.cli.arguments import (
 )
 from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain, stdout_console
 from stribeck.cli.progress import interruptible
-from stribeck.contacts.friction import coefficients
-from stribeck.contacts.line import Groups
-from stribeck.curves.result import StribeckCurve
-from stribeck.curves.sensitivities import friction_sensitivities
-from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, format_si
-from stribeck.regimes.margins import regime_margins
-from stribeck.solver.solve import solve
 
 REGIME_POINTS = 41
 """Points of the curve on which ``stribeck regimes`` looks for transitions, which are then located exactly."""
@@ -89,10 +80,12 @@ def solve_command(
     tolerance = as_rtol(rtol, loaded)
     mu, b = as_number("boundary_friction", boundary_friction), as_number("beta", beta)
     if mu is not None or b is not None:
+        from stribeck.contacts.friction import coefficients
+
         coefficients(None, mu, b)
     pictures = check_pictures(plot, force)
-    problem = loaded.contact if loaded else Groups(*map(as_group, AXES, groups or ()))
-    solution = solve(problem, rtol=tolerance, law=law)
+    problem = loaded.contact if loaded else sb.Groups(*map(as_group, AXES, groups or ()))
+    solution = sb.solve(problem, rtol=tolerance, law=law)
     title = loaded.title if loaded else ""
     for picture in pictures:
         from stribeck.curves.plot import plot_profile
@@ -100,6 +93,8 @@ def solve_command(
         plot_profile(solution, picture, force=force, title=title)
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
+
+    from stribeck.checks.table import checks_of_solution
 
     checks = checks_of_solution(solution, loaded.facts if loaded else None)
     if json:
@@ -175,12 +170,14 @@ def curve_command(
     arguments["law"] = law
     title = loaded.title if loaded else ""
     with interruptible() as progress:
-        curve = stribeck_curve(on_point=progress, **arguments)
+        curve = sb.stribeck_curve(on_point=progress, **arguments)
         if curve.outcome is Outcome.ROUNDING:
             raise InputError(_too_small(curve))
         written, problems = _write(curve, title, outputs, pictures, force)
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
+
+    from stribeck.checks.table import checks_of_curve
 
     checks = checks_of_curve(curve, loaded.facts if loaded else None)
     if json:
@@ -213,10 +210,14 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     """
     if case is None:
         raise InputError("CASE is missing; give a case file, as in: stribeck regimes case.toml.")
-    loaded = load_case(case)
+    from stribeck.checks.table import checks_of_curve
+    from stribeck.curves.sensitivities import friction_sensitivities
+    from stribeck.regimes.margins import regime_margins
+
+    loaded = sb.load_case(case)
     solution, sensitivities = friction_sensitivities(loaded.contact, rtol=loaded.rtol, definition=loaded.definition)
     with interruptible() as progress:
-        curve = stribeck_curve(
+        curve = sb.stribeck_curve(
             loaded.contact,
             points=REGIME_POINTS,
             rtol=loaded.rtol,
@@ -257,10 +258,12 @@ def check_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     """
     if case is None:
         raise InputError("CASE is missing; give a case file, as in: stribeck check case.toml.")
+    from stribeck.checks.subject import Subject
+    from stribeck.checks.table import checks_of
     from stribeck.cli.reports import checks as report_checks
     from stribeck.cli.reports import json as report_json
 
-    loaded = load_case(case)
+    loaded = sb.load_case(case)
     found = checks_of(Subject(loaded.contact, loaded.facts, loaded.definition))
     if json:
         print(report_json.dump({"title": loaded.title} | found.to_dict() | {"unchecked": list(found.unchecked)}))
@@ -322,7 +325,7 @@ def figures_command(
 
 
 def _write(
-    curve: StribeckCurve, title: str, outputs: Collection[Path], pictures: Collection[Path], force: bool
+    curve: sb.StribeckCurve, title: str, outputs: Collection[Path], pictures: Collection[Path], force: bool
 ) -> tuple[list[str], list[str]]:
     """Write the files of a curve; return their names, and sentences about those that failed."""
     written, problems = [], []
@@ -349,7 +352,7 @@ def _write(
     return written, problems
 
 
-def _too_small(curve: StribeckCurve) -> str:
+def _too_small(curve: sb.StribeckCurve) -> str:
     where = f"states whose {curve.over} is below {_si(curve)}" if len(curve) else "these states"
     return (
         f"rtol = {curve.rtol:g} cannot be reached: double precision limits the error of {where} above it; "
@@ -357,6 +360,6 @@ def _too_small(curve: StribeckCurve) -> str:
     )
 
 
-def _si(curve: StribeckCurve) -> str:
+def _si(curve: sb.StribeckCurve) -> str:
     value = float(curve.values[0])
     return f"{value:.3g}" if curve.contact is None else format_si(value, QUANTITIES[curve.over].dimension)

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from stribeck._types import Array
 from stribeck.contact_laws.scaled import BlendedLaw
@@ -114,7 +113,11 @@ def rigid_guess(groups: Groups) -> RigidGuess | None:
 
     for end in HEIGHTS:
         if excess(-end) > 0 > excess(end):
-            height = math.exp(brentq(excess, -end, end, xtol=1e-6))
+            low, high = -end, end
+            while high - low > 1e-6:  # excess falls, and scipy.optimize takes longer to import than a solve
+                middle = 0.5 * (low + high)
+                low, high = (middle, high) if excess(middle) > 0 else (low, middle)
+            height = math.exp(0.5 * (low + high))
             return RigidGuess(speed, height, 4 * height / 3)
     return None
 

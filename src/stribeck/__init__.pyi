@@ -1,0 +1,78 @@
+"""The public names with their types; at run time each is imported on first use."""
+
+from stribeck import asymptotics, atlas, surfaces
+from stribeck.batches.solve_batch import BatchSolution, solve_batch
+from stribeck.cases.case import Case, load_case
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.checks.check import Check, Checks
+from stribeck.checks.table import check
+from stribeck.contact_laws.finite_surface import FiniteSurface
+from stribeck.contact_laws.function import FunctionLaw
+from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
+from stribeck.contact_laws.table import TableLaw
+from stribeck.contacts.friction import Friction
+from stribeck.contacts.line import Groups, HertzScales, InputError, LineContact
+from stribeck.curves.landmarks import Landmark
+from stribeck.curves.regime import regime_of
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.fits.fit import fit
+from stribeck.fits.measurements import Measurements, read_measurements
+from stribeck.fits.result import Fit, FitOutcome, FittedInput
+from stribeck.quantities.outcome import Outcome
+from stribeck.regimes.phase_diagram import phase_diagram
+from stribeck.solver.solution import Profile, Solution
+from stribeck.solver.solve import SolveError, solve
+from stribeck.sweeps.dataset import Sweep, open_sweep
+from stribeck.sweeps.design import SweepDesign, load_sweep
+from stribeck.sweeps.store import SweepError
+from stribeck.sweeps.sweep import SweepProgress, sweep
+
+__all__ = [
+    "BatchSolution",
+    "Case",
+    "Check",
+    "Checks",
+    "FiniteSurface",
+    "Fit",
+    "FitOutcome",
+    "FitSettings",
+    "FittedInput",
+    "Friction",
+    "FunctionLaw",
+    "GreenwoodTripp",
+    "GreenwoodWilliamson",
+    "Groups",
+    "HertzScales",
+    "InputError",
+    "Landmark",
+    "LineContact",
+    "Measurements",
+    "Outcome",
+    "Profile",
+    "Solution",
+    "SolveError",
+    "StribeckCurve",
+    "Sweep",
+    "SweepDesign",
+    "SweepError",
+    "SweepProgress",
+    "TableLaw",
+    "asymptotics",
+    "atlas",
+    "check",
+    "fit",
+    "load_case",
+    "load_sweep",
+    "open_sweep",
+    "phase_diagram",
+    "read_measurements",
+    "regime_of",
+    "solve",
+    "solve_batch",
+    "stribeck_curve",
+    "surfaces",
+    "sweep",
+]
+
+__version__: str
