@@ -88,7 +88,7 @@ $(BIN)/uv: | $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check uv
 
 test: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m pytest -n auto
+	$(ONE_THREAD) $(BIN)/python -m pytest -n auto --dist loadgroup
 
 slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n auto -m slow
@@ -116,7 +116,7 @@ benchmark: $(READY)
 
 # The blocks of code of all pages; what else the site shows runs while it is built. Warnings are errors.
 docs: $(DOCS)
-	$(ONE_THREAD) $(BIN)/python -m pytest -q -n auto tests/test_docs.py
+	$(ONE_THREAD) $(BIN)/python -m pytest -q -n auto -m "slow or not slow" tests/test_docs.py
 	@$(MAKE) --no-print-directory site
 
 site: $(DOCS)

@@ -65,6 +65,7 @@ def sessions(code):
         yield command, shown
 
 
+@pytest.mark.slow  # each a process or several; `make docs` runs them
 @pytest.mark.parametrize("code", blocks("console"))
 def test_a_console_block_does_what_it_shows(code, desk):
     """Each shown line is in the output, in order; ``...`` stands for what is left out, space is space."""

@@ -5,6 +5,10 @@ import pytest
 from figure_data import data_of
 
 
+# The data of a figure are computed once for all tests of one process (`make test` runs with --dist loadgroup).
+pytestmark = pytest.mark.xdist_group("figures")
+
+
 @pytest.fixture(scope="module")
 def curve():
     return data_of("3")

@@ -97,6 +97,7 @@ def check_after_the_loss(store, before, total):
     right(found)
 
 
+@pytest.mark.slow  # four processes of Dask; a lost worker process of our own is tested in test_sweep.py
 def test_a_cluster_that_loses_one_of_three_workers_finishes_the_sweep(tmp_path):
     store, before = lose_a_worker(tmp_path, 256, 40)
     check_after_the_loss(store, before, 256)
