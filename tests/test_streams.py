@@ -113,11 +113,9 @@ runpy.run_module("stribeck", run_name="__main__")
 """
 
 
-@pytest.mark.parametrize("library", ["mmap", "numpy", "pydantic", "scipy", "scipy.linalg"])
+@pytest.mark.parametrize("library", ["cyclopts", "numpy", "pydantic", "scipy", "scipy.linalg"])
 def test_ctrl_c_while_libraries_are_loaded_is_a_sentence_and_130(library):
     """The first two are loaded before there is a command, the others by the command itself."""
-    if library == "mmap":
-        library = "stribeck"
     code, out, err = run(sys.executable, "-c", PRESSED.format(library=library), "solve", PDMS)
     assert (code, out, err) == (130, "", "stribeck: Interrupted; nothing was written.\n")
 
