@@ -91,10 +91,9 @@ def solve_command(
         from stribeck.curves.plot import plot_profile
 
         plot_profile(solution, picture, force=force, title=title)
+    from stribeck.checks.table import checks_of_solution
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
-
-    from stribeck.checks.table import checks_of_solution
 
     checks = checks_of_solution(solution, loaded.facts if loaded else None)
     if json:
@@ -174,10 +173,9 @@ def curve_command(
         if curve.outcome is Outcome.ROUNDING:
             raise InputError(_too_small(curve))
         written, problems = _write(curve, title, outputs, pictures, force)
+    from stribeck.checks.table import checks_of_curve
     from stribeck.cli.reports import json as report_json
     from stribeck.cli.reports import state_and_curve as report
-
-    from stribeck.checks.table import checks_of_curve
 
     checks = checks_of_curve(curve, loaded.facts if loaded else None)
     if json:
