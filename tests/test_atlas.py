@@ -10,9 +10,11 @@ from numpy.polynomial import chebyshev as reference
 import stribeck as sb
 from stribeck.atlas import grid as atlas_grid
 from stribeck.atlas import table as atlas_table
+from stribeck.contacts.model import Model
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.evidence import atlas_build
 from stribeck.evidence.atlas_certificate import FRICTIONS, QUANTITIES, certify, compare, solved
+from stribeck.fluids.cavitation import Cavitation
 
 DEFINITIONS = ("published", "balanced")
 FUNCTIONS = (
@@ -43,6 +45,19 @@ def transition_groups(number, seed):
     half = np.array([atlas_build.speed_range(-math.log(F), k)[0] + math.log(60) for F, k in zip(load, kappa, strict=True)])
     speed = np.clip(np.exp(half + rng.uniform(-4, 3, number)), 2e-12, 5e5)
     return sb.Groups(speed, load, kappa * load)
+
+
+# --- what it covers ---
+
+
+@pytest.mark.quick
+def test_balls_and_other_models_are_refused_and_not_covered():
+    ball = sb.Groups(1e-3, 0.1, 1e-3, geometry="point")
+    cavitated = sb.Groups(1e-3, 0.1, 1e-3, model=Model(cavitation=Cavitation.EXIT))
+    for groups, words in ((ball, "covers cylinders, .*'point'"), (cavitated, "Newtonian fluid that does not cavitate")):
+        assert not sb.atlas.covers(groups)
+        with pytest.raises(sb.InputError, match=words):
+            sb.atlas.friction(groups)
 
 
 # --- against the solver ---

@@ -18,6 +18,7 @@ from stribeck.atlas.table import TABULATED, Values, load_table, solver_hash
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import Groups, InputError
+from stribeck.contacts.model import ARTICLE
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import quantity, refuse_former
 from stribeck.quantities.units import show
@@ -434,7 +435,7 @@ def holds_for(law: AsperityLaw | None) -> bool:
 
 
 def covers(groups: Groups) -> Flags:
-    """Return whether the atlas covers states: their contact law, and their groups inside :data:`BOX`.
+    """Return whether the atlas covers states: their geometry, model and contact law, and their groups inside :data:`BOX`.
 
     Parameters
     ----------
@@ -451,11 +452,13 @@ def covers(groups: Groups) -> Flags:
         value = np.asarray(getattr(groups, name))
         inside = (low * (1 - SLACK) <= value) & (value <= high * (1 + SLACK))
         found &= inside if name == "load" else inside | (value == 0)
+    if groups.geometry != "line" or groups.model != ARTICLE:
+        return np.zeros_like(found)
     return found & (holds_for(groups.law) or np.asarray(groups.roughness) == 0)
 
 
 def check_law(groups: Groups) -> None:
-    """Refuse rough states of another law than the exponential one.
+    """Refuse balls, other fluids and bodies than those of the article, and rough states of another law than the exponential.
 
     Parameters
     ----------
@@ -465,8 +468,17 @@ def check_law(groups: Groups) -> None:
     Raises
     ------
     InputError
-        If the atlas does not hold their law.
+        If the atlas does not hold their geometry, model or law.
     """
+    if groups.geometry != "line":
+        raise InputError(
+            f"the atlas covers cylinders, geometry = 'line', and these states have {groups.geometry!r}; use solve."
+        )
+    if groups.model != ARTICLE:
+        raise InputError(
+            "the atlas covers a Newtonian fluid that does not cavitate, on a half-space, and these states have another model; "
+            "use the solver."
+        )
     if groups.law is not None and not holds_for(groups.law) and np.any(groups.roughness):
         raise InputError(f"the atlas covers states of the exponential contact law, not of {groups.law.name}; use the solver.")
 
