@@ -34,12 +34,13 @@ BARUS = [row for row in REFERENCE["b_d_e"] if row["case"] == "barus"]
 EXIT = [row for row in REFERENCE["a_free_exit"] if row["speed"] in (1e-5, 1e-3, 3e-5, 1e-2, 1.0)]
 
 
-def solved(model, speed, load, kappa):
-    """Return a state of a model on a mesh that resolves it to about 1e-7, from the state of the article."""
+def solved(model, speed, load, kappa, guess=None):
+    """Return a state of a model on a mesh that resolves it to about 1e-7, from the state of the article or from ``guess``."""
     groups = sb.Groups(speed, load, kappa * load)
-    guess = cold_start(groups).states[-1]
-    if model.cavitation is Cavitation.EXIT:
-        guess = SeenFrom(guess, where_pressure_ends(guess))
+    if guess is None:
+        guess = cold_start(groups).states[-1]
+        if model.cavitation is Cavitation.EXIT:
+            guess = SeenFrom(guess, where_pressure_ends(guess))
     for step in towards(model):
         for tolerance in (1e-3, 1e-4, 1e-6, 1e-8) if step is model else (1e-3,):
             mesh = mesh_for(guess, groups, contact_law(groups), 12, tolerance, 0.01 * tolerance)

@@ -75,6 +75,10 @@ class DowsonHigginson(DensityLaw):
         """Return the law in Hertz units."""
         return type(self)(self.pressure / units.pressure, self.limit)
 
+    def milder(self, part: float) -> Self:
+        """Return the law with a part of the growth."""
+        return type(self)(self.pressure, 1 + max(part, 1e-9) * (self.limit - 1))
+
     def ratio(self, pressure: Array) -> tuple[Array, Array]:
         """Return rho/rho0 and its slope."""
         c, k = self.pressure, self.limit

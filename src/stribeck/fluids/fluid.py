@@ -60,6 +60,9 @@ class Film(Protocol):
     def at(self, speed: Numbers) -> Self:
         """Return the film at a speed group, or a column of them: what all below are asked of."""
 
+    def milder(self, part: float) -> Self:
+        """Return the film with a part of what its laws do, 0 to 1, nearly Newtonian at 0: a way to a state."""
+
     def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
         """Return G, the pressure gradient over lambda [u_Hz**-2]."""
 

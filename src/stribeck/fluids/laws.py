@@ -6,6 +6,7 @@ the second.  A new law is one class with the members of its protocol.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple, Protocol, Self
 
 import numpy as np
@@ -67,6 +68,10 @@ class Law(Protocol):
         """Return the law in Hertz units."""
         return self
 
+    def milder(self, part: float) -> Self:
+        """Return a law of this kind that does less: nearly nothing at part 0, all of it at 1; a way to a state."""
+        return self
+
     def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
         """Return sentences on where a state leaves the range of the law, in Hertz units; mostly none."""
         return ()
@@ -101,14 +106,37 @@ class FlowFactors(Law, Protocol):
         return (one, zero), (zero, zero), (one, zero)
 
 
+@dataclass(frozen=True)
+class Smooth(FlowFactors):
+    """The flow between smooth surfaces, which a gap many times the roughness is too."""
+
+    def pressure(self, gap: Array) -> tuple[Array, Array]:
+        """Return one and zero."""
+        return np.ones_like(gap), np.zeros_like(gap)
+
+    def shear(self, gap: Array) -> tuple[Array, Array]:
+        """Return zero twice."""
+        return np.zeros_like(gap), np.zeros_like(gap)
+
+
 class RateLaw(Law, Protocol):
-    """Shear stress as a function of the shear rate, odd and rising; viscosity one at rate zero if there is such."""
+    """Shear stress as a function of the shear rate, rising.
+
+    In its methods rates x are times the relaxation time and stresses g times that time over the viscosity; both are >= 0.
+    """
+
+    @property
+    def time(self) -> float:
+        """One over the rate at which thinning begins."""
 
     def stress(self, rate: Array) -> tuple[Array, Array]:
-        """Return the stress and its slope, at rates in units of 1/relaxation time, >= 0."""
+        """Return g(x) and its slope."""
+
+    def rate(self, stress: Array) -> Array:
+        """Return x(g)."""
 
     def moments(self, rate: Array) -> tuple[Array, Array]:
-        r"""Return :math:`\int \dot\gamma \, d\tau` and :math:`\int \tau \dot\gamma \, d\tau` from zero to this rate >= 0."""
+        r"""Return :math:`\int x \, dg` and :math:`\int g x \, dg` from zero to x."""
 
 
 def joined_names(base: str, *laws: Law) -> str:

@@ -10,16 +10,15 @@ Source: [BP] Eq. (thin-film_dl); isoviscous fluid, no flow factors.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
 import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.fluids.density import Incompressible
-from stribeck.fluids.flow_factors import Smooth
 from stribeck.fluids.fluid import Slopes
-from stribeck.fluids.laws import DensityLaw, FlowFactors, ViscosityLaw, joined_names, joined_parameters, notes_of
+from stribeck.fluids.laws import DensityLaw, FlowFactors, Smooth, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.viscosity import Constant
 
 ONE, ZERO = np.ones(()), np.zeros(())
@@ -89,6 +88,14 @@ class Newtonian:
         """Return the film itself: no speed matters."""
         return self
 
+    def milder(self, part: float) -> Self:
+        """Return the film with milder laws."""
+        if self.is_plain:
+            return self
+        return replace(
+            self, viscosity=self.viscosity.milder(part), density=self.density.milder(part), flow=self.flow.milder(part)
+        )
+
     def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
         """Return G."""
         if self.is_plain:
@@ -112,16 +119,17 @@ class Newtonian:
         return _sum(shear[0], pull, 1.0), _sum(shear[1], pull, -1.0)
 
     def cavity_traction(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
-        r"""Return :math:`\eta s m/(\rho h^2)`."""
+        r"""Return :math:`\eta s/h` in the part of the width that is wet, :math:`\min(1, m/(\rho h))`."""
         eta, _, rho, _ = self._of_pressure(pressure)
-        return np.asarray(self.slide * eta / rho * flux_gap / gap**2)
+        return np.asarray(self.slide * eta / gap * np.minimum(1.0, flux_gap / (rho * gap)))
 
     def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
         """Return the derivatives of :meth:`cavity_traction`."""
         eta, eta_slope, rho, rho_slope = self._of_pressure(pressure)
         traction = self.cavity_traction(gap, pressure, flux_gap)
-        by_pressure = traction * (eta_slope - rho_slope / rho) if self.uses_pressure else None
-        return Slopes(-2 * traction / gap, by_pressure, self.slide * eta / rho / gap**2)
+        partly = np.where(flux_gap < rho * gap, 1.0, 0.0)  # shear flow factors can carry more than the gap holds
+        by_pressure = traction * (eta_slope - partly * rho_slope / rho) if self.uses_pressure else None
+        return Slopes(-(1 + partly) * traction / gap, by_pressure, partly * self.slide * eta / rho / gap**2)
 
     def flux_gap_at_exit(self, gap: Array, pressure: Array | None) -> tuple[Array, Array, Array | None]:
         r"""Return :math:`m = \rho \, (h + s S)`."""

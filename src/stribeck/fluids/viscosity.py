@@ -79,6 +79,10 @@ class Barus(ViscosityLaw):
         """Return the law in Hertz units."""
         return type(self)(self.pressure_coefficient * units.pressure)
 
+    def milder(self, part: float) -> Self:
+        """Return the law with a part of the coefficient."""
+        return type(self)(part * self.pressure_coefficient)
+
     def log(self, pressure: Array) -> tuple[Array, Array]:
         """Return ``a p`` and a."""
         return self.pressure_coefficient * pressure, np.full_like(pressure, self.pressure_coefficient)
@@ -154,6 +158,10 @@ class Roelands(ViscosityLaw):
                 f"{units.viscosity:g} Pa s; Roelands' law needs it smaller. Take Barus for a fluid so thin."
             )
         return type(self)(self.pressure_coefficient * units.pressure, self.reference_pressure / units.pressure, ratio)
+
+    def milder(self, part: float) -> Self:
+        """Return the law with a part of the coefficient."""
+        return type(self)(part * self.pressure_coefficient, self.reference_pressure, self.reference_viscosity)
 
     def log(self, pressure: Array) -> tuple[Array, Array]:
         """Return ``S [(1 + p/p_r)**z - 1]`` and its slope; below ``-p_r/2`` the tangent there."""

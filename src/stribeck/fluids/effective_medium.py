@@ -1,0 +1,190 @@
+r"""Flow through the gap of Gaussian surfaces by Bruggeman's effective medium, with its percolation threshold.
+
+The local conductance is :math:`u^3` with the width :math:`u = \max(d + z, 0)`, z the height.  That of the medium,
+:math:`e^3`, is that for which inclusions of the others do nothing on average:
+
+.. math:: \left\langle \frac{u^3 - e^3}{u^3 + e^3} \right\rangle = 0, \qquad \phi_x = \frac{e^3}{\langle u \rangle^3}
+
+It is zero where half of the surfaces touch, at the mean gap :math:`\sigma/\sqrt{2\pi}`, and :math:`1 - 1.5/H^2` for wide gaps.
+
+Source: [Kirkpatrick 1973] for the medium, [Tripp 1983] for the limit of wide gaps.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Self
+
+import numpy as np
+from numpy.polynomial import chebyshev, legendre
+from scipy.special import ndtr
+
+from stribeck._types import Array
+from stribeck.fluids.flow_factors import (
+    FLOOR,
+    check_alpha,
+    lifted,
+    nominal_separation,
+    scaled_roughness,
+    with_sigma,
+)
+from stribeck.fluids.laws import FilmUnits, FlowFactors
+from stribeck.quantities.units import InputError
+
+__all__ = ["PERCOLATION", "EffectiveMedium"]
+
+PERCOLATION = 1 / math.sqrt(2 * math.pi)
+"""Mean gap over the roughness at which half of the surfaces touch and no path for the fluid is left."""
+
+EDGES = (0.0, 0.05, 0.15, 0.4, 1.0, 2.0, 3.5, 6.0)
+"""Separations between which the width of the medium is tabulated."""
+
+ORDER = 16
+"""Chebyshev coefficients between two of these."""
+
+WIDEST = 9.0
+"""Height over the roughness beyond which there is none."""
+
+
+@dataclass(frozen=True, init=False)
+class EffectiveMedium(FlowFactors):
+    r"""Flow factor of isotropic Gaussian surfaces by the theory of an effective medium.
+
+    Parameters
+    ----------
+    alpha : float, optional
+        :math:`\alpha` of the contact law, so that :math:`\sigma = \alpha` times the decay length of the contact pressure
+        [-]; left out, that of the contact.  Groups, which do not hold it, need it.
+
+    Raises
+    ------
+    InputError
+        Where the value is impossible.
+
+    Notes
+    -----
+    Asperities are cut off where they overlap, not displaced, and the heights are Gaussian: of a spectrum only the roughness
+    enters.  Near the threshold a real surface conducts by few channels, and the theory is coarse; below it the flow is 1e-4 of
+    that between smooth surfaces.  Sliding carries nothing, and the drag has no factors.
+    """
+
+    alpha: float | None
+    sigma: float | None
+
+    def __init__(self, alpha: float | None = None) -> None:
+        object.__setattr__(self, "alpha", check_alpha(alpha))
+        object.__setattr__(self, "sigma", None)
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print."""
+        return "effective-medium"
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """The roughness in Hertz units."""
+        return {} if self.sigma is None else {"sigma": self.sigma}
+
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return the factors in Hertz units."""
+        return with_sigma(self, scaled_roughness(self.alpha, units))
+
+    def milder(self, part: float) -> Self:
+        """Return the factors of a part of the roughness."""
+        return with_sigma(self, max(part, 1e-9) * (self.sigma or 0.0))
+
+    def pressure(self, gap: Array) -> tuple[Array, Array]:
+        """Return phi_x and its slope."""
+        if self.sigma is None:
+            raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
+        width = gap / self.sigma
+        d = nominal_separation(width)
+        e, slope = medium_width(d)
+        phi = (e / width) ** 3
+        by_gap = 3 * (e / width) ** 2 * (slope / ndtr(d) - e / width) / gap
+        return lifted(phi, by_gap)
+
+    def shear(self, gap: Array) -> tuple[Array, Array]:
+        """Return zero twice."""
+        return np.zeros_like(gap), np.zeros_like(gap)
+
+    def notes(self, gap: Array, pressure: Array | None) -> tuple[str, ...]:
+        """Return whether the film falls below the threshold."""
+        if self.sigma is None or float(gap.min()) > PERCOLATION * self.sigma:
+            return ()
+        return (
+            f"the mean gap falls below {PERCOLATION:.3f} of the roughness, where no path for the fluid is left: {FLOOR:g} of "
+            "the flow is kept there",
+        )
+
+
+def medium_width(d: Array) -> tuple[Array, Array]:
+    """Return the width e of the medium at the separation d of the mean planes, over the roughness, and its slope."""
+    inner, outer = _tables()
+    found, slope = np.zeros_like(d), np.zeros_like(d)
+    for left, right, (value, derivative) in zip(EDGES[:-1], EDGES[1:], inner, strict=True):
+        here = (d > left) & (d <= right)
+        if here.any():
+            s = (2 * d[here] - left - right) / (right - left)
+            found[here], slope[here] = chebyshev.chebval(s, value), chebyshev.chebval(s, derivative)
+    far = d > EDGES[-1]
+    if far.any():
+        value, derivative = outer
+        y = 1 / d[far] ** 2
+        s = 2 * y * EDGES[-1] ** 2 - 1
+        ratio = chebyshev.chebval(s, value)
+        found[far] = d[far] * ratio
+        slope[far] = ratio - 2 * y * chebyshev.chebval(s, derivative)
+    return found, slope
+
+
+@lru_cache(maxsize=1)
+def _tables() -> tuple[list[tuple[Array, Array]], tuple[Array, Array]]:
+    """Coefficients of e between :data:`EDGES`, and of e/d in 1/d**2 beyond, each with those of the derivative."""
+    points = np.cos(np.pi * (np.arange(ORDER) + 0.5) / ORDER)
+    inner = []
+    for left, right in zip(EDGES[:-1], EDGES[1:], strict=True):
+        values = _widths(0.5 * (left + right) + 0.5 * (right - left) * points)
+        inner.append(_fitted(points, values, 2 / (right - left)))
+    y = 0.5 * (1 + points) / EDGES[-1] ** 2
+    return inner, _fitted(points, _widths(y**-0.5) * y**0.5, 2 * EDGES[-1] ** 2)
+
+
+def _fitted(points: Array, values: Array, scale: float) -> tuple[Array, Array]:
+    """Return the coefficients of a polynomial and of its derivative times ``scale``."""
+    fit = chebyshev.chebfit(points, values, ORDER - 1)
+    return np.asarray(fit, dtype=np.float64), np.asarray(chebyshev.chebder(fit) * scale, dtype=np.float64)
+
+
+def _widths(separations: Array) -> Array:
+    """Return the widths of the medium at falling or rising separations, each found from the last."""
+    found, start = [], 1.0
+    for d in separations.tolist():
+        start = _width(d, start * d)
+        found.append(start)
+        start /= d
+    return np.array(found)
+
+
+def _width(d: float, start: float) -> float:
+    """Return the width of the medium at one separation > 0, by Newton's method in its logarithm."""
+    nodes, weights = legendre.leggauss(20)
+    log_e = math.log(start)
+    for _ in range(100):
+        e = math.exp(log_e)
+        low, high = max(d - WIDEST, 0.0), d + WIDEST
+        edges = np.unique(np.clip(np.append(e * 2.0 ** np.arange(-6, 7), [low, high, d, d - 3, d + 3]), low, high))
+        half = 0.5 * np.diff(edges)
+        u = (0.5 * (edges[1:] + edges[:-1]))[:, None] + half[:, None] * nodes
+        mass = half[:, None] * weights * np.exp(-0.5 * (u - d) ** 2) / math.sqrt(2 * math.pi)
+        part = e**3 / (u**3 + e**3)
+        # Widths of zero have the part one.
+        excess = 1 - 2 * (float(ndtr(-d)) + float((mass * part).sum()))
+        slope = -2 * float((mass * 3 * part * (1 - part)).sum())
+        step = max(-1.0, min(1.0, -excess / slope))
+        log_e += step
+        if abs(step) < 1e-14:
+            break
+    return math.exp(log_e)

@@ -1,0 +1,410 @@
+r"""Shear stress of a fluid as a function of the shear rate.
+
+Each law is of the form :math:`\tau t/\eta_0 = g(t \dot\gamma)` with one time t, the relaxation time.  With
+:math:`\epsilon = \eta_\infty/\eta_0`:
+
+.. math::
+
+    g(x) = \begin{cases}
+        x \, [\epsilon + (1 - \epsilon)(1 + x^2)^{(n-1)/2}] & \text{Carreau} \\
+        x \, [\epsilon + (1 - \epsilon)/(1 + x^m)] & \text{Cross} \\
+        \operatorname{arsinh} x, \quad t = \eta_0/\tau_0 & \text{Eyring} \\
+        x^n & \text{power law}
+    \end{cases}
+
+Source: [Carreau 1972], [Cross 1965], [Eyring 1936].
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Self
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.fluids.laws import FilmUnits, RateLaw
+from stribeck.fluids.rate_moments import Table
+from stribeck.quantities.units import InputError, show, to_si
+
+__all__ = ["Carreau", "Cross", "Eyring", "PowerLaw"]
+
+SMALLEST_EXPONENT = 0.05
+"""Of fluids that thin: with less, the stress hardly depends on the rate, as that of a plastic solid."""
+
+MILDEST = 1e-3
+"""What plateaus and stresses change by on the way from nearly Newtonian fluids."""
+
+TERMS = 9
+"""Of the series for Eyring's second moment, up to his stress: the next is 1e-17 of the first."""
+
+
+class _Tabulated(RateLaw):
+    """A law whose moments and rate come from a table."""
+
+    def moments(self, rate: Array) -> tuple[Array, Array]:
+        """Return both moments."""
+        return _table(self._with_time_one()).moments(rate, self.stress(rate)[0])
+
+    def rate(self, stress: Array) -> Array:
+        """Return the rate at a stress."""
+        return _table(self._with_time_one()).rate(stress)
+
+    def _with_time_one(self) -> _Tabulated:
+        raise NotImplementedError
+
+    def _smallest(self) -> float:
+        """Return the logarithm of the rate below which the law is Newtonian to rounding."""
+        raise NotImplementedError
+
+
+@lru_cache(maxsize=64)
+def _table(law: _Tabulated) -> Table:
+    """Table of a law; fits and sweeps ask for many."""
+    return Table(law.stress, law._smallest())
+
+
+@dataclass(frozen=True, init=False)
+class Carreau(_Tabulated):
+    r"""The fluid that thins from one plateau of its viscosity to another.
+
+    .. math:: \eta = \eta_\infty + (\eta_0 - \eta_\infty) \, [1 + (t \dot\gamma)^2]^{(n-1)/2}
+
+    :math:`\eta_0` is the viscosity of the contact.
+
+    Parameters
+    ----------
+    relaxation_time : str or float
+        :math:`t > 0` [s]; with groups :math:`t U/u_\mathrm{Hz}`, the Weissenberg number at their speed.
+    exponent : float
+        :math:`n`, 0.05 to 1 [-]; 1 is the Newtonian fluid.
+    infinite_viscosity : str or float
+        :math:`\eta_\infty \ge 0` [Pa s], below :math:`\eta_0`; with groups over :math:`\eta_0`.
+
+    Raises
+    ------
+    InputError
+        Where a value is impossible or its unit is wrong.
+
+    Notes
+    -----
+    If the viscosity grows with the pressure, so do both plateaus and the time t: the stress at which thinning begins is held.
+
+    Source: [Carreau 1972].
+    """
+
+    relaxation_time: float
+    exponent: float
+    infinite_viscosity: float
+
+    def __init__(self, relaxation_time: str | float, exponent: float, infinite_viscosity: str | float = 0.0) -> None:
+        _set(self, relaxation_time=_time(relaxation_time), exponent=_exponent(exponent))
+        _set(self, infinite_viscosity=_infinite(infinite_viscosity))
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print."""
+        return "carreau"
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """All three."""
+        return _parameters(self, "relaxation_time", "exponent", "infinite_viscosity")
+
+    @property
+    def time(self) -> float:
+        """The relaxation time."""
+        return self.relaxation_time
+
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return the law in Hertz units."""
+        return type(self)(self.relaxation_time / units.time, self.exponent, _ratio(self.infinite_viscosity, units))
+
+    def milder(self, part: float) -> Self:
+        """Return the fluid whose viscosity is that to the power of the part, nearly."""
+        return type(self)(self.relaxation_time, 1 - part * (1 - self.exponent), _milder_plateau(self.infinite_viscosity, part))
+
+    def stress(self, rate: Array) -> tuple[Array, Array]:
+        """Return g(x) and its slope."""
+        n, rest, square = self.exponent, self.infinite_viscosity, rate * rate
+        thinning = (1 - rest) * np.exp(0.5 * (n - 1) * np.log1p(square))
+        return rate * (rest + thinning), rest + thinning * (1 + (n - 1) * (square / (1 + square)))
+
+    def _with_time_one(self) -> Carreau:
+        return Carreau(1.0, self.exponent, self.infinite_viscosity)
+
+    def _smallest(self) -> float:
+        return -21.0
+
+
+@dataclass(frozen=True, init=False)
+class Cross(_Tabulated):
+    r"""The fluid that thins from one plateau of its viscosity to another, more gradually than Carreau's.
+
+    .. math:: \eta = \eta_\infty + \frac{\eta_0 - \eta_\infty}{1 + (t \dot\gamma)^m}
+
+    :math:`\eta_0` is the viscosity of the contact.
+
+    Parameters
+    ----------
+    relaxation_time : str or float
+        :math:`t > 0` [s]; with groups :math:`t U/u_\mathrm{Hz}`, the Weissenberg number at their speed.
+    exponent : float
+        :math:`m`, 0.1 to 0.95 [-]; the viscosity falls as the rate to the power -m.
+    infinite_viscosity : str or float
+        :math:`\eta_\infty \ge 0` [Pa s], below :math:`\eta_0`; with groups over :math:`\eta_0`.
+
+    Raises
+    ------
+    InputError
+        Where a value is impossible or its unit is wrong.
+
+    Notes
+    -----
+    If the viscosity grows with the pressure, so do both plateaus and the time t: the stress at which thinning begins is held.
+
+    Source: [Cross 1965].
+    """
+
+    relaxation_time: float
+    exponent: float
+    infinite_viscosity: float
+
+    def __init__(self, relaxation_time: str | float, exponent: float, infinite_viscosity: str | float = 0.0) -> None:
+        m = to_si(exponent, "number", "exponent")
+        if not 0.1 <= m <= 1 - SMALLEST_EXPONENT:
+            raise InputError(
+                f"exponent = {show(exponent)} of a Cross fluid must lie between 0.1 and {1 - SMALLEST_EXPONENT:g}: its "
+                "viscosity falls as the rate to the power -exponent. Of a Carreau fluid it is 1 - n."
+            )
+        _set(self, relaxation_time=_time(relaxation_time), exponent=m, infinite_viscosity=_infinite(infinite_viscosity))
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print."""
+        return "cross"
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """All three."""
+        return _parameters(self, "relaxation_time", "exponent", "infinite_viscosity")
+
+    @property
+    def time(self) -> float:
+        """The relaxation time."""
+        return self.relaxation_time
+
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return the law in Hertz units."""
+        return type(self)(self.relaxation_time / units.time, self.exponent, _ratio(self.infinite_viscosity, units))
+
+    def milder(self, part: float) -> Self:
+        """Return the fluid with a higher plateau at high rates."""
+        return type(self)(self.relaxation_time, self.exponent, _milder_plateau(self.infinite_viscosity, part))
+
+    def stress(self, rate: Array) -> tuple[Array, Array]:
+        """Return g(x) and its slope."""
+        m, rest, power = self.exponent, self.infinite_viscosity, rate**self.exponent
+        thinning = (1 - rest) / (1 + power)
+        return rate * (rest + thinning), rest + thinning * (1 - m * power / (1 + power))
+
+    def _with_time_one(self) -> Cross:
+        return Cross(1.0, self.exponent, self.infinite_viscosity)
+
+    def _smallest(self) -> float:
+        return -38.0 / self.exponent
+
+
+@dataclass(frozen=True, init=False)
+class Eyring(RateLaw):
+    r"""The fluid whose stress grows as the logarithm of the rate, as that of oils does at high pressure.
+
+    .. math:: \dot\gamma = \frac{\tau_0}{\eta} \sinh\frac{\tau}{\tau_0}
+
+    Parameters
+    ----------
+    stress : str or float
+        Eyring's stress :math:`\tau_0 > 0` [Pa]; with groups :math:`\tau_0 u_\mathrm{Hz}/(\eta_0 U)` at their speed.
+
+    Raises
+    ------
+    InputError
+        Where the value is impossible or its unit is wrong.
+
+    Notes
+    -----
+    If the viscosity grows with the pressure, the stress :math:`\tau_0` is held.
+
+    Source: [Eyring 1936].
+    """
+
+    eyring_stress: float
+
+    def __init__(self, stress: str | float) -> None:
+        value = to_si(stress, "pressure", "stress")
+        if value <= 0:
+            raise InputError(f"stress = {show(stress)} must be above zero; oils have about '5 MPa'.")
+        _set(self, eyring_stress=value)
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print."""
+        return "eyring"
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """The stress."""
+        return _parameters(self, "eyring_stress")
+
+    @property
+    def time(self) -> float:
+        """Viscosity over stress, in Hertz units."""
+        return 1.0 / self.eyring_stress
+
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return the law in Hertz units."""
+        return type(self)(self.eyring_stress / units.stress)
+
+    def milder(self, part: float) -> Self:
+        """Return the fluid with a higher stress."""
+        return type(self)(self.eyring_stress * MILDEST ** (part - 1))
+
+    def stress(self, rate: Array) -> tuple[Array, Array]:
+        """Return arsinh(x) and its slope."""
+        return np.arcsinh(rate), 1 / np.hypot(1.0, rate)
+
+    def rate(self, stress: Array) -> Array:
+        """Return the rate at a stress."""
+        return np.sinh(np.minimum(stress, 700.0))
+
+    def moments(self, rate: Array) -> tuple[Array, Array]:
+        """Return ``cosh(g) - 1`` and ``g cosh(g) - sinh(g)``, without loss of digits at small g."""
+        g, cosh = np.arcsinh(rate), np.hypot(1.0, rate)
+        small = np.minimum(g, 1.0)
+        series = sum(small ** (2 * k + 1) * (2 * k / math.factorial(2 * k + 1)) for k in range(1, TERMS + 1))
+        return rate * (rate / (1 + cosh)), np.where(g < 1, series, g * cosh - rate)
+
+
+@dataclass(frozen=True, init=False)
+class PowerLaw(RateLaw):
+    r"""The fluid whose viscosity falls as a power of the rate, without plateaus.
+
+    .. math:: \eta = \eta_0 (t \dot\gamma)^{n-1}
+
+    The viscosity of the contact is that at the rate 1/t.  With the consistency :math:`K = \eta_0 t^{n-1}`, that is
+    :math:`\tau = K \dot\gamma^n`.
+
+    Parameters
+    ----------
+    relaxation_time : str or float
+        :math:`t > 0`, one over the rate at which the viscosity is that of the contact [s]; with groups
+        :math:`t U/u_\mathrm{Hz}` at their speed.
+    exponent : float
+        :math:`n`, 0.05 to 1 [-]; 1 is the Newtonian fluid.
+
+    Raises
+    ------
+    InputError
+        Where a value is impossible or its unit is wrong.
+
+    Notes
+    -----
+    Without a plateau the viscosity is infinite where nothing flows: in the far film, which carries little.  If the viscosity
+    grows with the pressure, the rate at a given stress falls by its factor, as with the other laws.
+    """
+
+    relaxation_time: float
+    exponent: float
+
+    def __init__(self, relaxation_time: str | float, exponent: float) -> None:
+        _set(self, relaxation_time=_time(relaxation_time), exponent=_exponent(exponent))
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print."""
+        return "power-law"
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """Both."""
+        return _parameters(self, "relaxation_time", "exponent")
+
+    @property
+    def time(self) -> float:
+        """The relaxation time."""
+        return self.relaxation_time
+
+    def scaled(self, units: FilmUnits) -> Self:
+        """Return the law in Hertz units."""
+        return type(self)(self.relaxation_time / units.time, self.exponent)
+
+    def milder(self, part: float) -> Self:
+        """Return the fluid whose viscosity is that to the power of the part."""
+        return type(self)(self.relaxation_time, 1 - part * (1 - self.exponent))
+
+    def stress(self, rate: Array) -> tuple[Array, Array]:
+        """Return ``x**n`` and its slope."""
+        n = self.exponent
+        rate = np.maximum(rate, 1e-300)
+        g = rate**n
+        return g, n * g / rate
+
+    def rate(self, stress: Array) -> Array:
+        """Return the rate at a stress."""
+        return np.asarray(stress ** (1 / self.exponent))
+
+    def moments(self, rate: Array) -> tuple[Array, Array]:
+        """Return ``n g x/(n + 1)`` and ``n g**2 x/(2 n + 1)``."""
+        n = self.exponent
+        g = rate**n
+        return n / (n + 1) * g * rate, n / (2 * n + 1) * g * g * rate
+
+
+def _set(law: RateLaw, **values: float) -> None:
+    for name, value in values.items():
+        object.__setattr__(law, name, value)
+
+
+def _parameters(law: RateLaw, *names: str) -> dict[str, float | str]:
+    return {name: getattr(law, name) for name in names}
+
+
+def _time(value: str | float) -> float:
+    time = to_si(value, "time", "relaxation_time")
+    if time <= 0:
+        raise InputError(f"relaxation_time = {show(value)} must be above zero; one over the rate at which thinning begins.")
+    return time
+
+
+def _exponent(value: float) -> float:
+    n = to_si(value, "number", "exponent")
+    if not SMALLEST_EXPONENT <= n <= 1:
+        raise InputError(
+            f"exponent = {show(value)} must lie between {SMALLEST_EXPONENT:g} and 1, which is Newtonian; the stress grows as "
+            "the rate to this power. Fluids that thicken are not modelled."
+        )
+    return n
+
+
+def _infinite(value: str | float) -> float:
+    viscosity = to_si(value, "viscosity", "infinite_viscosity")
+    if viscosity < 0:
+        raise InputError(f"infinite_viscosity = {show(value)} must be zero or positive: the viscosity at high rates.")
+    return viscosity
+
+
+def _milder_plateau(ratio: float, part: float) -> float:
+    """Return a viscosity ratio that falls from near one to ``ratio`` as the part rises to one."""
+    return ratio + (0.999 - ratio) * (MILDEST**part - MILDEST) / (1 - MILDEST) if part < 1 else ratio
+
+
+def _ratio(viscosity: float, units: FilmUnits) -> float:
+    """Return the viscosity at high rates over that at low ones."""
+    if viscosity >= units.viscosity:
+        raise InputError(
+            f"infinite_viscosity = {viscosity:g} Pa s must be below the viscosity of the contact, {units.viscosity:g} Pa s, "
+            "which is that at low rates."
+        )
+    return viscosity / units.viscosity

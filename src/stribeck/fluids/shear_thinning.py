@@ -1,0 +1,249 @@
+r"""Films of fluids that thin under shear, exact across the film: no average viscosity.
+
+In a steady film the shear stress is linear across the gap, :math:`\tau(z) = \tau_m + 6 G (z - h/2)` in units of
+:math:`\eta_0 U/u_\mathrm{Hz}`.  The walls slide and the film carries the flux m:
+
+.. math::
+
+    \int_0^h \dot\gamma(\tau) \, dz = -s, \qquad \int_0^h (z - h/2) \, \dot\gamma(\tau) \, dz = \tfrac12 (h - m/\rho)
+
+The pressure divides the rate at a given stress by :math:`\eta(p)/\eta_0`: the stress at which thinning begins is held.  These
+are two equations for :math:`\tau_m` and G at each node; their derivatives are those of the implicit function.  Sliding thins
+the fluid for the flow along the film too, so that the film depends on s.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, NamedTuple, Self
+
+import numpy as np
+
+from stribeck._types import Array, Numbers
+from stribeck.fluids.density import Incompressible
+from stribeck.fluids.fluid import Slopes
+from stribeck.fluids.laws import DensityLaw, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
+from stribeck.fluids.local_flow import Profile, profile
+from stribeck.fluids.viscosity import Constant
+
+__all__ = ["ShearThinning"]
+
+AT_REST = 1e-60
+"""Weissenberg number at speed zero: the fluid has its viscosity of low rates, and squares stay in double precision."""
+
+FAR = 4.0
+"""Factor by which a film may change before the local solutions of the last one are no good start."""
+
+
+class _Local(NamedTuple):
+    """What the film is at nodes, and what it was made for."""
+
+    key: tuple[Array, Array | None, Numbers]
+    flow: Profile
+    wi: Array
+    eta: Array
+    eta_slope: Array
+    rho: Array
+    rho_slope: Array
+    r_0: Array
+    r_1: Array
+
+
+@dataclass(frozen=True)
+class ShearThinning:
+    """The fluid whose viscosity falls with the shear rate.
+
+    Parameters
+    ----------
+    law : RateLaw
+        Stress as a function of the rate, in Hertz units.
+    viscosity : ViscosityLaw
+        Viscosity at low rates as a function of pressure.
+    density : DensityLaw
+        Density as a function of pressure.
+    slide : float
+        Half the slide-to-roll ratio, ``s = (u1 - u2)/(u1 + u2)``.
+    speed : float or ndarray
+        Speed group at which the film is looked at, see :meth:`at`.
+
+    Notes
+    -----
+    The local equations are solved to 1e-13, from the last solution where there is one; the answer does not depend on it but
+    by rounding.
+    """
+
+    law: RateLaw
+    viscosity: ViscosityLaw = Constant()
+    density: DensityLaw = Incompressible()
+    slide: float = 1.0
+    speed: Numbers = field(default=1.0, compare=False)
+    uses_pressure: bool = field(init=False, repr=False, compare=False)
+    _last: list[_Local] = field(init=False, repr=False, compare=False)
+    uses_speed: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        """Note whether viscosity or density depend on the pressure."""
+        uses_pressure = not (isinstance(self.viscosity, Constant) and isinstance(self.density, Incompressible))
+        object.__setattr__(self, "uses_pressure", uses_pressure)
+        object.__setattr__(self, "_last", [])
+
+    @property
+    def name(self) -> str:
+        """The names of the laws."""
+        return joined_names(self.law.name, self.viscosity, self.density)
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """Those of the laws."""
+        return joined_parameters(self.law, self.viscosity, self.density)
+
+    def at(self, speed: Numbers) -> Self:
+        """Return the film at a speed group."""
+        return replace(self, speed=speed)
+
+    def milder(self, part: float) -> Self:
+        """Return the film with milder laws."""
+        return replace(
+            self, law=self.law.milder(part), viscosity=self.viscosity.milder(part), density=self.density.milder(part)
+        )
+
+    def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
+        """Return G."""
+        local = self._local(gap, pressure, flux_gap)
+        return np.asarray(local.eta * (local.flow.g_b - local.flow.g_a) / (6 * gap * local.wi))
+
+    def slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
+        """Return the derivatives of G."""
+        local = self._local(gap, pressure, flux_gap)
+        g = self.gradient(gap, pressure, flux_gap)
+        unit = local.eta / (6 * gap * local.wi)
+        by_gap, by_density, by_flux, by_speed = (unit * slope for _, slope in self._changes(local, gap, flux_gap))
+        by_speed = by_speed - g
+        return Slopes(by_gap - g / gap, self._by_pressure(local, g, by_density, by_speed), by_flux, by_speed)
+
+    def tractions(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Array]:
+        """Return the wall stresses."""
+        local = self._local(gap, pressure, flux_gap)
+        unit = -local.eta / local.wi
+        return np.asarray(unit * local.flow.g_a), np.asarray(unit * local.flow.g_b)
+
+    def traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Slopes, Slopes]:
+        """Return the derivatives of the wall stresses."""
+        local = self._local(gap, pressure, flux_gap)
+        unit = -local.eta / local.wi
+        found = []
+        for wall, traction in zip((-0.5, 0.5), self.tractions(gap, pressure, flux_gap), strict=True):
+            changes = self._changes(local, gap, flux_gap)
+            by_gap, by_density, by_flux, by_speed = (unit * (mean + wall * slope) for mean, slope in changes)
+            by_speed = by_speed - traction
+            found.append(Slopes(by_gap, self._by_pressure(local, traction, by_density, by_speed), by_flux, by_speed))
+        return found[0], found[1]
+
+    def cavity_traction(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
+        """Return the stress at the rate ``s/h`` in the part of the width that is wet."""
+        stress, _, eta, _, rho, _, wi = self._sheared(gap, pressure)
+        return np.asarray(eta * stress / wi * np.minimum(1.0, flux_gap / (rho * gap)))
+
+    def cavity_traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
+        """Return the derivatives of :meth:`cavity_traction`."""
+        stress, slope, eta, eta_slope, rho, rho_slope, wi = self._sheared(gap, pressure)
+        wet = np.minimum(1.0, flux_gap / (rho * gap))
+        partly = np.where(wet < 1, 1.0, 0.0)
+        traction = eta * stress / wi * wet
+        by_speed = eta * slope * self.slide / gap * wet - traction
+        by_pressure = None
+        if self.uses_pressure:
+            by_pressure = eta_slope * (traction + by_speed) - partly * traction * rho_slope / rho
+        by_gap = -eta * slope * self.slide / gap**2 * wet - partly * traction / gap
+        return Slopes(by_gap, by_pressure, partly * eta * stress / wi / (rho * gap), by_speed)
+
+    def flux_gap_at_exit(self, gap: Array, pressure: Array | None) -> tuple[Array, Array, Array | None]:
+        r"""Return :math:`m = \rho h`."""
+        _, _, rho, rho_slope = self._of_pressure(gap, pressure)
+        return rho * gap, rho, rho_slope * gap if self.uses_pressure else None
+
+    def notes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[str, ...]:
+        """Return where the state leaves the range of the laws."""
+        return notes_of(self.law, self.viscosity, self.density, gap=gap, pressure=pressure)
+
+    def _of_pressure(self, gap: Array, pressure: Array | None) -> tuple[Array, Array, Array, Array]:
+        """Return viscosity, slope of its logarithm, density and its slope."""
+        if not self.uses_pressure:
+            one, zero = np.ones_like(gap), np.zeros_like(gap)
+            return one, zero, one, zero
+        assert pressure is not None
+        log, log_slope = self.viscosity.log(pressure)
+        return np.exp(log), log_slope, *self.density.ratio(pressure)
+
+    def _weissenberg(self, eta: Array) -> Array:
+        """Return the relaxation time in units of the film's, at each node: with the pressure it grows as the viscosity."""
+        wi = np.maximum(self.law.time * np.asarray(self.speed), AT_REST)
+        return np.asarray(wi * eta)
+
+    def _sheared(self, gap: Array, pressure: Array | None) -> tuple[Array, ...]:
+        """Return stress and slope of the film sheared by the walls alone, and what the pressure does."""
+        of_pressure = self._of_pressure(gap, pressure)
+        wi = self._weissenberg(of_pressure[0])
+        rate = wi * self.slide / gap
+        stress, slope = self.law.stress(np.abs(rate))
+        return np.copysign(stress, rate), slope, *of_pressure, wi
+
+    def _changes(self, local: _Local, gap: Array, flux_gap: Numbers) -> list[tuple[Array, Array]]:
+        """Return how mean and slope of the stress change with gap, density, flux gap and ln U."""
+        h, thin = gap, flux_gap / local.rho
+        by_r_0, by_r_1 = local.flow.change(1.0, 0.0), local.flow.change(0.0, 1.0)
+        changes = (
+            (self.slide / h**2 * local.wi, 0.5 * local.wi * (2 * thin - h) / h**3),
+            (0.0, 0.5 * local.wi * thin / local.rho / h**2),
+            (0.0, -0.5 * local.wi / local.rho / h**2),
+            (local.r_0, local.r_1),
+        )
+        return [(by_r_0[0] * first + by_r_1[0] * second, by_r_0[1] * first + by_r_1[1] * second) for first, second in changes]
+
+    def _by_pressure(self, local: _Local, value: Array, by_density: Array, by_speed: Array) -> Array | None:
+        """Return the derivative by pressure of a stress: viscosity and relaxation time grow by the same factor."""
+        if not self.uses_pressure:
+            return None
+        return np.asarray(local.eta_slope * (value + by_speed) + local.rho_slope * by_density)
+
+    def _local(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> _Local:
+        """Return the local solutions, those of the last call if it was for the same film."""
+        key = (gap, pressure, flux_gap)
+        last = self._last[0] if self._last else None
+        if last is not None and _same(last.key, key):
+            return last
+        of_pressure = self._of_pressure(gap, pressure)
+        eta, _, rho, _ = of_pressure
+        wi = self._weissenberg(eta)
+        r_0 = -wi * self.slide / gap
+        r_1 = 0.5 * wi * (gap - flux_gap / rho) / gap**2
+        r_1 = np.where((r_0 == 0) & (r_1 == 0), AT_REST * wi / gap, r_1)
+        start = None
+        if last is not None and last.r_0.shape == r_0.shape:
+            start = _scaled(last, r_0, r_1)
+        shape = r_0.shape
+        flow = profile(self.law, r_0.ravel(), r_1.ravel(), start)
+        flow = Profile(*(each.reshape(shape) for each in flow))
+        found = _Local(
+            (gap.copy(), None if pressure is None else pressure.copy(), np.copy(flux_gap)), flow, wi, *of_pressure, r_0, r_1
+        )
+        self._last[:] = [found]
+        return found
+
+
+def _same(first: tuple[Array, Array | None, Numbers], second: tuple[Array, Array | None, Numbers]) -> bool:
+    """Return whether two films are the same to the bit."""
+    if (first[1] is None) != (second[1] is None):
+        return False
+    return all(np.array_equal(a, b) for a, b in zip(first, second, strict=True) if a is not None and b is not None)
+
+
+def _scaled(last: _Local, r_0: Array, r_1: Array) -> tuple[Array, Array]:
+    """Return wall rates to start from: those of the last film, to first order, or the Newtonian ones where that is far."""
+    size, before = np.abs(r_0) + 6 * np.abs(r_1), np.abs(last.r_0) + 6 * np.abs(last.r_1)
+    ratio = size / before
+    near = (ratio < FAR) & (ratio > 1 / FAR)
+    return (
+        np.where(near, last.flow.x_a * ratio, r_0 - 6 * r_1).ravel(),
+        np.where(near, last.flow.x_b * ratio, r_0 + 6 * r_1).ravel(),
+    )

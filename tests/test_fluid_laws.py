@@ -1,0 +1,362 @@
+"""Laws of fluids by themselves: closed forms, derivatives against differences, the flow across a film, limits, refusals."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_bvp
+from scipy.optimize import brentq
+
+import stribeck as sb
+from stribeck.fluids import local_flow
+from stribeck.fluids.density import DowsonHigginson
+from stribeck.fluids.effective_medium import PERCOLATION, EffectiveMedium
+from stribeck.fluids.flow_factors import FLOOR, PatirCheng, mean_inverse_width, nominal_separation
+from stribeck.fluids.laws import FilmUnits
+from stribeck.fluids.newtonian import Newtonian
+from stribeck.fluids.rate_laws import Carreau, Cross, Eyring, PowerLaw
+from stribeck.fluids.shear_thinning import ShearThinning
+from stribeck.fluids.viscosity import Barus, Roelands
+
+REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())
+RNG_SEED = 4711
+ROUGH = FilmUnits(1.0, 1.0, 1.0, 1.0, decay_length=0.3)
+OIL = {"viscosity": Roelands(1.5, 5.0, 0.01), "density": DowsonHigginson(3.0)}
+FILMS = {
+    "plain": Newtonian(),
+    "oil": Newtonian(**OIL, slide=0.4),
+    "barus": Newtonian(Barus(2.0)),
+    "patir-cheng": Newtonian(**OIL, flow=PatirCheng(1.0, 1.0, 0.1, friction_factors=True).scaled(ROUGH), slide=0.7),
+    "longitudinal": Newtonian(flow=PatirCheng(1.0, 6.0, 1.0).scaled(ROUGH)),
+    "effective-medium": Newtonian(flow=EffectiveMedium(1.0).scaled(ROUGH), slide=-0.3),
+    "carreau": ShearThinning(Carreau(3.0, 0.4, 0.02), slide=0.6),
+    "carreau-oil": ShearThinning(Carreau(3.0, 0.4, 0.02), **OIL, slide=0.6),
+    "cross": ShearThinning(Cross(5.0, 0.8), Barus(1.0), slide=0.0),
+    "eyring": ShearThinning(Eyring(0.2), **OIL, slide=0.1),
+    "power-law": ShearThinning(PowerLaw(2.0, 0.6), slide=1.0),
+}
+CURVES = [
+    Carreau(1.0, 0.5),
+    Carreau(1.0, 0.2, 0.01),
+    Cross(1.0, 0.7),
+    Cross(1.0, 0.4, 0.1),
+    Eyring(1.0),
+    PowerLaw(1.0, 0.3),
+]
+
+
+def some_films():
+    """Return gaps, pressures and a flux gap of a film that carries fluid and is sucked dry behind."""
+    gap = np.array([0.31, 0.5, 0.8, 0.97, 1.02, 1.4, 3.0, 20.0])
+    return gap, np.array([0.9, 0.5, 0.2, 0.1, -0.02, 0.05, 0.01, 0.0]), 1.0
+
+
+def differences(function, at, step=1e-6):
+    """Return the central difference of a function of one number or array."""
+    return (function(at + step) - function(at - step)) / (2 * step)
+
+
+# Films
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", FILMS)
+def test_slopes_of_a_film_are_differences_of_what_it_returns(name):
+    film = FILMS[name].at(1.3)
+    h, p, m = some_films()
+    p = p if film.uses_pressure else None
+    for values, slopes in (
+        (film.gradient, film.slopes),
+        (lambda *of: film.tractions(*of)[0], lambda *of: film.traction_slopes(*of)[0]),
+        (lambda *of: film.tractions(*of)[1], lambda *of: film.traction_slopes(*of)[1]),
+        (film.cavity_traction, film.cavity_traction_slopes),
+    ):
+        found = slopes(h, p, m)
+        scale = 1e-7 * (1 + np.abs(values(h, p, m)))
+        tolerance = {"rtol": 2e-6, "atol": scale.max()}
+        np.testing.assert_allclose(found.by_gap, differences(lambda x, v=values: v(x, p, m), h), **tolerance)
+        np.testing.assert_allclose(found.by_flux, differences(lambda x, v=values: v(h, p, x), m), **tolerance)
+        if p is None:
+            assert found.by_pressure is None
+        else:
+            np.testing.assert_allclose(found.by_pressure, differences(lambda x, v=values: v(h, x, m), p), **tolerance)
+    at_exit, by_gap, by_pressure = film.flux_gap_at_exit(h, p)
+    np.testing.assert_allclose(by_gap, differences(lambda x: film.flux_gap_at_exit(x, p)[0], h), rtol=1e-6)
+    for k in range(len(h)):
+        one = slice(k, k + 1)
+        assert abs(film.gradient(h[one], None if p is None else p[one], at_exit[k])[0]) < 1e-12
+    if p is not None:
+        np.testing.assert_allclose(by_pressure, differences(lambda x: film.flux_gap_at_exit(h, x)[0], p), rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", [name for name, film in FILMS.items() if film.uses_speed])
+def test_the_slope_with_the_speed_is_a_difference_of_films_at_two_speeds(name):
+    h, p, m = some_films()
+    p = p if FILMS[name].uses_pressure else None
+    film = FILMS[name].at(1.3)
+
+    def at(log_speed, what):
+        return what(FILMS[name].at(1.3 * np.exp(log_speed)))
+
+    for what, slopes in (
+        (lambda film: film.gradient(h, p, m), film.slopes(h, p, m)),
+        (lambda film: film.tractions(h, p, m)[0], film.traction_slopes(h, p, m)[0]),
+        (lambda film: film.tractions(h, p, m)[1], film.traction_slopes(h, p, m)[1]),
+        (lambda film: film.cavity_traction(h, p, m), film.cavity_traction_slopes(h, p, m)),
+    ):
+        expected = differences(lambda x, what=what: at(x, what), 0.0)
+        np.testing.assert_allclose(slopes.by_speed, expected, rtol=2e-6, atol=1e-8)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", FILMS)
+def test_tractions_differ_by_the_pull_of_the_pressure_gradient(name):
+    film = FILMS[name].at(1.3)
+    h, p, m = some_films()
+    p = p if film.uses_pressure else None
+    substrate, cylinder = film.tractions(h, p, m)
+    if name != "patir-cheng":  # whose friction factors are fits that need not balance
+        np.testing.assert_allclose(substrate - cylinder, 6 * h * film.gradient(h, p, m), rtol=1e-10, atol=1e-13)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", [name for name, film in FILMS.items() if film.uses_speed])
+def test_stacked_states_have_each_their_own_speed(name):
+    h, p, m = some_films()
+    speeds, fluxes = np.array([[0.3], [2.0]]), np.array([[1.0], [1.2]])
+    p = p if FILMS[name].uses_pressure else None
+    together = FILMS[name].at(speeds).gradient(np.stack([h, 1.1 * h]), None if p is None else np.stack([p, p]), fluxes)
+    for k, gap in enumerate((h, 1.1 * h)):
+        alone = FILMS[name].at(speeds[k, 0]).gradient(gap, p, fluxes[k])
+        np.testing.assert_allclose(together[k], alone, rtol=1e-11, atol=1e-15)
+
+
+# Shear thinning
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("row", REFERENCE["generalised_newtonian_local"]["carreau"], ids=lambda row: f"{row['h']:g}")
+def test_a_carreau_film_has_the_gradient_of_its_solved_profile(row):
+    film = ShearThinning(Carreau(row["W"], row["n"]), slide=row["s"])
+    assert film.gradient(np.array([row["h"]]), None, row["m"])[0] == pytest.approx(row["G"], rel=1e-12)
+
+
+@pytest.mark.parametrize("law", [Carreau(4.0, 0.5, 0.05), Cross(4.0, 0.6, 0.01), Eyring(0.5)], ids=lambda law: law.name)
+def test_the_local_flow_is_that_of_the_boundary_value_problem_across_the_film(law):
+    h, m, s = 1.5, 1.0, 0.8
+    film = ShearThinning(law, slide=s)
+    expected = film.gradient(np.array([h]), None, m)[0]
+    t, g = film.tractions(np.array([h]), None, m), 6 * expected
+    stress = [-t[0][0], -t[1][0]]
+    assert stress[1] - stress[0] == pytest.approx(g * h, rel=1e-12)
+
+    def rate(tau):
+        return np.sign(tau) * law.rate(np.abs(tau) * law.time) / law.time
+
+    # Velocity and volume carried from wall to wall: unknown are the stress in the middle and its gradient.
+    def profile(z, y, unknown):
+        return np.stack([rate(unknown[0] + unknown[1] * (z - h / 2)), y[0]])
+
+    def ends(a, b, unknown):
+        return np.array([a[0] - s, b[0], a[1], b[1] - (m - h) / 2 - s * h / 2])
+
+    z = np.linspace(0, h, 40)
+    start = np.stack([s * (1 - z / h), z * 0])
+    solved = solve_bvp(profile, ends, z, start, p=[-s / h, 0.1], tol=1e-9, max_nodes=20000)
+    assert solved.success
+    assert solved.p[1] == pytest.approx(g, rel=1e-7)
+
+
+@pytest.mark.quick
+def test_flows_between_walls_at_rest_have_their_closed_forms():
+    def flux(law, gradient):
+        film = ShearThinning(law, slide=0.0)
+        m = brentq(lambda m: 6 * film.gradient(np.array([1.0]), None, m)[0] + gradient, 1.0 + 1e-9, 30.0, xtol=1e-14)
+        return (m - 1) / 2
+
+    assert flux(PowerLaw(1.0, 0.5), 1.0) == pytest.approx(0.03125, rel=1e-11)
+    for n in (0.2, 0.7):
+        exact = 2 * n / (2 * n + 1) * 2.0 ** (1 / n) * 0.5 ** (2 + 1 / n)
+        assert flux(PowerLaw(1.0, n), 2.0) == pytest.approx(exact, rel=1e-10)
+    assert flux(Carreau(1.0, 0.5, 0.01), 10.0) == pytest.approx(2.969607, rel=2e-7)
+    x = 2.0  # half the wall stress over Eyring's
+    assert flux(Eyring(1.0), 4.0) == pytest.approx((x * np.cosh(x) - np.sinh(x)) * 2 / 16, rel=1e-11)
+
+
+@pytest.mark.quick
+def test_carreaus_stress_has_its_known_value():
+    assert Carreau(1.0, 0.5, 0.01).stress(np.array([10.0]))[0][0] == pytest.approx(3.222877, rel=2e-7)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("law", CURVES, ids=lambda law: f"{law.name}-{law.parameters}")
+def test_a_rate_law_its_slope_its_inverse_and_its_moments_belong_together(law):
+    rate = np.array([1e-6, 1e-3, 0.1, 0.7, 1.0, 3.0, 50.0, 1e5, 1e9])
+    stress, slope = law.stress(rate)
+    step = 1e-6 * rate
+    np.testing.assert_allclose((law.stress(rate + step)[0] - law.stress(rate - step)[0]) / (2 * step), slope, rtol=1e-8)
+    np.testing.assert_allclose(law.rate(stress), rate, rtol=1e-11)
+    for x, first, second in zip(rate, *law.moments(rate), strict=True):
+        for weight, found in ((lambda g: 1.0, first), (lambda g: g, second)):
+
+            def integrand(v, weight=weight):
+                g, slope = law.stress(np.array([np.exp(v)]))
+                return float(np.exp(2 * v) * slope[0] * weight(float(g[0])))
+
+            expected = quad(integrand, np.log(x) - 60, np.log(x), epsabs=0, epsrel=1e-12, limit=400)[0]
+            assert found == pytest.approx(expected, rel=1e-10)
+
+
+@pytest.mark.parametrize("law", CURVES, ids=lambda law: f"{law.name}-{law.parameters}")
+def test_the_local_flow_is_found_for_all_rates_slips_and_fluxes(law):
+    rng = np.random.default_rng(RNG_SEED)
+    size = 10 ** rng.uniform(-8, 8, 3000)
+    r_0 = size * rng.choice([0, 1, 1, 1e-3, -1, 1e-6], 3000)
+    r_1 = size * 10 ** rng.uniform(-6, 1, 3000) * rng.choice([-1, 1], 3000)
+    flow = local_flow.profile(law, r_0, r_1)
+    walls = (np.sign(x) * law.stress(np.abs(x))[0] for x in flow[:2])
+    i_0, i_1, *_ = local_flow._integrals(law, flow.x_a, flow.x_b, *walls)
+    scale = np.abs(r_0) + 6 * np.abs(r_1)
+    assert np.abs((i_0 - r_0) / scale).max() < 1e-12
+    assert np.abs((i_1 - r_1) / scale).max() < 1e-12
+
+
+def test_where_the_local_flow_starts_changes_rounding_only():
+    h, _, m = some_films()
+    film = FILMS["carreau"].at(2.0)
+    cold = film.gradient(h, None, m)
+    warm = FILMS["carreau"].at(2.0)
+    for factor in (3.0, 1.3, 0.9):
+        warm.gradient(factor * h, None, m)
+    np.testing.assert_allclose(warm.gradient(h, None, m), cold, rtol=1e-12)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("law", "order"), [(lambda t: Carreau(t, 0.5), 2), (lambda t: Cross(t, 0.7), 0.7), (lambda t: Eyring(1 / t), 2)]
+)
+def test_a_fluid_that_relaxes_at_once_is_newtonian(law, order):
+    h, _, m = some_films()
+    newtonian = Newtonian(slide=0.5).gradient(h, None, m)
+    errors = [np.abs(ShearThinning(law(t), slide=0.5).gradient(h, None, m) / newtonian - 1).max() for t in (1e-4, 1e-5)]
+    assert errors[1] < 3e-3
+    assert np.log10(errors[0] / errors[1]) == pytest.approx(order, abs=0.1)
+
+
+@pytest.mark.quick
+def test_at_rest_a_fluid_with_a_plateau_is_newtonian_and_a_power_law_is_finite():
+    h, _, m = some_films()
+    np.testing.assert_allclose(
+        ShearThinning(Carreau(2.0, 0.3)).at(0.0).gradient(h, None, m), Newtonian().gradient(h, None, m), rtol=1e-9
+    )
+    assert np.isfinite(ShearThinning(PowerLaw(2.0, 0.3)).at(0.0).gradient(h, None, m)).all()
+
+
+# Pressure and density
+
+
+@pytest.mark.quick
+def test_roelands_viscosity_has_its_published_form_and_barus_at_small_pressures():
+    eta_0, alpha, p = 0.08, 2e-8, np.array([1e5, 1e8, 5e8])
+    z = alpha * 1.96e8 / (np.log(eta_0) + 9.67)
+    expected = (np.log(eta_0) + 9.67) * (-1 + (1 + p / 1.96e8) ** z)
+    law = Roelands("20 1/GPa").scaled(FilmUnits(1e8, 1.0, 1.0, eta_0))
+    np.testing.assert_allclose(law.log(p / 1e8)[0], expected, rtol=1e-4)
+    np.testing.assert_allclose(
+        law.log(p / 1e8)[0][0], Barus(alpha).scaled(FilmUnits(1e8, 1, 1, 1)).log(p / 1e8)[0][0], rtol=1e-3
+    )
+
+
+@pytest.mark.quick
+def test_dowson_and_higginsons_density_has_its_published_form():
+    p = np.array([0.0, 1e8, 4e8])
+    law = DowsonHigginson().scaled(FilmUnits(2e8, 1.0, 1.0, 1.0))
+    np.testing.assert_allclose(law.ratio(p / 2e8)[0], (0.59e9 + 1.34 * p) / (0.59e9 + p), rtol=1e-14)
+
+
+# Rough surfaces
+
+
+@pytest.mark.quick
+def test_the_mean_gap_is_turned_into_the_nominal_one():
+    H = np.array([-5.0, -1.0, 0.0, 0.5, 1.0, 3.0, 8.0])
+    width = [quad(lambda u, d=d: u * np.exp(-((u - d) ** 2) / 2) / np.sqrt(2 * np.pi), 0, d + 12)[0] for d in H]
+    np.testing.assert_allclose(nominal_separation(np.array(width)), H, atol=1e-7)
+    # The trap: at a mean gap of 1.083 roughnesses the flow is .486 of that between smooth surfaces, with the nominal gap .382.
+    phi = PatirCheng(1.0).scaled(FilmUnits(1, 1, 1, 1, decay_length=1.0)).pressure(np.array([1.083315]))[0][0]
+    assert phi == pytest.approx(1 - 0.9 * np.exp(-0.56), rel=1e-5)
+    assert phi / 1.083315**-3 / (1 - 0.9 * np.exp(-0.56)) == pytest.approx(1.083315**3, rel=1e-4)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("row", REFERENCE["d_effective_medium_table"]["rows"], ids=lambda row: f"{row[0]:g}")
+def test_the_effective_medium_has_the_values_of_an_independent_program(row):
+    _, mean, _, phi = row
+    factors = EffectiveMedium(2.0).scaled(FilmUnits(1, 1, 1, 1, decay_length=0.5))
+    assert factors.pressure(np.array([mean]))[0][0] == pytest.approx(phi, abs=2e-5)
+
+
+@pytest.mark.quick
+def test_the_effective_medium_conducts_from_its_threshold_on_and_as_tripp_says_when_wide():
+    factors = EffectiveMedium(1.0).scaled(FilmUnits(1, 1, 1, 1, decay_length=1.0))
+    closed, open_ = factors.pressure(np.array([0.99 * PERCOLATION, 1.5 * PERCOLATION]))[0]
+    assert closed == pytest.approx(FLOOR)
+    assert open_ > 100 * FLOOR
+    wide = np.array([10.0, 20.0, 40.0])
+    np.testing.assert_allclose((1 - factors.pressure(wide)[0]) * wide**2, 1.5, rtol=0.04)
+    assert (1 - factors.pressure(wide[1:2])[0][0]) * 400 == pytest.approx(1.486, abs=1e-3)
+
+
+@pytest.mark.quick
+def test_shear_flow_factors_change_sign_with_the_rough_surface_and_nearly_meet_where_the_fits_change():
+    units = FilmUnits(1, 1, 1, 1, decay_length=1.0)
+    gap = np.array([0.6, 1.0, 3.0, 4.999999, 5.000001, 9.0])
+    cylinder, both, substrate = (PatirCheng(1.0, 1.0, share).scaled(units).shear(gap)[0] for share in (0.0, 0.5, 1.0))
+    np.testing.assert_allclose(cylinder, -substrate)
+    assert (both == 0).all()
+    assert substrate[3] == pytest.approx(substrate[4], rel=2e-3)
+    assert (substrate > 0).all()
+
+
+@pytest.mark.quick
+def test_the_friction_factor_is_the_mean_of_one_over_the_width():
+    z = np.array([1.1, 1.6, 3.0])  # closed form of Patir and Cheng above three roughnesses, in z = H/3
+    closed = (1 - z * z) ** 3 * np.log((z + 1) / (z - 1)) + z / 15 * (66 + z * z * (30 * z * z - 80))
+    np.testing.assert_allclose(3 * z * mean_inverse_width(3 * z)[0], 35 / 32 * z * closed, rtol=1e-8)
+    z = np.array([0.2, 0.5, 0.9])  # and below, where they cut at a hundredth of the roughness
+    polynomial = -55 + z * (132 + z * (345 + z * (-160 + z * (-405 + z * (60 + 147 * z)))))
+    closed = (1 - z * z) ** 3 * np.log(300 * (z + 1)) + polynomial / 60
+    np.testing.assert_allclose(3 * z * mean_inverse_width(3 * z)[0], 35 / 32 * z * closed, rtol=3e-3)
+
+
+# Refusals
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: Carreau("-1 ms", 0.5), "relaxation_time"),
+        (lambda: Carreau("1 ms", 1.5), "thicken"),
+        (lambda: Carreau("1 m", 0.5), "is a length"),
+        (lambda: Carreau("1 ms", 0.5, "2 Pa*s").scaled(FilmUnits(1, 1, 1, 1.0)), "below the viscosity"),
+        (lambda: Cross("1 ms", 1.0), "Carreau"),
+        (lambda: Eyring(0.0), "stress"),
+        (lambda: PowerLaw("1 ms", 0.0), "exponent"),
+        (lambda: Barus(-1.0), "pressure_coefficient"),
+        (lambda: Barus("1 GPa"), "inverse pressure"),
+        (lambda: Roelands(1e-8, reference_pressure=0), "reference_pressure"),
+        (lambda: Roelands(1e-8).scaled(FilmUnits(1, 1, 1, 1e-5)), "Barus"),
+        (lambda: DowsonHigginson(limit=0.9), "limit"),
+        (lambda: PatirCheng(2.0, gamma=2.0), "1/9, 1/6"),
+        (lambda: PatirCheng(2.0, substrate_share=2), "substrate_share"),
+        (lambda: PatirCheng(2.0, 3.0, friction_factors=True), "isotropic"),
+        (lambda: PatirCheng(-2.0), "alpha"),
+        (lambda: EffectiveMedium().scaled(FilmUnits(1, 1, 1, 1)), "need alpha"),
+    ],
+)
+def test_impossible_parameters_are_refused_by_name(make, said):
+    with pytest.raises(sb.InputError, match=said):
+        make()

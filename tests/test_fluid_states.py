@@ -1,0 +1,86 @@
+"""States of films with each fluid against those of an independent solver, on the equations themselves."""
+
+import numpy as np
+import pytest
+from test_model_parts import REFERENCE, observed, solved
+
+from stribeck.contacts.model import Model
+from stribeck.equations.observables import friction_scale
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.density import DowsonHigginson
+from stribeck.fluids.effective_medium import EffectiveMedium
+from stribeck.fluids.flow_factors import PatirCheng
+from stribeck.fluids.laws import FilmUnits
+from stribeck.fluids.newtonian import Newtonian
+from stribeck.fluids.rate_laws import Carreau, Eyring
+from stribeck.fluids.shear_thinning import ShearThinning
+from stribeck.fluids.viscosity import Barus, Roelands
+from stribeck.solids.layer import Layer
+
+THINNING = [row for row in REFERENCE["c_shear_thinning"] if row["case"] in ("carreau n=.5", "eyring")]
+FILMS = [row for row in REFERENCE["b_d_e"] if row["case"] not in ("rigid barus", "barus", "rolling-sliding")]
+SHARE = {"phi_x+phi_s v=+1": 1.0, "phi_x+phi_s v=-1": 0.0}
+"""Of the substrate in the roughness."""
+
+PARTS = {"carreau n=.5": (0.5, 1.0)}
+
+
+def film_of(row):
+    """Return the film of a row, in units that do not depend on the speed."""
+    case, slide = row["case"], row.get("s", 1.0)
+    if case.startswith("all") or case.startswith("the same"):
+        law = Carreau(row["W"] / row["speed"], row["n"], row["einf"])
+        return ShearThinning(law, Barus(row["a_bar"]), DowsonHigginson(row["dh_c"]), slide)
+    if case.startswith("carreau"):
+        return ShearThinning(Carreau(row["W"] / row["speed"], 0.5), slide=slide)
+    if case == "eyring":
+        return ShearThinning(Eyring(row["t0"] * row["speed"]), slide=slide)
+    if case.startswith("roelands"):
+        return Newtonian(Roelands(row["a_bar"], row["p0"], np.exp(-row["S"])))
+    if case.startswith("barus+"):
+        return Newtonian(Barus(row["a_bar"]), DowsonHigginson(row["c"], row["k"]))
+    units = FilmUnits(1.0, row["speed"], 1.0, 1.0, decay_length=row["kappa"])
+    if case.startswith("effective"):
+        return Newtonian(flow=EffectiveMedium(2.0).scaled(units))
+    return Newtonian(flow=PatirCheng(2.0, substrate_share=SHARE.get(case, 0.5), argument="mean").scaled(units))
+
+
+def with_friction(state, row):
+    """Return what is observed and the friction of the fluid on the substrate and on the cylinder, of a film with an exit."""
+    found = observed(state)
+    film, mesh, y = state.equations.film, state.mesh, state.y
+    gap, flux = state.gap, state.flux_gap
+    pressure = state.equations.pressures(y)[1] if film.uses_pressure else None
+    tractions, torn = (
+        film.tractions(gap, pressure, flux),
+        film.cavity_traction(gap, None if pressure is None else 0 * gap, flux),
+    )
+    scale = friction_scale(row["load"], row["speed"])
+    for name, traction in zip(("mu_traction_1", "mu_traction_2"), tractions, strict=True):
+        found[name] = float(scale * (mesh.weights @ np.where(mesh.nodes < 0, traction, torn)))
+    return found
+
+
+def through(row):
+    """Return the state of a row, found from that of milder fluids."""
+    film, guess = film_of(row), None
+    for part in PARTS.get(row["case"], (1.0,)):
+        guess = solved(Model(film.milder(part), Cavitation.EXIT), row["speed"], row["load"], row["kappa"], guess)
+    return guess
+
+
+@pytest.mark.parametrize("row", FILMS + THINNING, ids=lambda row: f"{row['case']}-{row.get('s', 1):g}-{row['speed']:g}")
+def test_a_film_is_that_of_an_independent_solver(row):
+    found = with_friction(through(row), row)
+    expected = {name: row[name] for name in found if name in row}
+    friction = {name: expected.pop(name) for name in list(expected) if name.startswith("mu")}
+    assert {name: found[name] for name in expected} == pytest.approx(expected, rel=1e-6, abs=1e-9)
+    assert {name: found[name] for name in friction} == pytest.approx(friction, rel=3e-5)
+
+
+@pytest.mark.parametrize("row", REFERENCE["combined"], ids=("half-plane", "layer"))
+def test_all_laws_at_once_are_those_of_an_independent_solver(row):
+    film, d = film_of(row), (Layer(1.0, 0.5),) if "layer" in row["case"] else ()
+    state = solved(Model(film, Cavitation.EXIT, *d), row["speed"], row["load"], row["kappa"])
+    found = observed(state)
+    assert found == pytest.approx({name: row[name] for name in found}, rel=1e-6, abs=1e-9)
