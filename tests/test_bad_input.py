@@ -72,7 +72,7 @@ BAD_CONTACTS = {
     "speed in metres": ({"speed": '"1 m"'}, "speed = '1 m' is a length; expected a speed such as '0.1 m/s'"),
     "load in newtons": (
         {"load": '"30 N"'},
-        "load = '30 N' is a force; expected a load per unit length such as '50 N/m': divide the force on a cylinder",
+        "load = '30 N' is a force; expected a load per unit length such as '50 N/m': a force is the load of a ball",
     ),
     "unknown unit": ({"viscosity": '"50 mPaxs"'}, "viscosity = '50 mPaxs' has the unknown unit"),
     "no unit": ({"radius": '"10"'}, "radius = '10' has no unit; add one"),

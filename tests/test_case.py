@@ -170,7 +170,10 @@ def test_a_case_knows_every_quantity(write):
             "[contact] density = 900 is not a known key; there is no density of the fluid",
         ),
         ({"contact": {"shear_modulus": "1"}}, "[contact] shear_modulus = 1 is not a known key; of the solid give modulus"),
-        ({"contact": {"normal_force": "1"}}, "[contact] normal_force = 1 is not a known key; the model is a line contact"),
+        (
+            {"contact": {"normal_force": "1"}},
+            "[contact] normal_force = 1 is not a known key; give load: of a cylinder",
+        ),
         ({"contact": {"surface_speed_ratio": "1"}}, "[contact] surface_speed_ratio = 1 is not a known key; known are radius"),
         ({"contact": {"deviation": "1"}}, "[contact] deviation = 1 is not a known key; it belongs in the table [asperities]."),
         ({"contact": {"Ra": "1e-6"}}, "[contact] Ra = 1e-06 is not a known key; heights are root mean squares"),

@@ -222,7 +222,7 @@ def test_the_entrainment_speed_is_half_the_speed_and_stands_in_its_place():
 
 
 def test_an_unknown_input_is_answered_with_the_nearest_name():
-    with pytest.raises(InputError, match="viscosty = 1.0 is not an input of a contact; did you mean viscosity"):
+    with pytest.raises(InputError, match="viscosty = 1.0 is not an input of LineContact; did you mean viscosity"):
         contact(viscosty=1.0)
 
 

@@ -60,7 +60,8 @@ REFUSED = [
     (
         "50 N",
         "load",
-        "divide the force on a cylinder by its length; a ball is a point contact, which this version does not solve.",
+        "a force is the load of a ball, PointContact or geometry = 'point'; that of a cylinder, LineContact or "
+        "geometry = 'line', is the force divided by its length.",
     ),
     ("50 N", "length", "is a force; expected a length such as '10 mm'."),
     ("1 rad", "length", "is an angle; expected a length"),

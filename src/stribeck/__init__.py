@@ -15,6 +15,7 @@ _HOMES = {
     "contact_laws.table": ("TableLaw",),
     "contacts.friction": ("Friction",),
     "contacts.line": ("Groups", "HertzScales", "InputError", "LineContact"),
+    "contacts.point": ("PointContact",),
     "curves.landmarks": ("Landmark",),
     "curves.regime": ("regime_of",),
     "curves.result": ("StribeckCurve",),

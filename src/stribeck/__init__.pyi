@@ -12,6 +12,7 @@ from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.table import TableLaw
 from stribeck.contacts.friction import Friction
 from stribeck.contacts.line import Groups, HertzScales, InputError, LineContact
+from stribeck.contacts.point import PointContact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
@@ -49,6 +50,7 @@ __all__ = [
     "LineContact",
     "Measurements",
     "Outcome",
+    "PointContact",
     "Profile",
     "Solution",
     "SolveError",

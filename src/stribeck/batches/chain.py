@@ -10,8 +10,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.batches.order import coordinates
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups, Physics
-from stribeck.contacts.line import LineContact
 from stribeck.numerics.continuation import Steps, march
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
@@ -57,7 +57,7 @@ def solve_in_order(
     physics: Physics,
     rtol: float,
     on_state: Callable[[int, Ended], object],
-    contact_of: Callable[[int], LineContact | None] = lambda _: None,
+    contact_of: Callable[[int], Contact | None] = lambda _: None,
 ) -> None:
     """Solve the states of a chain one after the other.
 
@@ -91,7 +91,7 @@ class _Chain:
         physics: Physics,
         rtol: float,
         on_state: Callable[[int, Ended], object],
-        contact_of: Callable[[int], LineContact | None],
+        contact_of: Callable[[int], Contact | None],
     ) -> None:
         self.states, self.physics, self.rtol, self.on_state, self.contact_of = states, physics, rtol, on_state, contact_of
 

@@ -14,12 +14,14 @@ from typing import Annotated, Any, Literal
 
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
-from stribeck.contacts.line import InputError, LineContact
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.geometries import CONTACTS, check_geometry
+from stribeck.contacts.groups import Geometry
 from stribeck.files.reading import read_bounded
 from stribeck.quantities.facts import FACTS, fact_values
 from stribeck.quantities.hints import MEANT, advice_on
-from stribeck.quantities.inputs import ALTERNATIVES, QUANTITIES, ROWS, check_alternatives, quantity
-from stribeck.quantities.units import DIMENSIONS, show
+from stribeck.quantities.inputs import INPUT_TABLES, LINE, InputTable, check_alternatives, quantity
+from stribeck.quantities.units import DIMENSIONS, InputError, show
 
 __all__ = [
     "Case",
@@ -80,7 +82,7 @@ class Case:
     ----------
     path : pathlib.Path
         The file.
-    contact : LineContact
+    contact : Contact or PointContact
         The quantities of the ``[contact]`` table.
     law : {"exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"}
         Name of the contact law of the ``[contact]`` table; the law itself is ``contact.law``.
@@ -103,7 +105,7 @@ class Case:
     """
 
     path: Path
-    contact: LineContact
+    contact: Contact
     law: Law = "exponential"
     curve: CurveSettings = field(default_factory=CurveSettings)
     rtol: float = 1e-6
@@ -121,7 +123,8 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     Parameters
     ----------
     path : str or path-like
-        A TOML file: a table ``[contact]`` (the arguments of :class:`LineContact`, and ``law`` by its name), a table
+        A TOML file: a table ``[contact]`` (``geometry``, the arguments of :class:`LineContact` or
+        :class:`PointContact`, and ``law`` by its name), a table
         ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and where wanted ``[curve]``
         (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md),
         ``[check]`` (facts that :func:`stribeck.check` judges by), ``title`` and ``notes``.
@@ -163,20 +166,26 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     """
     import pydantic
 
-    model = _model()
-    table = dict(tables)
     problems = []
+    geometry: Geometry = "line"
+    table = dict(tables)
+    try:
+        geometry, table = geometry_of(tables)
+    except InputError as problem:
+        problems.append(f"[contact] {problem}")
+    inputs = INPUT_TABLES[geometry]
+    model = _model(geometry)
     fit = FitSettings()
     if "fit" in table:
         try:
             fit = check_fit_table(table.pop("fit"))
         except InputError as problem:
-            problems = str(problem).split("\n")
+            problems += str(problem).split("\n")
     try:
         checked = model(**table).model_dump()
     except pydantic.ValidationError as failure:
-        problems += [error_sentence(model, error) for error in failure.errors(include_url=False)]
-    problems += _elasticity_problem(table.get("contact")) + _missing_from_surface(table)
+        problems += [error_sentence(model, error, inputs) for error in failure.errors(include_url=False)]
+    problems += _elasticity_problem(table.get("contact"), inputs) + _missing_from_surface(table)
     facts: dict[str, float] = {}
     if isinstance(table.get("check"), dict):
         for name, value in table["check"].items():
@@ -188,7 +197,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     if not problems:
         law = checked["contact"]["law"]
         try:
-            contact = LineContact(**contact_inputs(checked, path.parent))
+            contact = CONTACTS[geometry](**contact_inputs(checked, path.parent))
         except InputError as problem:
             text = str(problem)
             problems = [line if line.startswith(("[", "the table")) else f"[contact] {line}" for line in text.splitlines()]
@@ -208,8 +217,37 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     )
 
 
+def geometry_of(tables: dict[str, Any]) -> tuple[Geometry, dict[str, Any]]:
+    """Return the geometry of the contact in a file, and the tables without it.
+
+    Parameters
+    ----------
+    tables : dict
+        The tables as they stand in the file.
+
+    Returns
+    -------
+    str
+        ``"line"`` unless ``[contact]`` or ``[groups]`` says otherwise.
+    dict
+        The tables, without that key.
+
+    Raises
+    ------
+    InputError
+        Where it is no geometry.
+    """
+    found = dict(tables)
+    geometry: Geometry = "line"
+    for name in ("contact", "groups"):
+        if isinstance(found.get(name), dict) and "geometry" in found[name]:
+            found[name] = dict(found[name])
+            geometry = check_geometry(found[name].pop("geometry"))
+    return geometry, found
+
+
 def contact_inputs(checked: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the arguments of :class:`LineContact` in a checked file, with the contact law made of its tables.
+    """Return the arguments of the contact in a checked file, with the contact law made of its tables.
 
     Parameters
     ----------
@@ -354,15 +392,17 @@ def _depth(table: Any) -> int:
 
 
 @functools.cache
-def _model() -> Any:
-    """Return the pydantic model of a case file, made on first use because pydantic is slow to import."""
+def _model(geometry: str) -> Any:
+    """Return the pydantic model of a case file of a geometry, made on first use because pydantic is slow to import."""
     from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, create_model
 
     def check_quantity(value: Any, info: ValidationInfo) -> float:
-        return quantity(str(info.field_name), value)
+        return quantity(str(info.field_name), value, inputs)
 
     def check_range(value: Any, info: ValidationInfo) -> tuple[float, float] | None:
-        return curve_range(value, info.data["over"]) if "over" in info.data else None
+        return curve_range(value, info.data["over"], inputs) if "over" in info.data else None
+
+    inputs = INPUT_TABLES[geometry]
 
     # A description completes the sentence "... must be ..." for what pydantic refuses by itself.
     number = Annotated[float, BeforeValidator(check_quantity)]
@@ -371,8 +411,8 @@ def _model() -> Any:
     class Table(BaseModel):
         model_config = ConfigDict(extra="forbid")
 
-    optional = {name for other in ALTERNATIVES for name in (other.of, *other.inputs)} | set(FROM_TABLES)
-    keys: dict[str, Any] = {row.name: (number | None, None) if row.name in optional else (number, ...) for row in ROWS}
+    optional = inputs.choices | set(FROM_TABLES)
+    keys: dict[str, Any] = {name: (number | None, None) if name in optional else (number, ...) for name in inputs.quantities}
     keys["law"] = (Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")], Case.law)
     contact_table = create_model("Contact", __base__=Table, **keys)
 
@@ -404,7 +444,7 @@ def _model() -> Any:
     return File
 
 
-def curve_range(value: Any, over: str) -> tuple[float, float]:
+def curve_range(value: Any, over: str, inputs: InputTable = LINE) -> tuple[float, float]:
     """Return the ends of a curve in SI units.
 
     Parameters
@@ -413,6 +453,8 @@ def curve_range(value: Any, over: str) -> tuple[float, float]:
         A list of two values with units or in SI.
     over : str
         What varies.
+    inputs : InputTable
+        The inputs of the geometry.
 
     Returns
     -------
@@ -426,15 +468,15 @@ def curve_range(value: Any, over: str) -> tuple[float, float]:
     """
     if not isinstance(value, list) or len(value) != 2:
         raise InputError(f"range = {show(value)} must be a list of two values, the lowest and the highest {over}.")
-    low, high = (_range_end(end, over) for end in value)
+    low, high = (_range_end(end, over, inputs) for end in value)
     if not low < high:
         raise InputError(f"range = {show(value)} must increase; write the lowest {over} first.")
     return low, high
 
 
-def _range_end(value: Any, over: str) -> float:
+def _range_end(value: Any, over: str, inputs: InputTable) -> float:
     try:
-        result = quantity(over, value)
+        result = quantity(over, value, inputs)
     except InputError as problem:
         raise InputError(f"in range, {problem}") from None
     if result == 0:
@@ -442,11 +484,11 @@ def _range_end(value: Any, over: str) -> float:
     return result
 
 
-def _elasticity_problem(contact: Any) -> list[str]:
+def _elasticity_problem(contact: Any, inputs: InputTable) -> list[str]:
     if not isinstance(contact, dict):
         return []
     try:
-        check_alternatives(contact)
+        check_alternatives(contact, inputs)
     except InputError as problem:
         return [f"[contact] {problem}"]
     return []
@@ -464,14 +506,14 @@ def _missing_from_surface(table: dict[str, Any]) -> list[str]:
     return [f"[contact] {key} is missing; {example_of(key)}." for key in FROM_TABLES if key not in contact]
 
 
-def error_sentence(file: Any, error: Any) -> str:
+def error_sentence(file: Any, error: Any, inputs: InputTable = LINE) -> str:
     """Return the sentence for one of pydantic's errors in a ``file`` of tables."""
     *tables, key = [str(part) for part in error["loc"][:2]]
     model = file.model_fields[tables[0]].annotation if tables else file
     where = f"[{tables[0]}] " if tables else ""
     shown = key if key.isprintable() else repr(key)
     if error["type"] == "missing":
-        return f"{where}{key} is missing; {example_of(key)}." if tables else f"the table [{key}] is missing."
+        return f"{where}{key} is missing; {example_of(key, inputs)}." if tables else f"the table [{key}] is missing."
     if error["type"] == "extra_forbidden":
         return f"{where}{shown} = {show(error['input'])} is not a known key; {_nearest(file, model, key)}."
     if error["type"] == "value_error":
@@ -479,9 +521,9 @@ def error_sentence(file: Any, error: Any) -> str:
     return f"{where}{key} = {show(error['input'])} must be {model.model_fields[key].description}."
 
 
-def example_of(key: str) -> str:
+def example_of(key: str, inputs: InputTable = LINE) -> str:
     """Return the advice to add a quantity, with a typical value and where it is from."""
-    wanted = QUANTITIES[key]
+    wanted = inputs.quantities[key]
     value = f'"{wanted.typical}"' if DIMENSIONS[wanted.dimension].unit else wanted.typical
     return f"add {DIMENSIONS[wanted.dimension].noun}, for example {key} = {value} ({wanted.source})"
 

@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import Any
 
 from stribeck.contact_laws.finite_surface import FiniteSurface
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.line import LineContact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
@@ -30,7 +30,7 @@ class Subject:
 
     Attributes
     ----------
-    contact : LineContact
+    contact : Contact
         The contact.
     facts : mapping
         Facts of :data:`stribeck.quantities.facts.ROWS` in SI units.
@@ -42,7 +42,7 @@ class Subject:
         Its curve over the speed, likewise.
     """
 
-    contact: LineContact
+    contact: Contact
     facts: Mapping[str, float] = field(default_factory=dict)
     definition: Definition = "balanced"
     solved: Solution | None = None
@@ -64,7 +64,7 @@ class Subject:
         law = self.contact.law if self.contact.law is not None and self.contact.law.name == "persson" else None
         return self._curve_of(self.contact.replace(law=FiniteSurface(self.contact.alpha, law)))
 
-    def _curve_of(self, contact: LineContact) -> StribeckCurve:
+    def _curve_of(self, contact: Contact) -> StribeckCurve:
         return stribeck_curve(contact, points=POINTS, rtol=RTOL, definition=self.definition)
 
     @property

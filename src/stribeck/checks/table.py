@@ -9,8 +9,8 @@ from typing import Any, Literal
 from stribeck.checks import body, film, law
 from stribeck.checks.check import Check, Checks
 from stribeck.checks.subject import Subject
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.line import LineContact
 from stribeck.curves.result import StribeckCurve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.facts import fact_values
@@ -68,12 +68,12 @@ ROWS = (
 
 
 @one_blas_thread
-def check(contact: LineContact, *, definition: Definition = "balanced", **facts: Any) -> Checks:
+def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any) -> Checks:
     """Check whether the model applies to a contact.
 
     Parameters
     ----------
-    contact : LineContact
+    contact : LineContact or PointContact
         The contact.
     definition : {"balanced", "published"}
         Definition of the viscous friction, which the minimum depends on.
@@ -99,7 +99,7 @@ def check(contact: LineContact, *, definition: Definition = "balanced", **facts:
     Source of the limits: docs/checks.md.
     """
     if not hasattr(contact, "hertz"):
-        raise InputError(f"contact = {show(contact)}; give a LineContact, whose inputs are in SI units.")
+        raise InputError(f"contact = {show(contact)}; give a LineContact or PointContact, whose inputs are in SI units.")
     return checks_of(Subject(contact, fact_values(facts), check_definition(definition)))
 
 

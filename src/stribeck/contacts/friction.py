@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from stribeck.contacts.line import LineContact
+from stribeck.contacts.contact import Contact
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
 
@@ -39,7 +39,7 @@ class Friction:
     error: float
 
 
-def coefficients(contact: LineContact | None, boundary_friction: float | None, beta: float | None) -> tuple[float, float]:
+def coefficients(contact: Contact | None, boundary_friction: float | None, beta: float | None) -> tuple[float, float]:
     """Return boundary_friction and beta as given, else those of the contact, else 1."""
     if contact is None and boundary_friction is None and beta is None:
         return 1.0, 1.0

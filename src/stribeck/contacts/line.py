@@ -10,57 +10,19 @@ from __future__ import annotations
 
 import inspect
 import math
-from dataclasses import dataclass, fields
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import ClassVar, Self
 
-from stribeck.contact_laws.law import AsperityLaw, check_law
+from stribeck.contacts.contact import Contact, HertzScales
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.inputs import (
-    INPUTS,
-    ROWS,
-    SYMBOLS,
-    contact_values,
-    quantity,
-    refuse_former,
-    replaced,
-    si_text,
-    signature_of,
-)
+from stribeck.quantities.inputs import LINE, InputTable, quantity, refuse_former, signature_of
 from stribeck.quantities.units import InputError
 
 __all__ = ["Groups", "HertzScales", "InputError", "LineContact"]
 
 
-@dataclass(frozen=True)
-class HertzScales:
-    r"""Scales of the dry contact of a smooth cylinder, in SI units.
-
-    .. math::
-
-        a = \left(\frac{4 F_N R}{\pi E^*}\right)^{1/2}, \quad u_\mathrm{Hz} = \frac{a^2}{R}, \quad
-        p_\mathrm{Hz} = \frac{2 F_N}{\pi a}
-
-    Parameters
-    ----------
-    half_width : float
-        :math:`a`, the scale of lengths along the contact [m].
-    indentation : float
-        :math:`u_\mathrm{Hz}`, the scale of gaps [m].
-    pressure : float
-        :math:`p_\mathrm{Hz}`, the largest pressure of the dry contact and the scale of pressures [Pa].
-
-    Notes
-    -----
-    Source: [Bertin & Pouliquen] Eq. (Hertz_scales).
-    """
-
-    half_width: float
-    indentation: float
-    pressure: float
-
-
 @dataclass(frozen=True, init=False)
-class LineContact:
+class LineContact(Contact):
     r"""A rigid rough cylinder sliding on a lubricated elastic half-space, in SI units.
 
     Every quantity is text with a unit (``"10 mm"``) or a bare number in SI units; floats in SI are kept.
@@ -132,25 +94,8 @@ class LineContact:
     0.303
     """
 
-    radius: float
-    load: float
-    viscosity: float
-    speed: float
-    roughness: float
-    alpha: float
-    beta: float
-    boundary_friction: float
-    modulus: float
-    law: AsperityLaw | None
-
-    __signature__: ClassVar[inspect.Signature] = signature_of(ROWS)
-
-    @refuse_former
-    def __init__(self, *, law: AsperityLaw | None = None, **inputs: str | float | None) -> None:
-        for name, value in contact_values(inputs).items():
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "law", check_law(law))
-        self._check_scales()
+    INPUTS: ClassVar[InputTable] = LINE
+    __signature__: ClassVar[inspect.Signature] = signature_of(LINE)
 
     @property
     def groups(self) -> Groups:
@@ -175,28 +120,6 @@ class LineContact:
     def hersey_number(self) -> float:
         r"""The Hersey number :math:`\eta U/F_N` [-], :math:`U` being the sum of the surface speeds."""
         return self.viscosity * self.speed / self.load
-
-    def replace(self, **changes: Any) -> Self:
-        """Return a copy with some of the inputs changed.
-
-        Parameters
-        ----------
-        **changes : str or float
-            Arguments of :class:`LineContact`; ``youngs_modulus`` and ``poisson_ratio`` together replace the
-            modulus, ``entrainment_speed`` the speed.
-
-        Returns
-        -------
-        LineContact
-            The changed contact.
-
-        Raises
-        ------
-        InputError
-            Where a value is impossible, as in :class:`LineContact`.
-        """
-        kept = {field.name: getattr(self, field.name) for field in fields(self)}
-        return type(self)(**replaced(kept, changes))
 
     @classmethod
     @refuse_former
@@ -255,22 +178,3 @@ class LineContact:
             modulus=E_star,
             law=groups.law,
         )
-
-    def _check_scales(self) -> None:
-        """Refuse values, each possible alone, whose groups leave the range of double precision."""
-        try:
-            _ = self.groups, self.hertz
-        except (InputError, ZeroDivisionError):
-            values = ", ".join(f"{name} = {getattr(self, name):g}" for name in INPUTS)
-            raise InputError(
-                f"the dimensionless groups of this contact leave the range of double precision; check {values} (all in SI)."
-            ) from None
-
-
-def input_texts(contact: LineContact | None, *without: str | None) -> list[str]:
-    """Return the inputs of a contact in words, but for those that vary."""
-    if contact is None:
-        return []
-    return [
-        f"{symbol} = {si_text(getattr(contact, name), name, 4)}" for name, symbol in SYMBOLS.items() if name not in without
-    ]

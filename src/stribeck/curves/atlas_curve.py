@@ -11,10 +11,11 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.reading import check_law
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.line import Groups, InputError, LineContact
+from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
-from stribeck.quantities.units import show
+from stribeck.quantities.units import InputError, show
 
 ERROR = 1e-4
 """Relative error that is stated for what is read off the atlas, its bound in docs/atlas.md."""
@@ -57,7 +58,7 @@ class AtlasCurve:
         Where the points lie, ascending: the group [-], or SI units where the curve has a contact.
     groups_at : callable
         The groups at an array of such values.
-    contact : LineContact or None
+    contact : Contact or None
         The contact.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
@@ -68,7 +69,7 @@ class AtlasCurve:
     over: str
     values: Array
     groups_at: Callable[[Array], Groups]
-    contact: LineContact | None
+    contact: Contact | None
     boundary_friction: float
     beta: float
     definition: Definition

@@ -12,7 +12,8 @@ from typing import Any, Literal
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.groups import Groups
 from stribeck.equations.sensitivity import GROUPS
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.units import InputError, show, to_si
@@ -28,11 +29,11 @@ class Coordinate:
     """The coordinate of a curve: the logarithm of one group, or of one SI quantity of a contact."""
 
     over: Over
-    base: Groups | LineContact
+    base: Groups | Contact
 
-    def contact_at(self, s: float) -> LineContact | None:
+    def contact_at(self, s: float) -> Contact | None:
         """Return the contact at coordinate s."""
-        return self.base.replace(**{self.over: math.exp(s)}) if isinstance(self.base, LineContact) else None
+        return self.base.replace(**{self.over: math.exp(s)}) if isinstance(self.base, Contact) else None
 
     def groups_at(self, s: float) -> Groups:
         """Return the groups at coordinate s."""
@@ -51,14 +52,12 @@ class Coordinate:
     @property
     def direction(self) -> Array:
         """Derivatives of ln(speed), ln(load), ln(roughness) of the groups along s."""
-        if isinstance(self.base, LineContact) and self.over == "load":
+        if isinstance(self.base, Contact) and self.over == "load":
             return np.array([-2.0, 1.0, 0.0])
         return np.array([1.0 if name == self.over else 0.0 for name in GROUPS])
 
 
-def read_problem(
-    problem: LineContact | Groups | None, given: dict[Over, Any]
-) -> tuple[LineContact | Groups, Over, Array | None]:
+def read_problem(problem: Contact | Groups | None, given: dict[Over, Any]) -> tuple[Contact | Groups, Over, Array | None]:
     """Return what stays fixed, what varies, and its ends or points; None where they are to be found."""
     ranges = [name for name, value in given.items() if value is not None and _dimensions(name, value) > 0]
     if len(ranges) > 1:
@@ -68,17 +67,19 @@ def read_problem(
     if problem is None:
         missing = [name for name in GROUPS if name != over and name not in fixed]
         if missing:
-            raise InputError(f"{' and '.join(missing)} missing; give a LineContact, or the groups that do not vary.")
+            raise InputError(
+                f"{' and '.join(missing)} missing; give a LineContact or PointContact, or the groups that do not vary."
+            )
         low = 1.0 if not ranges else float(_ends(over, given[over], si=False)[0])
-        base: LineContact | Groups = Groups(**{over: low, **fixed})
-    elif isinstance(problem, LineContact):
+        base: Contact | Groups = Groups(**{over: low, **fixed})
+    elif isinstance(problem, Contact):
         base = problem.replace(**fixed) if fixed else problem
     else:
         as_groups(problem)
         base = replace(problem, **fixed)
     if not ranges:
         return base, over, None
-    return base, over, _ends(over, given[over], isinstance(base, LineContact))
+    return base, over, _ends(over, given[over], isinstance(base, Contact))
 
 
 def _dimensions(name: str, value: Any) -> int:

@@ -14,8 +14,9 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contact_laws.law import AsperityLaw
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.groups import Groups
 from stribeck.curves.coordinate import Coordinate, Over
 from stribeck.curves.landmarks import Landmark, locate
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
@@ -45,7 +46,7 @@ class StribeckCurve:
         Where the points lie, ascending: the group [-], or SI units where the curve has a contact.
     solutions : tuple of Solution
         The state of each point.
-    contact : LineContact or None
+    contact : Contact or None
         The contact, at its own speed, load and roughness.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
@@ -62,7 +63,7 @@ class StribeckCurve:
     over: Over
     values: Array
     solutions: tuple[Solution, ...]
-    contact: LineContact | None
+    contact: Contact | None
     boundary_friction: float
     beta: float
     definition: Definition

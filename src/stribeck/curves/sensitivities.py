@@ -9,8 +9,8 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.line import LineContact
 from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
@@ -21,19 +21,19 @@ from stribeck.solver.solve import check_rtol, finish, solve, solved_point
 
 @overload
 def friction_sensitivities(
-    contact: LineContact, *, rtol: float = ..., definition: Definition = ..., method: Literal["solver"] = ...
+    contact: Contact, *, rtol: float = ..., definition: Definition = ..., method: Literal["solver"] = ...
 ) -> tuple[Solution, dict[str, float]]: ...
 
 
 @overload
 def friction_sensitivities(
-    contact: LineContact, *, rtol: float = ..., definition: Definition = ..., method: Literal["atlas"]
+    contact: Contact, *, rtol: float = ..., definition: Definition = ..., method: Literal["atlas"]
 ) -> tuple[None, dict[str, float]]: ...
 
 
 @one_blas_thread
 def friction_sensitivities(
-    contact: LineContact,
+    contact: Contact,
     *,
     rtol: float = 1e-6,
     definition: Definition = "balanced",
@@ -52,7 +52,7 @@ def friction_sensitivities(
 
     Parameters
     ----------
-    contact : LineContact
+    contact : Contact
         The contact.
     rtol : float
         Relative tolerance of the state.
@@ -95,7 +95,7 @@ def friction_sensitivities(
     return solution, _sensitivities(slopes, friction.contact, friction.viscous)
 
 
-def _from_atlas(contact: LineContact, definition: Definition) -> dict[str, float]:
+def _from_atlas(contact: Contact, definition: Definition) -> dict[str, float]:
     groups, boundary_friction, beta = contact.groups, contact.boundary_friction, contact.beta
     viscous = float(atlas.viscous_friction(groups, beta, definition))
     slopes = atlas.friction_derivatives(groups, boundary_friction, beta, definition)

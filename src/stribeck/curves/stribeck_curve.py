@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.groups import Groups
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_problem
 from stribeck.curves.landmarks import Landmark
@@ -33,7 +34,7 @@ POINTS_RANGE = (2, 100_000)
 
 @overload
 def stribeck_curve(
-    problem: LineContact | Groups | None = ...,
+    problem: Contact | Groups | None = ...,
     *,
     speed: ArrayLike | Sequence[str] | None = ...,
     load: ArrayLike | Sequence[str] | None = ...,
@@ -51,7 +52,7 @@ def stribeck_curve(
 
 @overload
 def stribeck_curve(
-    problem: LineContact | Groups | None = ...,
+    problem: Contact | Groups | None = ...,
     *,
     speed: ArrayLike | Sequence[str] | None = ...,
     load: ArrayLike | Sequence[str] | None = ...,
@@ -70,7 +71,7 @@ def stribeck_curve(
 @refuse_former
 @one_blas_thread
 def stribeck_curve(
-    problem: LineContact | Groups | None = None,
+    problem: Contact | Groups | None = None,
     *,
     speed: ArrayLike | Sequence[str] | None = None,
     load: ArrayLike | Sequence[str] | None = None,
@@ -88,7 +89,7 @@ def stribeck_curve(
 
     Parameters
     ----------
-    problem : LineContact or Groups, optional
+    problem : Contact or Groups, optional
         The contact; what varies in it is replaced.  Without it the other two groups are given as keywords.
     speed, load, roughness : float, or (low, high), or array_like, optional
         A pair is the range of what varies, with ``points`` in between, evenly in the logarithm; a longer array gives the
@@ -132,7 +133,7 @@ def stribeck_curve(
     given: dict[Over, Any] = {"speed": speed, "load": load, "roughness": roughness}
     base, over, ends = read_problem(problem, given)
     base = with_law(base, law)
-    contact = base if isinstance(base, LineContact) else None
+    contact = base if isinstance(base, Contact) else None
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     if isinstance(points, bool) or not isinstance(points, int) or not POINTS_RANGE[0] <= points <= POINTS_RANGE[1]:
         raise InputError(f"points = {show(points)}; it must be a whole number from {POINTS_RANGE[0]} to {POINTS_RANGE[1]}.")

@@ -145,6 +145,8 @@ def from_case(case: Case) -> Inputs:
     InputError
         If the case holds something that the page cannot show.
     """
+    if not isinstance(case.contact, LineContact):
+        raise InputError("the page shows cylinders; solve this ball with stribeck solve, curve or regimes.")
     law = law_of_case(case)
     contact = case.contact.replace(law=shape_of(law))
     check_friction(FRICTION, getattr(contact, FRICTION))

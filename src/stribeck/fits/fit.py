@@ -21,8 +21,8 @@ from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings, free_names
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.contact_laws.law import largest_load
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.line import LineContact
 from stribeck.fits.case_file import load_fit_case
 from stribeck.fits.friction_parts import PartsOf, atlas_or_solved_parts, atlas_parts, solved_parts
 from stribeck.fits.identifiability import Unidentifiable, undetermined
@@ -74,7 +74,7 @@ Step = Callable[[str, int], object]
 @one_blas_thread
 def fit(
     data: str | os.PathLike[str] | Measurements,
-    case: str | os.PathLike[str] | Case | LineContact,
+    case: str | os.PathLike[str] | Case | Contact,
     *,
     free: Sequence[str] | None = None,
     robust: bool | None = None,
@@ -160,19 +160,19 @@ def fit(
 class _Problem:
     """What a case says to a fit."""
 
-    contact: LineContact
+    contact: Contact
     settings: FitSettings
     definition: Definition
     rtol: float
     facts: dict[str, float] = field(default_factory=dict)
 
 
-def _problem(data: object, case: str | os.PathLike[str] | Case | LineContact) -> _Problem:
-    if isinstance(case, LineContact):
+def _problem(data: object, case: str | os.PathLike[str] | Case | Contact) -> _Problem:
+    if isinstance(case, Contact):
         return _Problem(case, FitSettings(), Case.definition, Case.rtol)
     if not isinstance(case, Case):
         if not isinstance(case, str | os.PathLike):
-            raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case or a LineContact.")
+            raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case, LineContact or PointContact.")
         case = load_fit_case(data, case)
     return _Problem(case.contact, case.fit, case.definition, case.rtol, case.facts)
 
@@ -397,7 +397,7 @@ def _notes(
     correlation: Array,
     covariance: Array,
     weak: Sequence[Unidentifiable],
-    contacts: Sequence[LineContact],
+    contacts: Sequence[Contact],
 ) -> list[str]:
     notes = []
     for each in inputs:

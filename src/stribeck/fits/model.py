@@ -21,7 +21,8 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.groups import Groups
 from stribeck.fits.friction_parts import FrictionParts, PartsOf
 from stribeck.fits.measurements import Measurements
 from stribeck.quantities.inputs import GROUP_EXPONENTS, QUANTITIES
@@ -66,14 +67,12 @@ class FreeInput:
         return self.start * math.exp(theta)
 
 
-def free_inputs(
-    contact: LineContact, data: Measurements, names: Sequence[str], settings: FitSettings
-) -> tuple[FreeInput, ...]:
+def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], settings: FitSettings) -> tuple[FreeInput, ...]:
     """Return the inputs to fit, one for each name, or one for each curve where the settings say so.
 
     Parameters
     ----------
-    contact : LineContact
+    contact : Contact
         What the fit starts from.
     data : Measurements
         The curves.
@@ -169,7 +168,7 @@ class FrictionModel:
 
     Parameters
     ----------
-    contact : LineContact
+    contact : Contact
         What all curves have in common.
     data : Measurements
         The curves.
@@ -177,7 +176,7 @@ class FrictionModel:
         What is fitted.
     """
 
-    def __init__(self, contact: LineContact, data: Measurements, free: Sequence[FreeInput]) -> None:
+    def __init__(self, contact: Contact, data: Measurements, free: Sequence[FreeInput]) -> None:
         self.contact, self.data, self.free = contact, data, tuple(free)
         self.contacts = tuple(contact.replace(speed=1.0, **inputs) for inputs in data.inputs)
         exponents = [self._exponents(curve) for curve in range(len(data.curves))]
@@ -222,7 +221,7 @@ class FrictionModel:
         found[:, 0] += np.log(values)
         return np.asarray(found)
 
-    def contact_of(self, curve: int, theta: Array) -> LineContact:
+    def contact_of(self, curve: int, theta: Array) -> Contact:
         """Return the contact of a curve at a set of free inputs, at the speed of the case."""
         factors: dict[str, float] = {}
         for free, t in zip(self.free, theta.tolist(), strict=True):

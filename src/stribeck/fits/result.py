@@ -11,8 +11,8 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FREE
 from stribeck.checks.check import Checks
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.line import LineContact
 from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
@@ -91,7 +91,7 @@ class Fit:
         The fitted inputs.
     outcome : FitOutcome
         How the fit ended.
-    contact : LineContact
+    contact : Contact
         The case with the fitted values that all curves share, else with those of the first curve.
     contacts : tuple of LineContact
         The fitted contact of each curve.
@@ -133,8 +133,8 @@ class Fit:
 
     inputs: tuple[FittedInput, ...]
     outcome: FitOutcome
-    contact: LineContact
-    contacts: tuple[LineContact, ...]
+    contact: Contact
+    contacts: tuple[Contact, ...]
     data: Measurements
     definition: Definition
     law: str

@@ -22,7 +22,7 @@ SHORTEST = 4
 
 _RMS = "heights are root mean squares, of Gaussian ones about 1.25 Ra: h_rms in [surface], or roughness in [contact]"
 _FLUID = "the fluid is Newtonian, and its viscosity is the same everywhere: give viscosity at the temperature and pressure"
-_LINE = "the model is a line contact, without ends: divide the force by the length of the cylinder and give load in N/m"
+_LINE = "give load: of a cylinder the force divided by its length, in N/m; of a ball, geometry = 'point', the force in N"
 
 # Whole words of a key, and what the package has instead.  The first that matches is said.
 _ABSENT = (
@@ -51,7 +51,7 @@ _ABSENT = (
     (("diameter",), "give radius, half the diameter"),
     (
         ("ellipticity", "ball", "sphere"),
-        "a ball is a point contact, and this version solves line contacts only",
+        "of a ball write geometry = 'point' and its radius; an ellipse is not modelled",
     ),
     (
         ("slide_to_roll", "srr", "slip"),

@@ -1,6 +1,8 @@
-"""The table of inputs: name, label, symbol, unit, bounds and group exponents of each, and its value in SI units, checked.
+"""The tables of inputs: name, label, symbol, unit, bounds and group exponents of each, and its value in SI units, checked.
 
-Contacts, case files, the command line, sweeps, fits, pictures and the explorer read it: one row is one input everywhere.
+Contacts, case files, the command line, sweeps, fits, pictures and the explorer read them: one row is one input everywhere.
+The table of a cylinder is the one that the names of this module are about; that of a ball has the same rows but for what
+differs.
 """
 
 from __future__ import annotations
@@ -9,8 +11,8 @@ import difflib
 import functools
 import inspect
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any, ParamSpec, TypeVar
 
 from stribeck.quantities.units import DIMENSIONS, InputError, format_si, show, to_si
@@ -20,12 +22,14 @@ __all__ = [
     "GROUP_EXPONENTS",
     "FORMER",
     "INPUTS",
+    "INPUT_TABLES",
     "LETTERS",
     "QUANTITIES",
     "SYMBOLS",
     "ROWS",
     "Alternative",
     "Input",
+    "InputTable",
     "check_alternatives",
     "contact_values",
     "quantity",
@@ -74,6 +78,10 @@ class Input:
         Whether it follows from the roughness of the surface, and no hand can turn it alone.
     derived : bool
         Whether a contact keeps another input in its place, see :data:`ALTERNATIVES`.
+    optional : bool
+        Whether a contact does without it.
+    default : float or None
+        What it then has, None if nothing.
     """
 
     name: str
@@ -91,6 +99,8 @@ class Input:
     highest: float = math.inf
     follows_surface: bool = False
     derived: bool = False
+    optional: bool = False
+    default: float | None = None
 
 
 _PDMS = "as in examples/pdms_cylinder.toml"
@@ -259,6 +269,8 @@ class Alternative:
         What the kept input is, for sentences.
     hint : str
         What to know if one of several is missing.
+    other : tuple of str
+        The same of a second body, which may be given besides, all together.
     """
 
     of: str
@@ -266,6 +278,7 @@ class Alternative:
     value: Callable[..., float]
     meaning: str
     hint: str = ""
+    other: tuple[str, ...] = ()
 
 
 ALTERNATIVES = (
@@ -279,34 +292,179 @@ ALTERNATIVES = (
     Alternative("speed", ("entrainment_speed",), lambda mean: 2 * mean, "the sum of the surface speeds, twice their mean"),
 )
 
-QUANTITIES = {row.name: row for row in ROWS}
-"""The inputs by name."""
 
-INPUTS = tuple(row.name for row in ROWS if not row.derived)
-"""The inputs that a contact keeps, in the order in which outputs name them."""
+@dataclass(frozen=True)
+class InputTable:
+    """The inputs of the contacts of one geometry.
 
-SYMBOLS = {row.name: row.symbol for row in ROWS if not row.derived}
-"""Symbols for pictures."""
+    Attributes
+    ----------
+    geometry : {"line", "point"}
+        The geometry.
+    contact : str
+        Name of its contact in Python.
+    rows : tuple of Input
+        All inputs.
+    alternatives : tuple of Alternative
+        What may be given in place of some.
+    """
 
-LETTERS = {letter: row.name for row in ROWS for letter in row.letters}
+    geometry: str
+    contact: str
+    rows: tuple[Input, ...]
+    alternatives: tuple[Alternative, ...]
+
+    @functools.cached_property
+    def quantities(self) -> dict[str, Input]:
+        """The inputs by name."""
+        return {row.name: row for row in self.rows}
+
+    @functools.cached_property
+    def names(self) -> tuple[str, ...]:
+        """The inputs that a contact keeps, in the order in which outputs name them."""
+        return tuple(row.name for row in self.rows if not row.derived)
+
+    @functools.cached_property
+    def symbols(self) -> dict[str, str]:
+        """Symbols for pictures."""
+        return {row.name: row.symbol for row in self.rows if not row.derived}
+
+    @functools.cached_property
+    def exponents(self) -> dict[str, tuple[float, float, float]]:
+        """Exponents with which each input enters the groups of speed, load and roughness."""
+        return {row.name: row.exponents for row in self.rows if not row.derived}
+
+    @functools.cached_property
+    def choices(self) -> frozenset[str]:
+        """Those that need not be given: they have a default, or others may take their place."""
+        optional = {row.name for row in self.rows if row.optional}
+        return frozenset(optional.union(*((other.of, *other.inputs, *other.other) for other in self.alternatives)))
+
+
+LINE = InputTable("line", "LineContact", ROWS, ALTERNATIVES)
+"""The inputs of a cylinder."""
+
+_BALL = "as in examples/pdms_ball.toml"
+
+_OF_A_BALL: dict[str, dict[str, Any]] = {
+    "radius": {"typical": "9.5 mm", "source": _BALL, "exponents": (5 / 3, -2, -1)},
+    "modulus": {"exponents": (1 / 3, -1, 0)},
+    "load": {
+        "dimension": "force",
+        "typical": "1.3 N",
+        "source": _BALL,
+        "exponents": (-4 / 3, 1, 0),
+        "usual": (1e-6, 1e3),
+        "units": ("mN", "N"),
+    },
+    "speed": {"source": _BALL},
+    "beta": {"exponents": (0, -3, -2)},
+}
+"""What differs in the rows of a ball."""
+
+POINT_ROWS = (
+    *(replace(row, **_OF_A_BALL.get(row.name, {})) for row in ROWS),
+    Input(
+        name="slide_to_roll",
+        label="slide-to-roll ratio",
+        symbol="$S$",
+        dimension="number",
+        typical="2.0",
+        source="one surface at rest; 2 (u1 - u2)/(u1 + u2) in general",
+        usual=(0.01, 2.0),
+        letters=("srr", "SRR", "slide_roll_ratio"),
+        zero=True,
+        highest=2.0,
+        optional=True,
+        default=2.0,
+    ),
+    Input(
+        name="wetted_radius",
+        label="radius of the wetted disc",
+        symbol="$X_c$",
+        dimension="length",
+        typical="3 mm",
+        source="where the liquid around the contact ends; the whole ball without it",
+        usual=(1e-4, 1.0),
+        units=("mm", "cm"),
+        optional=True,
+    ),
+    Input(
+        name="radius_2",
+        label="radius of the other body",
+        symbol="$R_2$",
+        dimension="length",
+        typical="50 mm",
+        source="a second ball; without it the other body is flat",
+        derived=True,
+        optional=True,
+    ),
+    Input(
+        name="youngs_modulus_2",
+        label="Young's modulus of the other body",
+        symbol="$E_2$",
+        dimension="pressure",
+        typical="2.0 MPa",
+        source="PDMS Sylgard 184; without it the other body is rigid",
+        derived=True,
+        optional=True,
+    ),
+    Input(
+        name="poisson_ratio_2",
+        label="Poisson's ratio of the other body",
+        symbol=r"$\nu_2$",
+        dimension="number",
+        typical="0.5",
+        source="rubber and gels",
+        zero=True,
+        highest=0.5,
+        derived=True,
+        optional=True,
+    ),
+)
+"""The inputs of a ball. A new one is a row here and, if a contact keeps it, a field of :class:`PointContact`."""
+
+
+def _in_series(*bodies: float) -> float:
+    """Return the modulus E* of one or two bodies from Young's modulus and Poisson ratio of each."""
+    return 1 / sum((1 - nu**2) / E for E, nu in zip(bodies[::2], bodies[1::2], strict=True))
+
+
+POINT = InputTable(
+    "point",
+    "PointContact",
+    POINT_ROWS,
+    tuple(
+        replace(other, value=_in_series, other=("youngs_modulus_2", "poisson_ratio_2")) if other.of == "modulus" else other
+        for other in ALTERNATIVES
+    ),
+)
+"""The inputs of a ball."""
+
+INPUT_TABLES = {"line": LINE, "point": POINT}
+"""The inputs by geometry."""
+
+QUANTITIES, INPUTS, SYMBOLS, GROUP_EXPONENTS = LINE.quantities, LINE.names, LINE.symbols, LINE.exponents
+"""Those of a cylinder: its inputs by name, what it keeps, symbols for pictures, exponents in the groups."""
+
+LETTERS = {letter: row.name for table in (POINT, LINE) for row in table.rows for letter in row.letters}
 """Letters of the article and of the trade, and the inputs that they stand for."""
-
-GROUP_EXPONENTS = {row.name: row.exponents for row in ROWS if not row.derived}
-"""Exponents with which each input enters the groups of speed, load and roughness."""
 
 FORMER = {"friction_coefficient": "boundary_friction", "mu0": "boundary_friction"}
 """What inputs were once called, and the names that took their place."""
 
 
-def quantity(name: str, value: Any) -> float:
-    """Return one input of :class:`stribeck.LineContact` in SI units, checked.
+def quantity(name: str, value: Any, table: InputTable = LINE) -> float:
+    """Return one input of a contact in SI units, checked.
 
     Parameters
     ----------
     name : str
-        One of the keys of :data:`QUANTITIES`.
+        One of the inputs of the table.
     value : str or float
         Text with a unit, or a bare number in SI units.
+    table : InputTable
+        The inputs of the geometry; those of a cylinder by default.
 
     Returns
     -------
@@ -318,7 +476,7 @@ def quantity(name: str, value: Any) -> float:
     InputError
         Where the value is impossible or its unit is wrong.
     """
-    wanted = QUANTITIES[name]
+    wanted = table.quantities[name]
     result = to_si(value, wanted.dimension, name)
     if wanted.highest < math.inf and not 0 <= result <= wanted.highest:
         raise InputError(f"{name} = {show(value)} must be between 0 and {wanted.highest:g}.")
@@ -340,7 +498,7 @@ def refuse_former(function: Callable[P, R]) -> Callable[P, R]:
     return checked
 
 
-def contact_values(given: Mapping[str, Any]) -> dict[str, float]:
+def contact_values(given: Mapping[str, Any], table: InputTable = LINE) -> dict[str, float | None]:
     """Return the inputs that a contact keeps, in SI units, from those that were given.
 
     Parameters
@@ -348,59 +506,70 @@ def contact_values(given: Mapping[str, Any]) -> dict[str, float]:
     given : mapping
         Inputs of :data:`ROWS` by name, text with a unit or numbers in SI units; None counts as not given if
         another may take its place.
+    table : InputTable
+        The inputs of the geometry.
 
     Returns
     -------
     dict of str to float
-        A value for each of :data:`INPUTS`.
+        A value for each input that a contact keeps; None for one that it does without.
 
     Raises
     ------
     InputError
         If one is unknown, missing, given twice or impossible.
     """
-    choices = {name for other in ALTERNATIVES for name in (other.of, *other.inputs)}
-    values = {name: value for name, value in given.items() if value is not None or name not in choices}
+    values = {name: value for name, value in given.items() if value is not None or name not in table.choices}
     for name in values:
-        if name not in QUANTITIES:
-            near = difflib.get_close_matches(name, QUANTITIES, n=1)
-            known = f"did you mean {near[0]}?" if near else f"known are {', '.join(QUANTITIES)}."
-            raise InputError(f"{name} = {show(values[name])} is not an input of a contact; {known}")
-    check_alternatives(values)
-    for other in ALTERNATIVES:
+        if name not in table.quantities:
+            near = difflib.get_close_matches(name, table.quantities, n=1)
+            known = f"did you mean {near[0]}?" if near else f"known are {', '.join(table.quantities)}."
+            raise InputError(f"{name} = {show(values[name])} is not an input of {table.contact}; {known}")
+    check_alternatives(values, table)
+    for other in table.alternatives:
         if other.of not in values:
-            values[other.of] = other.value(*(quantity(name, values.pop(name)) for name in other.inputs))
-    missing = [name for name in INPUTS if name not in values]
+            used = (*other.inputs, *(name for name in other.other if name in values))
+            values[other.of] = other.value(*(quantity(name, values.pop(name), table) for name in used))
+    if "radius_2" in values and "radius" in values:
+        R, R_2 = (quantity(name, values.pop(name), table) for name in ("radius", "radius_2"))
+        values["radius"] = 1 / (1 / R + 1 / R_2)
+    found: dict[str, float | None] = {row.name: row.default for row in table.rows if row.optional and not row.derived}
+    missing = [name for name in table.names if name not in values and name not in found]
     if missing:
-        raise InputError(f"{', '.join(missing)} missing; a contact needs {', '.join(INPUTS)}.")
-    return {name: quantity(name, values[name]) for name in INPUTS}
+        needed = (name for name in table.names if name not in found)
+        raise InputError(f"{', '.join(missing)} missing; a contact needs {', '.join(needed)}.")
+    return {name: quantity(name, values[name], table) if name in values else found[name] for name in table.names}
 
 
-def signature_of(table: Sequence[Input]) -> inspect.Signature:
+def signature_of(table: InputTable) -> inspect.Signature:
     """Return the signature of a contact that takes the inputs of a table, and a contact law."""
-    others = {name for other in ALTERNATIVES for name in (other.of, *other.inputs)}
     keyword = inspect.Parameter.KEYWORD_ONLY
-    default = {name: None for name in others}
-    inputs = [inspect.Parameter(row.name, keyword, default=default.get(row.name, inspect.Parameter.empty)) for row in table]
+    default = {row.name: row.default for row in table.rows if row.name in table.choices}
+    inputs = [
+        inspect.Parameter(row.name, keyword, default=default.get(row.name, inspect.Parameter.empty)) for row in table.rows
+    ]
     return inspect.Signature([*inputs, inspect.Parameter("law", keyword, default=None)])
 
 
-def check_alternatives(given: Mapping[str, Any]) -> None:
+def check_alternatives(given: Mapping[str, Any], table: InputTable = LINE) -> None:
     """Check that an input with alternatives is given once: by itself, or by all of those that stand for it.
 
     Parameters
     ----------
     given : mapping
         Inputs by name; None counts as not given.
+    table : InputTable
+        The inputs of the geometry.
 
     Raises
     ------
     InputError
         If it is given twice, in part or not at all.
     """
-    for other in ALTERNATIVES:
+    for other in table.alternatives:
         values = {name: given.get(name) for name in other.inputs}
-        there = [f"{name} = {show(value)}" for name, value in values.items() if value is not None]
+        second = {name: given[name] for name in other.other if given.get(name) is not None}
+        there = [f"{name} = {show(value)}" for name, value in (values | second).items() if value is not None]
         missing = [name for name, value in values.items() if value is None]
         kept, instead = given.get(other.of), " and ".join(other.inputs)
         if kept is not None and there:
@@ -411,6 +580,10 @@ def check_alternatives(given: Mapping[str, Any]) -> None:
         if kept is None and not there:
             together = " together" if len(other.inputs) > 1 else ""
             raise InputError(f"{other.of} ({other.meaning}) is missing; give it, or {instead}{together}.")
+        if kept is None and not missing and 0 < len(second) < len(other.other):
+            raise InputError(
+                f"of the other body {' and '.join(second)} alone is given; give {' and '.join(other.other)}, or none."
+            )
         if kept is None and missing:
             typical = f" {other.hint}" if missing == [other.inputs[-1]] else ""
             raise InputError(
@@ -418,20 +591,22 @@ def check_alternatives(given: Mapping[str, Any]) -> None:
             )
 
 
-def replaced(kept: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+def replaced(kept: Mapping[str, Any], changes: Mapping[str, Any], table: InputTable = LINE) -> dict[str, Any]:
     """Return inputs with some changed; an alternative among the changes takes the place of what it stands for."""
     found = dict(kept)
-    for other in ALTERNATIVES:
+    if "radius_2" in changes and "radius" not in changes:
+        raise InputError("radius_2 is given without radius; give both radii, as a contact keeps only what they make together.")
+    for other in table.alternatives:
         if any(name in changes for name in other.inputs):
             del found[other.of]
     return found | dict(changes)
 
 
-def unit_of(name: str) -> str:
+def unit_of(name: str, table: InputTable = LINE) -> str:
     """Return the SI unit of an input in the spelling of UDUNITS, which files use."""
-    return DIMENSIONS[QUANTITIES[name].dimension].unit.replace("*", " ") or "1"
+    return DIMENSIONS[table.quantities[name].dimension].unit.replace("*", " ") or "1"
 
 
-def si_text(value: float, name: str, digits: int) -> str:
+def si_text(value: float, name: str, digits: int, table: InputTable = LINE) -> str:
     """Return an input of a contact with its unit."""
-    return format_si(value, QUANTITIES[name].dimension, digits).replace("*", "·")
+    return format_si(value, table.quantities[name].dimension, digits).replace("*", "·")

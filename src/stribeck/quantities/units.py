@@ -69,6 +69,7 @@ DIMENSIONS = {
     "pressure": Dimension("a pressure", "Pa", "2.1 MPa", _prefixed("Pa", (-3, 0, 3, 6, 9))),
     "viscosity": Dimension("a viscosity", "Pa*s", "10 mPa*s", _prefixed("Pa*s", (-6, -3, 0, 3, 6))),
     "load": Dimension("a load per unit length", "N/m", "50 N/m", _prefixed("N/m", (-6, -3, 0, 3, 6))),
+    "force": Dimension("a force", "N", "1.3 N", _prefixed("N", (-9, -6, -3, 0, 3))),
     "drag": Dimension("a viscosity times a speed", "Pa*m", "2 mPa*m", _prefixed("Pa*m", (-9, -6, -3, 0, 3))),
     "spectral density": Dimension("a spectral density of heights", "m^4", "1e-20 m^4", {0: "m^4"}),
     "compliance": Dimension("an inverse pressure", "1/Pa", "20 1/GPa", {-9: "1/GPa", -6: "1/MPa", 0: "1/Pa"}),
@@ -107,7 +108,14 @@ _NOUNS = {
 
 # What to do about a unit of another kind: what was found, and the SI unit of what is expected.
 _HINTS = {
-    ("N", "N/m"): "divide the force on a cylinder by its length; a ball is a point contact, which this version does not solve",
+    ("N", "N/m"): "a force is the load of a ball, PointContact or geometry = 'point'; that of a cylinder, LineContact or "
+    "geometry = 'line', is the force divided by its length",
+    (
+        "N/m",
+        "N",
+    ): "a load per unit length is that of a cylinder, LineContact or geometry = 'line'; that of a ball, PointContact "
+    "or geometry = 'point', is the whole force",
+    ("kg", "N"): "a mass presses with 9.81 N/kg",
     ("kg", "N/m"): "a mass presses with 9.81 N/kg; divide the force on a cylinder by its length",
     ("m^2/s", "Pa*s"): "multiply it by the density",
     ("1/s", "m/s"): "multiply the angular velocity in rad/s by the radius of the shaft or track",

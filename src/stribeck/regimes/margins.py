@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from stribeck.contact_laws.law import largest_load
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.line import LineContact
 from stribeck.curves.coordinate import Over
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.curves.result import StribeckCurve
@@ -128,7 +128,7 @@ class RegimeMargins:
 
 @one_blas_thread
 def regime_margins(
-    contact: LineContact,
+    contact: Contact,
     *,
     rtol: float = 1e-6,
     definition: Definition = "balanced",
@@ -138,7 +138,7 @@ def regime_margins(
 
     Parameters
     ----------
-    contact : LineContact
+    contact : Contact
         The contact; zero speed and zero roughness are ordinary inputs.
     rtol : float
         Relative tolerance of the states that are scanned; the changes are located on finer ones.
@@ -170,8 +170,8 @@ def regime_margins(
     """
     check_rtol(rtol)
     definition = check_definition(definition)
-    if not isinstance(contact, LineContact):
-        raise InputError(f"contact = {show(contact)}; it must be a LineContact, as margins are in SI units.")
+    if not isinstance(contact, Contact):
+        raise InputError(f"contact = {show(contact)}; it must be a LineContact or PointContact, as margins are in SI units.")
     present = _regime(solve(contact, rtol=rtol), definition)
     scan = _Scan(contact, present, rtol, definition, on_point)
     notes = []
@@ -196,14 +196,14 @@ def regime_margins(
     return RegimeMargins(present, tuple(found), tuple(notes))
 
 
-def physical_bounds(contact: LineContact, name: str) -> tuple[float, float]:
+def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:
     r"""Return between which values an input of a contact can be sought, whatever the model says beyond.
 
     .. math:: F_N \le \frac{\pi}{4} E^* R \;\;(a \le R), \qquad h_\mathrm{rms} \le a
 
     Parameters
     ----------
-    contact : LineContact
+    contact : Contact
         The contact.
     name : {"speed", "load", "roughness", "viscosity"}
         The input.
@@ -236,7 +236,7 @@ def _within(margin: Margin, bounds: tuple[float, float]) -> Margin:
     return Margin(margin.name, less, more, ends)
 
 
-def _of_viscosity(contact: LineContact, speed: Margin) -> Margin:
+def _of_viscosity(contact: Contact, speed: Margin) -> Margin:
     """Return the margins in viscosity that those in speed are; a resting contact has none."""
     eta = contact.viscosity
     if contact.speed == 0:
@@ -261,7 +261,7 @@ def _regime(solution: Solution, definition: Definition) -> Regime:
 class _Scan:
     """The search for changes of regime along one input after another."""
 
-    contact: LineContact
+    contact: Contact
     present: Regime
     rtol: float
     definition: Definition
@@ -299,7 +299,7 @@ class _Scan:
             more = Crossing(more.regime, more.value if more.value > lowest else 0.0, math.inf)
         return Margin(name, None, more, (0.0, lowest * math.exp(highest)))
 
-    def _outwards(self, start: LineContact, name: Over, limit: float, reach: float = REACH) -> tuple[Crossing | None, float]:
+    def _outwards(self, start: Contact, name: Over, limit: float, reach: float = REACH) -> tuple[Crossing | None, float]:
         """Return the first change of regime towards ``limit`` and how far was searched, logarithms of factors."""
         value, outward = float(getattr(start, name)), math.copysign(1.0, limit)
         size, here = min(abs(limit), math.log(reach)), 0.0
@@ -316,7 +316,7 @@ class _Scan:
             here = there
         return None, outward * here
 
-    def _curve(self, start: LineContact, name: Over, near: float, far: float, points: int) -> StribeckCurve | None:
+    def _curve(self, start: Contact, name: Over, near: float, far: float, points: int) -> StribeckCurve | None:
         """Return the states between two values of an input; None where the solver does not reach them all."""
         ends: Any = {name: (min(near, far), max(near, far))}
         try:
@@ -344,7 +344,7 @@ class _Scan:
         return None
 
     def _located(
-        self, start: LineContact, name: Over, outward: float, regime: Regime, near: float, far: float
+        self, start: Contact, name: Over, outward: float, regime: Regime, near: float, far: float
     ) -> tuple[Regime, float]:
         """Return the regime entered first between two values, and the value where its share passes the bound."""
         if near == far:
@@ -370,7 +370,7 @@ class _Scan:
         return float(min((low, high), key=lambda value: abs(share[np.flatnonzero(curve.values == value)[0]] - bound)))
 
 
-def _limits(contact: LineContact, name: str) -> tuple[float, float]:
+def _limits(contact: Contact, name: str) -> tuple[float, float]:
     """Return the logarithms of the factors of an input between which it is possible and the groups stay in the box."""
     box = BOX | {"load": (BOX["load"][0], min(BOX["load"][1], largest_load(contact.law)))}
     n_speed, n_load, n_roughness = GROUP_EXPONENTS[name]
@@ -385,14 +385,14 @@ def _limits(contact: LineContact, name: str) -> tuple[float, float]:
     return min(low, 0.0), max(high, 0.0)
 
 
-def _possible_factors(contact: LineContact, name: str) -> tuple[float, float]:
+def _possible_factors(contact: Contact, name: str) -> tuple[float, float]:
     """Return the logarithms of the factors that lead to the bounds of an input, of the speed to those of the viscosity too."""
     names = ("speed", "viscosity") if name == "speed" else (name,)
     ends = [(getattr(contact, each), physical_bounds(contact, each)) for each in names]
     return min(math.log(low / value) for value, (low, _) in ends), max(math.log(high / value) for value, (_, high) in ends)
 
 
-def _with_smallest(contact: LineContact, name: Over) -> LineContact:
+def _with_smallest(contact: Contact, name: Over) -> Contact:
     """Return the contact with the minimum speed or roughness of the box instead of zero."""
     groups = contact.replace(**{name: 1.0}).groups
     group = "speed" if name == "speed" else "relative_roughness"

@@ -16,8 +16,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.groups import Groups
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method, regime_of
 from stribeck.curves.result import StribeckCurve
@@ -44,7 +45,7 @@ DENSITY = 4
 @refuse_former
 @one_blas_thread
 def phase_diagram(
-    problem: LineContact | Groups | None = None,
+    problem: Contact | Groups | None = None,
     *,
     load: Any = None,
     speed: Any = None,
@@ -63,7 +64,7 @@ def phase_diagram(
 
     Parameters
     ----------
-    problem : LineContact or Groups, optional
+    problem : Contact or Groups, optional
         The contact, of which the three are replaced as far as they are given.  With a LineContact the axes are in SI units.
     load, speed, roughness : float or str, or (low, high), or array_like, optional
         Each a number, a range with ``points`` between, evenly in the logarithm, or three and more ascending points.
@@ -174,8 +175,8 @@ def _fill_row(diagram: Diagram, i: int, j: int, report: Callable[[float], None])
         diagram.messages[i, j] = str(failure)
 
 
-def _fill_rest(diagram: Diagram, problem: LineContact | Groups, place: tuple[int, int, int]) -> None:
-    resting = problem.replace(speed=0.0) if isinstance(problem, LineContact) else replace(problem, speed=0.0)
+def _fill_rest(diagram: Diagram, problem: Contact | Groups, place: tuple[int, int, int]) -> None:
+    resting = problem.replace(speed=0.0) if isinstance(problem, Contact) else replace(problem, speed=0.0)
     try:
         _enter(diagram, place, solve(resting, rtol=diagram.rtol))
     except SolveError as failure:
@@ -236,5 +237,5 @@ def _merging_line(diagram: Diagram) -> Array:
     return line
 
 
-def _in_metres(contact: LineContact, roughness_group: float) -> float:
+def _in_metres(contact: Contact, roughness_group: float) -> float:
     return roughness_group / float(contact.replace(roughness=1.0).groups.roughness)

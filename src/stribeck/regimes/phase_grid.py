@@ -12,9 +12,9 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw, check_law
 from stribeck.contact_laws.scaled import named_law
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups, Physics
-from stribeck.contacts.line import LineContact
 from stribeck.curves.regime import Regime, Transition
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.quantities.inputs import QUANTITIES
@@ -61,7 +61,7 @@ class Diagram:
 
     Attributes
     ----------
-    contact : LineContact or None
+    contact : Contact or None
         The contact, where the axes are in SI units.
     axes : dict of str to ndarray
         Values of load, roughness and speed, ascending.
@@ -77,7 +77,7 @@ class Diagram:
         CONVERGED, or INTERRUPTED.
     """
 
-    contact: LineContact | None
+    contact: Contact | None
     axes: dict[str, Array]
     boundary_friction: float
     beta: float
@@ -103,7 +103,7 @@ class Diagram:
         self.velocity_weakening = np.full(shape[:2], -1, dtype=np.int8)
         self.messages = np.full(shape[:2], Outcome.INTERRUPTED.value, dtype=object)
 
-    def problem(self, i: int, j: int) -> tuple[LineContact | Groups, Groups, float]:
+    def problem(self, i: int, j: int) -> tuple[Contact | Groups, Groups, float]:
         """Return contact or groups of a row at speed 1 of its axis, the groups, and the speed group for that speed."""
         load, roughness = float(self.axes["load"][i]), float(self.axes["roughness"][j])
         if self.contact is None:
@@ -114,7 +114,7 @@ class Diagram:
 
 
 def empty_diagram(
-    problem: LineContact | Groups | None,
+    problem: Contact | Groups | None,
     given: dict[str, Any],
     points: int | Mapping[str, int] | None,
     boundary_friction: float | None,
@@ -125,7 +125,7 @@ def empty_diagram(
 ) -> Diagram:
     """Return the empty diagram that the arguments ask for."""
     problem = problem if problem is None else with_law(problem, law)
-    contact = problem if isinstance(problem, LineContact) else None
+    contact = problem if isinstance(problem, Contact) else None
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     definition = check_definition(definition)
     if problem is not None:
@@ -133,7 +133,7 @@ def empty_diagram(
         given = {name: getattr(problem, name) if value is None and name != "speed" else value for name, value in given.items()}
     missing = [name for name in ("load", "roughness") if given[name] is None]
     if missing:
-        raise InputError(f"{' and '.join(missing)} missing; give numbers or ranges, or a LineContact.")
+        raise InputError(f"{' and '.join(missing)} missing; give numbers or ranges, or a LineContact or PointContact.")
     counts = _points(points)
     axes = {name: _axis(name, given[name], contact is not None, counts[name]) for name in ("load", "roughness")}
     physics = (as_groups(problem)[0] if problem is not None else _unit_groups(law)).physics
@@ -170,7 +170,9 @@ def _axis(name: str, value: Any, si: bool, points: int) -> Array:
         try:
             numbers = [float(item) for item in items]
         except (TypeError, ValueError):
-            raise InputError(f"{name} = {show(value)}; groups are plain numbers, for units give a LineContact.") from None
+            raise InputError(
+                f"{name} = {show(value)}; groups are plain numbers, for units give a LineContact or PointContact."
+            ) from None
     found = np.array(numbers, dtype=float)
     lowest = "positive" if name == "load" or len(found) == 2 else "zero or positive"
     too_low = (found <= 0).any() if lowest == "positive" else (found < 0).any()

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.groups import Groups
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.corrector import Corrector
@@ -47,12 +48,12 @@ class WarmStartSolver:
         self._last: RefinedState | None = None
 
     @one_blas_thread
-    def __call__(self, problem: Groups | LineContact) -> Solution:
+    def __call__(self, problem: Groups | Contact) -> Solution:
         """Return the state of a contact or of its groups.
 
         Parameters
         ----------
-        problem : Groups or LineContact
+        problem : Groups or Contact
             The state.
 
         Returns

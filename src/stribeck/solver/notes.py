@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import is_exponential, largest_load
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.groups import Groups
 from stribeck.equations.observables import Observables
 
 __all__ = [
@@ -47,14 +48,14 @@ ATMOSPHERE = 1.01325e5
 """Ambient pressure of a contact in the open [Pa], by which the fluid pressure may fall before nothing is left."""
 
 
-def pressure_notes(contact: LineContact | None) -> tuple[str, ...]:
+def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
     r"""Return the sentence that says that a contact is one of hard elastohydrodynamics.
 
     .. math:: \eta(p_\mathrm{Hz})/\eta = \exp(\alpha_p \, p_\mathrm{Hz})
 
     Parameters
     ----------
-    contact : LineContact or None
+    contact : Contact or None
         The contact; without one nothing is known of pressures in Pa.
 
     Returns
@@ -77,14 +78,14 @@ def pressure_notes(contact: LineContact | None) -> tuple[str, ...]:
     )
 
 
-def shape_notes(contact: LineContact | None) -> tuple[str, ...]:
+def shape_notes(contact: Contact | None) -> tuple[str, ...]:
     """Return the sentences about the dry contact alone: its pressure, and its width where that is too much for a parabola."""
     if contact is None:
         return ()
     return (*pressure_notes(contact), *width_notes(contact))
 
 
-def width_notes(contact: LineContact) -> tuple[str, ...]:
+def width_notes(contact: Contact) -> tuple[str, ...]:
     """Return the sentence about a contact that is wide for a parabola on a half-space; none up to 0.3 of the radius."""
     slope = contact.hertz.half_width / contact.radius
     if not slope > WIDEST_CONTACT:
@@ -96,14 +97,14 @@ def width_notes(contact: LineContact) -> tuple[str, ...]:
     )
 
 
-def law_notes(groups: Groups, contact: LineContact | None, values: Observables) -> tuple[str, ...]:
+def law_notes(groups: Groups, contact: Contact | None, values: Observables) -> tuple[str, ...]:
     """Return the sentences that say where the contact law leaves its range while asperities still matter.
 
     Parameters
     ----------
     groups : Groups
         The groups of the state, with its law.
-    contact : LineContact or None
+    contact : Contact or None
         The contact; groups alone are weighed with boundary friction 1, alpha = 2 and beta = 0.05.
     values : Observables
         Those of the state.
@@ -141,19 +142,19 @@ def law_notes(groups: Groups, contact: LineContact | None, values: Observables) 
     return (*notes, *far)
 
 
-def matters(contact: LineContact | None, values: Observables) -> bool:
+def matters(contact: Contact | None, values: Observables) -> bool:
     """Return whether asperities have more than 1 % of load or friction, so that it matters by which law they carry it."""
     return max(_shares(contact, values)) > NEGLIGIBLE_SHARE
 
 
-def minimum_note(groups: Groups, contact: LineContact | None, values: Observables, friction: float, where: str) -> str:
+def minimum_note(groups: Groups, contact: Contact | None, values: Observables, friction: float, where: str) -> str:
     """Return what to know of a minimum of friction whose gap the contact law is not made for; empty if there is nothing.
 
     Parameters
     ----------
     groups : Groups
         The groups there, with the law.
-    contact : LineContact or None
+    contact : Contact or None
         The contact there.
     values : Observables
         Those of the state.
@@ -179,7 +180,7 @@ def minimum_note(groups: Groups, contact: LineContact | None, values: Observable
     )
 
 
-def _gap_ratio(groups: Groups, contact: LineContact | None, values: Observables) -> tuple[float, str]:
+def _gap_ratio(groups: Groups, contact: Contact | None, values: Observables) -> tuple[float, str]:
     """Return the central gap over h_rms, and the unit in words."""
     known = contact.alpha if contact is not None else (groups.law.parameters.get("alpha") if groups.law is not None else None)
     alpha = USUAL_ALPHA if known is None else float(known)
@@ -187,7 +188,7 @@ def _gap_ratio(groups: Groups, contact: LineContact | None, values: Observables)
     return values.central_gap / float(groups.relative_roughness) / alpha, measured
 
 
-def _shares(contact: LineContact | None, values: Observables) -> tuple[float, float]:
+def _shares(contact: Contact | None, values: Observables) -> tuple[float, float]:
     """Return the shares of load and friction that are the asperities'."""
     boundary, beta = (1.0, USUAL_BETA) if contact is None else (contact.boundary_friction, contact.beta)
     dry, viscous = boundary * values.contact_load_share, beta * values.viscous_balanced
@@ -219,12 +220,12 @@ def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, 
     )
 
 
-def cavitation_notes(contact: LineContact | None, fluid_pressure: Array) -> tuple[str, ...]:
+def cavitation_notes(contact: Contact | None, fluid_pressure: Array) -> tuple[str, ...]:
     """Return the sentence that says where the suction behind a contact is more than an atmosphere.
 
     Parameters
     ----------
-    contact : LineContact or None
+    contact : Contact or None
         The contact; without one nothing is known of pressures in Pa.
     fluid_pressure : ndarray
         Fluid pressure above the ambient [p_Hz].

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.line import input_texts
+from stribeck.contacts.contact import input_texts
 from stribeck.files.pictures import (
     CONTACT,
     FLUID,

@@ -12,8 +12,9 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.contact_laws.law import WithArea
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.groups import Groups
 from stribeck.equations.gap import gap_at
 from stribeck.equations.observables import Observables
 from stribeck.numerics.panels import Mesh
@@ -66,7 +67,7 @@ class Solution:
     ----------
     groups : Groups
         The state that was solved.
-    contact : LineContact or None
+    contact : Contact or None
         The contact in SI units it came from.
     outcome : Outcome
         How the solve ended; its value is a sentence.
@@ -103,7 +104,7 @@ class Solution:
     """
 
     groups: Groups
-    contact: LineContact | None
+    contact: Contact | None
     outcome: Outcome
     notes: tuple[str, ...]
     rtol: float
@@ -331,7 +332,9 @@ class Solution:
             If the solution comes from groups alone, which do not fix the scales.
         """
         if self.contact is None:
-            raise InputError("to_si needs the Hertz scales of a contact; solve a LineContact instead of Groups.")
+            raise InputError(
+                "to_si needs the Hertz scales of a contact; solve a LineContact or PointContact instead of Groups."
+            )
         scales = self.contact.hertz
         if x is None:
             p = Profile(self.x, self.gap, self.contact_pressure, self.fluid_pressure)

@@ -13,7 +13,8 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import named_law
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.groups import Groups
 from stribeck.equations.observables import Observables
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.threads import one_blas_thread
@@ -65,7 +66,7 @@ class SolveError(RuntimeError):
 
 @one_blas_thread
 def solve(
-    problem: Groups | LineContact,
+    problem: Groups | Contact,
     *,
     rtol: float = 1e-6,
     law: str | AsperityLaw | None = None,
@@ -78,7 +79,7 @@ def solve(
 
     Parameters
     ----------
-    problem : Groups or LineContact
+    problem : Groups or Contact
         The state.  Speed zero (at rest), roughness zero (smooth) and both (Hertz, closed form) are ordinary inputs.
     rtol : float
         Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2.
@@ -131,20 +132,22 @@ def solved_point(groups: Groups, rtol: float) -> RefinedState:
         return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
 
 
-def with_law(problem: Groups | LineContact, law: str | AsperityLaw | None) -> Groups | LineContact:
+def with_law(problem: Groups | Contact, law: str | AsperityLaw | None) -> Groups | Contact:
     """Return the problem with another contact law, unless none is given."""
-    if law is None or not isinstance(problem, Groups | LineContact):
+    if law is None or not isinstance(problem, Groups | Contact):
         return problem
     shape = named_law(law) if isinstance(law, str) else law
     return replace(problem, law=shape) if isinstance(problem, Groups) else problem.replace(law=shape)
 
 
-def as_groups(problem: Groups | LineContact) -> tuple[Groups, LineContact | None]:
+def as_groups(problem: Groups | Contact) -> tuple[Groups, Contact | None]:
     """Return the scalar groups of a problem and its contact, if it has one."""
-    if isinstance(problem, LineContact):
+    if isinstance(problem, Contact):
         return problem.groups, problem
     if not isinstance(problem, Groups):
-        raise InputError(f"problem = {show(problem)}; it must be a LineContact or Groups(speed, load, roughness).")
+        raise InputError(
+            f"problem = {show(problem)}; it must be a LineContact, PointContact or Groups(speed, load, roughness)."
+        )
     if problem.shape != ():
         raise InputError(f"groups have shape {problem.shape}; solve takes one state, use stribeck_curve for many.")
     return problem, None
@@ -174,9 +177,7 @@ def untested(groups: Groups) -> str:
     return f" The solver has not been tested for {', '.join(outside)}; check the inputs." if outside else ""
 
 
-def finish(
-    point: RefinedState, groups: Groups, contact: LineContact | None, rtol: float, on_failure: str = "raise"
-) -> Solution:
+def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: float, on_failure: str = "raise") -> Solution:
     """Return the solution that a refined state is, or raise what its outcome asks for."""
     solution = solution_of(point, contact, rtol)
     if solution is not None and (point.outcome.ok or on_failure == "return"):
@@ -190,7 +191,7 @@ def minimum_estimate(rtol: float) -> float:
     return max(MIN_ESTIMATE * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
 
 
-def solution_of(point: RefinedState, contact: LineContact | None, rtol: float) -> Solution | None:
+def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> Solution | None:
     """Return the solution that a refined state is, or None where there is no state."""
     state, values, estimate = point.state, point.values, point.estimate
     if state is None or values is None or estimate is None:
@@ -221,7 +222,7 @@ def solution_of(point: RefinedState, contact: LineContact | None, rtol: float) -
     )
 
 
-def hertz_solution(groups: Groups, contact: LineContact | None, rtol: float) -> Solution:
+def hertz_solution(groups: Groups, contact: Contact | None, rtol: float) -> Solution:
     """Return the closed form of the dry, smooth contact on a mesh graded towards its edges."""
     towards_edge = 1 - 0.5 ** np.arange(1, 45)
     beyond_edge = 1 + 0.5 ** np.arange(1, 45)

@@ -9,9 +9,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.batches.chain import Ended, solve_in_order
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.geometries import CONTACTS
 from stribeck.contacts.groups import Groups, Physics
-from stribeck.contacts.line import LineContact
-from stribeck.quantities.inputs import INPUTS
 from stribeck.solver.solve import describe
 from stribeck.sweeps.columns import ERROR, failed_row, row_of
 
@@ -47,11 +47,13 @@ class Chain:
     rtol: float
     physics: Physics
 
-    def contact(self, i: int) -> LineContact | None:
+    def contact(self, i: int) -> Contact | None:
         """Return the contact of the i-th state, where it has one."""
         if not self.si:
             return None
-        return LineContact(**{name: self.inputs[name][i] for name in INPUTS}, law=self.physics["law"])
+        kind = CONTACTS[self.physics["geometry"]]
+        kept = {name: self.inputs[name][i] for name in kind.INPUTS.names if name in self.inputs}
+        return kind.of_kept(kept, self.physics["law"])
 
     def coefficients(self, i: int) -> tuple[float, float]:
         """Return boundary_friction and beta of the i-th state."""

@@ -8,8 +8,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw, WithArea
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS
-from stribeck.contacts.line import LineContact
 from stribeck.quantities.inputs import QUANTITIES, unit_of
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, AREA, FILMS, NAMES, OBSERVABLES
@@ -89,7 +89,7 @@ def row_of(solution: Solution, boundary_friction: float, beta: float) -> tuple[A
     return np.array(values), "\n".join(said)
 
 
-def failed_row(contact: LineContact | None, law: AsperityLaw | None, outcome: str, message: str) -> tuple[Array, str]:
+def failed_row(contact: Contact | None, law: AsperityLaw | None, outcome: str, message: str) -> tuple[Array, str]:
     """Return the row of a state of which nothing is known but how its solve ended."""
     values = np.full(len(columns_of(contact is not None, law)), math.nan)
     values[-1] = OUTCOMES.index(outcome)

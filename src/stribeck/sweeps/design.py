@@ -16,13 +16,22 @@ from typing import Annotated, Any, get_args
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.cases.case import Case, contact_inputs, error_sentence, example_of, group_inputs, read_toml, surface_table
+from stribeck.cases.case import (
+    Case,
+    contact_inputs,
+    error_sentence,
+    example_of,
+    geometry_of,
+    group_inputs,
+    read_toml,
+    surface_table,
+)
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.groups import Groups, Physics
-from stribeck.contacts.line import LineContact
+from stribeck.contacts.geometries import CONTACTS
+from stribeck.contacts.groups import Geometry, Groups, Physics
 from stribeck.quantities.hints import advice_on
-from stribeck.quantities.inputs import ALTERNATIVES, INPUTS, QUANTITIES, ROWS, check_alternatives, quantity
+from stribeck.quantities.inputs import INPUT_TABLES, InputTable, check_alternatives, quantity
 from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.points import KINDS, RANDOM, Axis, Kind, points_of
 
@@ -33,9 +42,6 @@ MOST_STATES = 1_000_000
 GROUPS = ("speed", "load", "roughness")
 COEFFICIENTS = ("boundary_friction", "beta")
 """What friction needs beside groups."""
-
-CHOICES = {name for other in ALTERNATIVES for name in (other.of, *other.inputs)}
-"""Inputs of which another may take the place."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +102,8 @@ class SweepDesign:
     def fingerprint(self) -> str:
         """What tells this design from another: of its states and settings, not of comments in its file."""
         settings: list[Any] = [sorted(self.inputs), self.si, self.rtol, self.law, self.kind, self.shape]
+        if self.physics["geometry"] != "line":
+            settings.append(self.physics["geometry"])
         if self.contact_law is not None:
             settings += [repr(self.contact_law), self.contact_law.parameters]
         parts = [json.dumps(settings).encode(), self.groups.tobytes()]
@@ -137,7 +145,13 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
     """Return the design of a file, or None and all its problems."""
     import pydantic
 
-    model = _model()
+    geometry: Geometry = "line"
+    try:
+        geometry, table = geometry_of(table)
+    except InputError as problem:
+        problems.append(f"[{'contact' if 'contact' in table else 'groups'}] {problem}")
+    known = INPUT_TABLES[geometry]
+    model = _model(geometry)
     raw_vary = table.get("vary")
     if "contact" in table and "groups" in table:
         problems.append("the tables [contact] and [groups] are both given; give SI inputs or groups.")
@@ -146,20 +160,20 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
     try:
         checked = model(**table).model_dump()
     except pydantic.ValidationError as failure:
-        problems += [error_sentence(model, error) for error in failure.errors(include_url=False)]
+        problems += [error_sentence(model, error, known) for error in failure.errors(include_url=False)]
         checked = None
     kind = _kind(table)
     if isinstance(raw_vary, dict) and kind is not None:
         for name, entry in raw_vary.items():
             try:
-                axes.append(_axis(name, entry, kind, si))
+                axes.append(_axis(name, entry, kind, si, known))
             except InputError as problem:
                 problems.append(f"[vary] {problem}")
         if not raw_vary:
             problems.append("[vary] is empty; list what varies, for example: load = ['10 N/m', '30 N/m'].")
         base = table.get("contact" if si else "groups", {})
         given = FROM_TABLES if si and ("surface" in table or "asperities" in table) else ()
-        problems += _missing(base if isinstance(base, dict) else {}, raw_vary, si, given)
+        problems += _missing(base if isinstance(base, dict) else {}, raw_vary, si, given, known)
     if checked is None or problems:
         return None
     problems += _design_problems(checked["design"], axes)
@@ -178,7 +192,7 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         return None
     varying = points_of(checked["design"]["kind"], axes, checked["design"]["points"] or 0, checked["design"]["seed"] or 0)
     try:
-        inputs, groups = (_contacts if si else _groups)(fixed, varying)
+        inputs, groups = _contacts(fixed, varying, geometry) if si else _groups(fixed, varying)
     except InputError as problem:
         problems.append(str(problem))
         return None
@@ -194,17 +208,19 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         si=si,
         rtol=checked["solver"]["rtol"],
         law=law,
-        physics=Groups(1.0, 1.0, 1.0, law=shape).physics,
+        physics=Groups(1.0, 1.0, 1.0, law=shape, geometry=geometry).physics,
     )
 
 
 @functools.cache
-def _model() -> Any:
-    """Return the pydantic model of a sweep file, made on first use because pydantic is slow to import."""
-    from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
+def _model(geometry: str) -> Any:
+    """Return the pydantic model of a sweep file of a geometry, made on first use because pydantic is slow to import."""
+    from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, create_model
+
+    known = INPUT_TABLES[geometry]
 
     def check_input(value: Any, info: ValidationInfo) -> float:
-        return quantity(str(info.field_name), value)
+        return quantity(str(info.field_name), value, known)
 
     def check_group(value: Any, info: ValidationInfo) -> float:
         return _group(str(info.field_name), value)
@@ -216,19 +232,9 @@ def _model() -> Any:
     class Table(BaseModel):
         model_config = ConfigDict(extra="forbid")
 
-    class Contact(Table):
-        radius: si | None = None
-        load: si | None = None
-        viscosity: si | None = None
-        speed: si | None = None
-        roughness: si | None = None
-        alpha: si | None = None
-        beta: si | None = None
-        boundary_friction: si | None = None
-        modulus: si | None = None
-        youngs_modulus: si | None = None
-        poisson_ratio: si | None = None
-        law: Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")] = Case.law
+    keys: dict[str, Any] = dict.fromkeys(known.quantities, (si | None, None))
+    keys["law"] = (Annotated[Law, Field(description=f"one of {', '.join(map(repr, LAWS))}")], Case.law)
+    contact_table = create_model("Contact", __base__=Table, **keys)
 
     class GroupTable(Table):
         speed: number | None = None
@@ -254,7 +260,7 @@ def _model() -> Any:
         ] = Case.rtol
 
     class File(Table):
-        contact: Annotated[Contact, Field(description="a table, [contact]", default_factory=Contact)]
+        contact: Annotated[contact_table, Field(description="a table, [contact]", default_factory=contact_table)]  # type: ignore[valid-type]
         groups: Annotated[GroupTable, Field(description="a table, [groups]", default_factory=GroupTable)]
         vary: Annotated[dict[str, Any], Field(description="a table, [vary]")]
         design: Annotated[Design, Field(description="a table, [design]", default_factory=Design)]
@@ -277,13 +283,13 @@ def _kind(table: dict[str, Any]) -> Kind | None:
     return next((known for known in get_args(Kind) if known == kind), None)
 
 
-def _axis(name: str, entry: Any, kind: Kind, si: bool) -> Axis:
+def _axis(name: str, entry: Any, kind: Kind, si: bool, inputs: InputTable) -> Axis:
     """Return what one entry of ``[vary]`` says."""
-    known = tuple(QUANTITIES) if si else (*GROUPS, *COEFFICIENTS)
+    known = tuple(inputs.quantities) if si else (*GROUPS, *COEFFICIENTS)
     if name not in known:
         hint = advice_on(name, known) or f"known are {', '.join(known)}"
         raise InputError(f"{show(name)} cannot vary; {hint}.")
-    check: Callable[[str, Any], float] = quantity if si else _group
+    check: Callable[[str, Any], float] = functools.partial(quantity, table=inputs) if si else _group
     if isinstance(entry, list):
         if not entry:
             raise InputError(f"{name} = [] is empty; list its values.")
@@ -337,7 +343,9 @@ def _design_problems(design: dict[str, Any], axes: list[Axis]) -> list[str]:
     return problems
 
 
-def _missing(fixed: dict[str, Any], varied: dict[str, Any], si: bool, by_tables: tuple[str, ...]) -> list[str]:
+def _missing(
+    fixed: dict[str, Any], varied: dict[str, Any], si: bool, by_tables: tuple[str, ...], inputs: InputTable
+) -> list[str]:
     """Return what is given twice or not at all; ``by_tables`` are the inputs that the surface gives."""
     table = "contact" if si else "groups"
     problems = []
@@ -347,11 +355,11 @@ def _missing(fixed: dict[str, Any], varied: dict[str, Any], si: bool, by_tables:
     given = {**fixed, **varied}
     if not si:
         return problems + [f"[groups] {name} is missing; add it there or to [vary]." for name in GROUPS if name not in given]
-    for name in INPUTS:
-        if name not in given and name not in CHOICES and name not in by_tables:
-            problems.append(f"[contact] {name} is missing; {example_of(name)}, or let it vary in [vary].")
+    for name in inputs.names:
+        if name not in given and name not in inputs.choices and name not in by_tables:
+            problems.append(f"[contact] {name} is missing; {example_of(name, inputs)}, or let it vary in [vary].")
     try:
-        check_alternatives(given)
+        check_alternatives(given, inputs)
     except InputError as problem:
         problems.append(f"[contact] {problem}")
     return problems
@@ -369,16 +377,16 @@ def _group(name: str, value: Any) -> float:
     return float(getattr(Groups(**{**dict.fromkeys(GROUPS, 1.0), name: value}), name))
 
 
-def _contacts(fixed: dict[str, Any], varying: dict[str, Array]) -> tuple[dict[str, Array], Array]:
+def _contacts(fixed: dict[str, Any], varying: dict[str, Array], geometry: Geometry) -> tuple[dict[str, Array], Array]:
     """Return inputs and groups of contacts, each of which is checked."""
     contacts = []
     for i, values in enumerate(zip(*(column.tolist() for column in varying.values()), strict=True)):
         try:
-            contacts.append(LineContact(**fixed, **dict(zip(varying, values, strict=True))))
+            contacts.append(CONTACTS[geometry](**fixed, **dict(zip(varying, values, strict=True))))
         except InputError as problem:
             raise InputError(f"state {i}: {problem}") from None
-    inputs = {name: np.array([getattr(contact, name) for contact in contacts]) for name in INPUTS}
-    for name in (row.name for row in ROWS if row.derived):
+    inputs = {name: np.array([dict(contact.inputs())[name] for contact in contacts]) for name, _ in contacts[0].inputs()}
+    for name in (row.name for row in INPUT_TABLES[geometry].rows if row.derived):
         if name in varying or name in fixed:
             inputs[name] = varying.get(name, np.full(len(contacts), fixed.get(name, math.nan)))
     return inputs, np.array([[getattr(contact.groups, name) for name in GROUPS] for contact in contacts])

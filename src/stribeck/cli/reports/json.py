@@ -12,7 +12,7 @@ import numpy as np
 from stribeck.checks.check import Checks
 from stribeck.cli.reports.words import Sensitivities, contact_part, hersey_of, part_error, regime_now, strongest
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.line import LineContact
+from stribeck.contacts.contact import Contact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import INPUTS, unit_of
@@ -242,7 +242,7 @@ def _landmark(mark: Landmark) -> dict[str, Any]:
     return {"name": mark.name, "value": mark.value, "friction": mark.friction}
 
 
-def _inputs(contact: LineContact) -> dict[str, float]:
+def _inputs(contact: Contact) -> dict[str, float]:
     return {name: getattr(contact, name) for name in INPUTS}
 
 

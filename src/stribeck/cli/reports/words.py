@@ -10,8 +10,9 @@ import numpy as np
 
 from stribeck.checks.check import Checks
 from stribeck.contact_laws.law import AsperityLaw
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, Friction
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import INPUTS, QUANTITIES, ROWS
@@ -100,7 +101,7 @@ def part(value: float, error: float) -> str:
 def print_head(
     console: Console,
     title: str,
-    contact: LineContact | None,
+    contact: Contact | None,
     groups: Groups,
     over: str | None = None,
     checks: Checks | None = None,

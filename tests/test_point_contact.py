@@ -1,0 +1,223 @@
+"""The ball in SI units: its inputs, its groups and scales, and what it refuses."""
+
+import dataclasses
+import inspect
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.quantities.inputs import POINT
+
+BALL = {
+    "radius": "9.5 mm",
+    "modulus": "1.6 MPa",
+    "load": "1.3 N",
+    "viscosity": "10 mPa*s",
+    "entrainment_speed": "50 mm/s",
+    "slide_to_roll": 0.5,
+    "roughness": "0.4 um",
+    "alpha": 2.0,
+    "beta": 0.05,
+    "boundary_friction": 0.9,
+}
+
+
+def ball(**changes):
+    inputs = BALL | changes
+    return sb.PointContact(**{name: value for name, value in inputs.items() if value is not None})
+
+
+@pytest.mark.quick
+def test_the_scales_of_a_ball_are_those_of_hertz():
+    c = ball()
+    scales = c.hertz
+    assert scales.half_width**3 == pytest.approx(3 * 1.3 * 9.5e-3 / (4 * 1.6e6), rel=1e-13)
+    assert scales.indentation == pytest.approx(scales.half_width**2 / 9.5e-3, rel=1e-13)
+    assert scales.pressure == pytest.approx(2 * scales.half_width * 1.6e6 / (math.pi * 9.5e-3), rel=1e-13)
+    assert 2 * math.pi / 3 * scales.pressure * scales.half_width**2 == pytest.approx(1.3, rel=1e-13)
+
+
+@pytest.mark.quick
+def test_the_groups_of_a_ball_are_quotients_of_its_scales():
+    c = ball()
+    a, u, p = c.hertz.half_width, c.hertz.indentation, c.hertz.pressure
+    groups = c.groups
+    assert groups.geometry == "point"
+    assert groups.speed == pytest.approx(6 * 0.01 * 0.1 * a / (u * u * p), rel=1e-13)
+    assert groups.load == pytest.approx((p / (0.05 * 1.6e6)) ** 3, rel=1e-13)
+    assert groups.relative_roughness == pytest.approx(0.4e-6 / (2.0 * u), rel=1e-13)
+    assert groups.slope(0.05) == pytest.approx(c.slope, rel=1e-13)
+    assert groups.hersey_number(0.05) == pytest.approx(c.hersey_number, rel=1e-12)
+
+
+@pytest.mark.quick
+def test_the_numbers_of_the_trade_are_those_of_the_groups():
+    c = ball()
+    numbers, slope = c.hamrock_dowson_numbers, c.slope
+    assert numbers.speed == pytest.approx(c.groups.speed * slope**4 / (12 * math.pi), rel=1e-13)
+    assert numbers.load == pytest.approx(2 / 3 * slope**3, rel=1e-13)
+    assert c.moes_number == pytest.approx(numbers.load * (2 * numbers.speed) ** -0.75, rel=1e-12)
+    assert c.replace(speed=0).moes_number == math.inf
+
+
+@pytest.mark.quick
+def test_units_do_not_change_the_groups_of_a_ball():
+    bare = ball(radius=9.5e-3, modulus=1.6e6, load=1.3, viscosity=0.01, entrainment_speed=0.05, roughness=4e-7)
+    assert bare.groups == ball().groups
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", [name for name in POINT.exponents if name != "wetted_radius"])
+def test_each_input_enters_the_groups_with_its_exponents(name):
+    c, factor = ball(), 1.2
+    moved = c.replace(**{name: getattr(c, name) * factor}).groups
+    found = [
+        math.log(getattr(moved, each) / getattr(c.groups, each)) / math.log(factor) for each in ("speed", "load", "roughness")
+    ]
+    np.testing.assert_allclose(found, POINT.exponents[name], atol=1e-12)
+
+
+@pytest.mark.quick
+def test_a_ball_comes_back_from_its_groups():
+    c = ball(wetted_radius="4 mm")
+    back = sb.PointContact.from_groups(
+        c.groups,
+        radius=c.radius,
+        modulus=c.modulus,
+        viscosity=c.viscosity,
+        alpha=c.alpha,
+        beta=c.beta,
+        boundary_friction=c.boundary_friction,
+        slide_to_roll=0.5,
+        wetted_radius="4 mm",
+    )
+    assert [value for _, value in back.inputs()] == pytest.approx([value for _, value in c.inputs()], rel=1e-13)
+
+
+@pytest.mark.quick
+def test_two_bodies_are_soft_in_series_and_curved_in_parallel():
+    moduli = {"youngs_modulus": "2 MPa", "poisson_ratio": 0.5, "youngs_modulus_2": "6 MPa", "poisson_ratio_2": 0.4}
+    both = ball(modulus=None, radius_2="20 mm", **moduli)
+    assert 1 / both.modulus == pytest.approx(0.75 / 2e6 + 0.84 / 6e6, rel=1e-13)
+    assert 1 / both.radius == pytest.approx(1 / 9.5e-3 + 1 / 20e-3, rel=1e-13)
+    assert ball(modulus=None, youngs_modulus="2 MPa", poisson_ratio=0.5).modulus == pytest.approx(2e6 / 0.75, rel=1e-13)
+
+
+@pytest.mark.quick
+def test_the_slide_to_roll_ratio_changes_the_sliding_speed_alone():
+    rolling, sliding = ball(), ball(slide_to_roll=2.0)
+    assert rolling.groups == sliding.groups
+    assert (rolling.sliding_speed, sliding.sliding_speed) == pytest.approx((0.025, 0.1), rel=1e-13)
+    assert rolling.replace(speed=0.2).slide_to_roll == 0.5  # replace takes what a ball keeps: the sum of both speeds
+
+
+REFUSED = {
+    "a load per length": ({"load": "30 N/m"}, "'30 N/m' is a load per unit length; .* that of a cylinder, LineContact"),
+    "speed beside a ratio": (
+        {"speed": "1 mm/s", "entrainment_speed": None},
+        "give the mean of both surface",
+    ),
+    "a ratio beyond pure sliding": ({"slide_to_roll": 3}, "slide_to_roll = 3 must be between 0 and 2"),
+    "a dry contact": ({"wetted_radius": "1 mm"}, "wetted_radius = 1 mm lies inside the contact, whose Hertz radius is 1.8 mm"),
+    "half a second body": (
+        {"modulus": None, "youngs_modulus": 1e6, "poisson_ratio": 0.5, "poisson_ratio_2": 0.3},
+        "poisson_ratio_2 alone is given; give youngs_modulus_2 and poisson_ratio_2",
+    ),
+    "a second body beside the modulus": ({"youngs_modulus_2": 1e6}, "give either modulus, or youngs_modulus"),
+    "a slip": ({"wetted_radios": 1}, "is not an input of PointContact; did you mean wetted_radius"),
+    "no load": ({"load": None}, "load missing; a contact needs radius"),
+    "groups beyond double precision": ({"beta": 1e-200}, "leave the range of double precision"),
+}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(("changes", "sentence"), REFUSED.values(), ids=REFUSED)
+def test_what_cannot_be_a_ball_is_refused_with_a_sentence(changes, sentence):
+    with pytest.raises(sb.InputError, match=sentence):
+        ball(**changes)
+
+
+@pytest.mark.quick
+def test_a_force_on_a_cylinder_is_said_to_belong_to_a_ball():
+    inputs = {name: value for name, value in BALL.items() if name != "slide_to_roll"}
+    with pytest.raises(sb.InputError, match="a force is the load of a ball, PointContact or geometry = 'point'"):
+        sb.LineContact(**inputs)
+
+
+@pytest.mark.quick
+def test_replaced_values_are_checked_too():
+    with pytest.raises(sb.InputError, match="radius_2 is given without radius"):
+        ball().replace(radius_2="1 cm")
+    with pytest.raises(sb.InputError, match="lies inside the contact"):
+        ball(wetted_radius="2 mm").replace(load="10 N")
+    with pytest.raises(sb.InputError, match="groups.geometry = 'line'; a ball has 'point'"):
+        kept = {"radius": 1, "modulus": 1, "viscosity": 1, "alpha": 1, "beta": 1, "boundary_friction": 1}
+        sb.PointContact.from_groups(sb.Groups(1, 1, 1), **kept)
+
+
+@pytest.mark.quick
+def test_a_ball_travels_to_other_processes():
+    c = ball(law=sb.GreenwoodTripp())
+    assert pickle.loads(pickle.dumps(c)) == c
+
+
+@pytest.mark.quick
+def test_the_signature_of_a_ball_names_every_input():
+    assert list(inspect.signature(sb.PointContact).parameters) == [*POINT.quantities, "law"]
+    assert {field.name for field in dataclasses.fields(sb.PointContact)} == {*POINT.names, "law"}
+
+
+CASE = """
+[contact]
+geometry = "point"
+radius = "9.5 mm"
+modulus = "1.6 MPa"
+load = "{load}"
+viscosity = "10 mPa*s"
+entrainment_speed = "50 mm/s"
+slide_to_roll = 0.5
+roughness = "0.4 um"
+alpha = 2.0
+beta = 0.05
+boundary_friction = 0.9
+"""
+
+
+def test_a_case_file_holds_a_ball(tmp_path):
+    path = tmp_path / "ball.toml"
+    path.write_text(CASE.format(load="1.3 N"))
+    assert sb.load_case(path).contact == ball()
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (CASE.format(load="30 N/m"), r"\[contact\] load = '30 N/m' is a load per unit length; .* that of a cylinder"),
+        (CASE.format(load="1.3 N").replace('"point"', '"line"'), r"slide_to_roll = 0.5 is not a known key"),
+        (CASE.format(load="1.3 N").replace('"point"', '"ball"'), "geometry = 'ball'; it must be 'line' or 'point'"),
+        (
+            CASE.format(load="1.3 N").replace('load = "1.3 N"', ""),
+            r"load is missing; add a force, for example load = \"1.3 N\"",
+        ),
+        (CASE.format(load="1.3 N") + 'wetted_radius = "1 mm"', "lies inside the contact"),
+    ],
+)
+def test_a_case_file_that_is_no_ball_is_refused_with_a_sentence(tmp_path, text, sentence):
+    path = tmp_path / "ball.toml"
+    path.write_text(text)
+    with pytest.raises(sb.InputError, match=sentence):
+        sb.load_case(path)
+
+
+def test_a_sweep_file_holds_balls(tmp_path):
+    path = tmp_path / "sweep.toml"
+    path.write_text(CASE.format(load="1.3 N").replace('load = "1.3 N"', "") + '[vary]\nload = ["0.5 N", "1 N"]\n')
+    design = sb.load_sweep(path)
+    assert design.physics["geometry"] == "point"
+    np.testing.assert_allclose(
+        design.groups[1], [ball(load=1).groups.speed, ball(load=1).groups.load, ball(load=1).groups.roughness]
+    )
+    assert set(design.inputs) == {*POINT.names, "entrainment_speed"} - {"wetted_radius"}
