@@ -1,0 +1,157 @@
+r"""The coupled equations of the point contact on a polar mesh: residual and the products of its Jacobian.
+
+Unknowns are the gap and the fluid pressure at the nodes and the offset.  With K Boussinesq's operator,
+
+.. math::
+
+    R_1 &= h - z_0 - r^2/2 - K (p_c + p_f), \\
+    R_2 &= \int \nabla v \cdot (h^3 \nabla p_f - \lambda h \, \mathbf e_x) - \oint v \, (h^3 \partial_r p_f - \lambda h \cos\theta), \\
+    R_3 &= \int (p_c + p_f) - 2 \pi/3
+
+for every v of the mesh.  At the rim, radius X, the film is that of the rigid ball, :math:`p_f \propto x/h^2`, so that there
+:math:`-X h^3 \partial_r p_f = (2 X^2 h^2 - h^3) p_f`.
+
+Newton's step is reduced to the total pressure: :math:`dh = K \, dp + dz - R_1`, :math:`dp_f = dp - p_c' dh`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contact_laws.law import ContactLaw
+from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.solids.half_space import deflection_by_mode
+
+LOAD = 2.0 * np.pi / 3.0
+"""Load in Hertz units: the integral of the pressure."""
+
+
+@dataclass(frozen=True, eq=False)
+class Operators:
+    """What the equations need of a mesh; made once and kept for all states that share it."""
+
+    mesh: PolarMesh
+
+    @cached_property
+    def deflection(self) -> Array:
+        """K: pressures by mode -> deflections by mode, shape (modes, rings, rings)."""
+        return deflection_by_mode(self.mesh)
+
+    @cached_property
+    def parabola(self) -> Array:
+        """The undeformed gap at the nodes, shape (rings,)."""
+        return 0.5 * self.mesh.radii**2
+
+    @cached_property
+    def load_row(self) -> Array:
+        """Weights of the load on the axisymmetric mode, shape (rings,)."""
+        return self.mesh.area_weights * self.mesh.modes
+
+    def deflect(self, by_mode: Array) -> Array:
+        """Return the deflection by mode under a pressure by mode, shape (modes, rings)."""
+        return np.asarray(np.matmul(self.deflection, by_mode[:, :, None])[:, :, 0])
+
+
+@dataclass(frozen=True, eq=False)
+class Unknowns:
+    """Gap and fluid pressure at the nodes, shape (modes, rings), and the offset."""
+
+    gap: Array
+    fluid: Array
+    offset: float
+
+    def moved(self, step: Unknowns, part: float) -> Unknowns:
+        """Return the unknowns after a part of a step."""
+        return Unknowns(self.gap + part * step.gap, self.fluid + part * step.fluid, self.offset + part * step.offset)
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """The discretised problem for one speed and one contact law."""
+
+    operators: Operators
+    speed: float
+    law: ContactLaw
+
+    def residual(self, y: Unknowns) -> tuple[Array, Array, float]:
+        """Return R_1 at the nodes, R_2 by node, both of shape (modes, rings), and R_3."""
+        op, mesh = self.operators, self.operators.mesh
+        total = self.law.pressure(y.gap) + y.fluid
+        by_mode = mesh.to_modes @ total
+        shape = y.gap - y.offset - op.parabola - mesh.cosines @ op.deflect(by_mode)
+        return shape, self.flow(y.gap, y.fluid), float(op.load_row @ by_mode[0]) - LOAD
+
+    def flow(self, h: Array, p: Array) -> Array:
+        """Return the weak residual of Reynolds' equation, R_2."""
+        mesh, speed = self.operators.mesh, self.speed
+        cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
+        wide = h**3
+        weight, angle = _weights(mesh)
+        radial = weight * (mesh.scattered(wide) * mesh.radial_derivative(p) - speed * cos[..., None] * mesh.scattered(h))
+        tangential = (angle / mesh.radii) * wide * (mesh.angular_derivative @ p) + speed * angle * sin * h
+        found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ tangential
+        x, h_x, p_x = mesh.rim, h[:, -1], p[:, -1]
+        found[:, -1] += np.pi / mesh.modes * ((2 * x * x * h_x**2 - h_x**3) * p_x + speed * h_x * x * cos[:, 0])
+        return found
+
+
+def _weights(mesh: PolarMesh) -> tuple[Array, Array]:
+    """Return the weights of ``r dr dtheta`` panel by panel and of ``dr dtheta`` on rings, for half a turn."""
+    part = np.pi / mesh.modes
+    return part * mesh.local_weights * mesh.local_radii, part * mesh.ring_weights
+
+
+class Linear:
+    """The Jacobian at a state, reduced to the total pressure by mode and the offset."""
+
+    def __init__(self, equations: Equations, y: Unknowns) -> None:
+        self.equations, self.y = equations, y
+        mesh, speed, h = equations.operators.mesh, equations.speed, y.gap
+        cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
+        weight, angle = _weights(mesh)
+        self.contact_slope = equations.law.slope(h, equations.law.pressure(h))
+        wide, wider = h**3, 3 * h**2
+        self.radial_of_pressure = weight * mesh.scattered(wide)
+        self.radial_of_gap = weight * (mesh.scattered(wider) * mesh.radial_derivative(y.fluid) - speed * cos[..., None])
+        self.angular_of_pressure = (angle / mesh.radii) * wide
+        self.angular_of_gap = (angle / mesh.radii) * wider * (mesh.angular_derivative @ y.fluid) + speed * angle * sin
+        x, h_x, part = mesh.rim, h[:, -1], np.pi / mesh.modes
+        self.rim_of_pressure = part * (2 * x * x * h_x**2 - h_x**3)
+        self.rim_of_gap = part * ((4 * x * x * h_x - 3 * h_x**2) * y.fluid[:, -1] + speed * x * cos[:, 0])
+
+    def flow(self, dp: Array, dh: Array) -> Array:
+        """Return the change of R_2 under changes of fluid pressure and gap at the nodes."""
+        mesh = self.equations.operators.mesh
+        radial = self.radial_of_pressure * mesh.radial_derivative(dp) + self.radial_of_gap * mesh.scattered(dh)
+        angular = self.angular_of_pressure * (mesh.angular_derivative @ dp) + self.angular_of_gap * dh
+        found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ angular
+        found[:, -1] += self.rim_of_pressure * dp[:, -1] + self.rim_of_gap * dh[:, -1]
+        return found
+
+    def changes(self, x: Array, shape: Array | float = 0.0) -> Unknowns:
+        """Return the changes of the unknowns for a change of total pressure and offset, R_1 being ``shape``."""
+        op, mesh = self.equations.operators, self.equations.operators.mesh
+        by_mode = x[:-1].reshape(mesh.modes, mesh.rings)
+        dh = mesh.cosines @ op.deflect(by_mode) + x[-1] - shape
+        return Unknowns(dh, mesh.cosines @ by_mode - self.contact_slope * dh, float(x[-1]))
+
+    def product(self, x: Array) -> Array:
+        """Return the change of R_2 by mode and of R_3."""
+        op, mesh = self.equations.operators, self.equations.operators.mesh
+        change = self.changes(x)
+        found = np.empty_like(x)
+        found[:-1] = (mesh.cosines.T @ self.flow(change.fluid, change.gap)).ravel()
+        found[-1] = op.load_row @ x[: mesh.rings]
+        return found
+
+    def right(self, residual: tuple[Array, Array, float]) -> Array:
+        """Return the right-hand side of Newton's step."""
+        mesh = self.equations.operators.mesh
+        shape, flow, load = residual
+        # What R_1 moves, the gap and with it the contact pressure, is taken off the flow.
+        moved = self.flow(self.contact_slope * shape, -shape)
+        return np.append(-(mesh.cosines.T @ (flow + moved)).ravel(), -load)

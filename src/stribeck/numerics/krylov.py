@@ -1,0 +1,91 @@
+"""GMRES, preconditioned from the left: the residual that it makes small is about the error itself.
+
+Source: [Saad 2003] Iterative Methods for Sparse Linear Systems, algorithm 9.4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array
+
+Apply = Callable[[Array], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """The solution of a linear system, how many products it took, and how much of the right-hand side is left.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n,)
+        The solution.
+    steps : int
+        Products with the matrix.
+    left : float
+        Norm of the preconditioned residual over that of the preconditioned right-hand side.
+    """
+
+    x: Array
+    steps: int
+    left: float
+
+
+def gmres(product: Apply, precondition: Apply, right: Array, tolerance: float, max_steps: int) -> Solved:
+    """Return x with ``A x = right`` but for a preconditioned residual of ``tolerance`` times the preconditioned right-hand side.
+
+    Parameters
+    ----------
+    product, precondition : callable
+        x -> A x, and r -> about A^-1 r.
+    right : ndarray, shape (n,)
+        Right-hand side.
+    tolerance : float
+        Where to stop, > 0.
+    max_steps : int
+        Largest number of products; there is no restart.
+
+    Returns
+    -------
+    Solved
+        Also if the tolerance was not reached.
+    """
+    start = precondition(right)
+    size = float(np.sqrt(start @ start))
+    if size == 0.0 or not np.isfinite(size):
+        return Solved(start, 0, 0.0 if size == 0.0 else np.inf)
+    basis = [start / size]
+    upper = np.zeros((max_steps + 1, max_steps))
+    rotations: list[tuple[float, float]] = []
+    projected = np.zeros(max_steps + 1)
+    projected[0] = size
+    steps = 0
+    for k in range(max_steps):
+        w = precondition(product(basis[k]))
+        vectors = np.array(basis)
+        for _ in range(2):  # twice is enough
+            overlap = vectors @ w
+            w = w - overlap @ vectors
+            upper[: k + 1, k] += overlap
+        norm = float(np.sqrt(w @ w))
+        column = upper[:, k]
+        for i, (c, s) in enumerate(rotations):
+            column[i], column[i + 1] = c * column[i] + s * column[i + 1], c * column[i + 1] - s * column[i]
+        radius = float(np.hypot(column[k], norm))
+        if radius == 0.0 or not np.isfinite(radius):
+            break
+        c, s = column[k] / radius, norm / radius
+        rotations.append((c, s))
+        column[k] = radius
+        projected[k], projected[k + 1] = c * projected[k], -s * projected[k]
+        steps = k + 1
+        if abs(projected[steps]) <= tolerance * size or norm == 0.0:
+            break
+        basis.append(w / norm)
+    if steps == 0:
+        return Solved(start, 0, np.inf)
+    y = np.linalg.solve(upper[:steps, :steps], projected[:steps])
+    return Solved(y @ np.array(basis[:steps]), steps, abs(projected[steps]) / size)

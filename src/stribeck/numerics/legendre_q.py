@@ -1,0 +1,84 @@
+r"""Legendre functions of the second kind of half-integer degree, :math:`Q_{m-1/2}(\chi)`: the rings of a potential.
+
+.. math:: \int_0^{2\pi} \frac{\cos m\varphi \, d\varphi}{\sqrt{r^2 + s^2 - 2 r s \cos\varphi}}
+          = \frac{2}{\sqrt{r s}} \, Q_{m-1/2}(\chi), \qquad \chi = \frac{r^2 + s^2}{2 r s} = \cosh\ln\frac rs
+
+They hold a logarithm where r = s, so that the difference of the radii is an argument of its own, to be given exactly.
+
+Source: [DLMF] 14.5, 14.10 (recurrence in the degree), 19.5; Miller's algorithm: [DLMF] 3.6.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import ellipe, ellipkm1
+
+from stribeck._types import Array
+
+UPWARD = 1.5
+"""Largest product of the highest degree and ln(r/s) at which the upward recurrence keeps its digits."""
+
+DECAY = 19.0
+"""Half the number of natural decades by which Miller's start lies below the highest degree wanted: e**-38."""
+
+
+def ring_functions(radius: Array, source: Array, difference: Array, count: int) -> Array:
+    r"""Return :math:`Q_{m-1/2}(\chi)` for ``m < count``.
+
+    Parameters
+    ----------
+    radius, source : ndarray, shape (n,)
+        The two radii, > 0.
+    difference : ndarray, shape (n,)
+        Their difference, free of cancellation, not zero.
+    count : int
+        Number of angular modes, >= 1.
+
+    Returns
+    -------
+    ndarray, shape (count, n)
+        The functions.
+    """
+    ratio = np.abs(difference) / np.sqrt(radius * source)  # 2 sinh(xi/2)
+    excess = 0.5 * ratio * ratio  # chi - 1
+    complement = (difference / (radius + source)) ** 2
+    k = np.sqrt(1.0 - complement)
+    first = k * ellipkm1(complement)
+    second = (1.0 + excess) * first - (2.0 + excess) * k * ellipe(1.0 - complement)
+    chi = 1.0 + excess
+    xi = 2.0 * np.arcsinh(0.5 * ratio)
+    found = np.empty((count, radius.size))
+    found[0] = first
+    if count == 1:
+        return found
+    by_distance = np.argsort(xi)
+    upward = int(np.searchsorted(xi[by_distance], UPWARD / count))
+    near = by_distance[:upward]
+    found[:, near] = _upward(chi[near], first[near], second[near], count)
+    start = upward
+    while start < xi.size:  # groups in which the start of the downward recurrence differs by a factor of two at most
+        stop = int(np.searchsorted(xi[by_distance], 2.0 * xi[by_distance[start]], side="right"))
+        group = by_distance[start:stop]
+        found[:, group] = _downward(chi[group], first[group], count, int(DECAY / xi[group[0]]) + 2)
+        start = stop
+    return found
+
+
+def _upward(chi: Array, first: Array, second: Array, count: int) -> Array:
+    q = np.empty((count, chi.size))
+    q[0], q[1] = first, second
+    for m in range(1, count - 1):
+        q[m + 1] = (2 * m * chi * q[m] - (m - 0.5) * q[m - 1]) / (m + 0.5)
+    return q
+
+
+def _downward(chi: Array, first: Array, count: int, beyond: int) -> Array:
+    """Return the functions by the recurrence from ``beyond`` the last, as ratios, so that nothing overflows."""
+    q = np.empty((count, chi.size))
+    ratio = np.zeros_like(chi)  # Q of degree m + 1/2 over that of m - 1/2
+    for m in range(count + beyond, 0, -1):
+        ratio = (m - 0.5) / (2 * m * chi - (m + 0.5) * ratio)
+        if m < count:
+            q[m] = ratio
+    q[0] = first
+    return np.asarray(np.cumprod(q, axis=0))

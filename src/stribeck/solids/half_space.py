@@ -1,0 +1,122 @@
+r"""Deflection of an elastic half-space under a pressure on a disc, mode by mode in the angle (Boussinesq).
+
+.. math::
+
+    w(\mathbf r) = \frac{2}{\pi^2} \int \frac{p(\mathbf r')}{|\mathbf r - \mathbf r'|} d^2 r', \qquad
+    w_m(r) = \frac{2}{\pi^2} \int p_m(s) \, \frac{2}{\sqrt{r s}} \, Q_{m-1/2}(\chi) \, s \, ds
+
+for :math:`p = \sum_m p_m(r) \cos m\theta`, in Hertz units.  The kernel is integrated against the polynomials of each panel
+(product integration): far panels by a Gauss rule, near ones in two parts, split at the target, on which the nodes cluster
+towards it with the fifth power, so that the logarithm is no obstacle.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from stribeck._types import Array
+from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.numerics.legendre_q import ring_functions
+
+FAR_POINTS = 24
+"""Gauss points on a panel for far targets."""
+
+FAR_DISTANCE = 1.35
+"""Distance from its centre, in half-widths, from which a target is far from a panel: rho**(-2 FAR_POINTS) = 1e-17."""
+
+NEAR_POINTS = 40
+"""Gauss points on each part of a near panel."""
+
+CLUSTER = 5
+"""Power with which these cluster towards the target."""
+
+
+@lru_cache(maxsize=8)
+def _gauss(count: int) -> tuple[Array, Array]:
+    return legendre.leggauss(count)
+
+
+@lru_cache(maxsize=8)
+def _clustered(count: int) -> tuple[Array, Array]:
+    """Return nodes and weights on [0, 1], clustered towards 0."""
+    t, w = _gauss(count)
+    v = 0.5 * (t + 1.0)
+    return v**CLUSTER, 0.5 * w * CLUSTER * v ** (CLUSTER - 1)
+
+
+def deflection_by_mode(mesh: PolarMesh, modes: int | None = None, targets: Array | None = None) -> Array:
+    """Return the matrices from the nodal pressures of each angular mode to its deflection.
+
+    Parameters
+    ----------
+    mesh : PolarMesh
+        Where the pressure lives [a].
+    modes : int, optional
+        Number of modes; those of the mesh by default.
+    targets : ndarray, shape (n,), optional
+        Radii at which the deflection is wanted [a], > 0; those of the mesh by default.
+
+    Returns
+    -------
+    ndarray, shape (modes, n, rings)
+        The operators [u_Hz per p_Hz].
+    """
+    count = mesh.modes if modes is None else modes
+    radii = mesh.radii if targets is None else targets
+    found = np.zeros((count, radii.size, mesh.rings))
+    centre, half = mesh.spans
+    for panel in range(mesh.panels):
+        far_out = panel >= mesh.log_from
+        place = ((np.log(radii) if far_out else radii) - centre[panel]) / half[panel]
+        near = np.abs(place) < FAR_DISTANCE
+        columns = mesh.of_panel[panel]
+        for group, points in ((np.flatnonzero(~near), _far_points), (np.flatnonzero(near), _near_points)):
+            if group.size == 0:
+                continue
+            t, difference, weights = points(mesh, panel, radii[group], place[group])
+            r = radii[group][:, None]
+            source = r + difference
+            kernel = ring_functions(
+                np.broadcast_to(r, source.shape).ravel(), source.ravel(), difference.ravel(), count
+            ).reshape(count, *source.shape)
+            kernel *= 4.0 / np.pi**2 * weights * np.sqrt(source / r)
+            basis = mesh.rule(panel).interpolation(t)
+            if basis.ndim == 2:  # the same points for all targets
+                block = kernel @ basis
+            else:
+                block = np.matmul(kernel.transpose(1, 0, 2), basis).transpose(1, 0, 2)
+            found[:, group[:, None], columns] += block
+    return found
+
+
+def _far_points(mesh: PolarMesh, panel: int, radii: Array, place: Array) -> tuple[Array, Array, Array]:
+    """Return where the points lie on the panel, how far from the targets, and the weights over r."""
+    t, w = _gauss(FAR_POINTS)
+    centre, half = mesh.spans[0][panel], mesh.spans[1][panel]
+    r = centre + half * t
+    weights = half * w
+    if panel >= mesh.log_from:
+        r = np.exp(r)
+        weights = weights * r
+    difference = r - radii[:, None]
+    return t, difference, np.broadcast_to(weights, difference.shape)
+
+
+def _near_points(mesh: PolarMesh, panel: int, radii: Array, place: Array) -> tuple[Array, Array, Array]:
+    """Return the same for near targets, on both parts of the panel; a part may be empty."""
+    v, w = _clustered(NEAR_POINTS)
+    half = float(mesh.spans[1][panel])
+    inside = np.clip(place, -1.0, 1.0)[:, None]
+    outside = place[:, None] - inside  # how far the target lies beyond the end of the panel
+    below, above = 1.0 + inside, 1.0 - inside
+    t = np.hstack([inside - below * v, inside + above * v])
+    offset = half * np.hstack([-outside - below * v, -outside + above * v])
+    offset[offset == 0.0] = half  # in an empty part, without weight
+    weights = half * np.hstack([below * w, above * w])
+    if panel < mesh.log_from:
+        return t, offset, weights
+    difference = radii[:, None] * np.expm1(offset)
+    return t, difference, weights * (radii[:, None] + difference)
