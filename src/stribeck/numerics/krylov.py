@@ -26,7 +26,7 @@ class Solved:
     steps : int
         Products with the matrix.
     left : float
-        Norm of the preconditioned residual over that of the preconditioned right-hand side.
+        Norm of the preconditioned residual over that of the preconditioned right-hand side; infinite if that is not finite.
     """
 
     x: Array
@@ -57,21 +57,22 @@ def gmres(product: Apply, precondition: Apply, right: Array, tolerance: float, m
     size = float(np.sqrt(start @ start))
     if size == 0.0 or not np.isfinite(size):
         return Solved(start, 0, 0.0 if size == 0.0 else np.inf)
-    basis = [start / size]
+    basis = np.empty((max_steps + 1, right.size))
+    basis[0] = start / size
     upper = np.zeros((max_steps + 1, max_steps))
     rotations: list[tuple[float, float]] = []
     projected = np.zeros(max_steps + 1)
     projected[0] = size
     steps = 0
-    for k in range(max_steps):
+    while steps < max_steps and abs(projected[steps]) > tolerance * size:
+        k = steps
         w = precondition(product(basis[k]))
-        vectors = np.array(basis)
-        for _ in range(2):  # twice is enough
-            overlap = vectors @ w
-            w = w - overlap @ vectors
-            upper[: k + 1, k] += overlap
-        norm = float(np.sqrt(w @ w))
         column = upper[:, k]
+        for _ in range(2):  # twice is enough to make it orthogonal
+            overlap = basis[: k + 1] @ w
+            w = w - overlap @ basis[: k + 1]
+            column[: k + 1] += overlap
+        norm = float(np.sqrt(w @ w))
         for i, (c, s) in enumerate(rotations):
             column[i], column[i + 1] = c * column[i] + s * column[i + 1], c * column[i + 1] - s * column[i]
         radius = float(np.hypot(column[k], norm))
@@ -81,11 +82,9 @@ def gmres(product: Apply, precondition: Apply, right: Array, tolerance: float, m
         rotations.append((c, s))
         column[k] = radius
         projected[k], projected[k + 1] = c * projected[k], -s * projected[k]
-        steps = k + 1
-        if abs(projected[steps]) <= tolerance * size or norm == 0.0:
-            break
-        basis.append(w / norm)
+        steps += 1
+        basis[steps] = w / norm if norm > 0.0 else 0.0
     if steps == 0:
         return Solved(start, 0, np.inf)
     y = np.linalg.solve(upper[:steps, :steps], projected[:steps])
-    return Solved(y @ np.array(basis[:steps]), steps, abs(projected[steps]) / size)
+    return Solved(y @ basis[:steps], steps, float(abs(projected[steps])) / size)

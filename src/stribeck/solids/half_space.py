@@ -92,6 +92,20 @@ def deflection_by_mode(mesh: PolarMesh, modes: int | None = None, targets: Array
     return found
 
 
+def tilt_from_beyond(mesh: PolarMesh, power: float) -> Array:
+    """Return the deflection at the radii of a mesh, of mode one, under ``(r/rim)**power`` beyond its rim, power < -1."""
+    v, w = _clustered(NEAR_POINTS)
+    r, rim = mesh.radii[:, None], mesh.rim
+    # s = rim/(1 - v), so that it reaches from the rim to infinity; far out the kernel falls as r/s**2.
+    beyond = v / (1.0 - v) * rim
+    source = rim + beyond
+    weights = w * rim / (1.0 - v) ** 2 * (source / rim) ** power
+    difference = np.broadcast_to(beyond, (mesh.rings, v.size)) + (rim - r)
+    radius, sources = np.broadcast_to(r, difference.shape), np.broadcast_to(source, difference.shape)
+    kernel = ring_functions(radius.ravel(), sources.ravel(), difference.ravel(), 2)[1].reshape(difference.shape)
+    return np.asarray((4.0 / np.pi**2 * kernel * np.sqrt(sources / radius)) @ weights)
+
+
 def _far_points(mesh: PolarMesh, panel: int, radii: Array, place: Array) -> tuple[Array, Array, Array]:
     """Return where the points lie on the panel, how far from the targets, and the weights over r."""
     t, w = _gauss(FAR_POINTS)

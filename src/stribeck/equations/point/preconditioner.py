@@ -1,143 +1,170 @@
-"""A preconditioner of the Jacobian of the point contact: that itself by angular modes, cut to a band, by block LU."""
+r"""A preconditioner of the Jacobian of the point contact: that itself by angular modes, cut to a band, as block LU factors.
+
+Products of fields with cosines couple modes whose difference is small, as fields vary slowly with the angle: blocks with
+:math:`|m - m'|` up to ``band`` are kept, in single precision.  The row of the load and the column of the offset border them.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
+import numpy.typing as npt
 from scipy.linalg import lapack
 
 from stribeck._types import Array
+from stribeck.equations.point.far_field import rates
 from stribeck.equations.point.system import Linear
 from stribeck.numerics.fourier_panels import PolarMesh, lobatto, radau
 
+Single = npt.NDArray[np.float32]
+
 
 class BandedModes:
-    """The inverse of the banded Jacobian, load row and offset bordered."""
+    """About the inverse of a Jacobian."""
 
-    def __init__(self, linear: Linear, band: int, dtype: type = np.float64) -> None:
-        mesh = linear.equations.operators.mesh
-        self.mesh, self.band = mesh, min(band, mesh.modes - 1)
-        blocks, column = banded_blocks(linear, self.band)
-        self.lu = BlockLU(blocks, self.band, dtype)
-        self.row = linear.equations.operators.load_row
-        self.column = self.lu.solve(column)
+    def __init__(self, linear: Linear, band: int) -> None:
+        operators = linear.equations.operators
+        self.shape = (operators.mesh.modes, operators.mesh.rings)
+        coupling = Coupling(linear)
+        self.factors = BlockLU(coupling.columns(min(band, self.shape[0] - 1)), min(band, self.shape[0] - 1), self.shape)
+        self.row = operators.load_row
+        self.column = self.factors.solve(coupling.of_offset())
         self.pivot = float(self.row @ self.column[0])
 
     def __call__(self, right: Array) -> Array:
-        """Return about the change of total pressure and offset for residuals."""
+        """Return about the change of total pressure, by mode, and of the offset that removes residuals.
+
+        ::
+
+            [ B  g ] [dp]   [r]
+            [ w  0 ] [dz] = [s]
+        """
         found = np.empty_like(right)
-        x = self.lu.solve(right[:-1].reshape(self.mesh.modes, -1))
+        x = self.factors.solve(right[:-1].reshape(self.shape))
         offset = (self.row @ x[0] - right[-1]) / self.pivot
         found[:-1] = (x - offset * self.column).ravel()
         found[-1] = offset
         return found
 
 
-def _cosine_sums(mesh: PolarMesh, values: Array) -> Array:
-    """Return sums over the angles of values, shape (angles, ...), times cos(c theta), c < 2 modes - 1."""
-    n = mesh.modes
+def _sums(waves: Array, values: Array, sign: float) -> Array:
+    """Return sums over the angles of values, shape (angles, ...), times waves of c theta, c < 2 modes - 1.
+
+    ``cos((2N - c) theta) = -cos(c theta)`` at the angles, and the same for sines with the other sign.
+    """
+    n = values.shape[0]
     flat = values.reshape(n, -1)
     found = np.zeros((2 * n - 1, flat.shape[1]))
-    found[:n] = mesh.cosines.T @ flat
-    found[n + 1 :] = -found[n - 1 : 1 : -1]
+    found[:n] = waves.T @ flat
+    found[n + 1 :] = sign * found[n - 1 : 1 : -1]
+    if sign > 0:
+        found[n] = (-1.0) ** np.arange(n) @ flat
     return found.reshape(-1, *values.shape[1:])
 
 
-def _sine_sums(mesh: PolarMesh, values: Array) -> Array:
-    """Return the same with sin(c theta)."""
-    n = mesh.modes
-    flat = values.reshape(n, -1)
-    found = np.zeros((2 * n - 1, flat.shape[1]))
-    found[:n] = mesh.sines.T @ flat
-    found[n] = (-1.0) ** np.arange(n) @ flat
-    found[n + 1 :] = found[n - 1 : 1 : -1]
-    return found.reshape(-1, *values.shape[1:])
+class Coupling:
+    """How the modes of the pressure act on those of the residual: sums over the angles of the local parts of a Jacobian."""
 
+    def __init__(self, linear: Linear) -> None:
+        self.mesh, self.deflection = linear.equations.operators.mesh, linear.equations.operators.deflection
+        mesh = self.mesh
+        derivative = np.tile(lobatto(mesh.degree).derivative, (mesh.panels, 1, 1))
+        derivative[0] = radau(mesh.degree).derivative
+        derivative = derivative / mesh.stretch[:, :, None]
+        transposed = derivative.transpose(0, 2, 1)
+        slope, wide = linear.contact_slope, linear.angular_of_pressure
+        of_pressure = np.matmul(transposed * linear.radial_of_pressure[:, :, None, :], derivative)
+        of_gap = transposed * linear.radial_of_gap[:, :, None, :] - of_pressure * mesh.scattered(slope)[:, :, None, :]
+        tangential = linear.angular_of_gap - wide * (mesh.angular_derivative @ slope)
+        self.rates = rates(mesh.modes) / mesh.rim
+        # The contact pressure at the rim is nil but for the softest laws; its mode is taken for the first.
+        rim_of_gap = linear.rim_of_gap - linear.rim_of_pressure * slope[:, -1] * self.rates[0]
+        cosines, sines = mesh.cosines, mesh.sines
+        self.radial_p, self.radial_h = _sums(cosines, of_pressure, -1.0), _sums(cosines, of_gap, -1.0)
+        self.ring_p, self.ring_s = _sums(cosines, wide, -1.0), _sums(cosines, wide * slope, -1.0)
+        self.ring_h = _sums(sines, tangential, 1.0)
+        self.rim_p, self.rim_h = _sums(cosines, linear.rim_of_pressure, -1.0), _sums(cosines, rim_of_gap, -1.0)
 
-def banded_blocks(linear: Linear, band: int) -> tuple[dict[tuple[int, int], Array], Array]:
-    """Return the blocks of the Jacobian by mode of residual and of pressure, within the band, and its column of the offset."""
-    eq, y = linear.equations, linear.y
-    mesh, op = eq.operators.mesh, eq.operators
-    n, modes, rings = mesh.degree + 1, mesh.modes, mesh.rings
-    derivative = np.tile(lobatto(mesh.degree).derivative, (mesh.panels, 1, 1))
-    derivative[0] = radau(mesh.degree).derivative
-    derivative = derivative / mesh.stretch[:, :, None]
-    transposed = derivative.transpose(0, 2, 1)
-    slope = linear.contact_slope
-    of_pressure = np.matmul(transposed * linear.radial_of_pressure[:, :, None, :], derivative)
-    of_gap = transposed * linear.radial_of_gap[:, :, None, :] - of_pressure * mesh.scattered(slope)[:, :, None, :]
-    radial_p, radial_h = _cosine_sums(mesh, of_pressure), _cosine_sums(mesh, of_gap)
-    wide = linear.angular_of_pressure
-    ring_p = _cosine_sums(mesh, wide)  # times m m' of sin sin
-    ring_hh = _cosine_sums(mesh, wide * slope)
-    ring_h = _sine_sums(mesh, linear.angular_of_gap - wide * (mesh.angular_derivative @ slope))
-    rim_p = _cosine_sums(mesh, linear.rim_of_pressure)
-    rim_h = _cosine_sums(mesh, linear.rim_of_gap - linear.rim_of_pressure * slope[:, -1])
-    diagonal = np.arange(rings)
-    blocks: dict[tuple[int, int], Array] = {}
-    column = np.zeros((modes, rings))
-    for k in range(modes):  # pressure
-        low, high = max(0, k - band), min(modes, k + band + 1)
-        of_modes = range(low, high)
-        minus, plus = [abs(m - k) for m in of_modes], [m + k for m in of_modes]
-        local = 0.5 * (radial_h[minus] + radial_h[plus])
-        if k == 0:
-            ones = local.sum(axis=3)
-        stack = np.zeros((len(minus), rings, rings))
-        for panel in range(mesh.panels):
-            at = mesh.of_panel[panel]
-            block = local[:, panel].reshape(-1, n) @ op.deflection[k][at]
-            stack[:, at] += block.reshape(len(minus), n, rings)
-            stack[:, at[0] : at[0] + n, at[0] : at[0] + n] += 0.5 * (radial_p[minus, panel] + radial_p[plus, panel])
-        for i, m in enumerate(of_modes):
-            tangential = 0.5 * m * k * (ring_p[abs(m - k)] - ring_p[m + k])
-            signed = np.sign(m - k) * ring_h[abs(m - k)]
-            moved = -0.5 * m * (ring_h[m + k] + signed) - 0.5 * m * k * (ring_hh[abs(m - k)] - ring_hh[m + k])
-            moved[-1] += 0.5 * (rim_h[abs(m - k)] + rim_h[m + k])
-            stack[i] += moved[:, None] * op.deflection[k]
-            stack[i][diagonal, diagonal] += tangential
-            stack[i][-1, -1] += 0.5 * (rim_p[abs(m - k)] + rim_p[m + k])
-            blocks[m, k] = stack[i]
-            if k == 0:
-                column[m] = mesh.gathered(ones[i]) + moved
-    return blocks, column
+    def _of_gap(self, m: int, k: int) -> Array:
+        """Return what mode k of the gap does to mode m of the residual at each ring, but for radial derivatives."""
+        d, s = abs(m - k), m + k
+        found = -0.5 * m * (self.ring_h[s] + np.sign(m - k) * self.ring_h[d]) - 0.5 * m * k * (self.ring_s[d] - self.ring_s[s])
+        found[-1] += 0.5 * (self.rim_h[d] + self.rim_h[s])
+        return np.asarray(found)
+
+    def columns(self, band: int) -> Iterator[tuple[range, Array]]:
+        """Yield for each mode of the pressure the modes of the residual that it reaches, and the blocks."""
+        mesh = self.mesh
+        n, rings, diagonal = mesh.degree + 1, mesh.rings, np.arange(mesh.rings)
+        for k in range(mesh.modes):
+            reached = range(max(0, k - band), min(mesh.modes, k + band + 1))
+            d, s = [abs(m - k) for m in reached], [m + k for m in reached]
+            local_h = 0.5 * (self.radial_h[d] + self.radial_h[s])
+            local_p = 0.5 * (self.radial_p[d] + self.radial_p[s])
+            blocks = np.stack([self._of_gap(m, k) for m in reached])[:, :, None] * self.deflection[k]
+            for panel, at in enumerate(mesh.of_panel):
+                acting = local_h[:, panel].reshape(-1, n) @ self.deflection[k, at]
+                blocks[:, at] += acting.reshape(-1, n, rings)
+                own = slice(at[0], at[-1] + 1)
+                blocks[:, own, own] += local_p[:, panel]
+            orders = 0.5 * k * np.array(reached)[:, None]
+            blocks[:, diagonal, diagonal] += orders * (self.ring_p[d] - self.ring_p[s])
+            blocks[:, -1, -1] += 0.5 * self.rates[k] * (self.rim_p[d] + self.rim_p[s])
+            yield reached, blocks
+
+    def of_offset(self) -> Array:
+        """Return the column of the offset, shape (modes, rings)."""
+        modes = range(self.mesh.modes)
+        radial = self.mesh.gathered(self.radial_h[: len(modes)].sum(axis=3))
+        return np.asarray(radial + np.stack([self._of_gap(m, 0) for m in modes]))
 
 
 class BlockLU:
-    """Block LU factors of a banded block matrix, pivoted within the diagonal blocks, its rows scaled first."""
+    """Block LU factors of a banded block matrix in single precision, pivoted within the diagonal blocks, its rows scaled first."""
 
-    def __init__(self, blocks: dict[tuple[int, int], Array], band: int, dtype: type) -> None:
-        self.count = max(m for m, _ in blocks) + 1
-        self.band, self.dtype = band, dtype
-        size = blocks[0, 0].shape[0]
-        self.scale = np.array([1.0 / np.abs(blocks[m, m]).max(axis=1) for m in range(self.count)])
-        window = {key: (block * self.scale[key[0]][:, None]).astype(dtype) for key, block in blocks.items()}
-        self.factors, self.right, self.below = [], [], []
-        getrf, self.getrs = (lapack.sgetrf, lapack.sgetrs) if dtype == np.float32 else (lapack.dgetrf, lapack.dgetrs)
+    def __init__(self, columns: Iterator[tuple[range, Array]], band: int, shape: tuple[int, int]) -> None:
+        self.count, size = shape
+        self.band = band
+        self.scale = np.ones(shape)
+        self.pivots: list[tuple[Single, npt.NDArray[np.int32]]] = []
+        self.right: list[Single] = []
+        self.below: list[Single] = []
+        window: dict[tuple[int, int], Array | Single] = {}
+        loaded = 0
         for k in range(self.count):
             last = min(self.count, k + band + 1)
-            lu, pivots, _ = getrf(window.pop((k, k)))
-            upper = [window.pop((k, j)) for j in range(k + 1, last)]
-            lower = [window.pop((j, k)) for j in range(k + 1, last)]
-            self.factors.append((lu, pivots))
-            if not upper:
-                self.right.append(None), self.below.append(None)
-                continue
-            right = self.getrs(lu, pivots, np.hstack(upper))[0]
-            below = np.vstack(lower)
-            update = below @ right
-            for i in range(k + 1, last):
-                for j in range(k + 1, last):
-                    part = update[(i - k - 1) * size : (i - k) * size, (j - k - 1) * size : (j - k) * size]
-                    window[i, j] -= part
-            self.right.append(np.ascontiguousarray(right)), self.below.append(below)
+            while loaded < last:
+                rows, blocks = next(columns)
+                window.update({(m, loaded): block for m, block in zip(rows, blocks, strict=True)})
+                self.scale[loaded] = 1.0 / np.abs(window[loaded, loaded]).max(axis=1)
+                loaded += 1
+                # Rows are scaled when the scale of theirs is known, and when the column has arrived.
+                for m, j in [key for key, block in window.items() if block.dtype == np.float64 and key[0] < loaded]:
+                    window[m, j] = (window[m, j] * self.scale[m][:, None]).astype(np.float32)
+            self._eliminate(window, k, last, size)
+
+    def _eliminate(self, window: dict[tuple[int, int], Array | Single], k: int, last: int, size: int) -> None:
+        lu, pivots, _ = lapack.sgetrf(window.pop((k, k)))
+        self.pivots.append((lu, pivots))
+        if last == k + 1:
+            return
+        right = lapack.sgetrs(lu, pivots, np.hstack([window.pop((k, j)) for j in range(k + 1, last)]))[0]
+        below = np.vstack([window.pop((i, k)) for i in range(k + 1, last)])
+        update = below @ right
+        for i in range(k + 1, last):
+            for j in range(k + 1, last):
+                window[i, j] -= update[(i - k - 1) * size : (i - k) * size, (j - k - 1) * size : (j - k) * size]
+        self.right.append(np.ascontiguousarray(right))
+        self.below.append(below)
 
     def solve(self, right: Array) -> Array:
-        """Return the solution for a right-hand side, shape (count, size)."""
-        x = (right * self.scale).astype(self.dtype)
+        """Return the solution for a right-hand side of the shape (count, size)."""
+        x = (right * self.scale).astype(np.float32)
         size = x.shape[1]
         for k in range(self.count):
-            x[k] = self.getrs(*self.factors[k], x[k])[0]
-            if self.below[k] is not None:
+            x[k] = lapack.sgetrs(*self.pivots[k], x[k])[0]
+            if k < len(self.below):
                 last = min(self.count, k + self.band + 1)
                 x[k + 1 : last] -= (self.below[k] @ x[k]).reshape(-1, size)
         for k in range(self.count - 2, -1, -1):

@@ -8,8 +8,7 @@ Unknowns are the gap and the fluid pressure at the nodes and the offset.  With K
     R_2 &= \int \nabla v \cdot (h^3 \nabla p_f - \lambda h \, \mathbf e_x) - \oint v \, (h^3 \partial_r p_f - \lambda h \cos\theta), \\
     R_3 &= \int (p_c + p_f) - 2 \pi/3
 
-for every v of the mesh.  At the rim, radius X, the film is that of the rigid ball, :math:`p_f \propto x/h^2`, so that there
-:math:`-X h^3 \partial_r p_f = (2 X^2 h^2 - h^3) p_f`.
+for every v of the mesh.  At the rim the slope of the pressure is that of the far field beyond.
 
 Newton's step is reduced to the total pressure: :math:`dh = K \, dp + dz - R_1`, :math:`dp_f = dp - p_c' dh`.
 """
@@ -23,8 +22,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.equations.point.far_field import particular, rates
 from stribeck.numerics.fourier_panels import PolarMesh
-from stribeck.solids.half_space import deflection_by_mode
+from stribeck.solids.half_space import deflection_by_mode, tilt_from_beyond
 
 LOAD = 2.0 * np.pi / 3.0
 """Load in Hertz units: the integral of the pressure."""
@@ -38,13 +38,24 @@ class Operators:
 
     @cached_property
     def deflection(self) -> Array:
-        """K: pressures by mode -> deflections by mode, shape (modes, rings, rings)."""
-        return deflection_by_mode(self.mesh)
+        """K: pressures by mode -> deflections by mode, shape (modes, rings, rings).
+
+        Beyond the rim the film pressure falls as r**-3, in the first mode: that tilts the surface within.
+        """
+        found = deflection_by_mode(self.mesh)
+        found[1, :, -1] += tilt_from_beyond(self.mesh, -3.0)
+        return found
 
     @cached_property
     def parabola(self) -> Array:
         """The undeformed gap at the nodes, shape (rings,)."""
         return 0.5 * self.mesh.radii**2
+
+    @cached_property
+    def rim_rates(self) -> Array:
+        """Film pressure without a source at the rim -> its radial derivative, shape (angles, angles)."""
+        mesh = self.mesh
+        return np.asarray((mesh.cosines * rates(mesh.modes)) @ mesh.to_modes / mesh.rim)
 
     @cached_property
     def load_row(self) -> Array:
@@ -83,9 +94,9 @@ class Equations:
         total = self.law.pressure(y.gap) + y.fluid
         by_mode = mesh.to_modes @ total
         shape = y.gap - y.offset - op.parabola - mesh.cosines @ op.deflect(by_mode)
-        return shape, self.flow(y.gap, y.fluid), float(op.load_row @ by_mode[0]) - LOAD
+        return shape, self.flow(y.gap, y.fluid, y.offset), float(op.load_row @ by_mode[0]) - LOAD
 
-    def flow(self, h: Array, p: Array) -> Array:
+    def flow(self, h: Array, p: Array, offset: float) -> Array:
         """Return the weak residual of Reynolds' equation, R_2."""
         mesh, speed = self.operators.mesh, self.speed
         cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
@@ -94,9 +105,17 @@ class Equations:
         radial = weight * (mesh.scattered(wide) * mesh.radial_derivative(p) - speed * cos[..., None] * mesh.scattered(h))
         tangential = (angle / mesh.radii) * wide * (mesh.angular_derivative @ p) + speed * angle * sin * h
         found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ tangential
-        x, h_x, p_x = mesh.rim, h[:, -1], p[:, -1]
-        found[:, -1] += np.pi / mesh.modes * ((2 * x * x * h_x**2 - h_x**3) * p_x + speed * h_x * x * cos[:, 0])
+        h_x, p_x, x = h[:, -1], p[:, -1], mesh.rim
+        part = np.pi / mesh.modes
+        found[:, -1] += part * (speed * x * cos[:, 0] * h_x - h_x**3 * x * self.rim_slope(p_x, offset))
         return found
+
+    def rim_slope(self, p: Array, offset: float) -> Array:
+        """Return the radial derivative of the film pressure at the rim, p being that pressure."""
+        mesh = self.operators.mesh
+        first, slope = particular(np.array([mesh.rim]), offset, self.speed)
+        cos = np.cos(mesh.angles)
+        return np.asarray(self.operators.rim_rates @ (p - first * cos) + slope * cos)
 
 
 def _weights(mesh: PolarMesh) -> tuple[Array, Array]:
@@ -120,8 +139,8 @@ class Linear:
         self.angular_of_pressure = (angle / mesh.radii) * wide
         self.angular_of_gap = (angle / mesh.radii) * wider * (mesh.angular_derivative @ y.fluid) + speed * angle * sin
         x, h_x, part = mesh.rim, h[:, -1], np.pi / mesh.modes
-        self.rim_of_pressure = part * (2 * x * x * h_x**2 - h_x**3)
-        self.rim_of_gap = part * ((4 * x * x * h_x - 3 * h_x**2) * y.fluid[:, -1] + speed * x * cos[:, 0])
+        self.rim_of_pressure = -part * x * h_x**3
+        self.rim_of_gap = part * x * (speed * cos[:, 0] - 3 * h_x**2 * equations.rim_slope(y.fluid[:, -1], y.offset))
 
     def flow(self, dp: Array, dh: Array) -> Array:
         """Return the change of R_2 under changes of fluid pressure and gap at the nodes."""
@@ -129,7 +148,8 @@ class Linear:
         radial = self.radial_of_pressure * mesh.radial_derivative(dp) + self.radial_of_gap * mesh.scattered(dh)
         angular = self.angular_of_pressure * (mesh.angular_derivative @ dp) + self.angular_of_gap * dh
         found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ angular
-        found[:, -1] += self.rim_of_pressure * dp[:, -1] + self.rim_of_gap * dh[:, -1]
+        rates_at_rim = self.equations.operators.rim_rates
+        found[:, -1] += self.rim_of_pressure * (rates_at_rim @ dp[:, -1]) + self.rim_of_gap * dh[:, -1]
         return found
 
     def changes(self, x: Array, shape: Array | float = 0.0) -> Unknowns:

@@ -1,0 +1,93 @@
+"""The dry contact of a ball: its pressure depends on the radius alone, so that it is a problem of one dimension.
+
+Any contact law has its dry state; that of a law that is soft enough starts the iteration of lubricated contacts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contact_laws.law import ContactLaw
+from stribeck.equations.point.iteration import longest_step
+from stribeck.equations.point.system import LOAD, Operators
+from stribeck.numerics.newton import Dense, Root, StepControl, root_find
+
+MAX_STEPS = 200
+
+
+@dataclass(frozen=True, eq=False)
+class DryContact:
+    """Gap and contact pressure by ring, the offset, and how Newton's iteration ended."""
+
+    gap: Array
+    pressure: Array
+    offset: float
+    root: Root
+
+
+def hertz_gap(r: Array) -> Array:
+    """Return the gap of the dry smooth contact [u_Hz], zero up to r = 1."""
+    s = np.maximum(r, 1.0)
+    return np.asarray(((s * s - 2.0) * np.arccos(1.0 / s) + np.sqrt(s * s - 1.0)) / np.pi)
+
+
+def dry_contact(operators: Operators, law: ContactLaw, tolerance: float = 1e-12) -> DryContact:
+    """Return the dry contact under a law that has a positive gap at rest.
+
+    Parameters
+    ----------
+    operators : Operators
+        Those of a mesh; only the axisymmetric mode is used.
+    law : ContactLaw
+        Contact pressure from the gap.
+    tolerance : float
+        Size of the last step relative to the gap.
+
+    Returns
+    -------
+    DryContact
+        A failure is in the outcome of its root.
+    """
+    mesh = operators.mesh
+    r, deflection, n = mesh.radii, operators.deflection[0], mesh.rings
+    weights, decay = operators.load_row, float(np.max(law.decay_length))
+
+    def function(y: Array) -> Array:
+        p = law.pressure(y[:n])
+        return np.append(y[:n] - y[n] - operators.parabola - deflection @ p, weights @ p - LOAD)
+
+    def jacobian(y: Array) -> Array:
+        slope = law.slope(y[:n], law.pressure(y[:n]))
+        matrix = np.zeros((n + 1, n + 1))
+        matrix[:n, :n] = np.eye(n) - deflection * slope
+        matrix[:n, n] = -1.0
+        matrix[n, :n] = weights * slope
+        return matrix
+
+    def fraction(y: Array, dy: Array) -> float:
+        return longest_step(law, y[:n], dy[:n])
+
+    def size(y: Array, dy: Array) -> float:
+        return float(np.abs(dy[:n] / y[:n]).max())
+
+    edge = min(1.0, decay) ** (1.0 / 3.0)
+    hertz = np.maximum(np.sqrt(np.maximum(1.0 - r * r, 0.0)), edge)
+    start = np.append(hertz_gap(r) + _gap_at(law, np.log(hertz) - 0.5 * np.log1p(decay)), decay - 1.0)
+    problem = Dense(function, jacobian, fraction, size, 0.0)
+    root = root_find(problem, start, StepControl(tolerance, MAX_STEPS))
+    return DryContact(root.x[:n], law.pressure(root.x[:n]), float(root.x[n]), root)
+
+
+def _gap_at(law: ContactLaw, log_pressure: Array) -> Array:
+    """Return the positive gaps at which the law has these pressures, by bisection; tiny where it has them at none."""
+    decay = float(np.max(law.decay_length))
+    low, high = np.full_like(log_pressure, 1e-12 * decay), np.full_like(log_pressure, 1e6 * decay)
+    with np.errstate(all="ignore"):
+        for _ in range(80):
+            middle = np.sqrt(low * high)
+            above = law.log_pressure(middle) > log_pressure
+            low, high = np.where(above, middle, low), np.where(above, high, middle)
+    return np.asarray(np.maximum(low, 1e-3 * decay))

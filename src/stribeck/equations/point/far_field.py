@@ -1,0 +1,62 @@
+r"""The film far from the contact: that of a rigid ball with the deflection under a point force.
+
+With :math:`h = z_0 + r^2/2 + b/r` Reynolds' equation has, to first order in b, the solution
+
+.. math::
+
+    p = \cos\theta \Big[ -\frac\lambda5 \frac{r}{(z_0 + r^2/2)^2} \Big(1 - \frac{16 b}{r^3}\Big) \Big]
+        + \sum_m C_m \cos m\theta \; r^{-3 - \sqrt{9 + m^2}}
+
+The first part is exact for b = 0, and the coefficient 16 follows from :math:`h^3` and :math:`\partial_x h` to first order.  The sum is
+what decays of the film without a source in a gap :math:`r^2/2`; its coefficients come from within, and a rim that knows the
+rates alone lets it pass.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from stribeck._types import Array
+
+DEFLECTION = 4.0 / (3.0 * math.pi)
+"""b: the deflection under the load, far away, times the distance."""
+
+POINTS = 40
+"""Gauss points of the integrals from the rim to infinity."""
+
+
+def particular(r: Array, offset: float, speed: float) -> tuple[Array, Array]:
+    """Return the factor of cos(theta) in the first part, and its derivative in r."""
+    rigid = offset + 0.5 * r * r
+    bent = 1.0 - 16.0 * DEFLECTION / r**3
+    base = -0.2 * speed * r / rigid**2
+    slope = base * (1.0 / r - 2.0 * r / rigid) * bent + base * 48.0 * DEFLECTION / r**4
+    return np.asarray(base * bent), np.asarray(slope)
+
+
+def rates(modes: int) -> Array:
+    """Return the exponents of the sum, one a mode."""
+    return np.asarray(-3.0 - np.sqrt(9.0 + np.arange(modes) ** 2))
+
+
+def tails(rim: float, offset: float, speed: float, pressure: float) -> tuple[float, float, float]:
+    """Return what lies beyond the rim of shear, pressure flow and moment, less the logarithms at infinity.
+
+    ``pressure`` is the factor of cos(theta) in the film pressure at the rim.
+    """
+    t, w = legendre.leggauss(POINTS)
+    u, w = 0.5 * (t + 1.0), 0.5 * w
+    r = rim / u
+    ring = rim / u**2 * w * r
+    h = offset + 0.5 * r * r + DEFLECTION / r
+    f, slope = particular(r, offset, speed)
+    decaying = (pressure - float(particular(np.array([rim]), offset, speed)[0][0])) * (r / rim) ** rates(2)[1]
+    f, slope = f + decaying, slope + decaying * rates(2)[1] / r
+    log = math.log(rim)
+    couette = speed * math.pi / 3.0 * (float((ring * (1.0 / h - 2.0 / r**2)).sum()) - 2.0 * log)
+    poiseuille = 0.5 * math.pi * (float((ring * (h * (slope + f / r) - 0.8 * speed / r**2)).sum()) - 0.8 * speed * log)
+    moment = math.pi * (float((ring * (f * r + 0.8 * speed / r**2)).sum()) + 0.8 * speed * log)
+    return couette, poiseuille, moment

@@ -1,0 +1,184 @@
+"""Newton's iteration for the point contact: damped steps by GMRES, with a preconditioner that is kept while it serves.
+
+Steps are not exact, so that :func:`stribeck.numerics.newton.root_find`, whose chord steps live on exact inverses, does not fit:
+how small a linear residual has to be is decided step by step, and the stopping test holds both errors, that of the
+linearisation and that of GMRES.
+
+Source: [Deuflhard 2011] Newton Methods for Nonlinear Problems, section 2.1.5 (inexact steps); theory.md, the ball.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contact_laws.law import ContactLaw
+from stribeck.equations.point.preconditioner import BandedModes
+from stribeck.equations.point.system import Equations, Linear, Unknowns
+from stribeck.numerics.krylov import gmres
+from stribeck.quantities.outcome import Outcome
+
+MAX_KRYLOV = 60
+"""Steps of GMRES for one step of Newton's iteration."""
+
+WORN = 14
+"""Steps of GMRES from which the next Newton step makes its own preconditioner."""
+
+SMALLEST_PART = 1e-6
+"""A step damped below this part of Newton's makes no progress."""
+
+MOST_HALVINGS = 20
+
+BENDING = 3.0
+"""Factor from the square of a step to the error that it leaves, where no two steps tell it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Iterated:
+    """Where Newton's iteration ended.
+
+    Attributes
+    ----------
+    unknowns : Unknowns
+        The last iterate.
+    outcome : Outcome
+        How it ended.
+    steps, krylov_steps, factorisations : int
+        Its cost.
+    left : float
+        Estimated relative error of the gap that the iteration leaves.
+    preconditioner : BandedModes or None
+        The last one, for neighbours.
+    """
+
+    unknowns: Unknowns
+    outcome: Outcome
+    steps: int
+    krylov_steps: int
+    factorisations: int
+    left: float
+    preconditioner: BandedModes | None
+
+
+def longest_step(law: ContactLaw, h: Array, dh: Array) -> float:
+    """Return the longest fraction of a step that keeps the gap positive and the contact pressure sane.
+
+    The gap may lose 70 % at most; where contact matters, its pressure may grow or fall by e**3 at most.
+    """
+    part = 0.7 / max(0.7, -float((dh / h).min()))
+    if not np.all(law.decay_length > 0):
+        return part
+    log_p = law.log_pressure(h)
+    decays = dh / law.local_decay_length(h)
+    allowed = 3.0 + np.maximum(0.0, -1.0 - log_p)
+    closing = float((-decays / allowed).max())
+    opening = float((decays * (log_p > -7.0)).max()) / 3.0
+    part = min(part, 1.0 / max(1.0, closing, opening))
+    if not law.constant_decay:
+        for _ in range(MOST_HALVINGS):
+            with np.errstate(all="ignore"):
+                growth = law.log_pressure(h + part * dh) - log_p
+            if (growth <= 1.5 * allowed).all():
+                break
+            part *= 0.5
+    return float(part)
+
+
+def step_size(law: ContactLaw, h: Array, dh: Array, load_scale: float = 1.0) -> float:
+    """Return the size of a step relative to the length over which the equations bend: the gap, and the decay of contact."""
+    size = np.abs(dh) / h
+    if np.all(law.decay_length > 0):
+        weight = np.minimum(1.0, law.pressure(h) / load_scale)
+        size = np.maximum(size, weight * np.abs(dh) / law.local_decay_length(h))
+    return float(size.max())
+
+
+def iterate(
+    equations: Equations,
+    start: Unknowns,
+    tolerance: float,
+    band: int,
+    kept: BandedModes | None = None,
+    max_steps: int = 40,
+) -> Iterated:
+    """Return the state of the discrete equations nearest to ``start``.
+
+    Parameters
+    ----------
+    equations : Equations
+        The discretised problem.
+    start : Unknowns
+        First iterate.
+    tolerance : float
+        Relative error of the gap that the iteration may leave.
+    band : int
+        Band of preconditioners that it makes.
+    kept : BandedModes, optional
+        Preconditioner of a neighbour on the same mesh.
+    max_steps : int
+        Largest number of steps.
+
+    Returns
+    -------
+    Iterated
+        A failure is returned in its outcome.
+    """
+    y, law = start, equations.law
+    preconditioner = kept
+    krylov = factorisations = steps = 0
+    before = size = math.inf
+    left = math.inf
+
+    def ended(outcome: Outcome) -> Iterated:
+        return Iterated(y, outcome, steps, krylov, factorisations, left, preconditioner)
+
+    with np.errstate(all="ignore"):
+        while steps < max_steps:
+            residual, linear = equations.residual(y), Linear(equations, y)
+            right = linear.right(residual)
+            if not np.isfinite(right).all():
+                return ended(Outcome.NOT_FINITE)
+            wanted = max(1e-10, min(1e-2, 0.1 * size, 0.3 * size * size if size < 0.1 else 1.0))
+            solved = None
+            if preconditioner is not None:
+                solved = gmres(linear.product, preconditioner, right, wanted, MAX_KRYLOV if steps else WORN)
+                krylov += solved.steps
+                if solved.left > max(wanted, 0.03):
+                    solved = None
+            if solved is None:
+                preconditioner = BandedModes(linear, band)
+                factorisations += 1
+                solved = gmres(linear.product, preconditioner, right, wanted, MAX_KRYLOV)
+                krylov += solved.steps
+            if not np.isfinite(solved.x).all():
+                return ended(Outcome.SINGULAR)
+            worn = solved.steps >= WORN and factorisations == 0
+            step = linear.changes(solved.x, residual[0])
+            part = longest_step(law, y.gap, step.gap)
+            if not part >= SMALLEST_PART:
+                return ended(Outcome.STALLED)
+            before, size = size, step_size(law, y.gap, step.gap)
+            if not math.isfinite(size):
+                return ended(Outcome.NOT_FINITE)
+            y = y.moved(step, part)
+            steps += 1
+            if part < 1.0:
+                size = max(size, 1.0)
+                continue
+            bending = max(BENDING, min(100.0, size / before**2)) if math.isfinite(before) else BENDING
+            left = bending * size * size
+            if left <= tolerance:
+                # What GMRES has left, in the gap itself.
+                rest = preconditioner(right - linear.product(solved.x))
+                missed = linear.changes(rest)
+                error = step_size(law, y.gap, missed.gap)
+                y = y.moved(missed, 1.0)
+                left += 0.1 * error + error * solved.left
+                if left <= tolerance:
+                    return ended(Outcome.CONVERGED)
+            if worn:
+                preconditioner = None
+        return ended(Outcome.STEP_LIMIT)
