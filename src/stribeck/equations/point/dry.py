@@ -12,20 +12,23 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.point.iteration import longest_step
+from stribeck.equations.point.mesh_choice import gaps_at
 from stribeck.equations.point.system import LOAD, Operators
-from stribeck.numerics.newton import Dense, Root, StepControl, root_find
+from stribeck.numerics.newton import Dense, StepControl, root_find
+from stribeck.quantities.outcome import Outcome
 
 MAX_STEPS = 200
 
 
 @dataclass(frozen=True, eq=False)
 class DryContact:
-    """Gap and contact pressure by ring, the offset, and how Newton's iteration ended."""
+    """Gap and contact pressure by ring, the offset, how Newton's iteration ended and its steps."""
 
     gap: Array
     pressure: Array
     offset: float
-    root: Root
+    outcome: Outcome
+    steps: int
 
 
 def hertz_gap(r: Array) -> Array:
@@ -49,7 +52,7 @@ def dry_contact(operators: Operators, law: ContactLaw, tolerance: float = 1e-12)
     Returns
     -------
     DryContact
-        A failure is in the outcome of its root.
+        A failure is in its outcome.
     """
     mesh = operators.mesh
     r, deflection, n = mesh.radii, operators.deflection[0], mesh.rings
@@ -75,19 +78,10 @@ def dry_contact(operators: Operators, law: ContactLaw, tolerance: float = 1e-12)
 
     edge = min(1.0, decay) ** (1.0 / 3.0)
     hertz = np.maximum(np.sqrt(np.maximum(1.0 - r * r, 0.0)), edge)
-    start = np.append(hertz_gap(r) + _gap_at(law, np.log(hertz) - 0.5 * np.log1p(decay)), decay - 1.0)
+    start = np.append(
+        hertz_gap(r) + np.maximum(gaps_at(law, np.log(hertz) - 0.5 * np.log1p(decay)), 1e-3 * decay), decay - 1.0
+    )
     problem = Dense(function, jacobian, fraction, size, 0.0)
     root = root_find(problem, start, StepControl(tolerance, MAX_STEPS))
-    return DryContact(root.x[:n], law.pressure(root.x[:n]), float(root.x[n]), root)
-
-
-def _gap_at(law: ContactLaw, log_pressure: Array) -> Array:
-    """Return the positive gaps at which the law has these pressures, by bisection; tiny where it has them at none."""
-    decay = float(np.max(law.decay_length))
-    low, high = np.full_like(log_pressure, 1e-12 * decay), np.full_like(log_pressure, 1e6 * decay)
-    with np.errstate(all="ignore"):
-        for _ in range(80):
-            middle = np.sqrt(low * high)
-            above = law.log_pressure(middle) > log_pressure
-            low, high = np.where(above, middle, low), np.where(above, high, middle)
-    return np.asarray(np.maximum(low, 1e-3 * decay))
+    outcome = Outcome.CONVERGED if root.outcome is Outcome.ROUNDING else root.outcome
+    return DryContact(root.x[:n], law.pressure(root.x[:n]), float(root.x[n]), outcome, root.steps)

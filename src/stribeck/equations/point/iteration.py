@@ -24,8 +24,11 @@ from stribeck.quantities.outcome import Outcome
 MAX_KRYLOV = 60
 """Steps of GMRES for one step of Newton's iteration."""
 
-WORN = 14
-"""Steps of GMRES from which the next Newton step makes its own preconditioner."""
+WORN, WORN_NEAR = 6, 16
+"""Steps of GMRES from which the next Newton step makes its own preconditioner: far from the solution, and near it."""
+
+NEAR = 0.03
+"""Size of the steps from which the solution is near."""
 
 SMALLEST_PART = 1e-6
 """A step damped below this part of Newton's makes no progress."""
@@ -144,9 +147,9 @@ def iterate(
             wanted = max(1e-10, min(1e-2, 0.1 * size, 0.3 * size * size if size < 0.1 else 1.0))
             solved = None
             if preconditioner is not None:
-                solved = gmres(linear.product, preconditioner, right, wanted, MAX_KRYLOV if steps else WORN)
+                solved = gmres(linear.product, preconditioner, right, wanted, 2 * WORN_NEAR)
                 krylov += solved.steps
-                if solved.left > max(wanted, 0.03):
+                if solved.left > wanted:
                     solved = None
             if solved is None:
                 preconditioner = BandedModes(linear, band)
@@ -155,7 +158,6 @@ def iterate(
                 krylov += solved.steps
             if not np.isfinite(solved.x).all():
                 return ended(Outcome.SINGULAR)
-            worn = solved.steps >= WORN and factorisations == 0
             step = linear.changes(solved.x, residual[0])
             part = longest_step(law, y.gap, step.gap)
             if not part >= SMALLEST_PART:
@@ -166,7 +168,7 @@ def iterate(
             y = y.moved(step, part)
             steps += 1
             if part < 1.0:
-                size = max(size, 1.0)
+                size, preconditioner = max(size, 1.0), None
                 continue
             bending = max(BENDING, min(100.0, size / before**2)) if math.isfinite(before) else BENDING
             left = bending * size * size
@@ -179,6 +181,6 @@ def iterate(
                 left += 0.1 * error + error * solved.left
                 if left <= tolerance:
                     return ended(Outcome.CONVERGED)
-            if worn:
+            if solved.steps > (WORN_NEAR if size < NEAR else WORN):
                 preconditioner = None
         return ended(Outcome.STEP_LIMIT)

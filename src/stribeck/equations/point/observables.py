@@ -18,8 +18,8 @@ import math
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_axis
 from stribeck.equations.point.far_field import tails
+from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_axis
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh, radau
 

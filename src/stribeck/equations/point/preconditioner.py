@@ -15,7 +15,7 @@ from scipy.linalg import lapack
 from stribeck._types import Array
 from stribeck.equations.point.far_field import rates
 from stribeck.equations.point.system import Linear
-from stribeck.numerics.fourier_panels import PolarMesh, lobatto, radau
+from stribeck.numerics.fourier_panels import lobatto, radau
 
 Single = npt.NDArray[np.float32]
 

@@ -43,7 +43,8 @@ class Operators:
         Beyond the rim the film pressure falls as r**-3, in the first mode: that tilts the surface within.
         """
         found = deflection_by_mode(self.mesh)
-        found[1, :, -1] += tilt_from_beyond(self.mesh, -3.0)
+        if self.mesh.modes > 1:
+            found[1, :, -1] += tilt_from_beyond(self.mesh, -3.0)
         return found
 
     @cached_property

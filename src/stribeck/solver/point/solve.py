@@ -2,8 +2,36 @@
 
 from __future__ import annotations
 
-from stribeck.contacts.groups import Groups
-from stribeck.solver.point.state import PointState
+import math
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contact_laws.law import ContactLaw
+from stribeck.contacts.groups import Groups, contact_law
+from stribeck.equations.point.dry import dry_contact, hertz_gap
+from stribeck.equations.point.iteration import Iterated
+from stribeck.equations.point.mesh_choice import fits, operators_of, resolution
+from stribeck.equations.point.observables import identity_error
+from stribeck.equations.point.system import LOAD, Equations, Unknowns
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.units import InputError, show
+from stribeck.solver.at_rest import with_positive_gap
+from stribeck.solver.point.level import Level
+from stribeck.solver.point.refinement import Pair, follow, newton_tolerance, pair_of, refine
+from stribeck.solver.point.start import first_state
+from stribeck.solver.point.state import OBSERVABLES, PointFields, PointState
+
+RTOL_RANGE = (1e-8, 1e-2)
+"""Tolerances that a solve takes."""
+
+AT_REST_DEGREES = (10, 12, 14, 16, 18, 20)
+"""Degrees of the panels for contacts at rest, whose problem is one-dimensional."""
+
+SMALLEST_ESTIMATE = 0.01
+"""Smallest error that is stated, over the tolerance."""
 
 
 def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
@@ -20,8 +48,22 @@ def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
     -------
     PointState
         A failure is returned in its outcome, not raised.
+
+    Raises
+    ------
+    InputError
+        Where the groups are not one state of a ball, or the tolerance is out of range.
     """
-    raise NotImplementedError
+    check(groups, rtol)
+    if groups.is_hertzian:
+        return _hertz(groups, rtol)
+    if groups.speed == 0:
+        return _at_rest(groups, rtol)
+    speed, law = float(groups.speed), contact_law(groups)
+    first = first_state(speed, law)
+    if isinstance(first, Outcome):
+        return _failed(groups, rtol, first)
+    return _state(groups, rtol, refine(speed, law, first, rtol))
 
 
 def solve_from(neighbour: PointState, groups: Groups, rtol: float = 1e-6) -> PointState:
@@ -41,5 +83,142 @@ def solve_from(neighbour: PointState, groups: Groups, rtol: float = 1e-6) -> Poi
     -------
     PointState
         A failure is returned in its outcome, not raised; a path from the neighbour that is lost is tried cold first.
+
+    Raises
+    ------
+    InputError
+        Where the groups are not one state of a ball, or the tolerance is out of range.
     """
-    raise NotImplementedError
+    check(groups, rtol)
+    pair = neighbour.work
+    if groups.speed == 0 or not isinstance(pair, Pair) or not pair.fine.equations.speed > 0:
+        return solve_cold(groups, rtol)
+    speed, law = float(groups.speed), contact_law(groups)
+    if fits(pair.fine.resolution, speed, law):
+        found = follow(speed, law, pair, rtol)
+        if found is not None and found.total <= rtol:
+            return _state(groups, rtol, found)
+        if found is not None:
+            return _state(groups, rtol, refine(speed, law, found.fine, rtol))
+    return solve_cold(groups, rtol)
+
+
+def check(groups: Groups, rtol: float) -> None:
+    """Refuse what is not one state of a ball, and tolerances out of range."""
+    if not isinstance(groups, Groups) or groups.geometry != "point" or groups.shape != ():
+        raise InputError(f"groups = {show(groups)}; it must be one state, Groups(speed, load, roughness, geometry='point').")
+    low, high = RTOL_RANGE
+    if isinstance(rtol, bool) or not isinstance(rtol, int | float) or not low <= rtol <= high:
+        raise InputError(f"rtol = {show(rtol)}; for a ball it must be a number from {low:g} to {high:g}.")
+
+
+def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0) -> PointState:
+    """Return the state that a refined pair is."""
+    if isinstance(pair, Outcome):
+        return _failed(groups, rtol, pair)
+    fine, values = pair.fine, dict(pair.values)
+    for name in ("central_gap", "minimum_gap", "minimum_gap_on_axis", "offset"):
+        values[name] += shift
+    y = fine.unknowns
+    contact = fine.equations.law.pressure(y.gap)
+    smallest = SMALLEST_ESTIMATE * rtol
+    errors = {name: max(error, smallest * pair.scales[name]) for name, error in pair.errors.items()}
+    return PointState(
+        groups=groups,
+        rtol=rtol,
+        outcome=pair.outcome,
+        values=values,
+        absolute_errors=errors,
+        scales=pair.scales,
+        identity_error=identity_error(values, float(groups.speed)),
+        load_error=values["contact_load_share"] + values["fluid_load_share"] - 1.0,
+        mesh=fine.mesh,
+        nodal_gap=y.gap + shift,
+        nodal_contact_pressure=contact,
+        nodal_fluid_pressure=y.fluid,
+        fields=partial(fields_at, fine, shift),
+        newton_steps=pair.steps,
+        krylov_steps=pair.krylov_steps,
+        work=pair,
+    )
+
+
+def fields_at(level: Level, shift: float, x: Array, y: Array) -> PointFields:
+    """Return the fields at points of the plane: interpolated on the mesh, those of the far field beyond its rim."""
+    x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+    mesh, unknowns = level.mesh, level.unknowns
+    r = np.hypot(x, y)
+    inside = np.minimum(1.0, mesh.rim / np.maximum(r, 1e-300))
+    nodal = np.stack([unknowns.gap / (1.0 + mesh.radii**2), unknowns.fluid])
+    if unknowns.gap.min() > 0:
+        nodal[0] = np.log(nodal[0])
+    shape, fluid = mesh.interpolate(nodal, x * inside, y * inside)
+    gap = (np.exp(shape) if unknowns.gap.min() > 0 else shape) * (1.0 + r * r)
+    contact = level.equations.law.pressure(gap)
+    return PointFields(gap + shift, contact, fluid * inside**3)
+
+
+def _failed(groups: Groups, rtol: float, outcome: Outcome) -> PointState:
+    """Return a state without values."""
+    nothing = dict.fromkeys(OBSERVABLES, math.nan)
+    empty = np.zeros((0, 0))
+    ones = dict.fromkeys(OBSERVABLES, 1.0)
+    return PointState(groups, rtol, outcome, nothing, nothing, ones, math.nan, math.nan, None, empty, empty, empty, _nowhere)
+
+
+def _nowhere(x: Array, y: Array) -> PointFields:
+    nothing = np.full(np.broadcast_shapes(np.shape(x), np.shape(y)), np.nan)
+    return PointFields(nothing, nothing, nothing)
+
+
+def _at_rest(groups: Groups, rtol: float) -> PointState:
+    """Return the dry contact: a problem of one dimension, refined in the degree alone."""
+    base, shift = with_positive_gap(groups)
+    law = contact_law(base)
+    coarse: Level | None = None
+    outcome = Outcome.REFINEMENT_LIMIT
+    found: Pair | None = None
+    for degree in AT_REST_DEGREES:
+        fine = _dry_level(law, degree, newton_tolerance(rtol))
+        if not fine.outcome.ok:
+            return _failed(groups, rtol, fine.outcome)
+        if coarse is not None:
+            found = pair_of(coarse, fine)
+            if found.total <= rtol and found.minimum <= rtol:
+                return _state(groups, rtol, found, shift)
+        coarse = fine
+    assert found is not None
+    return _state(groups, rtol, replace(found, outcome=outcome), shift)
+
+
+def _dry_level(law: ContactLaw, degree: int, tolerance: float) -> Level:
+    found = resolution(0.0, law, degree, 2)
+    operators = operators_of(found)
+    dry = dry_contact(operators, law, tolerance)
+    y = Unknowns(np.tile(dry.gap, (2, 1)), np.zeros((2, dry.gap.size)), dry.offset)
+    return Level(found, Equations(operators, 0.0, law), Iterated(y, dry.outcome, dry.steps, 0, 0, tolerance, None))
+
+
+def _hertz(groups: Groups, rtol: float) -> PointState:
+    """Return the closed form of the dry, smooth contact."""
+    law = contact_law(groups)
+    found = resolution(1e-8, law, 10, 2)
+    mesh = operators_of(found).mesh
+    gap = np.tile(hertz_gap(mesh.radii), (2, 1))
+    pressure = np.sqrt(np.maximum(1.0 - mesh.radii**2, 0.0))
+    values = dict.fromkeys(OBSERVABLES, 0.0) | {"contact_load_share": 1.0, "central_pressure": 1.0, "offset": -1.0}
+    tiny = dict.fromkeys(OBSERVABLES, float(np.finfo(float).eps))
+    tiny["minimum_radius"] = 1.0
+    ones = dict.fromkeys(OBSERVABLES, 1.0)
+    contact = np.tile(pressure, (2, 1))
+    return PointState(
+        groups, rtol, Outcome.CONVERGED, values, tiny, ones, 0.0, 0.0, mesh, gap, contact, np.zeros_like(gap), _hertz_fields
+    )
+
+
+def _hertz_fields(x: Array, y: Array) -> PointFields:
+    r = np.hypot(*np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float)))
+    return PointFields(hertz_gap(r), np.sqrt(np.maximum(1.0 - r * r, 0.0)), np.zeros_like(r))
+
+
+__all__ = ["LOAD", "solve_cold", "solve_from"]

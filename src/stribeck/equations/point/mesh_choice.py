@@ -1,0 +1,159 @@
+r"""The panels for a state of the point contact: fine at the edge of the contact, coarser away from it, few far out.
+
+The edge layer is as wide as :math:`\max(\lambda^{2/5}, \kappa^{2/3})`, as on the line; from there the panels grow geometrically to
+both sides, as the pressure goes as the square root of the distance.  Widths are rounded to powers of two, so that neighbours share
+their mesh, and operators are kept with it.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections import OrderedDict
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contact_laws.law import ContactLaw
+from stribeck.equations.point.system import Operators
+from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.quantities.outcome import Outcome
+
+EDGE = 0.6
+"""Width of the smallest panel over that of the edge layer."""
+
+GROWTH = 2.5
+"""Ratio of the widths of neighbouring panels."""
+
+REACH = 50.0
+"""Radius of the rim over the scale of the contact."""
+
+FAR_PANELS = 2
+"""Panels in ln r beyond twice the scale."""
+
+MOST_BYTES = 600_000_000
+"""Memory that operators and preconditioner of a mesh may take."""
+
+KEPT_BYTES = 120_000_000
+"""Memory of the operators that are kept for later states."""
+
+EDGE_PRESSURE = 0.2
+"""Contact pressure at the edge, where its decay is taken from [p_Hz]."""
+
+
+class MeshTooLargeError(Exception):
+    """A mesh would take more than :data:`MOST_BYTES`."""
+
+    outcome = Outcome.REFINEMENT_LIMIT
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """What a mesh resolves.
+
+    Attributes
+    ----------
+    halvings : int
+        The smallest panel is 2**-halvings scales wide.
+    doublings : int
+        The scale of the contact is 2**doublings Hertz radii.
+    degree, modes : int
+        Degree of the polynomials, and number of cosines.
+    """
+
+    halvings: int
+    doublings: int
+    degree: int
+    modes: int
+
+    @property
+    def mesh(self) -> PolarMesh:
+        """The mesh."""
+        width, inner, outer = 0.5**self.halvings, [1.0], [1.0]
+        w = width
+        while inner[-1] - w > 0.3 * w:
+            inner.append(inner[-1] - w)
+            w *= GROWTH
+        w = width
+        while outer[-1] + 1.4 * w < 2.0:
+            outer.append(outer[-1] + w)
+            w *= GROWTH
+        edges = np.concatenate([[0.0], inner[::-1], outer[1:], np.geomspace(2.0, REACH, FAR_PANELS + 1)])
+        return PolarMesh(edges * 2.0**self.doublings, edges.size - 1 - FAR_PANELS, self.degree, self.modes)
+
+    def coarser(self) -> Resolution:
+        """Return the resolution whose results tell the error of this one's: coarser in radius and in angle."""
+        return replace(self, degree=self.degree - 2, modes=max(4, round(self.modes / 1.4)))
+
+
+def film_scale(speed: float) -> float:
+    """Return about the central film of a smooth contact: only meshes and first guesses depend on it."""
+    thin = 0.42 * speed**0.6 / math.sqrt(1.0 + 0.57 * speed**0.2)
+    return max(thin, 0.18 * speed**0.8)
+
+
+def gaps_at(law: ContactLaw, log_pressures: Array) -> Array:
+    """Return the positive gaps at which a law has these contact pressures, by bisection; tiny where it has them at none."""
+    decay = float(np.max(law.decay_length))
+    low, high = np.full_like(log_pressures, 1e-12 * decay), np.full_like(log_pressures, 1e6 * decay)
+    with np.errstate(all="ignore"):
+        for _ in range(80):
+            middle = np.sqrt(low * high)
+            above = law.log_pressure(middle) > log_pressures
+            low, high = np.where(above, middle, low), np.where(above, high, middle)
+    return low
+
+
+def layout(speed: float, law: ContactLaw) -> tuple[float, float]:
+    """Return the width of the smallest panel over the scale of the contact, and that scale [a]."""
+    decay = float(np.max(law.decay_length))
+    height = film_scale(speed)
+    if decay > 0.0:
+        at_edge = gaps_at(law, np.log(np.array([EDGE_PRESSURE])))
+        decay = min(decay, float(np.max(law.local_decay_length(at_edge))))
+        height = max(height, decay)
+    scale = math.sqrt(1.0 + 2.0 * height)
+    scale = 1.0 if scale < 1.5 else scale
+    return min(0.5, EDGE * max(speed**0.4, decay ** (2.0 / 3.0))), scale
+
+
+def resolution(speed: float, law: ContactLaw, degree: int, modes: int) -> Resolution:
+    """Return the resolution of a state."""
+    width, scale = layout(speed, law)
+    return Resolution(math.ceil(-math.log2(1.2 * width)), round(math.log2(scale)), degree, modes)
+
+
+def fits(found: Resolution, speed: float, law: ContactLaw) -> bool:
+    """Return whether the panels of a neighbour serve a state."""
+    width, scale = layout(speed, law)
+    excess = math.log2(width) + found.halvings
+    return -0.4 <= excess <= 2.1 and abs(math.log2(scale) - found.doublings) <= 0.8
+
+
+def bytes_of(found: Resolution, band: int) -> int:
+    """Return about the memory that operators and preconditioner take."""
+    rings = found.mesh.rings
+    band = min(band, found.modes - 1)
+    return found.modes * rings * rings * (8 + 4 * (2 * band + 1)) + 8 * (band + 1) ** 2 * rings * rings
+
+
+_kept: OrderedDict[Resolution, Operators] = OrderedDict()
+_lock = threading.Lock()
+
+
+def operators_of(found: Resolution) -> Operators:
+    """Return the operators of a mesh; the last ones are kept."""
+    with _lock:
+        if found in _kept:
+            _kept.move_to_end(found)
+            return _kept[found]
+        operators = Operators(found.mesh)
+        _kept[found] = operators
+        while len(_kept) > 1 and sum(_size(one) for one in _kept.values()) > KEPT_BYTES:
+            _kept.popitem(last=False)
+        return operators
+
+
+def _size(operators: Operators) -> int:
+    return 8 * operators.mesh.modes * operators.mesh.rings**2

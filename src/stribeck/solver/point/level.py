@@ -1,0 +1,105 @@
+"""A state of the point contact on one mesh, and how it comes to another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contact_laws.law import ContactLaw
+from stribeck.equations.point.iteration import Iterated, iterate
+from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, operators_of
+from stribeck.equations.point.preconditioner import BandedModes
+from stribeck.equations.point.system import Equations, Unknowns
+from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.quantities.outcome import Outcome
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """A state on one mesh: its equations, the unknowns, and how Newton's iteration ended."""
+
+    resolution: Resolution
+    equations: Equations
+    iterated: Iterated
+
+    @property
+    def mesh(self) -> PolarMesh:
+        """The mesh."""
+        return self.equations.operators.mesh
+
+    @property
+    def unknowns(self) -> Unknowns:
+        """Gap, fluid pressure and offset."""
+        return self.iterated.unknowns
+
+    @property
+    def outcome(self) -> Outcome:
+        """How the iteration ended."""
+        return self.iterated.outcome
+
+    @property
+    def effort(self) -> float:
+        """What :func:`stribeck.numerics.continuation.march` steers by."""
+        return 0.6 * self.iterated.steps
+
+    @property
+    def central_contact_pressure(self) -> float:
+        """Contact pressure at the innermost ring [p_Hz]."""
+        return float(self.equations.law.pressure(self.unknowns.gap[:, 0]).mean())
+
+
+def band_for(speed: float, law: ContactLaw) -> int:
+    """Return the band of modes that the preconditioner keeps: thin films of smooth contacts couple more of them."""
+    if float(np.max(law.decay_length)) > speed**0.6 or speed >= 1e-3:
+        return 5
+    return min(16, round(5.0 * (1e-3 / speed) ** 0.17))
+
+
+def moved(y: Unknowns, old: PolarMesh, new: PolarMesh) -> Unknowns:
+    """Return unknowns on another mesh; beyond the rim of the old one the gap grows as r**2 and the pressure falls as r**-3."""
+    if old is new:
+        return y
+    beyond = np.maximum(1.0, new.radii / old.rim)
+    fields = np.stack([np.log(y.gap / (1.0 + old.radii**2)), y.fluid])
+    shape, fluid = old.transfer(new, fields)
+    return Unknowns(np.exp(shape) * (1.0 + new.radii**2), fluid / beyond**3, y.offset)
+
+
+def solve_level(
+    resolution: Resolution,
+    speed: float,
+    law: ContactLaw,
+    start: Unknowns,
+    start_mesh: PolarMesh,
+    tolerance: float,
+    kept: BandedModes | None = None,
+    max_steps: int = 40,
+) -> Level:
+    """Return the state of one speed and law on a mesh, from unknowns on that or another mesh.
+
+    Raises
+    ------
+    MeshTooLargeError
+        If the mesh takes too much memory.
+    """
+    band = band_for(speed, law)
+    if bytes_of(resolution, band) > MOST_BYTES:
+        raise MeshTooLargeError
+    operators = operators_of(resolution)
+    equations = Equations(operators, speed, law)
+    guess = moved(start, start_mesh, operators.mesh)
+    if kept is not None and kept.shape != guess.gap.shape:
+        kept = None
+    return Level(resolution, equations, iterate(equations, guess, tolerance, band, kept, max_steps))
+
+
+def extrapolated(weights: Sequence[float] | Array, levels: Sequence[Level], mesh: PolarMesh) -> Unknowns:
+    """Return the weighted sum of states on a mesh: of the logarithms of their gaps, the pressures and the offsets."""
+    parts = [moved(level.unknowns, level.mesh, mesh) for level in levels]
+    log_gap = sum(w * np.log(part.gap) for w, part in zip(weights, parts, strict=True))
+    fluid = sum(w * part.fluid for w, part in zip(weights, parts, strict=True))
+    offset = sum(w * part.offset for w, part in zip(weights, parts, strict=True))
+    return Unknowns(np.exp(log_gap), np.asarray(fluid), float(offset))

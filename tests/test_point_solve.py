@@ -1,0 +1,100 @@
+"""The point contact against states of an independent grid, and what holds for every state."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stribeck.contacts.groups import Groups
+from stribeck.quantities.units import InputError
+from stribeck.solver.point.solve import solve_cold, solve_from
+
+DATA = json.loads((Path(__file__).parent / "data" / "point_states.json").read_text())
+MINIMUM = ("minimum_gap", "minimum_gap_on_axis")
+
+
+def ball(speed, load, kappa, law=None):
+    return Groups(speed, load, kappa * load ** (2 / 3), law=law, geometry="point")
+
+
+def groups_of(row):
+    return ball(row["speed"], row["load"] or 1e-3, row["relative_roughness"])
+
+
+def departures(state, row, rtol):
+    """Return by how much each observable misses its reference over what is allowed."""
+    found = {}
+    for name in ("contact_load_share", "central_gap", "central_pressure", "offset", "J_balanced", "J_published", *MINIMUM):
+        if name not in row["values"]:
+            continue
+        allowed = (100 if name in MINIMUM else 2) * rtol * state.scales[name] + row["uncertainty"][name]
+        found[name] = abs(state.values[name] - row["values"][name]) / allowed
+    return found
+
+
+CHEAP = [row for row in DATA["states"] if row["relative_roughness"] >= 1e-3 or row["speed"] >= 1]
+
+
+@pytest.mark.parametrize("row", CHEAP, ids=lambda row: f"{row['speed']:g}-{row['load']}-{row['relative_roughness']:g}")
+def test_a_cold_state_agrees_with_the_reference(row):
+    state = solve_cold(groups_of(row), 1e-6)
+    assert state.outcome.ok
+    assert max(departures(state, row, 1e-6).values()) <= 1.0
+    assert state.error_estimate <= 1e-6
+    assert abs(state.load_error) < 1e-8
+    assert abs(state.identity_error) <= 1e-7 * max(abs(state.values["J_balanced"]), row["speed"])
+
+
+@pytest.mark.quick
+def test_a_neighbour_leads_to_the_state_that_a_cold_start_finds():
+    near = solve_cold(ball(0.01, 1e-3, 0.01), 1e-6)
+    there = ball(0.012, 1e-3, 0.01)
+    warm, cold = solve_from(near, there, 1e-6), solve_cold(there, 1e-6)
+    assert warm.mesh is near.mesh
+    for name, value in cold.values.items():
+        assert abs(warm.values[name] - value) <= 2 * (warm.absolute_errors[name] + cold.absolute_errors[name]), name
+
+
+@pytest.mark.quick
+def test_the_dry_smooth_contact_is_that_of_hertz():
+    state = solve_cold(ball(0.0, 1.0, 0.0))
+    assert (state.values["offset"], state.values["central_pressure"], state.values["contact_load_share"]) == (-1.0, 1.0, 1.0)
+    fields = state.fields(np.array([0.0, 0.6, 2.0]), 0.0)
+    assert fields.contact_pressure == pytest.approx([1.0, 0.8, 0.0])
+    assert fields.gap == pytest.approx([0.0, 0.0, (2 * math.acos(0.5) + math.sqrt(3)) / math.pi])
+
+
+@pytest.mark.quick
+def test_at_rest_a_heavier_load_of_the_exponential_law_only_shifts_the_gap():
+    light, heavy = solve_cold(ball(0.0, 1e-3, 0.01)), solve_cold(ball(0.0, 5.0, 0.01))
+    shift = 0.01 * math.log(5000) / 3
+    assert heavy.values["central_gap"] == pytest.approx(light.values["central_gap"] - shift, abs=1e-9)
+    assert heavy.values["minimum_gap"] < 0
+
+
+@pytest.mark.quick
+def test_fields_agree_with_the_nodes_and_go_on_beyond_the_rim():
+    state = solve_cold(ball(0.1, 1e-3, 0.1), 1e-4)
+    r, angle = state.mesh.radii, state.mesh.angles[2]
+    fields = state.fields(r * np.cos(angle), r * np.sin(angle))
+    assert fields.gap == pytest.approx(state.nodal_gap[2], rel=1e-9)
+    assert fields.fluid_pressure == pytest.approx(state.nodal_fluid_pressure[2], abs=1e-12)
+    x = state.mesh.rim * np.array([0.999, 1.001, 4.0])
+    far = state.fields(x, 0.0)
+    assert far.gap == pytest.approx(x * x / 2, rel=1e-2)
+    assert far.fluid_pressure == pytest.approx(-0.8 * 0.1 / x**3, rel=1e-2)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("wrong", [Groups(1.0, 1.0, 1.0), Groups([1.0, 2.0], 1.0, 1.0, geometry="point"), "ball"])
+def test_what_is_not_one_state_of_a_ball_is_refused(wrong):
+    with pytest.raises(InputError, match="geometry='point'"):
+        solve_cold(wrong)
+
+
+@pytest.mark.quick
+def test_a_tolerance_out_of_range_is_refused():
+    with pytest.raises(InputError, match="1e-08 to 0.01"):
+        solve_cold(ball(1.0, 1.0, 1.0), 1e-12)
