@@ -44,7 +44,7 @@ def test_a_cold_state_agrees_with_the_reference(row):
     assert max(departures(state, row, 1e-6).values()) <= 1.0
     assert state.error_estimate <= 1e-6
     assert abs(state.load_error) < 1e-8
-    assert abs(state.identity_error) <= 1e-7 * max(abs(state.values["J_balanced"]), row["speed"])
+    assert abs(state.identity_error) <= 1e-7 * state.scales["J_balanced"]
 
 
 @pytest.mark.quick

@@ -39,7 +39,7 @@ def _rule(nodes: Array, weights: Array) -> Rule:
     vandermonde = legendre.legvander(nodes, degree)
     to_legendre = np.linalg.inv(vandermonde)
     derivative = legendre.legval(nodes, legendre.legder(np.eye(degree + 1))).T @ to_legendre
-    return Rule(nodes, weights, derivative, to_legendre)
+    return Rule(nodes, weights, np.asarray(derivative), np.asarray(to_legendre, dtype=np.float64))
 
 
 @lru_cache(maxsize=32)
@@ -158,12 +158,12 @@ class PolarMesh:
     @cached_property
     def angles(self) -> Array:
         """Angles, ascending, shape (modes,)."""
-        return (np.arange(self.modes) + 0.5) * (np.pi / self.modes)
+        return np.asarray((np.arange(self.modes) + 0.5) * (np.pi / self.modes))
 
     @cached_property
     def ring_weights(self) -> Array:
         """Weights of ``int_0^rim dr``, shape (rings,)."""
-        return self.gathered(self.local_weights[None])[0]
+        return np.asarray(self.gathered(self.local_weights[None])[0])
 
     @cached_property
     def area_weights(self) -> Array:
@@ -201,12 +201,12 @@ class PolarMesh:
     @cached_property
     def cosines(self) -> Array:
         """cos(m theta_j), shape (angles, modes)."""
-        return np.cos(np.outer(self.angles, np.arange(self.modes)))
+        return np.asarray(np.cos(np.outer(self.angles, np.arange(self.modes))))
 
     @cached_property
     def sines(self) -> Array:
         """sin(m theta_j), shape (angles, modes)."""
-        return np.sin(np.outer(self.angles, np.arange(self.modes)))
+        return np.asarray(np.sin(np.outer(self.angles, np.arange(self.modes))))
 
     @cached_property
     def to_modes(self) -> Array:

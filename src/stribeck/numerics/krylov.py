@@ -35,7 +35,7 @@ class Solved:
 
 
 def gmres(product: Apply, precondition: Apply, right: Array, tolerance: float, max_steps: int) -> Solved:
-    """Return x with ``A x = right`` but for a preconditioned residual of ``tolerance`` times the preconditioned right-hand side.
+    """Return x with ``A x = right`` but for ``tolerance``, both sides preconditioned.
 
     Parameters
     ----------

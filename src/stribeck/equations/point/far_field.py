@@ -7,9 +7,9 @@ With :math:`h = z_0 + r^2/2 + b/r` Reynolds' equation has, to first order in b, 
     p = \cos\theta \Big[ -\frac\lambda5 \frac{r}{(z_0 + r^2/2)^2} \Big(1 - \frac{16 b}{r^3}\Big) \Big]
         + \sum_m C_m \cos m\theta \; r^{-3 - \sqrt{9 + m^2}}
 
-The first part is exact for b = 0, and the coefficient 16 follows from :math:`h^3` and :math:`\partial_x h` to first order.  The sum is
-what decays of the film without a source in a gap :math:`r^2/2`; its coefficients come from within, and a rim that knows the
-rates alone lets it pass.
+The first part is exact for b = 0, and 16 follows from :math:`h^3` and :math:`\partial_x h` to first order.  The
+sum is what decays of the film without a source in a gap :math:`r^2/2`; its coefficients come from within, and a rim that knows
+the rates alone lets it pass.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Newton's iteration for the point contact: damped steps by GMRES, with a preconditioner that is kept while it serves.
 
-Steps are not exact, so that :func:`stribeck.numerics.newton.root_find`, whose chord steps live on exact inverses, does not fit:
-how small a linear residual has to be is decided step by step, and the stopping test holds both errors, that of the
+Steps are not exact, so that :func:`stribeck.numerics.newton.root_find`, whose chord steps live on exact inverses, does not
+fit: how small a linear residual has to be is decided step by step, and the stopping test holds both errors, that of the
 linearisation and that of GMRES.
 
 Source: [Deuflhard 2011] Newton Methods for Nonlinear Problems, section 2.1.5 (inexact steps); theory.md, the ball.
@@ -151,7 +151,7 @@ def iterate(
                 krylov += solved.steps
                 if solved.left > wanted:
                     solved = None
-            if solved is None:
+            if solved is None or preconditioner is None:
                 preconditioner = BandedModes(linear, band)
                 factorisations += 1
                 solved = gmres(linear.product, preconditioner, right, wanted, MAX_KRYLOV)

@@ -1,7 +1,7 @@
 r"""The panels for a state of the point contact: fine at the edge of the contact, coarser away from it, few far out.
 
-The edge layer is as wide as :math:`\max(\lambda^{2/5}, \kappa^{2/3})`, as on the line; from there the panels grow geometrically to
-both sides, as the pressure goes as the square root of the distance.  Widths are rounded to powers of two, so that neighbours share
+The edge layer is as wide as :math:`\max(\lambda^{2/5}, \kappa^{2/3})`, as on the line; from there the panels grow to both
+sides, as the pressure goes as the square root of the distance.  Widths are rounded to powers of two, so that neighbours share
 their mesh, and operators are kept with it.
 """
 
@@ -90,7 +90,7 @@ class Resolution:
 def film_scale(speed: float) -> float:
     """Return about the central film of a smooth contact: only meshes and first guesses depend on it."""
     thin = 0.42 * speed**0.6 / math.sqrt(1.0 + 0.57 * speed**0.2)
-    return max(thin, 0.18 * speed**0.8)
+    return float(max(thin, 0.18 * speed**0.8))
 
 
 def gaps_at(law: ContactLaw, log_pressures: Array) -> Array:

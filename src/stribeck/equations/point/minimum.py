@@ -59,7 +59,7 @@ def centre(mesh: PolarMesh, h: Array) -> Minimum:
 
 def _descend(mesh: PolarMesh, coefficients: Array, radius: float, angle: float, on_axis: bool) -> Minimum:
     """Return the minimum near a node, by Newton steps that may cross into neighbouring panels."""
-    orders = np.arange(mesh.modes)
+    orders = np.arange(mesh.modes, dtype=np.float64)
     best = Minimum(np.inf, radius, angle)
     for _ in range(STEPS):
         value, slope, curvature = _jet(mesh, coefficients, orders, radius, angle)

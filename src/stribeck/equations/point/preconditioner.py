@@ -121,7 +121,7 @@ class Coupling:
 
 
 class BlockLU:
-    """Block LU factors of a banded block matrix in single precision, pivoted within the diagonal blocks, its rows scaled first."""
+    """Block LU factors of a banded block matrix in single precision, pivoted within the diagonal blocks."""
 
     def __init__(self, columns: Iterator[tuple[range, Array]], band: int, shape: tuple[int, int]) -> None:
         self.count, size = shape
@@ -150,7 +150,7 @@ class BlockLU:
         if last == k + 1:
             return
         right = lapack.sgetrs(lu, pivots, np.hstack([window.pop((k, j)) for j in range(k + 1, last)]))[0]
-        below = np.vstack([window.pop((i, k)) for i in range(k + 1, last)])
+        below: Single = np.vstack([window.pop((i, k)) for i in range(k + 1, last)]).astype(np.float32, copy=False)
         update = below @ right
         for i in range(k + 1, last):
             for j in range(k + 1, last):

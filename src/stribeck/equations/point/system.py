@@ -5,7 +5,8 @@ Unknowns are the gap and the fluid pressure at the nodes and the offset.  With K
 .. math::
 
     R_1 &= h - z_0 - r^2/2 - K (p_c + p_f), \\
-    R_2 &= \int \nabla v \cdot (h^3 \nabla p_f - \lambda h \, \mathbf e_x) - \oint v \, (h^3 \partial_r p_f - \lambda h \cos\theta), \\
+    R_2 &= \int \nabla v \cdot (h^3 \nabla p_f - \lambda h \, \mathbf e_x)
+           - \oint v \, (h^3 \partial_r p_f - \lambda h \cos\theta), \\
     R_3 &= \int (p_c + p_f) - 2 \pi/3
 
 for every v of the mesh.  At the rim the slope of the pressure is that of the far field beyond.

@@ -1,7 +1,7 @@
 """Refining a state of the point contact until its estimated error holds a tolerance.
 
-Each state is solved on two meshes, the second finer in radius *and* angle: either alone misleads.  The state is that of the finer
-one, and by how much its observables differ from those of the coarser one tells their errors.
+Each state is solved on two meshes, the second finer in radius *and* angle: either alone misleads.  The state is that of the
+finer one, and by how much its observables differ from those of the coarser one tells their errors.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def modes_for(level: Level, amplitude: float) -> int:
 
 
 def legendre_tail(level: Level) -> float:
-    """Return the largest of the last two Legendre coefficients of the logarithm of the gap on panels within twice the scale."""
+    """Return the largest of the last two Legendre coefficients of the logarithm of the gap, within twice the scale."""
     mesh, h = level.mesh, level.unknowns.gap
     near = mesh.edges[1:] <= 2.0 * 2.0**level.resolution.doublings * (1.0 + 1e-9)
     return float(np.abs(mesh.legendre(np.log(h))[:, near, -2:]).max())

@@ -1,8 +1,9 @@
 """Cold start of the point contact: a first, coarse state anywhere.
 
-The dry contact under a law as soft as the film is thick has the shape of the lubricated one: its pressure, less what the asperities
-of the state carry at that gap, is the first guess of the film pressure.  So the elastic shape and the load hold from the beginning.
-Where Newton's iteration does not end from there, the speed comes up from the dry contact, or down from a rigid ball.
+The dry contact under a law as soft as the film is thick has the shape of the lubricated one: its pressure, less what the
+asperities of the state carry at that gap, is the first guess of the film pressure.  So the elastic shape and the load hold
+from the beginning.  Where Newton's iteration does not end from there, the speed comes up from the dry contact, or down from a
+rigid ball.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ DRY = 0.3
 """Film of the smooth contact over the gap of the dry one below which the dry contact is the first guess."""
 
 FAST, SLOW = 30.0, 1e-3
-"""Speeds over that of the state at which the paths from the rigid ball and from the dry contact begin, at most and at least."""
+"""The speed at which the path from the rigid ball begins, and that of the path from the dry contact over the state's."""
 
 LONGEST_PATH = 60
 """States on a path after which it is given up."""
