@@ -24,7 +24,7 @@ ROOT = HERE.parent
 CONTENTS = {
     "index": ["readers", "guide", "gallery/index", "theory", "numerics", "api", "about"],
     "readers": ["for_engineers", "for_experimentalists", "for_theorists", "for_teachers", "for_developers", "when_not_to_use"],
-    "guide": ["cli", "checks", "explorer", "surfaces", "fitting", "contact_laws", "sweep", "batch", "atlas"],
+    "guide": ["cli", "data_sheet", "checks", "explorer", "surfaces", "fitting", "contact_laws", "sweep", "batch", "atlas"],
     "theory": ["symbols", "validity", "figures", "errata"],
     "numerics": ["convergence"],
     "about": ["citing", "references", "generated/changelog", "generated/contributing"],

@@ -33,7 +33,7 @@ LAYERS = (
     ("__init__", "__main__", "cli", "evidence"),
     ("explorer", "figures"),
     ("fits", "sweeps", "regimes"),
-    ("checks",),
+    ("checks", "uncertainty"),
     ("curves", "batches"),
     ("solver", "surfaces"),
     ("equations", "atlas", "asymptotics", "cases"),

@@ -31,6 +31,8 @@ _HOMES = {
     "sweeps.design": ("SweepDesign", "load_sweep"),
     "sweeps.store": ("SweepError",),
     "sweeps.sweep": ("SweepProgress", "sweep"),
+    "uncertainty.propagate": ("propagate",),
+    "uncertainty.result": ("Spread", "Uncertainty"),
 }
 __all__ = sorted([*_PACKAGES, *(name for names in _HOMES.values() for name in names)])
 

@@ -18,9 +18,11 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import CONTACTS, check_geometry
 from stribeck.contacts.groups import Geometry
 from stribeck.files.reading import read_bounded
+from stribeck.quantities.conversions import GIVEN, read_given
 from stribeck.quantities.facts import FACTS, fact_values
 from stribeck.quantities.hints import MEANT, advice_on
 from stribeck.quantities.inputs import INPUT_TABLES, LINE, InputTable, check_alternatives, quantity
+from stribeck.quantities.uncertain import split_error
 from stribeck.quantities.units import DIMENSIONS, InputError, show
 
 __all__ = [
@@ -100,6 +102,10 @@ class Case:
         The ``[fit]`` table, for :func:`stribeck.fit`.
     facts : dict
         The ``[check]`` table, for :func:`stribeck.check`, in SI units.
+    errors : dict
+        Standard errors of inputs over their values, of those that the file gives with an error.
+    conversions : tuple of str
+        What was made of inputs as data sheets have them, one sentence each.
     tables : dict
         All tables and keys of the file as they stand there.
     """
@@ -114,6 +120,8 @@ class Case:
     notes: str = ""
     fit: FitSettings = field(default_factory=FitSettings)
     facts: dict[str, float] = field(default_factory=dict)
+    errors: dict[str, float] = field(default_factory=dict)
+    conversions: tuple[str, ...] = ()
     tables: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
 
@@ -181,6 +189,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
             fit = check_fit_table(table.pop("fit"))
         except InputError as problem:
             problems += str(problem).split("\n")
+    errors, conversions = _convert(table, problems, inputs)
     try:
         checked = model(**table).model_dump()
     except pydantic.ValidationError as failure:
@@ -212,6 +221,8 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         notes=checked["notes"],
         fit=fit,
         facts=facts,
+        errors=errors,
+        conversions=conversions,
         tables=tables,
         **checked["solver"],
     )
@@ -244,6 +255,26 @@ def geometry_of(tables: dict[str, Any]) -> tuple[Geometry, dict[str, Any]]:
             found[name] = dict(found[name])
             geometry = check_geometry(found[name].pop("geometry"))
     return geometry, found
+
+
+def _convert(table: dict[str, Any], problems: list[str], inputs: InputTable) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Put inputs of the contact in the place of those that they follow from, and return their errors and what was done."""
+    errors: dict[str, float] = {}
+    said: tuple[str, ...] = ()
+    if isinstance(table.get("contact"), dict):
+        given = read_given(table["contact"], inputs)
+        problems += [f"[contact] {each}" for each in given.problems]
+        table["contact"], errors, said = given.values, given.errors, given.said
+    surface = table.get("surface")
+    if isinstance(surface, dict) and "h_rms" in surface:
+        try:
+            height, error = split_error("h_rms", surface["h_rms"], "length")
+        except InputError as problem:
+            problems.append(f"[surface] {problem}")
+        else:
+            table["surface"] = surface | {"h_rms": height}
+            errors |= {} if error is None else {"roughness": error}
+    return errors, said
 
 
 def contact_inputs(checked: dict[str, Any], folder: Path) -> dict[str, Any]:
@@ -529,7 +560,8 @@ def example_of(key: str, inputs: InputTable = LINE) -> str:
 
 
 def _nearest(file: Any, model: Any, key: str) -> str:
-    known, meant = list(model.model_fields), MEANT.get(key, key)
+    known = [*model.model_fields, *(GIVEN if "radius" in model.model_fields else ())]
+    meant = MEANT.get(key, key)
     advice = advice_on(key, known)
     if advice:
         return advice

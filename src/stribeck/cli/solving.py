@@ -96,11 +96,14 @@ def solve_command(
     from stribeck.cli.reports import state_and_curve as report
 
     checks = checks_of_solution(solution, loaded.facts if loaded else None)
+    from stribeck.cli.reports.words import conversions_json, print_conversions
+
     if json:
-        print(report_json.dump(report_json.solution_json(solution, mu, b, checks)))
+        print(report_json.dump(report_json.solution_json(solution, mu, b, checks) | conversions_json(loaded)))
         return 0
     console = stdout_console()
     report.print_solution(console, solution, title, mu, b, checks)
+    print_conversions(console, loaded)
     for picture in pictures:
         console.print(f"Written: {picture}", markup=False, highlight=False, soft_wrap=True)
     return 0
@@ -178,10 +181,14 @@ def curve_command(
     from stribeck.cli.reports import state_and_curve as report
 
     checks = checks_of_curve(curve, loaded.facts if loaded else None)
+    from stribeck.cli.reports.words import conversions_json, print_conversions
+
     if json:
-        print(report_json.dump(report_json.curve_json(curve, title, written, checks)))
+        print(report_json.dump(report_json.curve_json(curve, title, written, checks) | conversions_json(loaded)))
     else:
-        report.print_curve(stdout_console(), curve, title, written, checks)
+        console = stdout_console()
+        report.print_curve(console, curve, title, written, checks)
+        print_conversions(console, loaded)
     if problems:
         return complain("\n".join(problems), BAD_INPUT)
     if curve.outcome is Outcome.INTERRUPTED:
@@ -230,10 +237,19 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     from stribeck.cli.reports import regimes as report_regimes
 
     checks = checks_of_curve(curve, loaded.facts, solution)
+    from stribeck.cli.reports.words import conversions_json, print_conversions
+
+    errors = sb.propagate(loaded.contact, loaded.errors, definition=loaded.definition) if loaded.errors else None
     if json:
-        print(report_json.dump(report_json.regimes_json(solution, sensitivities, curve, margins, loaded.title, checks)))
+        found = report_json.regimes_json(solution, sensitivities, curve, margins, loaded.title, checks)
+        found |= {"uncertainty": errors.to_dict()} if errors is not None else {}
+        print(report_json.dump(found | conversions_json(loaded)))
     else:
-        report_regimes.print_regimes(stdout_console(), solution, sensitivities, curve, margins, loaded.title, checks)
+        console = stdout_console()
+        report_regimes.print_regimes(console, solution, sensitivities, curve, margins, loaded.title, checks)
+        if errors is not None:
+            report_regimes.print_uncertainty(console, errors)
+        print_conversions(console, loaded)
     return 0 if curve.outcome.ok else complain(curve.outcome.value, FAILED)
 
 
@@ -266,7 +282,11 @@ def check_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     if json:
         print(report_json.dump({"title": loaded.title} | found.to_dict() | {"unchecked": list(found.unchecked)}))
     else:
-        report_checks.print_checks(stdout_console(), found, loaded.title)
+        from stribeck.cli.reports.words import print_conversions
+
+        console = stdout_console()
+        report_checks.print_checks(console, found, loaded.title)
+        print_conversions(console, loaded)
     return 0
 
 

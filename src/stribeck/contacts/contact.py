@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Self
 
 from stribeck.contact_laws.law import AsperityLaw, check_law
 from stribeck.contacts.groups import Groups
+from stribeck.quantities.conversions import converted
 from stribeck.quantities.inputs import InputTable, contact_values, refuse_former, replaced, si_text
 from stribeck.quantities.units import InputError
 
@@ -70,7 +71,7 @@ class Contact(ABC):
         self._keep(law, inputs)
 
     def _keep(self, law: AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
-        for name, value in contact_values(inputs, self.INPUTS).items():
+        for name, value in contact_values(converted(inputs, self.INPUTS), self.INPUTS).items():
             object.__setattr__(self, name, value)
         object.__setattr__(self, "law", check_law(law))
         self._check_scales()

@@ -58,6 +58,8 @@ class LineContact(Contact):
         Poisson ratio :math:`0 \le \nu \le 1/2` of the half-space [-].
     entrainment_speed : str or float, optional
         Mean of both surface speeds, in place of ``speed`` [m/s].
+    shore_a, shore_d, ra, rq, kinematic_viscosity, density, rotational_speed, shaft_diameter, force, width : optional
+        Inputs as data sheets have them, in place of modulus, roughness, viscosity, speed and load: docs/data_sheet.md.
     law : AsperityLaw, optional
         Contact law :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
 

@@ -20,9 +20,9 @@ ALIKE = 0.8
 SHORTEST = 4
 """Smallest number of letters of a word that stands for the key that begins with it."""
 
-_RMS = "heights are root mean squares, of Gaussian ones about 1.25 Ra: h_rms in [surface], or roughness in [contact]"
+_RMS = "heights are root mean squares: rq or ra in [contact], h_rms in [surface]"
 _FLUID = "the fluid is Newtonian, and its viscosity is the same everywhere: give viscosity at the temperature and pressure"
-_LINE = "give load: of a cylinder the force divided by its length, in N/m; of a ball, geometry = 'point', the force in N"
+_LINE = "give load: of a cylinder in N/m, or force in N with its width; of a ball, geometry = 'point', the force in N"
 
 # Whole words of a key, and what the package has instead.  The first that matches is said.
 _ABSENT = (
@@ -30,7 +30,7 @@ _ABSENT = (
     (("ra", "rq", "r_a", "r_q", "sq", "sa"), _RMS),
     (
         ("pressure_viscosity", "piezoviscous", "barus", "roelands"),
-        f"there is no pressure-viscosity coefficient: {_FLUID} of the contact",
+        f"it is pressure_viscosity in the table [check], which no equation takes: {_FLUID} of the contact",
     ),
     (
         ("temperature", "viscosity_index", "thermal"),
@@ -38,8 +38,7 @@ _ABSENT = (
     ),
     (
         ("density", "rho"),
-        "there is no density of the fluid, as its inertia is neglected: of a kinematic viscosity give viscosity = density "
-        "times it; the number of asperities per area is density in [asperities]",
+        "density goes with kinematic_viscosity in [contact]; the number of asperities per area is density in [asperities]",
     ),
     (
         ("shear_modulus", "storage_modulus", "loss_modulus", "bulk_modulus"),
@@ -47,8 +46,8 @@ _ABSENT = (
         "ratio nu, E* = 2 G/(1 - nu)",
     ),
     (("force", "normal_force", "weight", "mass"), _LINE),
-    (("length", "width"), _LINE),
-    (("diameter",), "give radius, half the diameter"),
+    (("length",), _LINE),
+    (("diameter",), "give radius, half the diameter; of a shaft that turns, shaft_diameter with rotational_speed"),
     (
         ("ellipticity", "ball", "sphere"),
         "of a ball write geometry = 'point' and its radius; an ellipse is not modelled",
@@ -59,7 +58,7 @@ _ABSENT = (
     ),
     (
         ("rpm", "angular_velocity", "rotation"),
-        "give speed: the angular velocity in rad/s times the radius of shaft or track",
+        "give rotational_speed, such as '1500 rpm', with shaft_diameter, that of shaft or track",
     ),
 )
 
@@ -88,7 +87,7 @@ def advice_on(key: str, known: Iterable[str]) -> str | None:
     >>> advice_on("spede", ["speed", "load"])
     'did you mean speed'
     >>> advice_on("diameter", ["radius"])
-    'give radius, half the diameter'
+    'give radius, half the diameter; of a shaft that turns, shaft_diameter with rotational_speed'
     """
     names = list(known)
     if MEANT.get(key) in names:

@@ -76,6 +76,9 @@ DIMENSIONS = {
     "rate": Dimension("a rate", "1/s", "1e6 1/s", {0: "1/s"}),
     "density": Dimension("a density", "kg/m^3", "870 kg/m^3", {0: "kg/m^3"}),
     "conductivity": Dimension("a thermal conductivity", "W/m/K", "0.15 W/m/K", {0: "W/m/K"}),
+    "force": Dimension("a force", "N", "1.3 N", _prefixed("N", (-9, -6, -3, 0, 3))),
+    "kinematic": Dimension("a kinematic viscosity", "m^2/s", "46 cSt", {-6: "mm^2/s", 0: "m^2/s"}),
+    "rotation": Dimension("an angular velocity", "rad/s", "1500 rpm", {0: "rad/s"}),
     "per kelvin": Dimension("a relative change per kelvin", "1/K", "0.04 1/K", {0: "1/K"}),
     "per area": Dimension("a number per area", "1/m^2", "1e10 1/m^2", {0: "1/m^2"}),
     "time": Dimension("a time", "s", "1 ms", _prefixed("s", (-9, -6, -3, 0))),
@@ -125,10 +128,7 @@ _HINTS = {
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][+-]?[0-9]{1,3})?)\s*(.*?)\s*", re.DOTALL)
 _PERCENT = re.compile(r"\s*([0-9]{1,9}(?:\.[0-9]{0,9})?)\s*%\s*")
 _HARDNESS = re.compile(r"shore|irhd", re.IGNORECASE)
-FROM_HARDNESS = (
-    "for S Shore A Gent's relation gives youngs_modulus = 0.0981 (56 + 7.62 S)/(0.137505 (254 - 2.54 S)) in MPa, "
-    "5.5 MPa for 70, with poisson_ratio = 0.5"
-)
+FROM_HARDNESS = "write shore_a = 70 or shore_d = 50, a bare number, in place of the modulus"
 _EXPONENT = re.compile(r"(?:\^|\*\*)\s*(?:[+-]?[0-9]|\(\s*[+-]?[0-9]\s*\))")
 _UNIT = re.compile(r"(?:1 ?/)?[A-Za-zµμÅ_#()*/ ]*", re.ASCII)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
@@ -333,6 +333,11 @@ def _from_text(text: str, kind: Dimension, name: str) -> Fraction:
         raise InputError(f"{received} is text, but a number is expected; {advice}.")
     if kind.unit == "Pa" and _HARDNESS.search(text):
         raise InputError(f"{received} is a hardness, not a modulus; {FROM_HARDNESS}.")
+    if "+-" in text or "±" in text:
+        raise InputError(
+            f"{received} has an error, for which there is no place here; a case file takes it, and "
+            "stribeck.propagate(contact, {name: error})."
+        )
     if "," in text:
         raise InputError(f"{received} has a comma; write a decimal point and no thousands separator, as in '{kind.example}'.")
     parts = _NUMBER.fullmatch(text.replace("\N{MINUS SIGN}", "-"))

@@ -26,6 +26,7 @@ from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.units import format_share, format_si
 from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
 from stribeck.solver.solution import Solution
+from stribeck.uncertainty.result import Uncertainty
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -102,6 +103,26 @@ def print_regimes(
         )
     notes = [*solution.notes, *curve.minimum_notes, *margins.notes]
     print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), notes, checks)
+
+
+def print_uncertainty(console: Console, found: Uncertainty) -> None:
+    """Print what errors of the inputs make of friction, films, transitions and the regime.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    found : Uncertainty
+        What they make.
+    """
+    table = table_of("with the errors of the inputs", "value", "95 %", right=(1, 2))
+    for each in found.spreads:
+        value, low, high = (format_si(end, each.dimension) for end in (each.value, *each.interval_95))
+        table.add_row(each.label, value, f"{low} to {high}")
+    print_table(console, table)
+    say(console, f"Probability of each regime: {found.probabilities}.")
+    blame = ", ".join(f"{QUANTITIES[name].label} {100 * part:.2g} %" for name, part in found.contributions.items())
+    say(console, f"Of the variance of friction come from: {blame}.")
 
 
 def _ways(margins: RegimeMargins) -> Iterator[str]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stribeck.cases.case import Case
 from stribeck.checks.check import Checks
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
@@ -159,6 +160,17 @@ def print_first(console: Console, checks: Checks | None) -> None:
     """Print above all else that the model is not for this contact, where a check says so."""
     if checks is not None and checks.first_line:
         console.print(checks.first_line, style="bold red", markup=False, highlight=False, soft_wrap=True)
+
+
+def print_conversions(console: Console, case: Case | None) -> None:
+    """Print what was made of inputs as data sheets have them."""
+    for sentence in () if case is None else case.conversions:
+        say(console, f"Converted: {sentence}")
+
+
+def conversions_json(case: Case | None) -> dict[str, Any]:
+    """Return what was made of inputs as data sheets have them; nothing where nothing was."""
+    return {"conversions": list(case.conversions)} if case is not None and case.conversions else {}
 
 
 def say(console: Console, text: str) -> None:

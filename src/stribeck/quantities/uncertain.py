@@ -1,0 +1,99 @@
+"""Values with an uncertainty: ``"1.0 +- 0.2 um"``, ``"46 cSt +- 5 %"`` or a table of value and error."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
+
+__all__ = ["has_error", "relative_error", "split_error"]
+
+LARGEST_ERROR = 3.0
+"""Relative error beyond which a value says nothing."""
+
+_SIGN = r"(?:\+\s*/?\s*-|±)"
+_TEXT = re.compile(rf"\s*(\S+)\s*(.*?)\s*{_SIGN}\s*([0-9.eE+-]+)\s*(.*?)\s*", re.DOTALL)
+
+
+def has_error(value: Any) -> bool:
+    """Return whether a value is written with its error."""
+    return isinstance(value, Mapping) or (isinstance(value, str) and re.search(_SIGN, value) is not None)
+
+
+def split_error(name: str, value: Any, dimension: str) -> tuple[Any, float | None]:
+    """Return a value without its error, and that error relative to it.
+
+    Parameters
+    ----------
+    name : str
+        What the value is called, for sentences.
+    value : object
+        Text such as ``"1.0 +- 0.2 um"``, ``"1.0 um +- 20 %"`` or ``"0.3 +- 0.05"``; a mapping of ``value`` and ``error``;
+        anything else has no error.
+    dimension : str
+        A key of :data:`stribeck.quantities.units.DIMENSIONS`.
+
+    Returns
+    -------
+    object
+        The value as it would be written without an error; in SI units if it had one.
+    float or None
+        Its standard error over the value; None where none was given.
+
+    Raises
+    ------
+    InputError
+        If value or error cannot be read, or the error is not positive.
+    """
+    if not has_error(value):
+        return value, None
+    if isinstance(value, Mapping):
+        if set(value) != {"value", "error"}:
+            raise InputError(f"{name} = {show(dict(value))} must be a table of value and error, such as "
+                             f"{{ value = {show(DIMENSIONS[dimension].example)}, error = '20 %' }}.")  # fmt: skip
+        center, error = value["value"], value["error"]
+        if isinstance(error, str) and not error.strip().endswith("%"):
+            error = _number(f"the error of {name}", error, dimension)
+    else:
+        parts = _TEXT.fullmatch(value)
+        if parts is None:
+            raise InputError(f"{name} = {show(value)} cannot be read; write it as '1.0 +- 0.2 um' or '1.0 um +- 20 %'.")
+        number, unit, size, last = parts.groups()
+        if last == "%":
+            center, error = f"{number} {unit}", f"{size} %"
+        else:
+            center = f"{number} {unit or last}"
+            error = _number(f"the error of {name}", f"{size} {last or unit}", dimension)
+    known = _number(name, center, dimension)
+    relative = _percent(name, error) if isinstance(error, str) else float(error) / known if known else math.inf
+    if not 0 < relative <= LARGEST_ERROR:
+        raise InputError(
+            f"{name} = {show(value)} has an error of {100 * relative:.3g} %; it must be positive and below "
+            f"{100 * LARGEST_ERROR:.0f} % of a positive value."
+        )
+    return known, relative
+
+
+def relative_error(name: str, value: float, error: Any, dimension: str) -> float:
+    """Return the error of a value over it, given as text (``"20 %"``, ``"0.2 um"``) or as a number in SI units."""
+    return float(split_error(name, {"value": value, "error": error}, dimension)[1] or 0.0)
+
+
+def _number(name: str, value: Any, dimension: str) -> float:
+    """Return a value in SI units; a bare number as text counts where there is no unit."""
+    if isinstance(value, str) and not DIMENSIONS[dimension].unit:
+        try:
+            return float(value)
+        except ValueError:
+            raise InputError(f"{name} = {show(value)} must be a bare number.") from None
+    return to_si(value, dimension, name)
+
+
+def _percent(name: str, text: str) -> float:
+    try:
+        return float(text.strip().removesuffix("%")) / 100
+    except ValueError:
+        raise InputError(f"the error of {name} = {show(text)} is not a number of per cent.") from None

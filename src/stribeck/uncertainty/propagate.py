@@ -1,0 +1,224 @@
+"""Errors of the inputs, propagated to friction, films, transitions and the probability of each regime."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import Definition, check_definition
+from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Transition
+from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.uncertain import relative_error
+from stribeck.quantities.units import InputError, show
+from stribeck.uncertainty.result import Spread, Uncertainty
+from stribeck.uncertainty.states import NAMES, states_of
+
+__all__ = ["kept_errors", "propagate"]
+
+SAMPLES, SEED = 20_000, 20261122
+"""Of the inputs; the same in every call, so that results repeat."""
+
+RTOL = 1e-5
+POINTS = 21
+"""Of the states and of the curves."""
+
+STEP = 1e-3
+"""Of the logarithms of inputs in the differences that find the powers of scales, which are power laws."""
+
+THROUGH = {"youngs_modulus": ("modulus", 1.0), "poisson_ratio": ("modulus", 2 / 3), "entrainment_speed": ("speed", 1.0)}
+"""Inputs that others take the place of, and the power with which they enter; that of the Poisson ratio at 1/2."""
+
+LABELS = {"central_gap": "central film", "minimum_gap": "minimum film", "flux_gap": "flux film h*"}
+
+
+@one_blas_thread
+def propagate(
+    contact: Contact,
+    errors: Mapping[str, Any],
+    *,
+    definition: Definition = "balanced",
+    transitions: bool = True,
+) -> Uncertainty:
+    r"""Propagate errors of the inputs of a contact to its state.
+
+    .. math:: \ln X_k \sim \mathcal N(\ln x_k, \sigma_k^2), \qquad \sigma_k^2 = \ln(1 + \epsilon_k^2)
+
+    for each input of value x and standard error :math:`\epsilon x`, independent of one another.
+
+    Parameters
+    ----------
+    contact : Contact
+        The contact.
+    errors : mapping
+        Standard error of each uncertain input: a number over the value (0.2 is 20 %), or text, ``"20 %"`` or ``"0.2 um"``.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+    transitions : bool
+        Whether minimum and transitions are looked for too, a curve for each uncertain input.
+
+    Returns
+    -------
+    Uncertainty
+        Medians, intervals, the probability of each regime, and the share of each input in the variance of friction.
+
+    Raises
+    ------
+    InputError
+        If an input is unknown, or its error no positive number.
+    SolveError
+        If a state cannot be solved.
+
+    Notes
+    -----
+    20 000 samples of the inputs, the same in every call, on the atlas where it covers them all, else on quadratics through
+    seven solved states, where the ends of an interval are within 3 % of
+    its width (``test_data_sheet.py``).  Transitions move to first order.
+    With Persson's law ``beta`` follows the roughness unless it has an error of its own.
+    """
+    definition = check_definition(definition)
+    sigmas = kept_errors(contact, errors)
+    names = list(sigmas)
+    draws = np.random.default_rng(SEED).standard_normal((SAMPLES, max(1, len(names))))
+    offsets = draws[:, : len(names)] * np.array([sigmas[name] for name in names])
+    moves = [_tied(contact, name, sigmas) for name in names]
+
+    def power(function: Any) -> Array:
+        """Return the powers with which the inputs enter a power law."""
+        return np.array([_power(contact, function, inputs) for inputs in moves]).reshape(len(names), -1)
+
+    groups = contact.groups
+    of_groups = power(lambda each: [float(getattr(each.groups, name)) for name in ("speed", "load", "roughness")])
+    states, method = states_of(groups, offsets @ of_groups, definition, RTOL)
+
+    def scale(function: Any) -> Array:
+        return np.asarray(function(contact) * np.exp(offsets @ power(lambda each: [function(each)])[:, 0]))
+
+    share = states["contact_load_share"]
+    dry = scale(lambda each: each.boundary_friction) * share
+    friction = dry + scale(lambda each: each.beta) * states["viscous"]
+    solution, sensitivities = friction_sensitivities(contact, rtol=RTOL, definition=definition)
+    given = solution.friction(definition=definition)
+    spreads = [
+        _spread("friction", "friction coefficient", given.total, friction),
+        _spread("contact_load_share", "load on asperities", solution.contact_load_share, share),
+        _spread("fluid_load_share", "load on the fluid", solution.fluid_load_share, 1 - share),
+    ]
+    height = scale(lambda each: each.hertz.indentation)
+    for name in NAMES:
+        value = float(getattr(solution, name)) * contact.hertz.indentation
+        spreads.append(_spread(name, LABELS[name], value, states[name] * height, "length"))
+    if contact.roughness > 0:
+        ratio = states["minimum_gap"] * height / scale(lambda each: each.roughness)
+        spreads.append(_spread("lambda_ratio", "Lambda (minimum film over h_rms)", solution.lambda_ratio, ratio))
+    if transitions and contact.speed > 0:
+        spreads += _transitions(contact, sigmas, definition)
+    slopes = {name: sum(sensitivities[each] for each in inputs) for name, inputs in zip(names, moves, strict=True)}
+    parts = {name: (slopes[name] * sigmas[name]) ** 2 for name in names}
+    total = sum(parts.values()) or 1.0
+    return Uncertainty(
+        contact=contact,
+        errors=sigmas,
+        spreads=tuple(spreads),
+        regimes=_regimes(share, dry / np.maximum(friction, 1e-300)),
+        contributions={name: part / total for name, part in sorted(parts.items(), key=lambda pair: -pair[1])},
+        method=method,
+    )
+
+
+def kept_errors(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]:
+    """Return the standard error of the logarithm of each uncertain input that a contact keeps.
+
+    Parameters
+    ----------
+    contact : Contact
+        The contact.
+    errors : mapping
+        As in :func:`propagate`.
+
+    Returns
+    -------
+    dict of str to float
+        By name, in the order of the inputs.
+
+    Raises
+    ------
+    InputError
+        If an input is unknown, or its error no positive number.
+    """
+    found: dict[str, float] = {}
+    for name, error in errors.items():
+        kept, exponent = THROUGH.get(name, (name, 1.0))
+        known = contact.INPUTS.names
+        if kept not in known:
+            raise InputError(f"errors has {show(name)}, which is no input of a contact; known are {', '.join(known)}.")
+        value = getattr(contact, kept)
+        if value == 0:
+            raise InputError(f"errors has {name}, which is zero: an error over it says nothing.")
+        if isinstance(error, str):
+            relative = relative_error(name, value, error, contact.INPUTS.quantities[kept].dimension)
+        elif isinstance(error, bool) or not isinstance(error, int | float) or not 0 < error < 3:
+            raise InputError(f"the error of {name} = {show(error)} must be a number such as 0.2, which is 20 %, or text.")
+        else:
+            relative = float(error)
+        sigma = exponent * math.sqrt(math.log1p(relative**2))
+        found[kept] = math.hypot(found.get(kept, 0.0), sigma)
+    return {name: found[name] for name in contact.INPUTS.names if name in found}
+
+
+def _tied(contact: Contact, name: str, sigmas: Mapping[str, float]) -> tuple[str, ...]:
+    """Return the inputs that move together with one."""
+    follows = name == "roughness" and "beta" not in sigmas and contact.law is not None and contact.law.name == "persson"
+    return ("roughness", "beta") if follows else (name,)
+
+
+def _power(contact: Contact, function: Any, inputs: tuple[str, ...]) -> list[float]:
+    """Return d ln(function)/d ln(inputs) of functions that are power laws, zero where they are zero."""
+    moved = contact.replace(**{name: getattr(contact, name) * math.exp(STEP) for name in inputs})
+    pairs = zip(function(contact), function(moved), strict=True)
+    return [math.log(after / before) / STEP if before > 0 else 0.0 for before, after in pairs]
+
+
+def _spread(name: str, label: str, value: float, samples: Array, dimension: str = "number") -> Spread:
+    low_95, low_68, median, high_68, high_95 = np.quantile(samples, [0.025, 0.16, 0.5, 0.84, 0.975]).tolist()
+    return Spread(name, label, float(value), median, (low_68, high_68), (low_95, high_95), dimension)
+
+
+def _regimes(share: Array, dry: Array) -> dict[str, float]:
+    """Return the part of the samples in each regime."""
+    hydrodynamic = dry <= HYDRODYNAMIC_CONTACT_SHARE
+    boundary = ~hydrodynamic & (1 - share <= BOUNDARY_FLUID_SHARE)
+    mixed = ~hydrodynamic & ~boundary
+    return {"boundary": float(boundary.mean()), "mixed": float(mixed.mean()), "hydrodynamic": float(hydrodynamic.mean())}
+
+
+def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Definition) -> list[Spread]:
+    """Return the speeds of minimum and transitions, which move with each input to first order."""
+
+    def marks(each: Contact) -> dict[str, float]:
+        curve = stribeck_curve(each, points=POINTS, rtol=1e-3, definition=definition)
+        return {mark.name: mark.value for mark in curve.transitions}
+
+    start = marks(contact)
+    variances = dict.fromkeys(start, 0.0)
+    for name, sigma in sigmas.items():
+        if name == "speed":
+            continue
+        factor = math.exp(sigma)
+        moved = marks(contact.replace(**{each: getattr(contact, each) * factor for each in _tied(contact, name, sigmas)}))
+        for mark, value in start.items():
+            if mark in moved:
+                variances[mark] += math.log(moved[mark] / value) ** 2
+    found = []
+    for mark, value in start.items():
+        factors = [math.exp(z * math.sqrt(variances[mark])) for z in (1.0, 1.96)]
+        (low, high), (lowest, highest) = ((value / factor, value * factor) for factor in factors)
+        label = f"speed of the {mark}" if mark == Transition.MINIMUM else f"speed where {mark}"
+        found.append(Spread(mark, label, value, value, (low, high), (lowest, highest), "speed"))
+    return found

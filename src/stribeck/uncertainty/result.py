@@ -1,0 +1,115 @@
+"""What errors of the inputs make of a state: medians, intervals, the probability of each regime, and who is to blame."""
+
+from __future__ import annotations
+
+import html
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from stribeck.contacts.contact import Contact
+from stribeck.quantities.units import format_si
+
+__all__ = ["Spread", "Uncertainty"]
+
+
+@dataclass(frozen=True)
+class Spread:
+    """The distribution of one number.
+
+    Attributes
+    ----------
+    name, label : str
+        Its name as in a solution, and what reports call it.
+    value : float
+        Its value for the inputs as given, in SI units.
+    median : float
+        Its median.
+    interval_68, interval_95 : tuple of float
+        Intervals that hold it with 68 and 95 % probability.
+    dimension : str
+        A key of :data:`stribeck.quantities.units.DIMENSIONS`.
+    """
+
+    name: str
+    label: str
+    value: float
+    median: float
+    interval_68: tuple[float, float]
+    interval_95: tuple[float, float]
+    dimension: str = "number"
+
+    @property
+    def text(self) -> str:
+        """Value and 95 % interval, with units."""
+        low, high = (format_si(end, self.dimension) for end in self.interval_95)
+        return f"{format_si(self.value, self.dimension)} ({low} to {high})"
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """What errors of the inputs make of a state.
+
+    Attributes
+    ----------
+    contact : Contact
+        The contact with the inputs as given.
+    errors : dict of str to float
+        Standard error of the logarithm of each uncertain input of the contact.
+    spreads : tuple of Spread
+        Friction, films, load shares and transitions.
+    regimes : dict of str to float
+        Probability of boundary, mixed and hydrodynamic lubrication.
+    contributions : dict of str to float
+        Share of each input in the variance of ln(friction), by exact derivatives; they sum to one.
+    method : str
+        ``"atlas"`` or ``"solver"``: where the states of the samples come from.
+    """
+
+    contact: Contact
+    errors: dict[str, float]
+    spreads: tuple[Spread, ...]
+    regimes: dict[str, float]
+    contributions: dict[str, float]
+    method: str
+
+    def __getitem__(self, name: str) -> Spread:
+        """Return the spread of a name."""
+        for each in self.spreads:
+            if each.name == name:
+                return each
+        raise KeyError(f"{name!r}; there are {', '.join(each.name for each in self.spreads)}")
+
+    @property
+    def probabilities(self) -> str:
+        """The probability of each regime in words."""
+        return ", ".join(f"{name} {100 * value:.3g} %" for name, value in self.regimes.items())
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return spreads, probabilities and contributions, ready for JSON.
+
+        Returns
+        -------
+        dict
+            Numbers in SI units under their names.
+        """
+        return {
+            "errors": self.errors,
+            "spreads": [asdict(each) for each in self.spreads],
+            "regime_probabilities": self.regimes,
+            "contributions": self.contributions,
+            "method": self.method,
+        }
+
+    def __str__(self) -> str:
+        """Return the table as text."""
+        width = max(len(each.label) for each in self.spreads)
+        blame = ", ".join(f"{name} {100 * value:.2g} %" for name, value in self.contributions.items())
+        lines = [f"{each.label.ljust(width)}  {each.text}" for each in self.spreads]
+        return "\n".join([*lines, f"Regime: {self.probabilities}.", f"Variance of friction: {blame}."])
+
+    def _repr_html_(self) -> str:
+        """Return the table for notebooks."""
+        rows = "".join(
+            f"<tr><td>{html.escape(each.label)}</td><td>{html.escape(each.text)}</td></tr>" for each in self.spreads
+        )
+        return f"<table><tr><th>quantity</th><th>value (95 %)</th></tr>{rows}</table><p>{html.escape(self.probabilities)}</p>"

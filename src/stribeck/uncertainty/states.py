@@ -1,0 +1,107 @@
+r"""States of many samples of the groups: read off the atlas, or off seven solved states around the middle.
+
+Where the atlas ends, a quadratic along each principal axis of the samples takes its place,
+
+.. math:: y = y_0 + b_k t_k + c_k t_k^2, \qquad t_k = \pm 3^{1/2} \text{ solved},
+
+for the logarithms of films and viscous friction and the log odds of the load share.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from stribeck import atlas
+from stribeck._types import Array
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.line import Groups
+from stribeck.contacts.model import ARTICLE
+from stribeck.solver.solve import solve
+
+__all__ = ["NAMES", "states_of"]
+
+NAMES = ("central_gap", "minimum_gap", "flux_gap")
+"""The films of a state."""
+
+NODE = 3**0.5
+"""Where the quadratic is solved, in standard deviations: the outer nodes of Gauss and Hermite."""
+
+FARTHEST = 3.5
+"""Standard deviations beyond which a quadratic is held."""
+
+NARROW = 1e-9
+"""Standard deviation of a logarithm below which a direction counts as known."""
+
+TINY = 1e-290
+"""What stands for a share that underflows."""
+
+
+def states_of(groups: Groups, offsets: Array, definition: Definition, rtol: float) -> tuple[dict[str, Array], str]:
+    """Return load share, viscous friction and films of samples.
+
+    Parameters
+    ----------
+    groups : Groups
+        The middle.
+    offsets : ndarray, shape (n, 3)
+        Logarithms of each sample's groups of speed, load and roughness over those in the middle.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+    rtol : float
+        Relative tolerance of solved states.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (n,)
+        ``contact_load_share``, ``viscous`` (for beta = 1) and :data:`NAMES`.
+    str
+        ``"atlas"`` or ``"solver"``.
+    """
+    if groups.geometry == "line" and groups.model == ARTICLE and atlas.holds_for(groups.law):
+        samples = _moved(groups, offsets)
+        if bool(np.all(atlas.covers(samples))):
+            found = {name: np.asarray(getattr(atlas, name)(samples)) for name in NAMES}
+            found["contact_load_share"] = np.asarray(atlas.contact_load_share(samples))
+            found["viscous"] = np.asarray(atlas.viscous_friction(samples, 1.0, definition))
+            if all(np.isfinite(values).all() for values in found.values()):
+                return {name: np.broadcast_to(values, (len(offsets),)) for name, values in found.items()}, "atlas"
+    return _by_quadratics(groups, offsets, definition, rtol), "solver"
+
+
+def _by_quadratics(groups: Groups, offsets: Array, definition: Definition, rtol: float) -> dict[str, Array]:
+    middle = offsets.mean(axis=0)
+    variances, axes = np.linalg.eigh(np.atleast_2d(np.cov(offsets.T)))
+    y = np.tile(start := _solved(groups, middle, definition, rtol), (len(offsets), 1))
+    for variance, axis in zip(variances, axes.T, strict=True):
+        width = float(np.sqrt(max(variance, 0.0)))
+        if width < NARROW:
+            continue
+        ahead, behind = (_solved(groups, middle + sign * NODE * width * axis, definition, rtol) for sign in (1, -1))
+        t = np.clip((offsets - middle) @ axis / width, -FARTHEST, FARTHEST)[:, None]
+        y += (ahead - behind) / (2 * NODE) * t + (ahead + behind - 2 * start) / (2 * NODE**2) * t**2
+    odds, viscous, *films = y.T
+    return {
+        "contact_load_share": 1 / (1 + np.exp(-np.clip(odds, -700, 700))),
+        "viscous": np.exp(viscous),
+        **{name: np.exp(film) for name, film in zip(NAMES, films, strict=True)},
+    }
+
+
+def _solved(groups: Groups, offset: Array, definition: Definition, rtol: float) -> Array:
+    """Return the log odds of the load share and the logarithms of viscous friction and films of a solved state."""
+    state = solve(_moved(groups, offset), rtol=rtol)
+    contact, fluid = max(state.contact_load_share, TINY), max(state.fluid_load_share, TINY)
+    values = [max(float(getattr(state, name)), TINY) for name in (f"viscous_{definition}", *NAMES)]
+    return np.array([np.log(contact / fluid), *np.log(values)])
+
+
+def _moved(groups: Groups, offsets: Array) -> Groups:
+    factors = np.exp(offsets)
+    speed, load, roughness = (
+        np.asarray(getattr(groups, name)) * factors[..., i] for i, name in enumerate(("speed", "load", "roughness"))
+    )
+    if np.ndim(factors) == 1:
+        return replace(groups, speed=float(speed), load=float(load), roughness=float(roughness))
+    return replace(groups, speed=speed, load=load, roughness=roughness)

@@ -1,0 +1,215 @@
+"""Inputs as data sheets have them: what is made of them, what is said, and what errors of the inputs make of the state."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from command_line import EXAMPLES, call, case_text
+from fit_data import TRUE
+
+import stribeck as sb
+from stribeck.quantities.conversions import CONVERSIONS, GIVEN, read_given
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.uncertain import split_error
+from stribeck.uncertainty.states import _by_quadratics, states_of
+
+SHEET = {
+    "modulus": None,
+    "shore_a": "70",
+    "load": None,
+    "force": '"15.4 N"',
+    "width": '"20 mm"',
+    "viscosity": None,
+    "kinematic_viscosity": '"46 cSt"',
+    "density": '"870 kg/m^3"',
+    "speed": None,
+    "rotational_speed": '"300 rpm"',
+    "shaft_diameter": '"30 mm"',
+    "roughness": None,
+    "ra": '"0.4 um"',
+}
+
+
+@pytest.fixture
+def sheet(tmp_path):
+    path = tmp_path / "sheet.toml"
+    path.write_text(case_text(SHEET))
+    return path
+
+
+# --- conversions ---
+
+
+@pytest.mark.quick
+def test_a_data_sheet_becomes_a_contact(sheet):
+    case = sb.load_case(sheet)
+    contact = case.contact
+    assert contact.modulus == pytest.approx(5.52e6 / 0.75, rel=1e-3)  # Gent, and incompressible
+    assert contact.load == pytest.approx(770)
+    assert contact.viscosity == pytest.approx(0.04002)
+    assert contact.speed == pytest.approx(300 / 60 * math.pi * 0.03)
+    assert contact.roughness == pytest.approx(0.4e-6 * math.sqrt(math.pi / 2))
+    assert len(case.conversions) == 5
+    assert case.conversions[0].startswith("youngs_modulus = 5.521 MPa from shore_a = 70: E = 0.0981") and "Gent 1958" in str(
+        case.conversions
+    )
+    assert case.errors == {"youngs_modulus": pytest.approx(0.3), "roughness": pytest.approx(0.1)}
+
+
+@pytest.mark.quick
+def test_shore_d_is_that_of_its_source():
+    given = read_given({"shore_d": 40})
+    assert math.log10(given.values["youngs_modulus"] / 1e6) == pytest.approx(0.0235 * 90 - 0.6403)
+
+
+@pytest.mark.quick
+def test_python_takes_a_data_sheet_too():
+    kept = {
+        name: getattr(TRUE, name) for name in ("radius", "load", "viscosity", "speed", "alpha", "beta", "boundary_friction")
+    }
+    contact = sb.LineContact(shore_a=70, rq="1 um", **kept)
+    assert contact.roughness == 1e-6 and 7e6 < contact.modulus < 8e6
+    with pytest.raises(sb.InputError, match="are both given"):
+        sb.LineContact(shore_a=70, youngs_modulus="2 MPa", poisson_ratio=0.5, rq="1 um", **kept)
+    with pytest.raises(sb.InputError, match="has an error, for which there is no place here"):
+        TRUE.replace(roughness="1.0 +- 0.2 um")
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"shore_a": "95"}, "shore_a = 95 must be between 20 and 90"),
+        ({"width": None}, "force = '15.4 N' needs width too, as in width = '20 mm'"),
+        ({"load": '"770 N/m"'}, "load = '770 N/m' and force = '15.4 N' and width = '20 mm' are both given"),
+        ({"rotational_speed": '"5 Hz"'}, "may mean turns or radians per second; write it in rpm or rad/s"),
+        ({"ra": '"0.4 +- x um"'}, "cannot be read; write it as '1.0 +- 0.2 um'"),
+        ({"ra": '"0.4 +- 4 um"'}, "has an error of 1e+03 %"),
+        ({"ra": '{ value = "0.4 um" }'}, "must be a table of value and error"),
+        ({"rpm": '"3 rpm"'}, "rpm = '3 rpm' is not a known key; give rotational_speed"),
+        ({"shore": "70"}, "shore = 70 is not a known key; write shore_a = 70"),
+    ],
+)
+def test_what_cannot_be_converted_is_named_alone(tmp_path, changes, sentence):
+    path = tmp_path / "case.toml"
+    path.write_text(case_text(SHEET | changes))
+    with pytest.raises(sb.InputError) as problem:
+        sb.load_case(path)
+    assert sentence in str(problem.value) and len(str(problem.value).splitlines()) == 1
+
+
+@pytest.mark.quick
+def test_the_table_of_conversions_is_whole():
+    for row in CONVERSIONS:
+        assert row.of in QUANTITIES and row.formula and row.source
+        values = {each.name: float(each.typical) if each.dimension == "number" else each.typical for each in row.inputs}
+        found = read_given(values)
+        assert not found.problems and set(found.values) == {row.of, *row.besides} and len(found.said) == 1
+    assert not set(GIVEN) & set(QUANTITIES)
+
+
+# --- values with an error ---
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("value", "dimension", "expected"),
+    [
+        ("1.0 +- 0.2 um", "length", (1e-6, 0.2)),
+        ("1.0 ± 0.2 um", "length", (1e-6, 0.2)),
+        ("1.0 um +- 20 %", "length", (1e-6, 0.2)),
+        ("1.0 um +/- 200 nm", "length", (1e-6, 0.2)),
+        ("0.3 +- 0.06", "number", (0.3, 0.2)),
+        ({"value": "1 um", "error": "0.2 um"}, "length", (1e-6, 0.2)),
+        ({"value": 0.3, "error": 0.06}, "number", (0.3, 0.2)),
+        ("1.0 um", "length", ("1.0 um", None)),
+        ("1e-6 m", "length", ("1e-6 m", None)),
+    ],
+)
+def test_an_error_is_read_in_each_way_that_it_is_written(value, dimension, expected):
+    found, error = split_error("roughness", value, dimension)
+    assert found == (pytest.approx(expected[0]) if error is not None else expected[0])
+    assert error == (None if expected[1] is None else pytest.approx(expected[1]))
+
+
+def test_errors_of_groups_by_the_atlas_and_by_seven_states_agree():
+    """Well inside the atlas, where both are possible."""
+    groups = TRUE.replace(speed="5 mm/s").groups
+    offsets = np.random.default_rng(77).standard_normal((400, 3)) * [0.15, 0.1, 0.2]
+    read, method = states_of(groups, offsets, "balanced", 1e-6)
+    assert method == "atlas"
+    made = _by_quadratics(groups, offsets, "balanced", 1e-6)
+    for name, values in read.items():
+        parts = (0.025, 0.16, 0.5, 0.84, 0.975)
+        width = np.quantile(values, 0.975) - np.quantile(values, 0.025)
+        assert np.quantile(made[name], parts) == pytest.approx(np.quantile(values, parts), abs=0.03 * width), name
+
+
+def test_small_errors_propagate_by_the_exact_derivatives():
+    found = sb.propagate(TRUE, {"viscosity": 0.01, "boundary_friction": "0.007", "radius": "1 %"}, transitions=False)
+    _, slopes = sb.curves.sensitivities.friction_sensitivities(TRUE)
+    sigma = 0.01 * math.hypot(slopes["viscosity"], slopes["boundary_friction"], slopes["radius"])
+    low, high = found["friction"].interval_68
+    assert math.log(high / low) / 2 == pytest.approx(sigma, rel=0.03)
+    assert sum(found.contributions.values()) == pytest.approx(1)
+    assert found.regimes == {"boundary": 0, "mixed": 1, "hydrodynamic": 0}
+    assert found["friction"].value == pytest.approx(sb.solve(TRUE).friction().total, rel=1e-4)
+
+
+def test_the_probability_of_a_regime_is_that_of_its_speed():
+    """Only the viscosity is uncertain, so that the regime ends where speed times viscosity does."""
+    curve = sb.stribeck_curve(TRUE, points=21, rtol=1e-4)
+    [end] = [mark.value for mark in curve.transitions if "10%" in mark.name]
+    found = sb.propagate(TRUE.replace(speed=end / math.exp(0.1)), {"viscosity": 0.2}, transitions=False)
+    sigma = math.sqrt(math.log1p(0.04))
+    assert found.regimes["hydrodynamic"] == pytest.approx(0.5 * math.erfc(0.1 / sigma / math.sqrt(2)), abs=0.01)
+
+
+def test_transitions_move_with_the_inputs():
+    found = sb.propagate(TRUE, {"viscosity": 0.2})
+    spread = found["minimum of friction"]
+    factor = math.exp(1.96 * math.sqrt(math.log1p(0.04)))
+    assert spread.interval_95 == (
+        pytest.approx(spread.value / factor, rel=1e-3),
+        pytest.approx(spread.value * factor, rel=1e-3),
+    )
+    assert spread.value == pytest.approx(0.0276, rel=1e-2)
+
+
+def test_with_perssons_law_beta_follows_the_roughness():
+    seal = sb.load_case(EXAMPLES / "rod_seal.toml").contact
+    tied, apart = (
+        sb.propagate(seal, {"roughness": 0.1} | more, transitions=False)["friction"].interval_68
+        for more in ({}, {"beta": 1e-6})
+    )
+    assert math.log(tied[1] / tied[0]) > 1.1 * math.log(apart[1] / apart[0])
+
+
+@pytest.mark.quick
+def test_errors_that_say_nothing_are_refused():
+    for errors, sentence in (
+        ({"rough": 0.1}, "no input of a contact"),
+        ({"roughness": 0}, "must be a number such as 0.2"),
+        ({"roughness": "x %"}, "is not a number of per cent"),
+    ):
+        with pytest.raises(sb.InputError, match=sentence):
+            sb.propagate(TRUE, errors)
+    with pytest.raises(sb.InputError, match="which is zero"):
+        sb.propagate(TRUE.replace(roughness=0), {"roughness": 0.1})
+
+
+def test_regimes_prints_conversions_and_the_probability_of_each_regime(tmp_path, capsys, monkeypatch):
+    from stribeck.regimes.margins import RegimeMargins
+
+    monkeypatch.setattr("stribeck.cli.solving.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
+    path = tmp_path / "case.toml"
+    path.write_text(case_text({"roughness": None, "ra": '"0.8 +- 0.2 um"', "speed": '"20 mm/s"'}))
+    answer = call(capsys, "regimes", path)
+    assert answer.code == 0
+    assert "Converted: roughness = 1.003 µm from ra = '0.8 +- 0.2 um'" in answer.out
+    assert "Probability of each regime: boundary 0 %, mixed" in answer.out
+    found = json.loads(call(capsys, "regimes", path, "--json").out)
+    assert sum(found["uncertainty"]["regime_probabilities"].values()) == pytest.approx(1)
+    assert len(found["conversions"]) == 1
+    assert "Converted:" in call(capsys, "solve", path).out
