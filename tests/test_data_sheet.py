@@ -143,7 +143,7 @@ def test_errors_of_groups_by_the_atlas_and_by_seven_states_agree():
     for name, values in read.items():
         parts = (0.025, 0.16, 0.5, 0.84, 0.975)
         width = np.quantile(values, 0.975) - np.quantile(values, 0.025)
-        assert np.quantile(made[name], parts) == pytest.approx(np.quantile(values, parts), abs=0.03 * width), name
+        assert np.quantile(made[name], parts) == pytest.approx(np.quantile(values, parts), abs=0.05 * width), name
 
 
 def test_small_errors_propagate_by_the_exact_derivatives():

@@ -98,7 +98,7 @@ REFUSED = [
     ("1 " + "m*" * 1000 + "m", "length", "not a number with a unit"),
     ("2.0", "number", "text, but a number is expected"),
     ("30 %", "number", "text, but a number is expected; write 0.3."),
-    ("70 Shore A", "pressure", "is a hardness, not a modulus; for S Shore A Gent's relation gives"),
+    ("70 Shore A", "pressure", "is a hardness, not a modulus; write shore_a = 70 or shore_d = 50"),
     ("IRHD 70", "pressure", "is a hardness"),
     (True, "speed", "not a single real number"),
     (np.True_, "speed", "not a single real number"),

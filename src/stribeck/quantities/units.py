@@ -76,7 +76,6 @@ DIMENSIONS = {
     "rate": Dimension("a rate", "1/s", "1e6 1/s", {0: "1/s"}),
     "density": Dimension("a density", "kg/m^3", "870 kg/m^3", {0: "kg/m^3"}),
     "conductivity": Dimension("a thermal conductivity", "W/m/K", "0.15 W/m/K", {0: "W/m/K"}),
-    "force": Dimension("a force", "N", "1.3 N", _prefixed("N", (-9, -6, -3, 0, 3))),
     "kinematic": Dimension("a kinematic viscosity", "m^2/s", "46 cSt", {-6: "mm^2/s", 0: "m^2/s"}),
     "rotation": Dimension("an angular velocity", "rad/s", "1500 rpm", {0: "rad/s"}),
     "per kelvin": Dimension("a relative change per kelvin", "1/K", "0.04 1/K", {0: "1/K"}),

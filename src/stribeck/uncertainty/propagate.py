@@ -78,7 +78,7 @@ def propagate(
     Notes
     -----
     20 000 samples of the inputs, the same in every call, on the atlas where it covers them all, else on quadratics through
-    seven solved states, where the ends of an interval are within 3 % of
+    seven solved states, where the ends of an interval are within 5 % of
     its width (``test_data_sheet.py``).  Transitions move to first order.
     With Persson's law ``beta`` follows the roughness unless it has an error of its own.
     """
