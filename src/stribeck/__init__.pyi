@@ -28,6 +28,8 @@ from stribeck.sweeps.dataset import Sweep, open_sweep
 from stribeck.sweeps.design import SweepDesign, load_sweep
 from stribeck.sweeps.store import SweepError
 from stribeck.sweeps.sweep import SweepProgress, sweep
+from stribeck.uncertainty.propagate import propagate
+from stribeck.uncertainty.result import Spread, Uncertainty
 
 __all__ = [
     "BatchSolution",
@@ -54,12 +56,14 @@ __all__ = [
     "Profile",
     "Solution",
     "SolveError",
+    "Spread",
     "StribeckCurve",
     "Sweep",
     "SweepDesign",
     "SweepError",
     "SweepProgress",
     "TableLaw",
+    "Uncertainty",
     "asymptotics",
     "atlas",
     "check",
@@ -68,6 +72,7 @@ __all__ = [
     "load_sweep",
     "open_sweep",
     "phase_diagram",
+    "propagate",
     "read_measurements",
     "regime_of",
     "solve",
