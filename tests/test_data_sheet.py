@@ -10,7 +10,7 @@ from fit_data import TRUE
 
 import stribeck as sb
 from stribeck.quantities.conversions import CONVERSIONS, GIVEN, read_given
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import INPUT_TABLES, QUANTITIES
 from stribeck.quantities.uncertain import split_error
 from stribeck.uncertainty.states import _by_quadratics, states_of
 
@@ -104,7 +104,7 @@ def test_the_table_of_conversions_is_whole():
     for row in CONVERSIONS:
         assert row.of in QUANTITIES and row.formula and row.source
         values = {each.name: float(each.typical) if each.dimension == "number" else each.typical for each in row.inputs}
-        found = read_given(values)
+        found = read_given(values, INPUT_TABLES[row.geometry or "line"])
         assert not found.problems and set(found.values) == {row.of, *row.besides} and len(found.said) == 1
     assert not set(GIVEN) & set(QUANTITIES)
 
@@ -202,7 +202,7 @@ def test_errors_that_say_nothing_are_refused():
 def test_regimes_prints_conversions_and_the_probability_of_each_regime(tmp_path, capsys, monkeypatch):
     from stribeck.regimes.margins import RegimeMargins
 
-    monkeypatch.setattr("stribeck.cli.solving.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
+    monkeypatch.setattr("stribeck.regimes.margins.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
     path = tmp_path / "case.toml"
     path.write_text(case_text({"roughness": None, "ra": '"0.8 +- 0.2 um"', "speed": '"20 mm/s"'}))
     answer = call(capsys, "regimes", path)
