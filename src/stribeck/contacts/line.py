@@ -58,8 +58,6 @@ class LineContact(Contact):
         Poisson ratio :math:`0 \le \nu \le 1/2` of the half-space [-].
     entrainment_speed : str or float, optional
         Mean of both surface speeds, in place of ``speed`` [m/s].
-    shore_a, shore_d, ra, rq, kinematic_viscosity, density, rotational_speed, shaft_diameter, force, width : optional
-        Inputs as data sheets have them, in place of modulus, roughness, viscosity, speed and load: docs/data_sheet.md.
     law : AsperityLaw, optional
         Contact law :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
 
@@ -82,7 +80,8 @@ class LineContact(Contact):
     Where both surfaces move, films and load shares are those of :math:`U = u_1 + u_2`; friction is that of pure sliding at
     :math:`U`, as the shear of the fluid at another sliding speed :math:`u_1 - u_2` is not modelled.
 
-    ``modulus`` always holds :math:`E^*` afterwards; ``youngs_modulus`` and ``poisson_ratio`` are not kept.
+    ``modulus`` always holds :math:`E^*` afterwards; ``youngs_modulus`` and ``poisson_ratio`` are not kept.  Inputs as data
+    sheets have them (``shore_a``, ``ra``, ``kinematic_viscosity`` ...) may take the place of others: docs/data_sheet.md.
 
     Source: [Bertin & Pouliquen] Eq. (contact_pressure) for the contact law, Section "Dimensional analysis"
     for the groups. The paper calls :math:`\beta` a number of order unity; for real surfaces it is small.
