@@ -25,6 +25,7 @@ _HOMES = {
     "fits.result": ("Fit", "FitOutcome", "FittedInput"),
     "quantities.outcome": ("Outcome",),
     "regimes.phase_diagram": ("phase_diagram",),
+    "solver.point.solution": ("Field", "PointSolution"),
     "solver.solution": ("Profile", "Solution"),
     "solver.solve": ("SolveError", "solve"),
     "sweeps.dataset": ("Sweep", "open_sweep"),

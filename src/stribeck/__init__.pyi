@@ -22,6 +22,7 @@ from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.phase_diagram import phase_diagram
+from stribeck.solver.point.solution import Field, PointSolution
 from stribeck.solver.solution import Profile, Solution
 from stribeck.solver.solve import SolveError, solve
 from stribeck.sweeps.dataset import Sweep, open_sweep
@@ -36,6 +37,7 @@ __all__ = [
     "Case",
     "Check",
     "Checks",
+    "Field",
     "FiniteSurface",
     "Fit",
     "FitOutcome",
@@ -53,6 +55,7 @@ __all__ = [
     "Measurements",
     "Outcome",
     "PointContact",
+    "PointSolution",
     "Profile",
     "Solution",
     "SolveError",

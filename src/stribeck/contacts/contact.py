@@ -65,6 +65,7 @@ class Contact(ABC):
     law: AsperityLaw | None
 
     INPUTS: ClassVar[InputTable]
+    WIDTH: ClassVar[str] = "Hertz half-width"
 
     @refuse_former
     def __init__(self, *, law: AsperityLaw | None = None, **inputs: str | float | None) -> None:

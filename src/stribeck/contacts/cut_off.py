@@ -1,84 +1,66 @@
-r"""The logarithm in the friction of a ball, and where it ends.
+r"""Where the logarithm in the friction of a ball ends: at the edge of the liquid, or at the ball itself.
 
-Far from the contact :math:`1/h \to 2/r^2` and :math:`p_f \to -\tfrac45 \lambda x/r^4`, so that the friction of a
-parabola grows as the logarithm of the radius X up to which it is wetted. In Hertz units, J of [F_N (3/2 pi) a/R],
+Far from the contact the shear :math:`\eta (u_1 - u_2)/h` and the pressure fall so slowly that the friction of a parabola
+grows as :math:`\ln X` with the radius X up to which it is wetted. In Hertz units, S being the slide-to-roll ratio,
 
-.. math:: J = J_\mathrm{fp} + \tfrac{16}{15} \pi \lambda \ln X .
+.. math::
 
-*Where the liquid ends* at a radius, that is X. *A whole sphere* in liquid without bounds has the force
+    J = \frac S2 \left[J^\mathrm{couette} + \tfrac23 \pi \lambda \ln X\right]
+        + J^\mathrm{poiseuille} + \tfrac25 \pi \lambda \ln X ,
 
-.. math:: F = 6 \pi \eta R U \left[\tfrac{8}{15} \ln\frac Rh + K\right], \qquad K = 0.954294,
+with the finite parts J of a state. *A disc of liquid* ends at X. *A ball in liquid without bounds* that turns and moves along
+a plane with the surface speeds :math:`u_2` and :math:`u_1` at a small gap h has, by Stokes' equations, the force
 
-at a small gap h to a plane (Stokes flow; :mod:`stribeck.evidence.sphere_along_wall` solves it). As
-:math:`J = \pi \lambda F/(6 \pi \eta R U)` and the rigid parabola has
-:math:`J_\mathrm{fp} = -\pi\lambda [\tfrac{8}{15} \ln(2 h_0) + \tfrac25]`, both agree for
+.. math::
 
-.. math:: \ln\left(X_c \frac aR\right) = \tfrac{15}{16} \left[K + \tfrac25 + \tfrac{8}{15} \ln 2\right],
+    \frac{F}{6 \pi \eta R} = u_1 \left[\tfrac8{15} \ln\frac Rh + K\right] - u_2 \left[\tfrac2{15} \ln\frac Rh + K'\right]
+    = \frac{u_1 - u_2}{2} \left[\tfrac23 \ln\frac Rh + K + K'\right]
+    + \frac{u_1 + u_2}{2} \left[\tfrac25 \ln\frac Rh + K - K'\right]
 
-X_c = 5.0340 R/a, for the balanced friction.  The published definition leaves the pressure of the fluid on the ball beyond X
-out, :math:`\tfrac25` in the bracket, hence 3.4598 R/a; with the contact pressure on the slope, which it leaves out too,
-both give one force.
+with K = 0.954293 and K' = -0.257268. The rigid parabola :math:`h = h_0 + r^2/2R` with
+:math:`p_f = -\tfrac65 \eta U x/h^2`, up to X, has both with :math:`\tfrac23 \ln(X^2/2 R h_0)` and
+:math:`\tfrac25 [\ln(X^2/2 R h_0) - 2]` in the brackets, so that they agree for
 
-Source: ours; K by A. J. Goldman, R. G. Cox and H. Brenner (1967) is 0.9588, which is 0.5 % too high, and by M. Chaoui and
-F. Feuillebois (2003) 0.954294; theory.md, section 11.
+.. math:: \ln \frac{X^\mathrm{couette}}R = \tfrac12 \left[\ln 2 + \tfrac32 (K + K')\right], \qquad
+    \ln \frac{X^\mathrm{poiseuille}}R = \tfrac12 \left[\ln 2 + 2 + \tfrac52 (K - K')\right].
+
+With one surface at rest both together are one radius, 5.034 R.
+
+Source: ours; K and K' from series in bispherical coordinates of sliding and turning spheres, as in A. J. Goldman, R. G. Cox
+and H. Brenner (1967), whose 0.9588 and -0.2526 are fits at finite gaps; M. Chaoui and F. Feuillebois (2003) have 0.95429.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Literal
 
-import numpy as np
+__all__ = ["COUETTE", "POISEUILLE", "SLIDING", "TURNING", "log_cut_offs"]
 
-from stribeck._types import Array
-from stribeck.quantities.units import InputError, real_array, show
+SLIDING, TURNING = 0.954293, -0.257268
+"""K and K'."""
 
-Definition = Literal["published", "balanced"]
+COUETTE, POISEUILLE = 2 / 3 * math.pi, 2 / 5 * math.pi
+"""Coefficients of lambda ln X in the two parts of the friction integral."""
 
-WALL = 0.954294
-"""K: force over 6 pi eta R U of a sphere sliding along a plane, less (8/15) ln(R/h), as h -> 0."""
-
-LOGARITHM = 16 / 15 * math.pi
-"""Coefficient of lambda ln X in the friction integral."""
-
-WHOLE_SPHERE: dict[Definition, float] = {
-    "balanced": math.exp(15 / 16 * (WALL + 2 / 5 + 8 / 15 * math.log(2))),
-    "published": math.exp(15 / 16 * (WALL + 8 / 15 * math.log(2))),
-}
-"""X_c a/R of the whole sphere."""
+_COUETTE_RADIUS = 0.5 * (math.log(2) + 1.5 * (SLIDING + TURNING))
+_POISEUILLE_RADIUS = 0.5 * (math.log(2) + 2 + 2.5 * (SLIDING - TURNING))
 
 
-def cut_off(slope: float | Array, wetted_radius: float | Array | None = None, definition: Definition = "balanced") -> Array:
-    r"""Return the radius at which the logarithm of the friction ends.
-
-    .. math:: X_c = 5.034 \, \frac Ra \text{ balanced}, \qquad X_c = 3.460 \, \frac Ra \text{ published}
+def log_cut_offs(slope: float, wetted_radius: float | None = None) -> tuple[float, float]:
+    """Return ln X of the Couette and of the Poiseuille part [ln a].
 
     Parameters
     ----------
-    slope : float or array_like
-        a/R [-], see :meth:`stribeck.Groups.slope`.
-    wetted_radius : float or array_like, optional
-        Where the liquid ends [a]; by default that of a whole sphere in liquid without bounds.
-    definition : {"balanced", "published"}
-        Definition of the friction.
+    slope : float
+        a/R [-].
+    wetted_radius : float, optional
+        Radius of the disc of liquid [a]; a whole ball in liquid without bounds by default.
 
     Returns
     -------
-    ndarray
-        Radius [a].
-
-    Raises
-    ------
-    InputError
-        If the definition is unknown, or a wetted radius lies in the contact, at 1 or below.
+    tuple of float
+        Both logarithms; the same for a disc of liquid.
     """
-    if not isinstance(definition, str) or definition not in WHOLE_SPHERE:
-        raise InputError(f"definition = {show(definition)}; it must be 'balanced' or 'published'.")
-    if wetted_radius is None:
-        return np.asarray(np.divide(WHOLE_SPHERE[definition], slope))
-    radius = real_array("wetted_radius", wetted_radius)
-    if not (radius > 1).all():
-        raise InputError(
-            f"wetted_radius = {show(wetted_radius)}; it is in Hertz radii and must exceed 1, the edge of the contact."
-        )
-    return np.asarray(radius)
+    if wetted_radius is not None:
+        return math.log(wetted_radius), math.log(wetted_radius)
+    return _COUETTE_RADIUS - math.log(slope), _POISEUILLE_RADIUS - math.log(slope)

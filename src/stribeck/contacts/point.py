@@ -124,6 +124,7 @@ class PointContact(Contact):
     wetted_radius: float | None
 
     INPUTS: ClassVar[InputTable] = POINT
+    WIDTH: ClassVar[str] = "Hertz radius"
     __signature__: ClassVar[inspect.Signature] = signature_of(POINT)
 
     @refuse_former

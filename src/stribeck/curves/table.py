@@ -13,7 +13,7 @@ from stribeck.contacts.friction import DEFINITIONS
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.inputs import INPUTS, unit_of
 from stribeck.quantities.outputs import AREA, GROUPS, OBSERVABLES
-from stribeck.solver.solution import si_films
+from stribeck.solver.base_solution import si_films
 
 if TYPE_CHECKING:
     import xarray

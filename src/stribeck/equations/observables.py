@@ -21,6 +21,7 @@ from functools import lru_cache
 import numpy as np
 
 from stribeck._types import Array, Numbers
+from stribeck.contacts.friction import Definition
 from stribeck.equations.gap import central_gap, far_gap, minimum_gap
 from stribeck.equations.line import LOAD, Equations
 from stribeck.fluids import newtonian as reynolds
@@ -47,6 +48,10 @@ class Observables:
     offset: float
     viscous_published: float
     viscous_balanced: float
+
+    def viscous_friction(self, beta: float, definition: Definition = "balanced") -> float:
+        """Return the viscous friction coefficient of a definition [-], which is proportional to beta."""
+        return beta * float(getattr(self, f"viscous_{definition}"))
 
     def array(self) -> Array:
         """Return the observables in the order of :data:`NAMES`."""

@@ -102,7 +102,7 @@ def random_states(states: int, seed: int, mixed: bool = False) -> tuple[Array, A
 def solved(state: tuple[float, float, float]) -> Array:
     """Return the observables of speed, load and relative roughness from cold."""
     speed, load, kappa = state
-    return solve(Groups(speed, load, kappa * load), rtol=RTOL, on_failure="return").observables.array()
+    return np.asarray(solve(Groups(speed, load, kappa * load), rtol=RTOL, on_failure="return").observables.array())
 
 
 def certify(states: int, seed: int, workers: int = 1, mixed: bool = False) -> Certificate:

@@ -52,7 +52,8 @@ CURVE_POINTS = 41
 
 @lru_cache(maxsize=4096)
 def _state(groups: Groups) -> Solution:
-    return solve(groups, rtol=RTOL)
+    found: Solution = solve(groups, rtol=RTOL)
+    return found
 
 
 @lru_cache(maxsize=512)

@@ -95,7 +95,7 @@ class FigureJob:
         SolveError
             If it did not converge.
         """
-        found = solve(Groups(speed, load, roughness), rtol=self.rtol)
+        found: Solution = solve(Groups(speed, load, roughness), rtol=self.rtol)
         self._step(found)
         return found
 

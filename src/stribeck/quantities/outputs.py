@@ -1,21 +1,29 @@
-"""The table of observables: name, label, meaning, scale and kind of error of each number that a solved state has.
+"""The tables of observables: name, label, meaning, scale and kind of error of each number that a solved state has.
 
-Results, files, sweeps, reports and the explorer read it: one row is one observable everywhere.  How it is computed stands in
+Results, files, sweeps, reports and the explorer read them: one row is one observable everywhere.  The table of the line is
+the one that the names of this module are about.  How it is computed stands in
 :mod:`stribeck.equations.observables`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
-__all__ = ["AREA", "FILMS", "GROUPS", "HERTZ", "OBSERVABLES", "ROWS", "Observable"]
+__all__ = ["AREA", "FILMS", "GROUPS", "HERTZ", "OBSERVABLES", "OUTPUT_TABLES", "ROWS", "Observable", "OutputTable"]
 
 GROUPS = ("speed", "load", "roughness")
 
-Scale = Literal["number", "gap", "width", "friction"]
+Scale = Literal["number", "gap", "width", "pressure", "friction"]
 
-IN_UNITS = {"number": "", "gap": ", in Hertz indentations", "width": ", in Hertz half-widths", "friction": ", for beta = 1"}
+IN_UNITS = {
+    "number": "",
+    "gap": ", in Hertz indentations",
+    "width": ", in Hertz half-widths",
+    "pressure": ", in Hertz pressures",
+    "friction": ", for beta = 1",
+}
 
 
 @dataclass(frozen=True)
@@ -30,8 +38,8 @@ class Observable:
         What reports call it.
     meaning : str
         What it is, in a file.
-    scale : {"number", "gap", "width", "friction"}
-        What returns it to SI: nothing, the Hertz indentation, the Hertz half-width, or beta.
+    scale : {"number", "gap", "width", "pressure", "friction"}
+        What returns it to SI: nothing, the Hertz indentation, half-width or pressure, or beta.
     film : str
         Its name in SI units; empty if files hold it in Hertz units alone.
     error : {"relative", "absolute", ""}
@@ -84,15 +92,6 @@ ROWS = (
 )
 """The observables of a state. A new one is a row here and its value in :mod:`stribeck.equations.observables`."""
 
-NAMES = tuple(row.name for row in ROWS if row.error)
-"""Those with an estimated error, in the order of every array of them."""
-
-ABSOLUTE = tuple(row.name for row in ROWS if row.error == "absolute")
-"""Those whose estimated error is absolute."""
-
-OBSERVABLES = {row.name: ("1", row.meaning + IN_UNITS[row.scale]) for row in ROWS if row.listed}
-"""Attributes of a solution that a dataset holds: unit and meaning of each."""
-
 HERTZ = {
     "hertz_half_width": ("m", "half-width a of the dry smooth contact"),
     "hertz_indentation": ("m", "indentation u_Hz of the dry smooth contact"),
@@ -100,8 +99,111 @@ HERTZ = {
 }
 """Scales of a contact in SI units."""
 
-FILMS = {row.film: ("m", row.meaning) for row in ROWS if row.film} | HERTZ
-"""What a file of a contact holds in SI units besides: unit and meaning of each."""
+_FLAT, _UNITS = "1", {"gap": "m", "width": "m", "pressure": "Pa"}
+
+
+@dataclass(frozen=True)
+class OutputTable:
+    """The observables of the states of one geometry.
+
+    Attributes
+    ----------
+    rows : tuple of Observable
+        All of them.
+    """
+
+    rows: tuple[Observable, ...]
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Those with an estimated error, in the order of every array of them."""
+        return tuple(row.name for row in self.rows if row.error)
+
+    @cached_property
+    def absolute(self) -> tuple[str, ...]:
+        """Those whose estimated error is absolute."""
+        return tuple(row.name for row in self.rows if row.error == "absolute")
+
+    @cached_property
+    def listed(self) -> dict[str, tuple[str, str]]:
+        """Attributes of a solution that a dataset holds: unit and meaning of each."""
+        return {row.name: (_FLAT, row.meaning + IN_UNITS[row.scale]) for row in self.rows if row.listed}
+
+    @cached_property
+    def films(self) -> dict[str, tuple[str, str]]:
+        """What a file of a contact holds in SI units besides: unit and meaning of each."""
+        return {row.film: (_UNITS[row.scale], row.meaning) for row in self.rows if row.film} | HERTZ
+
+
+LINE = OutputTable(ROWS)
+"""The observables of the line."""
+
+_SHARED = {row.name: row for row in ROWS}
+
+POINT = OutputTable(
+    (
+        *(_SHARED[name] for name in ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap")),
+        Observable(
+            "minimum_radius",
+            "distance of minimum film",
+            "distance of the minimum gap from the centre",
+            "width",
+            "minimum_film_radius",
+            "",
+        ),
+        Observable(
+            "minimum_angle",
+            "angle of minimum film",
+            "angle of the minimum gap from the middle line behind the contact, in radian",
+            error="",
+        ),
+        Observable(
+            "minimum_gap_on_axis",
+            "minimum film on the middle line",
+            "minimum gap on the middle line",
+            "gap",
+            "minimum_film_thickness_on_axis",
+        ),
+        Observable(
+            "central_pressure", "central pressure", "total pressure at the centre", "pressure", "central_total_pressure"
+        ),
+        Observable("offset", "offset z0", "height of the undeformed ball over the undeformed surface", "gap"),
+        _SHARED["lambda_ratio"],
+        Observable(
+            "J_couette",
+            "friction integral, Couette part",
+            "finite part of the friction integral of the shear flow",
+            listed=False,
+        ),
+        Observable(
+            "J_poiseuille",
+            "friction integral, Poiseuille part",
+            "finite part of the friction integral of the pressure flow",
+            listed=False,
+        ),
+        Observable("J_balanced", "friction integral, balanced", "finite part of the balanced friction integral", listed=False),
+        Observable(
+            "J_published", "friction integral, published", "finite part of the published friction integral", listed=False
+        ),
+        Observable(
+            "J_pcx", "friction integral of asperities", "integral of the contact pressure along x, with its sign", listed=False
+        ),
+        Observable(
+            "identity_error",
+            "error of the identity",
+            "what is left of the identity of the friction integrals, over the largest of them",
+            error="",
+        ),
+        _SHARED["error_estimate"],
+    )
+)
+"""The observables of the ball."""
+
+OUTPUT_TABLES = {"line": LINE, "point": POINT}
+"""The observables by geometry."""
+
+NAMES, ABSOLUTE, OBSERVABLES, FILMS = LINE.names, LINE.absolute, LINE.listed, LINE.films
+"""Those of the line."""
 
 AREA = {
     "central_area_fraction": ("1", "real over apparent contact area at the centre"),

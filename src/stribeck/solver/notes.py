@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from stribeck._types import Array
 from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
-from stribeck.equations.observables import Observables
 
 __all__ = [
     "ADVICE",
@@ -48,6 +49,25 @@ ATMOSPHERE = 1.01325e5
 """Ambient pressure of a contact in the open [Pa], by which the fluid pressure may fall before nothing is left."""
 
 
+class Values(Protocol):
+    """The observables of a state, of any geometry."""
+
+    @property
+    def contact_load_share(self) -> float:
+        """Fraction of the load that asperities carry."""
+
+    @property
+    def central_gap(self) -> float:
+        """Gap at the centre [u_Hz]."""
+
+    @property
+    def minimum_gap(self) -> float:
+        """Minimum gap [u_Hz]."""
+
+    def viscous_friction(self, beta: float) -> float:
+        """Return the viscous friction coefficient [-], balanced."""
+
+
 def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
     r"""Return the sentence that says that a contact is one of hard elastohydrodynamics.
 
@@ -87,17 +107,17 @@ def shape_notes(contact: Contact | None) -> tuple[str, ...]:
 
 def width_notes(contact: Contact) -> tuple[str, ...]:
     """Return the sentence about a contact that is wide for a parabola on a half-space; none up to 0.3 of the radius."""
-    slope = contact.hertz.half_width / contact.radius
+    slope = contact.slope
     if not slope > WIDEST_CONTACT:
         return ()
     return (
-        f"The contact is wide: the Hertz half-width is {slope:.2g} of the radius. The parabola on a "
+        f"The contact is wide: the {contact.WIDTH} is {slope:.2g} of the radius. The parabola on a "
         f"half-space is accurate up to "
         f"about 0.1 and rough at {WIDEST_CONTACT}; check modulus, load and radius.",
     )
 
 
-def law_notes(groups: Groups, contact: Contact | None, values: Observables) -> tuple[str, ...]:
+def law_notes(groups: Groups, contact: Contact | None, values: Values) -> tuple[str, ...]:
     """Return the sentences that say where the contact law leaves its range while asperities still matter.
 
     Parameters
@@ -106,7 +126,7 @@ def law_notes(groups: Groups, contact: Contact | None, values: Observables) -> t
         The groups of the state, with its law.
     contact : Contact or None
         The contact; groups alone are weighed with boundary friction 1, alpha = 2 and beta = 0.05.
-    values : Observables
+    values : Values
         Those of the state.
 
     Returns
@@ -142,12 +162,12 @@ def law_notes(groups: Groups, contact: Contact | None, values: Observables) -> t
     return (*notes, *far)
 
 
-def matters(contact: Contact | None, values: Observables) -> bool:
+def matters(contact: Contact | None, values: Values) -> bool:
     """Return whether asperities have more than 1 % of load or friction, so that it matters by which law they carry it."""
     return max(_shares(contact, values)) > NEGLIGIBLE_SHARE
 
 
-def minimum_note(groups: Groups, contact: Contact | None, values: Observables, friction: float, where: str) -> str:
+def minimum_note(groups: Groups, contact: Contact | None, values: Values, friction: float, where: str) -> str:
     """Return what to know of a minimum of friction whose gap the contact law is not made for; empty if there is nothing.
 
     Parameters
@@ -156,7 +176,7 @@ def minimum_note(groups: Groups, contact: Contact | None, values: Observables, f
         The groups there, with the law.
     contact : Contact or None
         The contact there.
-    values : Observables
+    values : Values
         Those of the state.
     friction : float
         Share of the friction that asperities cause [-].
@@ -180,7 +200,7 @@ def minimum_note(groups: Groups, contact: Contact | None, values: Observables, f
     )
 
 
-def _gap_ratio(groups: Groups, contact: Contact | None, values: Observables) -> tuple[float, str]:
+def _gap_ratio(groups: Groups, contact: Contact | None, values: Values) -> tuple[float, str]:
     """Return the central gap over h_rms, and the unit in words."""
     known = contact.alpha if contact is not None else (groups.law.parameters.get("alpha") if groups.law is not None else None)
     alpha = USUAL_ALPHA if known is None else float(known)
@@ -188,10 +208,10 @@ def _gap_ratio(groups: Groups, contact: Contact | None, values: Observables) -> 
     return values.central_gap / float(groups.relative_roughness) / alpha, measured
 
 
-def _shares(contact: Contact | None, values: Observables) -> tuple[float, float]:
+def _shares(contact: Contact | None, values: Values) -> tuple[float, float]:
     """Return the shares of load and friction that are the asperities'."""
     boundary, beta = (1.0, USUAL_BETA) if contact is None else (contact.boundary_friction, contact.beta)
-    dry, viscous = boundary * values.contact_load_share, beta * values.viscous_balanced
+    dry, viscous = boundary * values.contact_load_share, values.viscous_friction(beta)
     return values.contact_load_share, dry / (dry + viscous) if dry > 0 else 0.0
 
 
@@ -220,7 +240,14 @@ def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, 
     )
 
 
-def cavitation_notes(contact: Contact | None, fluid_pressure: Array) -> tuple[str, ...]:
+LINE_BREAKS = (
+    "Where it breaks at ambient pressure the minimum of friction is 9 to 20 % lower, and in boundary lubrication the fluid "
+    "carries more (when_not_to_use.md)."
+)
+"""What a film that breaks at ambient pressure changes in a line contact."""
+
+
+def cavitation_notes(contact: Contact | None, fluid_pressure: Array, consequence: str = LINE_BREAKS) -> tuple[str, ...]:
     """Return the sentence that says where the suction behind a contact is more than an atmosphere.
 
     Parameters
@@ -229,6 +256,8 @@ def cavitation_notes(contact: Contact | None, fluid_pressure: Array) -> tuple[st
         The contact; without one nothing is known of pressures in Pa.
     fluid_pressure : ndarray
         Fluid pressure above the ambient [p_Hz].
+    consequence : str
+        What a film that breaks at ambient pressure changes.
 
     Returns
     -------
@@ -248,7 +277,5 @@ def cavitation_notes(contact: Contact | None, fluid_pressure: Array) -> tuple[st
     # In MPa throughout, so that the notes of a curve differ by their numbers alone.
     return (
         f"Behind the contact the fluid pressure falls {suction / 1e6:.3g} MPa below the ambient, more than one atmosphere: "
-        "at atmospheric pressure the film cavitates there, which is not modelled. Where it breaks at "
-        "ambient pressure the minimum of "
-        "friction is 9 to 20 % lower, and in boundary lubrication the fluid carries more (when_not_to_use.md).",
+        f"at atmospheric pressure the film cavitates there, which is not modelled. {consequence}",
     )

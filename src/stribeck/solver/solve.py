@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
@@ -23,10 +24,16 @@ from stribeck.quantities.outputs import NAMES
 from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
 from stribeck.solver.at_rest import with_positive_gap
+from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
 from stribeck.solver.refinement import RefinedState, converge, order_for
 from stribeck.solver.solution import Solution
+
+if TYPE_CHECKING:
+    from stribeck.contacts.line import LineContact
+    from stribeck.contacts.point import PointContact
+    from stribeck.solver.point.solution import PointSolution
 
 RTOL_RANGE = (1e-11, 1e-2)
 """Tolerances that may be asked for; below, double precision reaches no state."""
@@ -52,16 +59,46 @@ class SolveError(RuntimeError):
     ----------
     outcome : Outcome
         Why.
-    solution : Solution or None
+    solution : Solution, PointSolution or None
         What was reached, with its error estimate, if there is a state.
     message : str
         The sentence shown: the state, the outcome, what was reached.
     """
 
-    def __init__(self, outcome: Outcome, solution: Solution | None, message: str) -> None:
+    def __init__(self, outcome: Outcome, solution: BaseSolution | None, message: str) -> None:
         super().__init__(message)
         self.outcome = outcome
         self.solution = solution
+
+
+@overload
+def solve(
+    problem: LineContact,
+    *,
+    rtol: float = ...,
+    law: str | AsperityLaw | None = ...,
+    on_failure: Literal["raise", "return"] = ...,
+) -> Solution: ...
+
+
+@overload
+def solve(
+    problem: PointContact,
+    *,
+    rtol: float = ...,
+    law: str | AsperityLaw | None = ...,
+    on_failure: Literal["raise", "return"] = ...,
+) -> PointSolution: ...
+
+
+@overload
+def solve(
+    problem: Groups | Contact,
+    *,
+    rtol: float = ...,
+    law: str | AsperityLaw | None = ...,
+    on_failure: Literal["raise", "return"] = ...,
+) -> Any: ...
 
 
 @one_blas_thread
@@ -71,7 +108,7 @@ def solve(
     rtol: float = 1e-6,
     law: str | AsperityLaw | None = None,
     on_failure: Literal["raise", "return"] = "raise",
-) -> Solution:
+) -> Any:
     r"""Solve one state of the lubricated rough contact, from cold.
 
     The coupled equations are [BP] Appendix A: contact pressure by the contact law, Reynolds' equation, plane-strain
@@ -79,10 +116,12 @@ def solve(
 
     Parameters
     ----------
-    problem : Groups or Contact
-        The state.  Speed zero (at rest), roughness zero (smooth) and both (Hertz, closed form) are ordinary inputs.
+    problem : Groups, LineContact or PointContact
+        The state, of a cylinder or of a ball.  Speed zero (at rest), roughness zero (smooth) and both (Hertz, closed form) are
+        ordinary inputs.
     rtol : float
-        Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2.
+        Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2, for a ball from 1e-8
+        and without its minimum film, which has an error of its own.
     law : str or AsperityLaw, optional
         Contact law: an object such as :class:`stribeck.GreenwoodWilliamson`, or the name of one that needs no parameters; that
         of the problem if omitted, which is the exponential one unless it says otherwise.
@@ -91,8 +130,9 @@ def solve(
 
     Returns
     -------
-    Solution
-        Fields, observables, outcome and error estimate.
+    Solution or PointSolution
+        Fields, observables, outcome and error estimate, under the same names; that of a ball is a
+        :class:`stribeck.PointSolution`.
 
     Raises
     ------
@@ -112,9 +152,26 @@ def solve(
     check_rtol(rtol)
     if not isinstance(on_failure, str) or on_failure not in ("raise", "return"):
         raise InputError(f"on_failure = {show(on_failure)}; it must be 'raise' or 'return'.")
+    return SOLVERS[groups.geometry](groups, contact, rtol, on_failure)
+
+
+def _line(groups: Groups, contact: Contact | None, rtol: float, on_failure: str) -> Solution:
+    """Return the state of a line contact."""
     if groups.is_hertzian:
         return hertz_solution(groups, contact, rtol)
     return finish(solved_point(groups, rtol), groups, contact, rtol, on_failure)
+
+
+def _point(groups: Groups, contact: Contact | None, rtol: float, on_failure: str) -> PointSolution:
+    """Return the state of a point contact."""
+    from stribeck.solver.point.finish import finish_point
+    from stribeck.solver.point.solve import solve_cold
+
+    return finish_point(solve_cold(groups, rtol), contact, on_failure)
+
+
+SOLVERS: dict[str, Callable[[Groups, Contact | None, float, str], Any]] = {"line": _line, "point": _point}
+"""How one state is solved from cold, by geometry."""
 
 
 def solved_point(groups: Groups, rtol: float) -> RefinedState:

@@ -13,7 +13,7 @@ from stribeck.contacts.friction import DEFINITIONS
 from stribeck.quantities.inputs import QUANTITIES, unit_of
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, AREA, FILMS, NAMES, OBSERVABLES
-from stribeck.solver.solution import Solution, si_films
+from stribeck.solver.base_solution import BaseSolution, si_films
 
 __all__ = ["OUTCOMES", "columns_of", "failed_row", "input_columns", "row_of"]
 
@@ -72,7 +72,7 @@ def input_columns(names: tuple[str, ...]) -> dict[str, tuple[str, str]]:
     return found
 
 
-def row_of(solution: Solution, boundary_friction: float, beta: float) -> tuple[Array, str]:
+def row_of(solution: BaseSolution, boundary_friction: float, beta: float) -> tuple[Array, str]:
     """Return the numbers of a state, in the order of :func:`columns_of`, and what there is to say about it."""
     values = [float(getattr(solution, name)) for name in OBSERVABLES]
     values += [solution.errors[name] for name in NAMES if name in OBSERVABLES]

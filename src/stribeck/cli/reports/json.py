@@ -18,7 +18,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import INPUTS, unit_of
 from stribeck.quantities.outputs import GROUPS, OBSERVABLES
 from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
-from stribeck.solver.solution import Solution, si_films
+from stribeck.solver.base_solution import BaseSolution, si_films
 
 __all__ = ["curve_json", "dump", "law_json", "regimes_json", "solution_json"]
 
@@ -52,7 +52,7 @@ def _plain(content: Any) -> Any:
 
 
 def solution_json(
-    solution: Solution, boundary_friction: float | None = None, beta: float | None = None, checks: Checks | None = None
+    solution: BaseSolution, boundary_friction: float | None = None, beta: float | None = None, checks: Checks | None = None
 ) -> dict[str, Any]:
     """Return :meth:`Solution.to_dict`, and under ``si`` inputs and films of the contact, if any, in SI units.
 
@@ -140,7 +140,7 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str], checks: C
 
 
 def regimes_json(
-    solution: Solution,
+    solution: BaseSolution,
     sensitivities: Sensitivities,
     curve: StribeckCurve,
     margins: RegimeMargins,

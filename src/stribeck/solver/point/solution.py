@@ -1,0 +1,434 @@
+"""What a solve of a ball returns: fields and observables of one state, with outcome, error estimate and notes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.cut_off import COUETTE, POISEUILLE, log_cut_offs
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.groups import Groups, contact_law
+from stribeck.contacts.point import PURE_SLIDING, PointContact
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.units import InputError, real_array, show
+from stribeck.solver.base_solution import BaseSolution, Profile
+from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
+from stribeck.solver.point.state import OBSERVABLES, PointState
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["Field", "PointObservables", "PointSolution", "solution_of"]
+
+NEAR_EDGE = 5.0
+"""Radius of the disc of liquid over the Hertz radius below which a note says that friction is coarse."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """Fields on the plane of the contact.
+
+    Attributes
+    ----------
+    x, y : ndarray
+        Positions along and across the motion, of any shapes that broadcast [a or m].
+    gap : ndarray
+        Gap, of the broadcast shape [u_Hz or m].
+    contact_pressure, fluid_pressure : ndarray
+        The two parts of the pressure [p_Hz or Pa].
+    unit : {"Hertz", "SI"}
+        Which of the two units hold.
+    """
+
+    x: Array
+    y: Array
+    gap: Array
+    contact_pressure: Array
+    fluid_pressure: Array
+    unit: Literal["Hertz", "SI"] = "Hertz"
+
+    @property
+    def pressure(self) -> Array:
+        """Total pressure, contact and fluid."""
+        return self.contact_pressure + self.fluid_pressure
+
+
+@dataclass(frozen=True)
+class PointObservables:
+    """The observables of one state of a ball in Hertz units; the friction integrals J by their finite parts."""
+
+    contact_load_share: float
+    fluid_load_share: float
+    central_gap: float
+    minimum_gap: float
+    minimum_radius: float
+    minimum_angle: float
+    minimum_gap_on_axis: float
+    central_pressure: float
+    offset: float
+    J_couette: float
+    J_poiseuille: float
+    J_balanced: float
+    J_published: float
+    J_pcx: float
+    _groups: Groups = field(repr=False)
+    _slide_to_roll: float = PURE_SLIDING
+    _wetted_radius: float | None = None
+
+    @classmethod
+    def of(cls, state: PointState, contact: Contact | None) -> PointObservables:
+        """Return those of a state, and of the contact's motion and liquid."""
+        values = {name: float(state.values[name]) for name in OBSERVABLES}
+        if not isinstance(contact, PointContact):
+            return cls(**values, _groups=state.groups)
+        wetted = None if contact.wetted_radius is None else contact.wetted_radius / contact.hertz.half_width
+        return cls(**values, _groups=state.groups, _slide_to_roll=contact.slide_to_roll, _wetted_radius=wetted)
+
+    def integral(self, slope: float, definition: Definition = "balanced") -> float:
+        r"""Return the friction integral J up to where the liquid ends.
+
+        .. math:: J = \frac S2 J^\mathrm{couette} + J^\mathrm{poiseuille}
+
+        each with its logarithm, see :mod:`stribeck.contacts.cut_off`: the force on the flat; published, that on the ball
+        without the contact pressure along x.
+        """
+        speed, part = float(self._groups.speed), 0.5 * self._slide_to_roll
+        if speed == 0:
+            return 0.0
+        by_shear, by_pressure = log_cut_offs(slope, self._wetted_radius)
+        couette = self.J_couette + COUETTE * speed * by_shear
+        balanced = part * couette + self.J_poiseuille + POISEUILLE * speed * by_pressure
+        if definition == "balanced":
+            return balanced
+        # Of a whole ball both forces differ by the contact pressure alone; a disc of liquid ends with a pressure at its rim.
+        rim = POISEUILLE * speed if self._wetted_radius is not None else 0.0
+        return balanced - self.J_pcx + rim
+
+    def viscous_friction(self, beta: float, definition: Definition = "balanced") -> float:
+        r"""Return the viscous friction coefficient.
+
+        .. math:: \mu_f = \tfrac34 \beta \bar F_N^{1/3} J = \frac{3}{2\pi} \frac aR J
+        """
+        slope = float(self._groups.slope(beta))
+        return 1.5 / math.pi * slope * self.integral(slope, definition)
+
+    def viscous_error(self, beta: float, errors: dict[str, float], definition: Definition = "balanced") -> float:
+        """Return the absolute error of the same from those of the finite parts."""
+        error = errors["J_pcx"] if definition == "published" else 0.0
+        if self._slide_to_roll == PURE_SLIDING:
+            error += errors["J_balanced"]
+        else:
+            error += 0.5 * self._slide_to_roll * errors["J_couette"] + errors["J_poiseuille"]
+        return 1.5 / math.pi * float(self._groups.slope(beta)) * error
+
+
+@dataclass(frozen=True, eq=False)
+class PointSolution(BaseSolution):
+    r"""One solved state of a ball.
+
+    Lengths along the contact are in Hertz radii a, gaps in indentations u_Hz, pressures in p_Hz.
+
+    Attributes
+    ----------
+    groups : Groups
+        The state that was solved.
+    contact : PointContact or None
+        The contact in SI units it came from.
+    outcome : Outcome
+        How the solve ended; its value is a sentence.
+    notes : tuple of str
+        What to know before using the numbers, one sentence each.
+    rtol : float
+        The relative tolerance asked for.
+    law : str
+        Name of the contact law.
+    observables : PointObservables
+        The observables as one object.
+    state : PointState
+        The state as the solver has it: mesh, nodal fields, steps.
+
+    Notes
+    -----
+    Observables (``contact_load_share`` ... ``offset``) are attributes too, see the table of symbols in theory.md.
+    """
+
+    groups: Groups
+    contact: Contact | None
+    outcome: Outcome
+    notes: tuple[str, ...]
+    rtol: float
+    law: str
+    observables: PointObservables
+    state: PointState = field(repr=False)
+
+    @property
+    def nodes(self) -> int:
+        """Unknown gaps in the final discretisation."""
+        return int(self.state.mesh.size)
+
+    @property
+    def newton_steps(self) -> int:
+        """Steps of its Newton iteration."""
+        return self.state.newton_steps
+
+    @property
+    def error_estimate(self) -> float:
+        """Largest estimated relative error of the observables; load shares count absolutely.
+
+        It says nothing about the minimum film, whose estimates are :attr:`minimum_gap_error`, :attr:`minimum_radius_error` and
+        :attr:`minimum_angle_error`.
+        """
+        return self.state.error_estimate
+
+    @cached_property
+    def errors(self) -> dict[str, float]:
+        """Estimated relative error of each observable; absolute for the load shares."""
+        found = self.state.errors
+        return {name: float(found[name]) for name in self.outputs.names}
+
+    @property
+    def minimum_gap_error(self) -> float:
+        """Estimated relative error of the minimum film [-], which ``rtol`` does not hold: side lobes are sharp."""
+        return self.state.minimum_gap_error
+
+    @property
+    def minimum_radius_error(self) -> float:
+        """Estimated absolute error of :attr:`minimum_radius` [a]."""
+        return float(self.state.absolute_errors["minimum_radius"])
+
+    @property
+    def minimum_angle_error(self) -> float:
+        """Estimated absolute error of :attr:`minimum_angle` [radian]."""
+        return float(self.state.absolute_errors["minimum_angle"])
+
+    @property
+    def identity_error(self) -> float:
+        r"""What is left of the identity of the friction integrals, over the largest of them [-].
+
+        .. math:: J^\mathrm{balanced} - J^\mathrm{published} - J^{p_c x} + \tfrac25 \pi \lambda = 0
+        """
+        values = self.state.values
+        largest = max(abs(values["J_balanced"]), abs(values["J_published"]), abs(values["J_pcx"]))
+        return abs(self.state.identity_error) / largest if largest > 0 else 0.0
+
+    @property
+    def friction_integral(self) -> float:
+        """The balanced friction integral J up to where the liquid ends [-]; of a whole ball for beta = 1 without a contact."""
+        slope = float(self.groups.slope() if self.contact is None else self.contact.slope)
+        return self.observables.integral(slope)
+
+    def _viscous(self, beta: float, definition: Definition) -> tuple[float, float]:
+        errors = {name: float(error) for name, error in self.state.absolute_errors.items()}
+        return self.observables.viscous_friction(beta, definition), self.observables.viscous_error(beta, errors, definition)
+
+    @cached_property
+    def x(self) -> Array:
+        """Positions of the nodes along the middle line, ascending [a]."""
+        radii = np.asarray(self.state.mesh.radii)
+        return np.concatenate([-radii[::-1], radii])
+
+    @cached_property
+    def _middle(self) -> Profile:
+        return self.profile(self.x)
+
+    @property
+    def gap(self) -> Array:
+        """Gap at :attr:`x` on the middle line [u_Hz]."""
+        return self._middle.gap
+
+    @property
+    def contact_pressure(self) -> Array:
+        """Contact pressure at :attr:`x` on the middle line [p_Hz]."""
+        return self._middle.contact_pressure
+
+    @property
+    def fluid_pressure(self) -> Array:
+        """Fluid pressure at :attr:`x` on the middle line [p_Hz]; negative behind the contact, where nothing cavitates."""
+        return self._middle.fluid_pressure
+
+    @property
+    def pressure(self) -> Array:
+        """Total pressure at :attr:`x` on the middle line [p_Hz]."""
+        return self._middle.pressure
+
+    @property
+    def separation(self) -> Array:
+        """Separation ``s = alpha h/h_rms`` at :attr:`x` on the middle line [-]; infinite for smooth surfaces."""
+        kappa = float(self.groups.relative_roughness)
+        return self.gap / kappa if kappa > 0 else np.full_like(self.x, np.inf)
+
+    def profile(self, x: Array) -> Profile:
+        """Return the fields along the middle line.
+
+        Parameters
+        ----------
+        x : array_like, shape (n,)
+            Finite positions along the motion, the inlet at x < 0 [a].
+
+        Returns
+        -------
+        Profile
+            In Hertz units.
+
+        Raises
+        ------
+        InputError
+            If a position is not finite.
+        """
+        points = np.atleast_1d(real_array("x", x))
+        if points.ndim != 1:
+            raise InputError(f"x = {show(x)}; positions along the middle line have one dimension, see field for a plane.")
+        found = self.field(points, 0.0)
+        return Profile(points, found.gap, found.contact_pressure, found.fluid_pressure)
+
+    def field(self, x: Any, y: Any) -> Field:
+        """Return the fields anywhere on the plane.
+
+        Parameters
+        ----------
+        x, y : array_like
+            Finite positions along and across the motion, of shapes that broadcast; the inlet is at x < 0 [a].
+
+        Returns
+        -------
+        Field
+            In Hertz units.
+
+        Raises
+        ------
+        InputError
+            If a position is not finite, or the shapes do not broadcast.
+        """
+        along, across = real_array("x", x), real_array("y", y)
+        for name, given, found in (("x", x, along), ("y", y, across)):
+            if not np.isfinite(found).all():
+                raise InputError(f"{name} = {show(given)}; positions must be finite numbers.")
+        try:
+            along, across = (np.array(each) for each in np.broadcast_arrays(along, across))
+        except ValueError:
+            raise InputError(f"x of shape {along.shape} and y of shape {across.shape} do not broadcast.") from None
+        at = self.state.fields(along, across)
+        return Field(along, across, at.gap, at.contact_pressure, at.fluid_pressure)
+
+    def to_si(self, x: Any = None, y: Any = None) -> Profile | Field:
+        """Return the fields in SI units: positions and gaps in m, pressures in Pa.
+
+        Parameters
+        ----------
+        x : array_like, optional
+            Positions along the motion [m]; the nodes of the middle line by default.
+        y : array_like, optional
+            Positions across it [m]; the middle line by default.
+
+        Returns
+        -------
+        Profile or Field
+            In SI units; a field where ``y`` is given.
+
+        Raises
+        ------
+        InputError
+            If the solution comes from groups alone, which do not fix the scales.
+        """
+        scales = self._scales("to_si")
+        a, u, p = scales.half_width, scales.indentation, scales.pressure
+        if y is not None:
+            f = self.field(real_array("x", 0.0 if x is None else x) / a, real_array("y", y) / a)
+            return Field(f.x * a, f.y * a, f.gap * u, f.contact_pressure * p, f.fluid_pressure * p, "SI")
+        m = self._middle if x is None else self.profile(real_array("x", x) / a)
+        return Profile(m.x * a, m.gap * u, m.contact_pressure * p, m.fluid_pressure * p, "SI")
+
+    def _scales(self, what: str) -> Any:
+        if self.contact is None:
+            raise InputError(f"{what} needs the Hertz scales of a contact; solve a PointContact instead of Groups.")
+        return self.contact.hertz
+
+    def to_dataset(self, *, points: int = 161, reach: float = 2.0) -> xarray.Dataset:
+        """Return the fields on a square around the contact as an xarray Dataset.
+
+        Parameters
+        ----------
+        points : int
+            Points along each side, 2 to 2001.
+        reach : float
+            Half the side of the square [a], positive.
+
+        Returns
+        -------
+        xarray.Dataset
+            Gap and pressures over y and x, in SI units where there is a contact and in Hertz units else; observables, groups
+            and inputs as attributes. Needs the extra ``data``.
+
+        Raises
+        ------
+        InputError
+            If an argument is outside its range.
+        """
+        from stribeck.solver.point.dataset import field_dataset
+
+        return field_dataset(self, points, reach)
+
+    def to_netcdf(self, path: Any, *, force: bool = False, points: int = 161, reach: float = 2.0) -> None:
+        """Write :meth:`to_dataset` as NetCDF.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+        force : bool
+            Whether an existing file is replaced; else it is kept and the call refused.
+        points, reach : int, float
+            As in :meth:`to_dataset`.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given.
+        """
+        from stribeck.files.datasets import write_netcdf
+
+        write_netcdf(self.to_dataset(points=points, reach=reach), path, force=force)
+
+
+def solution_of(state: PointState, contact: Contact | None) -> PointSolution:
+    """Return the solution that a state of the solver is."""
+    groups, values = state.groups, PointObservables.of(state, contact)
+    return PointSolution(
+        groups=groups,
+        contact=contact,
+        outcome=state.outcome,
+        notes=_notes(state, contact, values),
+        rtol=state.rtol,
+        law="dry contact" if groups.is_hertzian else contact_law(groups).name,
+        observables=values,
+        state=state,
+    )
+
+
+def _notes(state: PointState, contact: Contact | None, values: PointObservables) -> tuple[str, ...]:
+    """Return what to know before using the numbers of a state."""
+    groups = state.groups
+    if groups.is_hertzian:
+        return ("Speed and roughness are zero: dry Hertz contact, in closed form.",)
+    if not state.outcome.ok:
+        return shape_notes(contact)
+    notes = [*shape_notes(contact), *law_notes(groups, contact, values)]
+    if contact is not None and groups.speed > 0:
+        notes += cavitation_notes(
+            contact,
+            state.nodal_fluid_pressure,
+            "Where it breaks at ambient pressure asperities carry 7 to 15 % of the load less in mixed lubrication.",
+        )
+    wetted = values._wetted_radius
+    if wetted is not None and wetted < NEAR_EDGE:
+        notes.append(
+            f"The liquid ends at {wetted:.2g} Hertz radii: the friction up to that edge is coarse, as it is by the far field, "
+            f"which holds from about {NEAR_EDGE:g} on; films and load shares are those of a ball in liquid."
+        )
+    return tuple(notes)
