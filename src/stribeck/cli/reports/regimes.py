@@ -25,7 +25,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.units import format_share, format_si
 from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
-from stribeck.solver.solution import Solution
+from stribeck.solver.base_solution import BaseSolution
 from stribeck.uncertainty.result import Uncertainty
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ __all__ = ["print_regimes"]
 
 def print_regimes(
     console: Console,
-    solution: Solution,
+    solution: BaseSolution,
     sensitivities: Sensitivities,
     curve: StribeckCurve,
     margins: RegimeMargins,
@@ -49,7 +49,7 @@ def print_regimes(
     ----------
     console : rich.console.Console
         Where to.
-    solution : Solution
+    solution : BaseSolution
         The state, of a contact.
     sensitivities : dict of str to float
         Those of its friction.

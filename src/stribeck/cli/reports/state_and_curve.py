@@ -25,7 +25,7 @@ from stribeck.contacts.friction import DEFINITIONS
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.outputs import ROWS
-from stribeck.solver.solution import Solution
+from stribeck.solver.base_solution import BaseSolution
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -35,7 +35,7 @@ __all__ = ["print_curve", "print_solution"]
 
 def print_solution(
     console: Console,
-    solution: Solution,
+    solution: BaseSolution,
     title: str,
     boundary_friction: float | None = None,
     beta: float | None = None,
@@ -47,7 +47,7 @@ def print_solution(
     ----------
     console : rich.console.Console
         Where to.
-    solution : Solution
+    solution : BaseSolution
         The state.
     title : str
         Headline.
@@ -66,7 +66,7 @@ def print_solution(
 
 
 def _solution_rows(
-    solution: Solution, boundary_friction: float | None, beta: float | None
+    solution: BaseSolution, boundary_friction: float | None, beta: float | None
 ) -> Iterator[tuple[str, str, str, str]]:
     errors = solution.errors
     for definition in DEFINITIONS:

@@ -19,7 +19,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import INPUTS, QUANTITIES, ROWS
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import format_bound, format_si
-from stribeck.solver.solution import Solution
+from stribeck.solver.base_solution import BaseSolution
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -43,12 +43,12 @@ def part_error(friction: Friction) -> float:
     return friction.error / friction.total if friction.total > 0 else 0.0
 
 
-def regime_now(solution: Solution, definition: Definition) -> str:
+def regime_now(solution: BaseSolution, definition: Definition) -> str:
     """Return the regime of a state."""
     return regime_of(solution.fluid_load_share, contact_part(solution.friction(definition=definition)))
 
 
-def hersey_of(solution: Solution, beta: float | None) -> float:
+def hersey_of(solution: BaseSolution, beta: float | None) -> float:
     """Return the Hersey number, of groups by the beta of the contact law."""
     if solution.contact is None and beta is not None:
         return float(solution.groups.hersey_number(beta))
