@@ -31,7 +31,7 @@ EXAMPLE = PACKAGE.parents[1] / "examples" / "pdms_cylinder.toml"
 # physics, so that problems with known answers can test it.
 LAYERS = (
     ("__init__", "__main__", "cli", "evidence"),
-    ("explorer", "figures"),
+    ("explorer", "figures", "data_sheet"),
     ("fits", "sweeps", "regimes"),
     ("checks", "uncertainty"),
     ("curves", "batches"),
@@ -54,9 +54,11 @@ HEAVY = {
     "distributed",
     "emcee",
     "filelock",
+    "jinja2",
     "matplotlib",
     "netCDF4",
     "nicegui",
+    "openpyxl",
     "pandas",
     "pint",
     "pydantic",

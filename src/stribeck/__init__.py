@@ -20,6 +20,8 @@ _HOMES = {
     "curves.regime": ("regime_of",),
     "curves.result": ("StribeckCurve",),
     "curves.stribeck_curve": ("stribeck_curve",),
+    "data_sheet.new_case": ("new_case",),
+    "data_sheet.report": ("write_report",),
     "fits.fit": ("fit",),
     "fits.measurements": ("Measurements", "read_measurements"),
     "fits.result": ("Fit", "FitOutcome", "FittedInput"),

@@ -17,6 +17,8 @@ from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.data_sheet.new_case import new_case
+from stribeck.data_sheet.report import write_report
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
@@ -73,6 +75,7 @@ __all__ = [
     "fit",
     "load_case",
     "load_sweep",
+    "new_case",
     "open_sweep",
     "phase_diagram",
     "propagate",
@@ -83,6 +86,7 @@ __all__ = [
     "stribeck_curve",
     "surfaces",
     "sweep",
+    "write_report",
 ]
 
 __version__: str

@@ -24,6 +24,7 @@ from stribeck.cli.exits import (
     silence,
     stdout_console,
 )
+from stribeck.cli.sheets import new_command, report_command
 from stribeck.cli.solving import check_command, curve_command, figures_command, regimes_command, solve_command
 from stribeck.cli.studies import explore_command, fit_command, surface_command, sweep_command
 from stribeck.quantities.outcome import Outcome
@@ -125,6 +126,7 @@ def make_app() -> App:
         console=stdout_console(),
     )
     for command in (
+        new_command,
         check_command,
         solve_command,
         curve_command,
@@ -133,6 +135,7 @@ def make_app() -> App:
         sweep_command,
         surface_command,
         fit_command,
+        report_command,
         explore_command,
     ):
         app.command(command, name=command.__name__.removesuffix("_command"))
@@ -160,7 +163,7 @@ def _line(problem: BaseException) -> str:
 
 
 def _command(tokens: Sequence[str]) -> str:
-    known = ("check", "solve", "curve", "regimes", "figures", "sweep", "surface", "fit", "explore")
+    known = ("new", "report", "check", "solve", "curve", "regimes", "figures", "sweep", "surface", "fit", "explore")
     return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
 
 

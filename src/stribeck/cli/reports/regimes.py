@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from stribeck.checks.check import Checks
@@ -24,7 +22,8 @@ from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.units import format_share, format_si
-from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
+from stribeck.regimes.margins import RegimeMargins
+from stribeck.regimes.sentences import ways_to
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.uncertainty.result import Uncertainty
 
@@ -73,7 +72,7 @@ def print_regimes(
         f"({format_share(contact_part(friction), part_error(friction))} from asperities); the fluid carries "
         f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load.",
     )
-    for line in _ways(margins):
+    for line in ways_to(margins):
         say(console, line)
     if curve.transitions:
         table = table_of("transition", "speed", "change", "friction", right=(1, 3))
@@ -123,39 +122,6 @@ def print_uncertainty(console: Console, found: Uncertainty) -> None:
     say(console, f"Probability of each regime: {found.probabilities}.")
     blame = ", ".join(f"{QUANTITIES[name].label} {100 * part:.2g} %" for name, part in found.contributions.items())
     say(console, f"Of the variance of friction come from: {blame}.")
-
-
-def _ways(margins: RegimeMargins) -> Iterator[str]:
-    """Yield a sentence for each regime that is near: what it takes of each input, and what leads nowhere."""
-    for regime in margins.targets:
-        found = [(margin, margin.crossing_into(regime)) for margin in margins.margins]
-        ways = [f"{margin.name} {_step(margin.name, mark)}" for margin, mark in found if mark is not None]
-        barren = [_searched(margin) for margin, mark in found if mark is None]
-        if not ways:
-            yield f"To reach {regime} lubrication: not reachable by changing {', '.join(barren)}."
-            continue
-        rest = f"; not reachable by changing {', '.join(barren)}" if barren else ""
-        yield f"To reach {regime} lubrication: {', or '.join(ways)}{rest}."
-    if any(margin.name == "viscosity" and (margin.less or margin.more) for margin in margins.margins):
-        yield "Only the product of speed and viscosity matters, so their factors are equal."
-
-
-def _step(name: str, mark: Crossing) -> str:
-    """Return how far an input is to be changed, as ``x 3.1 (0.31 m/s)``."""
-    if mark.value == 0:
-        return "to any value above zero"
-    value = format_si(mark.value, QUANTITIES[name].dimension, 4)
-    if math.isinf(mark.factor):
-        return f"from zero to {value}"
-    return f"x {mark.factor:.3g} (to {value})" if mark.factor >= 1 else f"/ {1 / mark.factor:.3g} (to {value})"
-
-
-def _searched(margin: Margin) -> str:
-    low, high = margin.searched
-    if low == high:  # it cannot lead anywhere, and a note says why
-        return margin.name
-    ends = (format_si(value, QUANTITIES[margin.name].dimension) for value in (low, high))
-    return f"{margin.name} (range searched {' to '.join(ends)})"
 
 
 def _way(mark: Landmark, speed: float) -> str:

@@ -1,0 +1,288 @@
+"""What a report says: inputs with their sources, checks, regime, films, margins and levers, all solved here."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import date
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stribeck.cases.case import Case
+from stribeck.checks.check import Checks
+from stribeck.checks.subject import Subject
+from stribeck.checks.table import checks_of
+from stribeck.curves.regime import regime_of
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.fits.measurements import Measurements, read_measurements
+from stribeck.quantities.units import format_share, format_si
+from stribeck.regimes.margins import regime_margins
+from stribeck.regimes.sentences import ways_to
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import SolveError, solve
+from stribeck.uncertainty.propagate import propagate
+from stribeck.uncertainty.result import Uncertainty
+
+__all__ = ["Content", "InputLine", "Lever", "content_of"]
+
+POINTS = 41
+
+GOAL = 0.8
+"""What levers are to bring the friction down to."""
+
+FARTHEST = 100.0
+"""Factor beyond which an input is no lever."""
+
+HANDS_ON = ("speed", "viscosity", "load", "roughness", "modulus", "radius", "boundary_friction")
+"""Inputs that a designer may change."""
+
+
+@dataclass(frozen=True)
+class InputLine:
+    """One input: what it is called, its value with its error, and where the file says that it is from."""
+
+    label: str
+    value: str
+    error: str
+    source: str
+
+
+@dataclass(frozen=True)
+class Lever:
+    """One input that lowers friction: what to change it to, and the friction that then is solved."""
+
+    label: str
+    change: str
+    friction: str
+
+
+@dataclass(frozen=True)
+class Content:
+    """What a report says.
+
+    Attributes
+    ----------
+    title, headline : str
+        Headline, and whether the model applies.
+    inputs : tuple of InputLine
+        The inputs.
+    conversions : tuple of str
+        What was made of inputs as data sheets have them.
+    checks : Checks
+        The checks.
+    sentences : tuple of str
+        Regime, friction and load share.
+    films : tuple of tuple of str
+        Name, value and 95 % interval of films, friction and transitions; no interval without errors.
+    uncertainty : Uncertainty or None
+        What errors of the inputs make of them.
+    margins : tuple of str
+        The way to the next regimes.
+    levers : tuple of Lever
+        The two inputs that lower friction by a fifth with the smallest change.
+    notes : tuple of str
+        What to know before using the numbers.
+    versions : str
+        Program and libraries.
+    curve : StribeckCurve
+        Friction over the speed.
+    solution : Solution
+        The state.
+    data : Measurements or None
+        Measured friction.
+    """
+
+    title: str
+    headline: str
+    inputs: tuple[InputLine, ...]
+    conversions: tuple[str, ...]
+    checks: Checks
+    sentences: tuple[str, ...]
+    films: tuple[tuple[str, str, str], ...]
+    uncertainty: Uncertainty | None
+    margins: tuple[str, ...]
+    levers: tuple[Lever, ...]
+    notes: tuple[str, ...]
+    versions: str
+    curve: StribeckCurve
+    solution: Solution
+    data: Measurements | None = None
+
+
+def content_of(
+    case: Case, data: str | Path | Measurements | None = None, on_step: Callable[[int, int], object] | None = None
+) -> Content:
+    """Solve all that a report says of a case.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    data : path-like or Measurements, optional
+        Measured friction, drawn over the curve.
+    on_step : callable, optional
+        ``on_step(done, total)`` is called as the work goes on.
+
+    Returns
+    -------
+    Content
+        What it says.
+
+    Raises
+    ------
+    InputError
+        If the data cannot be used.
+    SolveError
+        If the contact cannot be solved.
+    """
+    step = on_step or (lambda done, total: None)
+    measured = read_measurements(data, case.fit) if isinstance(data, str | Path) else data
+    contact, definition = case.contact, case.definition
+    solution, slopes = friction_sensitivities(contact, rtol=case.rtol, definition=definition)
+    curve = stribeck_curve(contact, points=POINTS, rtol=case.rtol, definition=definition)
+    step(1, 5)
+    checks = checks_of(Subject(contact, case.facts, definition, solution, curve))
+    step(2, 5)
+    found = propagate(contact, case.errors, definition=definition) if case.errors else None
+    step(3, 5)
+    margins = regime_margins(contact, rtol=case.rtol, definition=definition)
+    step(4, 5)
+    levers = _levers(case, solution, slopes)
+    step(5, 5)
+    return Content(
+        title=case.title or case.path.name,
+        headline=checks.headline,
+        inputs=_inputs(case),
+        conversions=case.conversions,
+        checks=checks,
+        sentences=_sentences(case, solution, curve, found),
+        films=_films(solution, curve, found),
+        uncertainty=found,
+        margins=tuple(ways_to(margins)),
+        levers=levers,
+        notes=tuple(note for note in (*solution.notes, *margins.notes) if not _told(note, checks)),
+        versions=_versions(case),
+        curve=curve,
+        solution=solution,
+        data=measured,
+    )
+
+
+def _told(note: str, checks: Checks) -> bool:
+    """Return whether a check says what a note says."""
+    return checks.covers(note) or any(note in each.sentence for each in checks)
+
+
+def _inputs(case: Case) -> tuple[InputLine, ...]:
+    sources = _sources(case.path)
+    through = {"modulus": ("youngs_modulus", "shore_a", "shore_d"), "speed": ("entrainment_speed", "rotational_speed")}
+    through |= {"roughness": ("ra", "rq", "h_rms"), "viscosity": ("kinematic_viscosity",), "load": ("force",)}
+    lines = []
+    for name, value in case.contact.inputs():
+        row = case.contact.INPUTS.quantities[name]
+        names = (name, *through.get(name, ()))
+        error = next((case.errors[each] for each in names if each in case.errors), None)
+        source = next((sources[each] for each in names if each in sources), "")
+        shown = "" if error is None else f"± {100 * error:.2g} %"
+        lines.append(InputLine(row.label, format_si(value, row.dimension, 4), shown, source))
+    return tuple(lines)
+
+
+def _sources(path: Path) -> dict[str, str]:
+    """Return the comments of a case file, those above each key and behind it on its line."""
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except OSError:
+        return {}
+    found: dict[str, str] = {}
+    above: list[str] = []
+    for line in lines:
+        if line.lstrip().startswith("#"):
+            above.append(line.strip().lstrip("# "))
+            continue
+        key = re.match(r"\s*(\w+)\s*=\s*(?:\"[^\"]*\"|[^#\"]*)(?:#\s*(.*))?$", line)
+        if key:
+            found.setdefault(key[1], " ".join([*above, key[2] or ""]).strip())
+        above = []
+    return {name: text for name, text in found.items() if text}
+
+
+def _sentences(case: Case, solution: Solution, curve: StribeckCurve, found: Uncertainty | None) -> tuple[str, ...]:
+    friction = solution.friction(definition=case.definition)
+    share = friction.contact / friction.total if friction.total > 0 else 0.0
+    regime = regime_of(solution.fluid_load_share, share)
+    first = (
+        f"{regime.capitalize()} lubrication at {format_si(case.contact.speed, 'speed')}: friction {friction.total:.3g} "
+        f"({format_share(share, 1e-6)} from asperities); the fluid carries "
+        f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load."
+    )
+    if found is None:
+        return (first, "No errors of the inputs are given, so that no probability of a regime can be.")
+    blame = ", ".join(f"{case.contact.INPUTS.quantities[n].label} {100 * v:.2g} %" for n, v in found.contributions.items())
+    return (first, f"Probability of each regime: {found.probabilities}.", f"Of the variance of friction come from: {blame}.")
+
+
+def _films(solution: Solution, curve: StribeckCurve, found: Uncertainty | None) -> tuple[tuple[str, str, str], ...]:
+    if found is not None:
+        rows = []
+        for each in found.spreads:
+            value, low, high = (format_si(end, each.dimension) for end in (each.value, *each.interval_95))
+            rows.append((each.label, value, f"{low} to {high}"))
+        return tuple(rows)
+    assert solution.contact is not None
+    height = solution.contact.hertz.indentation
+    marks = tuple((str(mark.name), format_si(mark.value, "speed"), "") for mark in curve.transitions)
+    return (
+        ("central film", format_si(solution.central_gap * height, "length"), ""),
+        ("minimum film", format_si(solution.minimum_gap * height, "length"), ""),
+        ("Lambda (minimum film over h_rms)", f"{solution.lambda_ratio:.3g}", ""),
+        *marks,
+    )
+
+
+def _levers(case: Case, solution: Solution, slopes: dict[str, float]) -> tuple[Lever, ...]:
+    """Return the two inputs that lower friction by a fifth with the smallest change, with the friction that is then solved."""
+    contact = case.contact
+    before = solution.friction(definition=case.definition).total
+    factors = {name: float(np.exp(np.log(GOAL) / slopes[name])) for name in HANDS_ON if abs(slopes.get(name, 0.0)) > 0.01}
+    nearest = sorted(factors, key=lambda name: abs(np.log(factors[name])))
+    found: list[Lever] = []
+    for name in nearest:
+        factor = factors[name]
+        # Speed and viscosity enter as a product: two names of one lever.
+        twin = {"speed": "viscosity", "viscosity": "speed"}.get(name)
+        if len(found) == 2 or not 1 / FARTHEST < factor < FARTHEST or any(twin == each.label for each in found):
+            continue
+        row = contact.INPUTS.quantities[name]
+        value = getattr(contact, name) * factor
+        changes: dict[str, Any] = {name: value}
+        if name == "roughness" and contact.law is not None and contact.law.name == "persson":
+            changes["beta"] = contact.beta * factor
+        try:
+            after = solve(contact.replace(**changes), rtol=case.rtol).friction(definition=case.definition).total
+        except SolveError:
+            continue
+        word = f"x {factor:.3g}" if factor > 1 else f"/ {1 / factor:.3g}"
+        found.append(
+            Lever(
+                row.label,
+                f"{word} (to {format_si(value, row.dimension)})",
+                f"{after:.3g} ({100 * (after / before - 1):+.0f} %)",
+            )
+        )
+    return tuple(found)
+
+
+def _versions(case: Case) -> str:
+    libraries = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
+    law = "exponential" if case.contact.law is None else case.contact.law.name
+    return (
+        f"stribeck {version('stribeck')}, {libraries}; contact law: {law}; friction: {case.definition}; "
+        f"relative tolerance {case.rtol:g}; {case.path.name}; {date.today().isoformat()}."
+    )

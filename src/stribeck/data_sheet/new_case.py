@@ -1,0 +1,97 @@
+"""A new case file: every key with its unit, its usual range and where a value may come from."""
+
+from __future__ import annotations
+
+import math
+
+from stribeck.contacts.geometries import check_geometry
+from stribeck.contacts.groups import Geometry
+from stribeck.quantities.conversions import CONVERSIONS
+from stribeck.quantities.facts import ROWS as FACTS
+from stribeck.quantities.inputs import INPUT_TABLES, Input
+from stribeck.quantities.units import DIMENSIONS, format_si
+
+__all__ = ["new_case"]
+
+OPTIONS = """
+[curve]
+# What varies: "speed", "load" or "roughness"; range = ["1 mm/s", "1 m/s"] if the automatic one does not fit.
+over = "speed"
+points = 101
+
+[solver]
+# Relative error of each state, 1e-11 to 1e-2.
+rtol = 1e-6
+# Which friction force: "balanced" (on the substrate) or "published" (as printed in the article).
+definition = "balanced"
+"""
+
+
+def new_case(geometry: Geometry = "line") -> str:
+    """Return the text of a case file with every key, a typical value, its unit and its usual range.
+
+    Parameters
+    ----------
+    geometry : {"line", "point"}
+        A cylinder, or a ball.
+
+    Returns
+    -------
+    str
+        The file, which :func:`stribeck.load_case` reads as it stands; what is optional is commented out.
+
+    Raises
+    ------
+    InputError
+        If it is no geometry.
+    """
+    table = INPUT_TABLES[check_geometry(geometry)]
+    body = "ball" if geometry == "point" else "cylinder"
+    lines = [
+        f"# A lubricated rough {body}. Replace the values by yours; a bare number is in SI units. A value may carry its",
+        '# standard error, as in "1.0 +- 0.2 um" or "46 cSt +- 5 %". Then: stribeck check, solve, curve, regimes, report.',
+        "",
+        'title = "My contact"',
+        "",
+        "[contact]",
+        *([f'geometry = "{geometry}"', ""] if geometry != "line" else []),
+    ]
+    for row in table.rows:
+        if row.derived:
+            continue
+        lines += [*_about(row), f"{'# ' if row.optional else ''}{row.name} = {_value(row)}"]
+        for other in table.alternatives:
+            if other.of == row.name:
+                given = [table.quantities[name] for name in other.inputs]
+                lines.append("# Or instead: " + "; ".join(f"{each.name} = {_value(each)}" for each in given))
+        wanted = {row.name, *(name for other in table.alternatives if other.of == row.name for name in other.inputs)}
+        for conversion in CONVERSIONS:
+            if conversion.of in wanted and conversion.geometry in ("", geometry):
+                shown = "; ".join(f"{each.name} = {_quoted(each.typical, each.dimension)}" for each in conversion.inputs)
+                lines.append(f"# Or instead: {shown}   ({conversion.formula})")
+        lines.append("")
+    lines += [
+        '# Contact law: "exponential" (alpha, beta above), or "persson" with a table [surface] in their place and in that of',
+        '# roughness: h_rms = "1 um", hurst = 0.8, longest_wavelength = "150 um", shortest_wavelength = "1.5 um".',
+        'law = "exponential"',
+        OPTIONS,
+        "[check]",
+        "# What no equation takes, but by which stribeck check judges; take away the # of what you know.",
+    ]
+    lines += [f"# {fact.name} = {_quoted(fact.typical, fact.dimension)}   # {fact.label}; {fact.source}" for fact in FACTS]
+    return "\n".join(lines) + "\n"
+
+
+def _about(row: Input) -> list[str]:
+    low, high = row.usual
+    unit = DIMENSIONS[row.dimension].unit or "a bare number"
+    usual = f", usually {format_si(low, row.dimension)} to {format_si(high, row.dimension)}" if high < math.inf else ""
+    return [f"# {row.label[0].upper()}{row.label[1:]} [{unit}]{usual}. Here: {row.source}."]
+
+
+def _value(row: Input) -> str:
+    return _quoted(row.typical, row.dimension)
+
+
+def _quoted(typical: str, dimension: str) -> str:
+    return f'"{typical}"' if DIMENSIONS[dimension].unit else typical

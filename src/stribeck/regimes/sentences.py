@@ -1,0 +1,56 @@
+"""The way to the next regimes in sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.units import format_si
+from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
+
+__all__ = ["ways_to"]
+
+
+def ways_to(margins: RegimeMargins) -> Iterator[str]:
+    """Yield a sentence for each regime that is near: what it takes of each input, and what leads nowhere.
+
+    Parameters
+    ----------
+    margins : RegimeMargins
+        The margins of a contact.
+
+    Yields
+    ------
+    str
+        Such as ``"To reach hydrodynamic lubrication: speed x 5.53 (to 552.5 mm/s)."``
+    """
+    for regime in margins.targets:
+        found = [(margin, margin.crossing_into(regime)) for margin in margins.margins]
+        ways = [f"{margin.name} {_step(margin.name, mark)}" for margin, mark in found if mark is not None]
+        barren = [_searched(margin) for margin, mark in found if mark is None]
+        if not ways:
+            yield f"To reach {regime} lubrication: not reachable by changing {', '.join(barren)}."
+            continue
+        rest = f"; not reachable by changing {', '.join(barren)}" if barren else ""
+        yield f"To reach {regime} lubrication: {', or '.join(ways)}{rest}."
+    if any(margin.name == "viscosity" and (margin.less or margin.more) for margin in margins.margins):
+        yield "Only the product of speed and viscosity matters, so their factors are equal."
+
+
+def _step(name: str, mark: Crossing) -> str:
+    """Return how far an input is to be changed, as ``x 3.1 (0.31 m/s)``."""
+    if mark.value == 0:
+        return "to any value above zero"
+    value = format_si(mark.value, QUANTITIES[name].dimension, 4)
+    if math.isinf(mark.factor):
+        return f"from zero to {value}"
+    return f"x {mark.factor:.3g} (to {value})" if mark.factor >= 1 else f"/ {1 / mark.factor:.3g} (to {value})"
+
+
+def _searched(margin: Margin) -> str:
+    low, high = margin.searched
+    if low == high:  # it cannot lead anywhere, and a note says why
+        return margin.name
+    ends = (format_si(value, QUANTITIES[margin.name].dimension) for value in (low, high))
+    return f"{margin.name} (range searched {' to '.join(ends)})"

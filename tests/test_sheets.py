@@ -1,0 +1,88 @@
+"""A new case runs as it is written; a report is one file with everything in it that asks no server for anything."""
+
+import re
+
+import pytest
+from command_line import EXAMPLES, call, case_text
+
+import stribeck as sb
+from stribeck.data_sheet.report import page_of
+from stribeck.quantities.conversions import CONVERSIONS
+from stribeck.quantities.facts import FACTS
+from stribeck.quantities.inputs import INPUT_TABLES
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("geometry", ["line", "point"])
+def test_a_new_case_has_every_key_and_is_read_as_it_stands(tmp_path, capsys, geometry):
+    path = tmp_path / "new.toml"
+    answer = call(capsys, "new", path, "--geometry", geometry)
+    assert answer.code == 0 and f"stribeck check {path}" in " ".join(answer.out.split())
+    contact = sb.load_case(path).contact
+    table = INPUT_TABLES[geometry]
+    assert contact.INPUTS is table
+    text = path.read_text()
+    given = {each.name for row in CONVERSIONS for each in row.inputs if row.geometry in ("", geometry)}
+    for name in {*table.names, *given, *FACTS}:
+        assert re.search(rf"\b{name} = ", text), name
+    for row in table.rows:
+        if not row.derived:
+            assert re.search(rf"# {row.label[0].upper()}{re.escape(row.label[1:])} \[", text), row.name
+    assert call(capsys, "new", path).code == 2  # kept
+    assert call(capsys, "new", "--geometry", geometry).out == text
+
+
+@pytest.mark.quick
+def test_a_new_case_reads_without_its_comment_signs():
+    text = sb.new_case()
+    facts = text[text.index("[check]") :]
+    assert len(re.findall(r"^# \w+ = ", facts, re.M)) == len(FACTS)
+    with pytest.raises(sb.InputError, match="geometry"):
+        sb.new_case("sphere")
+
+
+@pytest.fixture(scope="module")
+def content(tmp_path_factory):
+    path = tmp_path_factory.mktemp("report") / "seal.html"
+    return path, sb.write_report(EXAMPLES / "pdms_fit.toml", path, EXAMPLES / "pdms_measured.csv")
+
+
+def test_a_report_says_everything_and_asks_no_server(content):
+    path, said = content
+    page = path.read_text()
+    assert page == page_of(said)
+    assert page.index(said.headline) < page.index("<h1>") < page.index("friction")
+    for part in (*said.sentences, *said.margins, *(each.label for each in said.levers), said.versions):
+        assert part in page.replace("&#39;", "'"), part
+    for each in said.checks:
+        assert each.name in page
+    addresses = set(re.findall(r"https?://[^\"'\s)<]+", page))
+    assert addresses <= {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"}  # names, not requests
+    assert not re.search(r"<script|<link|@import|url\((?!#)|src=", page)
+    assert page.count("<svg") == 1 and "measured" in said.data.path
+    assert any(line.source for line in said.inputs)
+
+
+def test_a_lever_lowers_friction_by_a_fifth_when_solved(content):
+    _, said = content
+    before = said.solution.friction().total
+    assert 1 <= len(said.levers) <= 2
+    for lever in said.levers:
+        assert float(lever.friction.split()[0]) == pytest.approx(0.8 * before, rel=0.15)
+
+
+def test_the_pdf_and_a_contact_outside(tmp_path, capsys, monkeypatch):
+    from stribeck.regimes.margins import RegimeMargins
+
+    monkeypatch.setattr("stribeck.data_sheet.content.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
+    case = tmp_path / "steel.toml"
+    case.write_text(
+        case_text({"modulus": '"115 GPa"', "load": '"1 kN/m"', "speed": '"1 m/s"', "roughness": '"0.3 +- 0.1 um"'})
+    )
+    answer = call(capsys, "report", case, "-o", tmp_path / "steel.pdf")
+    assert (answer.code, answer.err) == (0, "")
+    assert answer.out.startswith("Outside the model by") and "Probability of each regime" in answer.out
+    assert (tmp_path / "steel.pdf").read_bytes().startswith(b"%PDF")
+    assert call(capsys, "report", case, "-o", tmp_path / "steel.pdf").code == 2  # kept
+    assert "must end in .html or .pdf" in call(capsys, "report", case, "-o", tmp_path / "steel.doc").err
+    assert "output is missing" in call(capsys, "report", case).err
