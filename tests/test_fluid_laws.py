@@ -10,14 +10,13 @@ from scipy.optimize import brentq
 
 import stribeck as sb
 from stribeck.fluids import local_flow
-from stribeck.fluids.density import DowsonHigginson
 from stribeck.fluids.effective_medium import PERCOLATION, EffectiveMedium
 from stribeck.fluids.flow_factors import FLOOR, PatirCheng, mean_inverse_width, nominal_separation
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rate_laws import Carreau, Cross, Eyring, PowerLaw
 from stribeck.fluids.shear_thinning import ShearThinning
-from stribeck.fluids.viscosity import Barus, Roelands
+from stribeck.fluids.viscosity import Barus, DowsonHigginson, Roelands
 
 REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())
 RNG_SEED = 4711

@@ -7,14 +7,13 @@ from test_model_parts import REFERENCE, observed, solved
 from stribeck.contacts.model import Model
 from stribeck.equations.observables import friction_scale
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.density import DowsonHigginson
 from stribeck.fluids.effective_medium import EffectiveMedium
 from stribeck.fluids.flow_factors import PatirCheng
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rate_laws import Carreau, Eyring
 from stribeck.fluids.shear_thinning import ShearThinning
-from stribeck.fluids.viscosity import Barus, Roelands
+from stribeck.fluids.viscosity import Barus, DowsonHigginson, Roelands
 from stribeck.solids.layer import Layer
 
 THINNING = [row for row in REFERENCE["c_shear_thinning"] if row["case"] in ("carreau n=.5", "eyring")]

@@ -206,7 +206,7 @@ def test_a_pressure_coefficient_out_of_range_is_refused_and_names_who_solves_it(
 
 @pytest.mark.parametrize("arguments", [{"thickness": 0.0}, {"thickness": np.inf}, {"thickness": 1.0, "poisson_ratio": 0.6}])
 def test_a_layer_out_of_range_is_refused(arguments):
-    with pytest.raises(sb.InputError, match="must"):
+    with pytest.raises(sb.InputError, match="must|finite"):
         Layer(**arguments)
 
 

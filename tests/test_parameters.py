@@ -12,7 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stribeck.contacts.line import Groups, InputError, LineContact
+from stribeck.contacts.parts import Parts
 from stribeck.quantities.inputs import GROUP_EXPONENTS, QUANTITIES
+
+PARTS = [field.name for field in dataclasses.fields(Parts)]
 
 INPUTS = {
     "radius": "10 mm",
@@ -227,8 +230,12 @@ def test_an_unknown_input_is_answered_with_the_nearest_name():
 
 
 def test_the_signature_of_a_contact_names_every_input():
-    assert list(inspect.signature(LineContact).parameters) == [*QUANTITIES, "law"]
-    assert set(INPUTS) == {field.name for field in dataclasses.fields(LineContact)} - {"law"}
+    assert list(inspect.signature(LineContact).parameters) == [
+        *QUANTITIES,
+        "law",
+        *(field.name for field in dataclasses.fields(Parts)),
+    ]
+    assert set(INPUTS) == {field.name for field in dataclasses.fields(LineContact)} - {"law", "parts"}
 
 
 def test_the_exponents_of_an_input_are_those_of_the_groups():
@@ -259,7 +266,7 @@ def test_values_whose_groups_overflow_are_refused(changes):
 
 
 def test_every_quantity_is_an_argument_of_the_contact_and_back():
-    assert set(inspect.signature(LineContact).parameters) == {*QUANTITIES, "law"}
+    assert set(inspect.signature(LineContact).parameters) == {*QUANTITIES, "law", *PARTS}
 
 
 def test_replace_checks_and_keeps_the_rest():

@@ -2,7 +2,7 @@
 
 from importlib import import_module as _import_module
 
-_PACKAGES = ("asymptotics", "atlas", "surfaces")
+_PACKAGES = ("asymptotics", "atlas", "fluids", "solids", "surfaces")
 _HOMES = {
     "batches.solve_batch": ("BatchSolution", "solve_batch"),
     "cases.case": ("Case", "load_case"),

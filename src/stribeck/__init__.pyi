@@ -1,6 +1,6 @@
 """The public names with their types; at run time each is imported on first use."""
 
-from stribeck import asymptotics, atlas, surfaces
+from stribeck import asymptotics, atlas, fluids, solids, surfaces
 from stribeck.batches.solve_batch import BatchSolution, solve_batch
 from stribeck.cases.case import Case, load_case
 from stribeck.cases.fit_settings import FitSettings
@@ -73,6 +73,7 @@ __all__ = [
     "atlas",
     "check",
     "fit",
+    "fluids",
     "load_case",
     "load_sweep",
     "new_case",
@@ -81,6 +82,7 @@ __all__ = [
     "propagate",
     "read_measurements",
     "regime_of",
+    "solids",
     "solve",
     "solve_batch",
     "stribeck_curve",

@@ -68,7 +68,7 @@ class Contact(ABC):
     WIDTH: ClassVar[str] = "Hertz half-width"
 
     @refuse_former
-    def __init__(self, *, law: AsperityLaw | None = None, **inputs: str | float | None) -> None:
+    def __init__(self, *, law: AsperityLaw | None = None, **inputs: Any) -> None:
         self._keep(law, inputs)
 
     def _keep(self, law: AsperityLaw | None, inputs: Mapping[str, Any]) -> None:

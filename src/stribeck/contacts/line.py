@@ -10,11 +10,16 @@ from __future__ import annotations
 
 import inspect
 import math
-from dataclasses import dataclass
-from typing import ClassVar, Self
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Self
 
+from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact, HertzScales
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.parts import DEFAULT, NAMES, Parts, WithParts, signature_with_parts
+from stribeck.fluids.laws import FilmUnits
 from stribeck.quantities.inputs import LINE, InputTable, quantity, refuse_former, signature_of
 from stribeck.quantities.units import InputError
 
@@ -22,7 +27,7 @@ __all__ = ["Groups", "HertzScales", "InputError", "LineContact"]
 
 
 @dataclass(frozen=True, init=False)
-class LineContact(Contact):
+class LineContact(WithParts, Contact):
     r"""A rigid rough cylinder sliding on a lubricated elastic half-space, in SI units.
 
     Every quantity is text with a unit (``"10 mm"``) or a bare number in SI units; floats in SI are kept.
@@ -60,6 +65,18 @@ class LineContact(Contact):
         Mean of both surface speeds, in place of ``speed`` [m/s].
     law : AsperityLaw, optional
         Contact law :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
+    fluid : Fluid or law of sb.fluids, optional
+        The fluid, whose viscosity at ambient pressure and low rate is ``viscosity``; Newtonian without it.
+    cavitation : {"none", "exit", "reform"}
+        How the film ends behind the contact.
+    cavity_pressure : str or float
+        Pressure at which a film that forms anew ruptures, above the ambient one, zero or below [Pa].
+    flow_factors : {"none", "effective-medium", "patir-cheng"} or law of sb.fluids, optional
+        What roughness does to the flow.
+    solid : solid of sb.solids, optional
+        The soft body; a half-space without it.
+    slide_to_roll : float
+        :math:`2 (u_1 - u_2)/(u_1 + u_2)` [-]; 2, pure sliding with the cylinder at rest, by default.
 
     Attributes
     ----------
@@ -95,8 +112,18 @@ class LineContact(Contact):
     0.303
     """
 
+    parts: Parts = field(repr=False)
+
     INPUTS: ClassVar[InputTable] = LINE
-    __signature__: ClassVar[inspect.Signature] = signature_of(LINE)
+    __signature__: ClassVar[inspect.Signature] = signature_with_parts(signature_of(LINE))
+
+    def _keep(self, law: AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
+        parts: Parts = inputs.get("parts", DEFAULT)
+        object.__setattr__(self, "parts", DEFAULT)
+        super()._keep(law, {name: value for name, value in inputs.items() if name not in NAMES and name != "parts"})
+        given = {name: inputs[name] for name in NAMES & inputs.keys()}
+        object.__setattr__(self, "parts", Parts(**{**parts.items(), **given}) if given else parts)
+        _ = self.groups.model
 
     @property
     def groups(self) -> Groups:
@@ -108,6 +135,20 @@ class LineContact(Contact):
             load=F_N / R / E_star / self.beta / self.beta / math.pi,
             roughness=self.roughness / R / self.beta / self.beta / self.alpha / 4,
             law=self.law,
+            model=ARTICLE if self.parts is DEFAULT else self.parts.model(self.film_units, self.hertz.half_width),
+        )
+
+    @property
+    def film_units(self) -> FilmUnits:
+        """What makes the numbers of its fluid dimensionless."""
+        hertz = self.hertz
+        return FilmUnits(
+            pressure=hertz.pressure,
+            time=6 * self.viscosity / hertz.pressure * (hertz.half_width / hertz.indentation),
+            gap=hertz.indentation,
+            viscosity=self.viscosity,
+            decay_length=self.roughness / self.alpha,
+            alpha=self.alpha,
         )
 
     @property

@@ -23,6 +23,8 @@ class Model:
         The fluid, in Hertz units.
     cavitation : Cavitation
         How the film ends behind the contact.
+    cavity_pressure : float
+        Pressure above the ambient at which a film that forms anew ruptures, at most zero [p_Hz].
     solid : Solid
         The soft body, in Hertz units.
     """
@@ -30,6 +32,7 @@ class Model:
     film: Film = Newtonian()
     cavitation: Cavitation = Cavitation.NONE
     solid: Solid = HalfPlane()
+    cavity_pressure: float = 0.0
 
 
 ARTICLE = Model()

@@ -13,6 +13,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.with_parts import with_parts
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_problem
 from stribeck.curves.landmarks import Landmark
@@ -47,6 +48,7 @@ def stribeck_curve(
     on_point: Callable[[int, int], object] | None = ...,
     law: str | AsperityLaw | None = ...,
     method: Literal["solver"] = ...,
+    **parts: Any,
 ) -> StribeckCurve: ...
 
 
@@ -65,6 +67,7 @@ def stribeck_curve(
     on_point: Callable[[int, int], object] | None = ...,
     law: str | AsperityLaw | None = ...,
     method: Literal["atlas"],
+    **parts: Any,
 ) -> AtlasCurve: ...
 
 
@@ -84,6 +87,7 @@ def stribeck_curve(
     on_point: Callable[[int, int], object] | None = None,
     law: str | AsperityLaw | None = None,
     method: Method = "solver",
+    **parts: Any,
 ) -> StribeckCurve | AtlasCurve:
     """Solve the contact along speed, load or roughness.
 
@@ -110,6 +114,10 @@ def stribeck_curve(
     method : {"solver", "atlas"}
         Whether each state is solved, or read off :mod:`stribeck.atlas`: within 1e-4, thousands of times as fast, without
         fields; ``rtol`` and ``on_point`` then have no effect.
+    **parts
+        ``fluid``, ``cavitation``, ``cavity_pressure``, ``flow_factors``, ``solid`` and ``slide_to_roll`` as in
+        :func:`stribeck.solve`.  What depends on the speed moves along the curve; of groups, numbers of the fluid are in the
+        Hertz units of the speed that the groups have.
 
     Returns
     -------
@@ -133,6 +141,7 @@ def stribeck_curve(
     given: dict[Over, Any] = {"speed": speed, "load": load, "roughness": roughness}
     base, over, ends = read_problem(problem, given)
     base = with_law(base, law)
+    base = with_parts(base, **parts) if parts else base
     contact = base if isinstance(base, Contact) else None
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     if isinstance(points, bool) or not isinstance(points, int) or not POINTS_RANGE[0] <= points <= POINTS_RANGE[1]:

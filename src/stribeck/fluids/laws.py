@@ -7,7 +7,7 @@ the second.  A new law is one class with the members of its protocol.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, Self
+from typing import NamedTuple, Protocol, Self, runtime_checkable
 
 import numpy as np
 
@@ -77,6 +77,7 @@ class Law(Protocol):
         return ()
 
 
+@runtime_checkable
 class ViscosityLaw(Law, Protocol):
     """Viscosity as a function of pressure."""
 
@@ -84,6 +85,7 @@ class ViscosityLaw(Law, Protocol):
         """Return ln(eta/eta0) and its slope."""
 
 
+@runtime_checkable
 class DensityLaw(Law, Protocol):
     """Density as a function of pressure."""
 
@@ -91,6 +93,7 @@ class DensityLaw(Law, Protocol):
         """Return rho/rho0 and its slope."""
 
 
+@runtime_checkable
 class FlowFactors(Law, Protocol):
     """What roughness does to the flow, as a function of the mean gap."""
 
@@ -119,6 +122,7 @@ class Smooth(FlowFactors):
         return np.zeros_like(gap), np.zeros_like(gap)
 
 
+@runtime_checkable
 class RateLaw(Law, Protocol):
     """Shear stress as a function of the shear rate, rising.
 

@@ -16,10 +16,9 @@ from typing import ClassVar, Self
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.fluids.density import Incompressible
 from stribeck.fluids.fluid import Slopes
 from stribeck.fluids.laws import DensityLaw, FlowFactors, Smooth, ViscosityLaw, joined_names, joined_parameters, notes_of
-from stribeck.fluids.viscosity import Constant
+from stribeck.fluids.viscosity import Constant, Incompressible
 
 ONE, ZERO = np.ones(()), np.zeros(())
 

@@ -20,11 +20,10 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.fluids.density import Incompressible
 from stribeck.fluids.fluid import Slopes
 from stribeck.fluids.laws import DensityLaw, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.local_flow import Profile, profile
-from stribeck.fluids.viscosity import Constant
+from stribeck.fluids.viscosity import Constant, Incompressible
 
 __all__ = ["ShearThinning"]
 

@@ -274,6 +274,10 @@ class HalfPlane:
         """None."""
         return {}
 
+    def scaled(self, length: float) -> HalfPlane:
+        """Return the body itself: it has no length."""
+        return self
+
     def deflection(self, mesh: Mesh) -> Array:
         """Return :func:`nodal_deflection`."""
         return nodal_deflection(mesh)

@@ -29,7 +29,7 @@ from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import nodal_deflection
 
 __all__ = ["Layer"]
@@ -44,14 +44,14 @@ WIDEST_PANEL = 3.0
 """Half-width of a panel in thicknesses from which its pressure acts only at its own nodes."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Layer:
-    """An elastic layer bonded to a rigid base.
+    """An elastic layer bonded to a rigid base: it neither slides on the base nor lifts off.
 
     Parameters
     ----------
-    thickness : float
-        Its thickness [Hertz half-width a of the half-plane], > 0.
+    thickness : str or float
+        Its thickness, > 0 [m]; with groups in Hertz half-widths a of the half-plane.
     poisson_ratio : float
         Poisson's ratio, 0 to 0.5; 0.5 is incompressible.
 
@@ -62,21 +62,30 @@ class Layer:
     """
 
     thickness: float
-    poisson_ratio: float = 0.5
-    name: str = "bonded layer"
+    poisson_ratio: float
 
-    def __post_init__(self) -> None:
-        """Refuse values outside their range."""
-        d, nu = self.thickness, self.poisson_ratio
-        if isinstance(d, bool) or not isinstance(d, int | float) or not 0 < d < math.inf:
-            raise InputError(f"thickness = {show(d)}; it must be a positive number, in Hertz half-widths.")
-        if isinstance(nu, bool) or not isinstance(nu, int | float) or not 0 <= nu <= 0.5:
-            raise InputError(f"poisson_ratio = {show(nu)}; it must lie between 0 and 0.5.")
+    def __init__(self, thickness: str | float, poisson_ratio: float = 0.5) -> None:
+        d, nu = to_si(thickness, "length", "thickness"), to_si(poisson_ratio, "number", "poisson_ratio")
+        if not d > 0:
+            raise InputError(f"thickness = {show(thickness)}; it must be above zero, such as '2 mm'.")
+        if not 0 <= nu <= 0.5:
+            raise InputError(f"poisson_ratio = {show(poisson_ratio)}; it must lie between 0 and 0.5.")
+        object.__setattr__(self, "thickness", d)
+        object.__setattr__(self, "poisson_ratio", nu)
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print."""
+        return "bonded layer"
 
     @property
     def parameters(self) -> dict[str, float | str]:
         """Thickness and Poisson's ratio."""
         return {"thickness": self.thickness, "poisson_ratio": self.poisson_ratio}
+
+    def scaled(self, length: float) -> Layer:
+        """Return the layer with its thickness over a length, the Hertz half-width."""
+        return Layer(self.thickness / length, self.poisson_ratio)
 
     def deflection(self, mesh: Mesh) -> Array:
         """Return the matrix from nodal pressures to the deflection at the nodes [u_Hz per p_Hz].

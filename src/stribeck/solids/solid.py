@@ -22,6 +22,9 @@ class Solid(Protocol):
     def parameters(self) -> dict[str, float | str]:
         """What distinguishes this body from others of its name, for outputs."""
 
+    def scaled(self, length: float) -> Solid:
+        """Return the body in Hertz units, from SI; ``length`` is the Hertz half-width."""
+
     def deflection(self, mesh: Mesh) -> Array:
         """Return the matrix from nodal pressures to the deflection at the nodes, shape (size, size), in Fortran order."""
 

@@ -16,6 +16,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.threads import one_blas_thread
@@ -78,6 +79,7 @@ def solve(
     rtol: float = ...,
     law: str | AsperityLaw | None = ...,
     on_failure: Literal["raise", "return"] = ...,
+    **parts: Any,
 ) -> Solution: ...
 
 
@@ -88,6 +90,7 @@ def solve(
     rtol: float = ...,
     law: str | AsperityLaw | None = ...,
     on_failure: Literal["raise", "return"] = ...,
+    **parts: Any,
 ) -> PointSolution: ...
 
 
@@ -98,6 +101,7 @@ def solve(
     rtol: float = ...,
     law: str | AsperityLaw | None = ...,
     on_failure: Literal["raise", "return"] = ...,
+    **parts: Any,
 ) -> Any: ...
 
 
@@ -108,6 +112,7 @@ def solve(
     rtol: float = 1e-6,
     law: str | AsperityLaw | None = None,
     on_failure: Literal["raise", "return"] = "raise",
+    **parts: Any,
 ) -> Any:
     r"""Solve one state of the lubricated rough contact, from cold.
 
@@ -127,6 +132,9 @@ def solve(
         of the problem if omitted, which is the exponential one unless it says otherwise.
     on_failure : {"raise", "return"}
         What to do where the tolerance was not reached: raise :class:`SolveError` or return what there is, with its outcome.
+    **parts
+        ``fluid``, ``cavitation``, ``cavity_pressure``, ``flow_factors``, ``solid`` and ``slide_to_roll`` as in
+        :class:`stribeck.LineContact`, in the place of those of the problem; with groups in Hertz units, see fluids.md.
 
     Returns
     -------
@@ -148,7 +156,8 @@ def solve(
 
     Source: [BP] Appendix A; theory.md Eqs. (1)-(5); numerics.md for the scheme.
     """
-    groups, contact = as_groups(with_law(problem, law))
+    problem = with_law(problem, law)
+    groups, contact = as_groups(with_parts(problem, **parts) if parts else problem)
     check_rtol(rtol)
     if not isinstance(on_failure, str) or on_failure not in ("raise", "return"):
         raise InputError(f"on_failure = {show(on_failure)}; it must be 'raise' or 'return'.")

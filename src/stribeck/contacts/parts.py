@@ -1,0 +1,195 @@
+"""What a contact has beside its numbers: fluid, cavitation, flow factors, solid and motion, as users give them.
+
+The numbers of laws are in SI units with a contact and in Hertz units with groups; :meth:`Parts.model` makes them the model
+that the equations see.
+"""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import dataclass, fields
+from typing import Any
+
+from stribeck.contacts.model import ARTICLE, Model
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
+from stribeck.fluids.laws import FilmUnits, FlowFactors
+from stribeck.quantities.units import InputError, show, to_si
+from stribeck.solids.half_plane import HalfPlane
+from stribeck.solids.solid import Solid
+
+__all__ = ["DEFAULT", "NAMES", "Parts", "WithParts", "signature_with_parts"]
+
+PURE_SLIDING = 2.0
+"""Slide-to-roll ratio of one surface at rest."""
+
+LARGEST_RATIO = 100.0
+"""Of slide-to-roll: beyond, the surfaces move against each other and hardly any fluid is carried in."""
+
+
+@dataclass(frozen=True, init=False)
+class Parts:
+    r"""Fluid, cavitation, flow factors, solid and motion of a contact.
+
+    Parameters
+    ----------
+    fluid : Fluid or law of sb.fluids, optional
+        The fluid; Newtonian, of constant viscosity and density, without it.
+    cavitation : {"none", "exit", "reform"}
+        How the film ends behind the contact.
+    cavity_pressure : str or float
+        Pressure at which a film that forms anew ruptures, above the ambient one, :math:`\le 0` [Pa], with groups [p_Hz].
+    flow_factors : {"none", "effective-medium", "patir-cheng"} or law of sb.fluids, optional
+        What roughness does to the flow.
+    solid : solid of sb.solids, optional
+        The soft body; a half-space without it.
+    slide_to_roll : float
+        Ratio of the sliding speed to the mean of the surface speeds, :math:`2 (u_1 - u_2)/(u_1 + u_2)` [-]; 2 is pure sliding
+        with the cylinder at rest, 0 pure rolling.
+
+    Raises
+    ------
+    InputError
+        Where an argument is impossible.
+    """
+
+    fluid: Fluid
+    cavitation: Cavitation
+    cavity_pressure: float
+    flow_factors: FlowFactors | None
+    solid: Solid | None
+    slide_to_roll: float
+
+    def __init__(
+        self,
+        fluid: Any = None,
+        cavitation: str | Cavitation | None = Cavitation.NONE,
+        cavity_pressure: str | float | None = 0.0,
+        flow_factors: Any = None,
+        solid: Solid | None = None,
+        slide_to_roll: float | None = PURE_SLIDING,
+    ) -> None:
+        values = {
+            "fluid": as_fluid(fluid),
+            "cavitation": _cavitation(cavitation),
+            "cavity_pressure": 0.0 if cavity_pressure is None else to_si(cavity_pressure, "pressure", "cavity_pressure"),
+            "flow_factors": as_flow_factors(flow_factors),
+            "solid": _solid(solid),
+            "slide_to_roll": PURE_SLIDING if slide_to_roll is None else to_si(slide_to_roll, "number", "slide_to_roll"),
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        if self.cavity_pressure > 0:
+            raise InputError(
+                f"cavity_pressure = {show(cavity_pressure)} must be zero or below: it is measured from the ambient pressure, "
+                "so that -0.1 MPa is vacuum."
+            )
+        if self.cavity_pressure < 0 and self.cavitation != "reform":
+            raise InputError(
+                f"cavity_pressure = {show(cavity_pressure)} needs cavitation = 'reform': a film that ends at the exit does so "
+                "at the ambient pressure."
+            )
+        if not abs(self.slide_to_roll) <= LARGEST_RATIO:
+            raise InputError(
+                f"slide_to_roll = {show(slide_to_roll)} must lie between -{LARGEST_RATIO:g} and {LARGEST_RATIO:g}; 2 is pure "
+                "sliding, 0 pure rolling."
+            )
+
+    def items(self) -> dict[str, Any]:
+        """Return the parts by name: keywords that make them again."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @property
+    def slide(self) -> float:
+        """Half the slide-to-roll ratio, ``s = (u1 - u2)/(u1 + u2)``."""
+        return 0.5 * self.slide_to_roll
+
+    def model(self, units: FilmUnits, length: float = 1.0) -> Model:
+        """Return the model in Hertz units.
+
+        Parameters
+        ----------
+        units : FilmUnits
+            Of the film.
+        length : float
+            The Hertz half-width a, in the unit of the lengths of the solid.
+
+        Returns
+        -------
+        Model
+            What the equations see; that of the article itself if nothing differs from it.
+
+        Raises
+        ------
+        InputError
+            Where a number of these is out of range in Hertz units, or parts do not go together.
+        """
+        if self is DEFAULT or self == DEFAULT:
+            return ARTICLE
+        film = self.fluid.at(units, self.slide, self.flow_factors)
+        solid: Solid = HalfPlane() if self.solid is None else self.solid.scaled(length)
+        return Model(film, self.cavitation, solid, self.cavity_pressure / units.pressure)
+
+
+class WithParts:
+    """A contact that has parts, each of them by its name."""
+
+    parts: Parts
+
+    @property
+    def fluid(self) -> Fluid:
+        """The fluid."""
+        return self.parts.fluid
+
+    @property
+    def cavitation(self) -> Cavitation:
+        """How the film ends behind the contact."""
+        return self.parts.cavitation
+
+    @property
+    def cavity_pressure(self) -> float:
+        """Pressure at which a film that forms anew ruptures, above the ambient one [Pa]."""
+        return self.parts.cavity_pressure
+
+    @property
+    def flow_factors(self) -> FlowFactors | None:
+        """What roughness does to the flow."""
+        return self.parts.flow_factors
+
+    @property
+    def solid(self) -> Solid | None:
+        """The soft body; None is a half-space."""
+        return self.parts.solid
+
+    @property
+    def slide_to_roll(self) -> float:
+        """Ratio of the sliding speed to the mean of the surface speeds [-]."""
+        return self.parts.slide_to_roll
+
+
+def signature_with_parts(signature: inspect.Signature) -> inspect.Signature:
+    """Return the signature of a contact with the parts as further keywords."""
+    parts = list(inspect.signature(Parts.__init__).parameters.values())[1:]
+    keywords = [each.replace(kind=inspect.Parameter.KEYWORD_ONLY, annotation=inspect.Parameter.empty) for each in parts]
+    return signature.replace(parameters=[*signature.parameters.values(), *keywords])
+
+
+def _cavitation(value: str | Cavitation | None) -> Cavitation:
+    try:
+        return Cavitation("none" if value is None else value)
+    except ValueError:
+        known = ", ".join(repr(str(each)) for each in Cavitation)
+        raise InputError(f"cavitation = {show(value)} must be one of {known}.") from None
+
+
+def _solid(solid: Solid | None) -> Solid | None:
+    if solid is None or (hasattr(solid, "deflection") and not isinstance(solid, type)):
+        return solid
+    raise InputError(f"solid = {show(solid)}; give one of sb.solids such as Layer('2 mm'), or leave it out: a half-space.")
+
+
+NAMES = frozenset(field.name for field in fields(Parts))
+"""The keywords of contacts and solvers that are parts."""
+
+DEFAULT = Parts()
+"""Those of the article."""

@@ -1,0 +1,77 @@
+"""Fluid, cavitation, flow factors, solid and motion for one call: a contact or groups that have them."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import replace
+from typing import Any, TypeVar
+
+import numpy as np
+
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.groups import Groups
+from stribeck.contacts.parts import NAMES, Parts
+from stribeck.fluids.laws import FilmUnits
+from stribeck.quantities.units import InputError
+
+__all__ = ["hertz_units", "with_parts"]
+
+Problem = TypeVar("Problem")
+
+
+def with_parts(problem: Problem, **given: Any) -> Problem:
+    """Return a contact or groups with the parts that are given.
+
+    Parameters
+    ----------
+    problem : LineContact, PointContact or Groups
+        The contact, with numbers of laws in SI units, or groups, with these in Hertz units.
+    **given
+        Arguments of :class:`stribeck.contacts.parts.Parts`; None counts as not given.
+
+    Returns
+    -------
+    LineContact or Groups
+        The contact with these parts in the place of its own, the groups with these and else those of the article.
+
+    Raises
+    ------
+    InputError
+        Where one is impossible.
+    TypeError
+        Where a name is no part.
+    """
+    unknown = next((name for name in given if name not in NAMES), None)
+    if unknown is not None:
+        near = difflib.get_close_matches(unknown, NAMES, n=1)
+        raise TypeError(f"got an unexpected keyword argument {unknown!r}" + (f"; did you mean {near[0]!r}?" if near else ""))
+    given = {name: value for name, value in given.items() if value is not None}
+    if given and isinstance(problem, Contact):
+        return problem.replace(**given)
+    if given and isinstance(problem, Groups):
+        if problem.geometry != "line":
+            raise InputError(f"{', '.join(given)}: balls have the fluid and the solid of the article only; leave them out.")
+        return replace(problem, model=Parts(**given).model(hertz_units(problem)))
+    return problem
+
+
+def hertz_units(groups: Groups) -> FilmUnits:
+    r"""Return the units in which numbers of laws are given with groups.
+
+    Pressures are in :math:`p_\mathrm{Hz}`, lengths in a and gaps in :math:`u_\mathrm{Hz}`; relaxation times in
+    :math:`u_\mathrm{Hz}/U` and shear stresses in :math:`\eta_0 U/u_\mathrm{Hz}` at the speed group of these groups, and
+    viscosities in :math:`\eta_0`.
+
+    Raises
+    ------
+    InputError
+        Where the groups hold many states with different speeds or roughnesses.
+    """
+    values = []
+    for name in ("speed", "relative_roughness"):
+        value = np.unique(np.asarray(getattr(groups, name)))
+        if len(value) != 1:
+            raise InputError(f"the numbers of a fluid are in units of one state; groups with many values of {name} have many.")
+        values.append(float(value[0]))
+    speed, roughness = values
+    return FilmUnits(pressure=1.0, time=speed or 1.0, gap=1.0, viscosity=1.0, decay_length=roughness)

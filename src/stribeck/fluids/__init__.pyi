@@ -1,0 +1,27 @@
+"""The public names with their types; at run time each is imported on first use."""
+
+from stribeck.fluids.description import Fluid
+from stribeck.fluids.effective_medium import EffectiveMedium
+from stribeck.fluids.flow_factors import PatirCheng
+from stribeck.fluids.presets import PRESETS, Liquid, glycerol_water, water
+from stribeck.fluids.rate_laws import Carreau, Cross, Eyring, PowerLaw
+from stribeck.fluids.viscosity import Barus, Constant, DowsonHigginson, Incompressible, Roelands
+
+__all__ = [
+    "PRESETS",
+    "Barus",
+    "Carreau",
+    "Constant",
+    "Cross",
+    "DowsonHigginson",
+    "EffectiveMedium",
+    "Eyring",
+    "Fluid",
+    "Incompressible",
+    "Liquid",
+    "PatirCheng",
+    "PowerLaw",
+    "Roelands",
+    "glycerol_water",
+    "water",
+]

@@ -1,0 +1,148 @@
+"""Fluids as users describe them: laws in SI units, or in Hertz units with groups, that become a film."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from stribeck.fluids.fluid import Film
+from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, RateLaw, Smooth, ViscosityLaw
+from stribeck.fluids.newtonian import Newtonian
+from stribeck.fluids.viscosity import Constant, Incompressible, check_range
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["Fluid", "as_fluid", "as_flow_factors"]
+
+
+@dataclass(frozen=True)
+class Fluid:
+    """A fluid with several laws at once; what is left out is constant.
+
+    A contact takes one law alone too: ``fluid=Carreau("1 ms", 0.5)`` is ``fluid=Fluid(rheology=Carreau("1 ms", 0.5))``.
+
+    Parameters
+    ----------
+    rheology : Carreau, Cross, Eyring or PowerLaw, optional
+        How the viscosity falls with the shear rate; Newtonian without it.
+    viscosity : Barus or Roelands, optional
+        How the viscosity grows with the pressure.
+    density : DowsonHigginson, optional
+        How the density grows with the pressure.
+
+    Raises
+    ------
+    InputError
+        Where an argument is no law of its kind.
+
+    Examples
+    --------
+    >>> from stribeck.fluids import Carreau, Roelands
+    >>> Fluid(Carreau("1 ms", 0.5), Roelands("15 1/GPa")).name
+    'carreau + roelands'
+    """
+
+    rheology: RateLaw | None = None
+    viscosity: ViscosityLaw | None = None
+    density: DensityLaw | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what is no law of its kind."""
+        kinds: dict[str, tuple[type, str]] = {
+            "rheology": (RateLaw, "Carreau, Cross, Eyring or PowerLaw"),
+            "viscosity": (ViscosityLaw, "Barus or Roelands"),
+            "density": (DensityLaw, "DowsonHigginson"),
+        }
+        for name, (kind, examples) in kinds.items():
+            law = getattr(self, name)
+            if law is not None and not (isinstance(law, kind) and not isinstance(law, type)):
+                raise InputError(f"{name} = {show(law)} is no law of this kind; give one of sb.fluids: {examples}.")
+
+    @property
+    def name(self) -> str:
+        """The names of its laws."""
+        names = [law.name for law in self.laws if law.name]
+        return " + ".join(names) if self.rheology is not None else " + ".join(["newtonian", *names])
+
+    @property
+    def laws(self) -> tuple[RateLaw | ViscosityLaw | DensityLaw, ...]:
+        """Its laws."""
+        return tuple(law for law in (self.rheology, self.viscosity, self.density) if law is not None)
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """Those of its laws."""
+        return {name: value for law in self.laws for name, value in law.parameters.items()}
+
+    def at(self, units: FilmUnits, slide: float = 1.0, flow_factors: FlowFactors | None = None) -> Film:
+        r"""Return the film in Hertz units, for all speeds.
+
+        Parameters
+        ----------
+        units : FilmUnits
+            What makes its numbers dimensionless: those of a contact, or for numbers in Hertz units at the speed group
+            :math:`\lambda` of the groups ``FilmUnits(1, lambda, 1, 1, kappa)``.
+        slide : float
+            Half the slide-to-roll ratio.
+        flow_factors : FlowFactors, optional
+            Of rough surfaces.
+
+        Returns
+        -------
+        Film
+            What the equations ask.
+
+        Raises
+        ------
+        InputError
+            Where :math:`\alpha_p p_\mathrm{Hz}` exceeds 5, or flow factors meet a fluid that thins.
+        """
+        viscosity = Constant() if self.viscosity is None else self.viscosity.scaled(units)
+        check_range(viscosity)
+        density = Incompressible() if self.density is None else self.density.scaled(units)
+        if self.rheology is None:
+            flow = Smooth() if flow_factors is None else flow_factors.scaled(units)
+            return Newtonian(viscosity, density, flow, slide)
+        if flow_factors is not None and not isinstance(flow_factors, Smooth):
+            raise InputError(
+                f"flow_factors and a fluid that thins ({self.rheology.name}) are given together; flow factors are known for "
+                "Newtonian fluids only. Leave one of them out."
+            )
+        from stribeck.fluids.shear_thinning import ShearThinning
+
+        return ShearThinning(self.rheology.scaled(units), viscosity, density, slide)
+
+
+def as_fluid(fluid: Any) -> Fluid:
+    """Return what users give as a fluid: a :class:`Fluid`, one law, or none."""
+    if isinstance(fluid, Fluid):
+        return fluid
+    if fluid is None or fluid == "newtonian":
+        return Fluid()
+    if not isinstance(fluid, type):
+        if isinstance(fluid, RateLaw):
+            return Fluid(rheology=fluid)
+        if isinstance(fluid, ViscosityLaw):
+            return Fluid(viscosity=fluid)
+        if isinstance(fluid, DensityLaw):
+            return Fluid(density=fluid)
+    raise InputError(
+        f"fluid = {show(fluid)}; give a law of sb.fluids such as Carreau('1 ms', 0.5) or Barus('15 1/GPa'), or "
+        "Fluid(rheology, viscosity, density) for several."
+    )
+
+
+def as_flow_factors(factors: Any) -> FlowFactors | None:
+    """Return what users give as flow factors: a law, the name of one, or none."""
+    if factors is None or factors == "none":
+        return None
+    if isinstance(factors, str) and factors in ("effective-medium", "patir-cheng"):
+        from stribeck.fluids.effective_medium import EffectiveMedium
+        from stribeck.fluids.flow_factors import PatirCheng
+
+        return EffectiveMedium() if factors == "effective-medium" else PatirCheng()
+    if isinstance(factors, FlowFactors) and not isinstance(factors, type):
+        return factors
+    raise InputError(
+        f"flow_factors = {show(factors)}; give 'effective-medium', 'patir-cheng', a law of sb.fluids such as "
+        "PatirCheng(alpha=2.0, gamma=1), or 'none'."
+    )

@@ -1,0 +1,158 @@
+"""Fluid, cavitation, flow factors, solid and motion as users give them: units, scaling, names, refusals."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.with_parts import with_parts
+from stribeck.fluids.presets import celsius
+
+CONTACT = {
+    "radius": "10 mm",
+    "modulus": "2.1 MPa",
+    "load": "50 N/m",
+    "viscosity": "1 Pa*s",
+    "speed": "0.1 m/s",
+    "roughness": "1 um",
+    "alpha": 2.0,
+    "beta": 0.05,
+    "boundary_friction": 0.8,
+}
+
+
+def contact(**parts):
+    return sb.LineContact(**CONTACT, **parts)
+
+
+@pytest.mark.quick
+def test_without_parts_a_contact_has_the_model_of_the_article():
+    assert contact().groups.model is ARTICLE
+    assert contact(fluid="newtonian", cavitation="none", flow_factors="none", slide_to_roll=2).groups.model == ARTICLE
+    assert sb.LineContact(**CONTACT) == contact(fluid=None)
+
+
+@pytest.mark.quick
+def test_laws_of_a_contact_are_scaled_from_si_units():
+    c = contact(fluid=sb.fluids.Fluid(sb.fluids.Carreau("1 ms", 0.5, "10 mPa*s"), sb.fluids.Barus("20 1/GPa")))
+    film, u_hz = c.groups.model.film, c.hertz.indentation
+    assert film.law.time * c.groups.speed == pytest.approx(1e-3 * c.speed / u_hz, rel=1e-12)  # t U/u_Hz
+    assert film.law.infinite_viscosity == pytest.approx(0.01)
+    assert film.viscosity.pressure_coefficient == pytest.approx(2e-8 * c.hertz.pressure)
+    eyring = contact(fluid=sb.fluids.Eyring("1 kPa"))
+    stress = eyring.groups.model.film.law.eyring_stress / eyring.groups.speed
+    assert stress == pytest.approx(1e3 * u_hz / (c.viscosity * c.speed), rel=1e-12)  # tau0 u_Hz/(eta0 U)
+    hertz = 6 * (1e3 / c.hertz.pressure) * (c.radius / c.hertz.half_width) / c.groups.speed
+    assert stress == pytest.approx(hertz, rel=1e-12)
+    rough = contact(flow_factors="effective-medium").groups.model.film.flow
+    assert rough.sigma == pytest.approx(c.roughness / u_hz)
+    assert contact(solid=sb.solids.Layer("2 mm")).groups.model.solid.thickness == pytest.approx(2e-3 / c.hertz.half_width)
+    assert contact(slide_to_roll=0.5).groups.model.film.slide == 0.25
+
+
+@pytest.mark.quick
+def test_a_change_of_load_scales_the_laws_anew_and_keeps_them():
+    c = contact(fluid=sb.fluids.Carreau("1 ms", 0.5), slide_to_roll=1.0)
+    heavier = c.replace(load="100 N/m")
+    assert heavier.fluid == c.fluid
+    assert heavier.slide_to_roll == 1.0
+    ratio = heavier.groups.model.film.law.time * heavier.groups.speed / (c.groups.model.film.law.time * c.groups.speed)
+    assert ratio == pytest.approx(c.hertz.indentation / heavier.hertz.indentation)
+    assert pickle.loads(pickle.dumps(c)) == c
+
+
+@pytest.mark.quick
+def test_with_groups_the_numbers_are_in_hertz_units_at_their_speed():
+    groups = sb.Groups(1e-3, 0.1, 1e-4)
+    film = with_parts(groups, fluid=sb.fluids.Carreau(0.057, 0.5), slide_to_roll=1.0).model.film
+    assert film.law.time * groups.speed == pytest.approx(0.057)
+    film = with_parts(groups, fluid=sb.fluids.Eyring(58.0)).model.film
+    assert film.law.eyring_stress / groups.speed == pytest.approx(58.0)
+    factors = with_parts(groups, flow_factors=sb.fluids.PatirCheng(2.0)).model.film.flow
+    assert factors.sigma == pytest.approx(2.0 * groups.relative_roughness)
+    with pytest.raises(sb.InputError, match="need alpha"):
+        with_parts(groups, flow_factors="patir-cheng")
+    with pytest.raises(sb.InputError, match="many values of speed"):
+        with_parts(sb.Groups(np.array([1e-3, 1e-2]), 0.1, 1e-4), fluid=sb.fluids.Eyring(58.0))
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("parts", "said"),
+    [
+        ({"fluid": "carreau"}, "fluid = 'carreau'"),
+        ({"fluid": sb.fluids.Carreau}, "give a law of sb.fluids"),
+        ({"fluid": sb.fluids.Barus("100 1/MPa")}, "hard elastohydrodynamics"),
+        ({"fluid": sb.fluids.Eyring("1 kPa"), "flow_factors": "patir-cheng"}, "Newtonian fluids only"),
+        ({"flow_factors": "greenwood"}, "effective-medium"),
+        ({"cavitation": "sommerfeld"}, "must be one of 'none', 'exit'"),
+        ({"cavity_pressure": "-1 atm"}, "needs cavitation = 'reform'"),
+        ({"cavity_pressure": "1 atm"}, "zero or below"),
+        ({"slide_to_roll": 1e3}, "slide_to_roll"),
+        ({"solid": "rubber"}, "sb.solids"),
+    ],
+)
+def test_parts_that_are_none_or_do_not_go_together_are_refused_by_name(parts, said):
+    with pytest.raises(sb.InputError, match=said):
+        _ = contact(**parts).groups
+
+
+@pytest.mark.quick
+def test_an_unknown_part_is_refused_as_a_keyword():
+    with pytest.raises(TypeError, match="did you mean 'slide_to_roll'"):
+        sb.solve(sb.Groups(1e-3, 0.1, 0), slide_to_rol=1.0)
+
+
+# Presets
+
+DOW = {  # mPa s at 20 degrees, Dow's table of glycerol by weight
+    0.0: 1.005,
+    0.2: 1.76,
+    0.5: 6.00,
+    0.8: 60.1,
+    0.95: 523.0,
+    1.0: 1410.0,
+}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("fraction", DOW)
+def test_glycerol_in_water_has_its_measured_viscosity(fraction):
+    assert 1e3 * sb.fluids.glycerol_water(fraction, "20 degC").viscosity == pytest.approx(DOW[fraction], rel=0.04)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", sb.fluids.PRESETS)
+def test_every_preset_is_a_fluid_of_a_contact_with_its_source(name):
+    preset = sb.fluids.PRESETS[name]
+    liquid = preset()
+    assert liquid.source == preset.source
+    c = sb.LineContact(**{**CONTACT, **liquid.inputs})
+    assert c.viscosity == liquid.viscosity
+    _ = c.groups
+    with pytest.raises(sb.InputError, match="no condition"):
+        preset(pressure=1.0)
+
+
+@pytest.mark.quick
+def test_temperatures_are_in_degrees_or_kelvin():
+    assert celsius("25 degC") == celsius("25 °C") == celsius(25) == 25
+    assert celsius("298.15 K") == pytest.approx(25)
+    for wrong in ("25", "77 F", True):
+        with pytest.raises(sb.InputError):
+            celsius(wrong)
+    with pytest.raises(sb.InputError, match="between 0 and 100"):
+        sb.fluids.water("300 degC")
+
+
+@pytest.mark.quick
+def test_thinning_presets_have_the_viscosities_that_their_sources_say():
+    for name, rate, viscosity in (("xanthan", 1.0, 0.7), ("xanthan", 100.0, 0.035), ("saliva", 10.0, 0.0106)):
+        liquid = sb.fluids.PRESETS[name]()
+        law = liquid.fluid.rheology
+        shape = type(law)(1.0, law.exponent, law.infinite_viscosity / liquid.viscosity)
+        x = law.relaxation_time * rate
+        found = liquid.viscosity * shape.stress(np.array([x]))[0][0] / x
+        assert found == pytest.approx(viscosity, rel=0.06)
