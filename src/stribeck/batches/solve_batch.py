@@ -14,10 +14,11 @@ from stribeck.batches.chain import Ended, solve_in_order
 from stribeck.batches.order import chains_of
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import ARTICLE
 from stribeck.equations.observables import Observables
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import NAMES
+from stribeck.quantities.outputs import ALL_NAMES, NAMES
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solve import check_rtol
 
@@ -48,7 +49,11 @@ class BatchSolution:
         Height of the apex of the undeformed cylinder [u_Hz].
     viscous_published, viscous_balanced : ndarray
         Viscous friction for beta = 1 in its two definitions [-].
-    relative_errors : ndarray, shape (8, ...)
+    viscous_upper : ndarray
+        Viscous friction on the cylinder, for beta = 1 [-].
+    exit_position, reformation_position : ndarray
+        Where the film ends and begins anew [a]; nan where it does not.
+    relative_errors : ndarray, shape (observables, ...)
         Estimated relative errors of the observables, absolute for the load shares; by name in :attr:`errors`.
     """
 
@@ -64,6 +69,9 @@ class BatchSolution:
     offset: Array = field(repr=False)
     viscous_published: Array = field(repr=False)
     viscous_balanced: Array = field(repr=False)
+    viscous_upper: Array = field(repr=False)
+    exit_position: Array = field(repr=False)
+    reformation_position: Array = field(repr=False)
     relative_errors: Array = field(repr=False)
 
     @property
@@ -79,7 +87,7 @@ class BatchSolution:
     @property
     def errors(self) -> dict[str, Array]:
         """Estimated relative error of each observable; absolute for the load shares."""
-        return dict(zip(NAMES, self.relative_errors, strict=True))
+        return dict(zip(ALL_NAMES, self.relative_errors, strict=False))
 
     def friction(self, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced") -> Array:
         r"""Return the friction coefficients.
@@ -149,7 +157,7 @@ def solve_batch(groups: Groups, *, rtol: float = 1e-6, on_progress: Progress | N
     total = len(states)
     is_grid = all(np.size(part) < total for part in parts)
     values = np.full((len(fields(Observables)), total), np.nan)
-    errors = np.full((len(NAMES), total), np.nan)
+    errors = np.full((len(NAMES if groups.model == ARTICLE else ALL_NAMES), total), np.nan)
     outcome = np.full(total, Outcome.INTERRUPTED, dtype=object)
     done = 0
 
@@ -161,7 +169,7 @@ def solve_batch(groups: Groups, *, rtol: float = 1e-6, on_progress: Progress | N
         outcome[row], done = ended.outcome, done + 1
         if ended.solution is not None:
             values[:, row] = [getattr(ended.solution.observables, f.name) for f in fields(Observables)]
-            errors[:, row] = ended.solution.relative_errors
+            errors[: len(ended.solution.relative_errors), row] = ended.solution.relative_errors
         if on_progress is not None:
             on_progress(done, total)
 
@@ -171,4 +179,4 @@ def solve_batch(groups: Groups, *, rtol: float = 1e-6, on_progress: Progress | N
     except KeyboardInterrupt:
         pass
     found = {f.name: value.reshape(shape) for f, value in zip(fields(Observables), values, strict=True)}
-    return BatchSolution(groups, rtol, outcome.reshape(shape), relative_errors=errors.reshape(len(NAMES), *shape), **found)
+    return BatchSolution(groups, rtol, outcome.reshape(shape), relative_errors=errors.reshape(len(errors), *shape), **found)

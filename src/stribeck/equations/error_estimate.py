@@ -22,15 +22,14 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
-from stribeck.equations.gap import far_gap
-from stribeck.equations.line import LOAD, Operators
-from stribeck.equations.observables import ROW, Observables, friction_integrals, friction_scale, gradients
+from stribeck.equations.drag import Nodal, viscous_friction
+from stribeck.equations.line import LOAD, Equations, Operators, gradient_in_film, slopes_in_film
+from stribeck.equations.observables import ROW, VISCOUS, Observables, friction_integrals, friction_scale, gradients
 from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import StackedStates
-from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
-from stribeck.numerics.running_integral import RunningIntegral
-from stribeck.quantities.outputs import ABSOLUTE
+from stribeck.numerics.running_integral import RunningIntegral, Volterra
+from stribeck.quantities.outputs import ABSOLUTE, ENDS, NAMES
 from stribeck.solids.half_plane import (
     Blocks,
     log_moments,
@@ -73,6 +72,11 @@ GAP_FLOOR = 1e-3
 SHARES = [ROW[name] for name in ABSOLUTE]
 GAPS = [ROW["central_gap"], ROW["minimum_gap"]]
 FRICTION = [ROW["viscous_published"], ROW["viscous_balanced"]]
+DRAG = [ROW[name] for name in VISCOUS]
+POSITIONS = [ROW[row.name] for row in ENDS]
+
+PRESSURE_STEPS = 2
+"""Newton steps to the fluid pressure that a gap implies, from that at the nodes."""
 
 
 def _by_highest(s: Array, order: int) -> Array:
@@ -109,9 +113,12 @@ class FineOperators:
         return self.coarse.refined(self.coarse.order + EXTRA_NODES)
 
     @cached_property
-    def integral(self) -> RunningIntegral:
-        """The integral from infinity on that mesh."""
-        return RunningIntegral(self.mesh)
+    def _integrals(self) -> dict[float, RunningIntegral]:
+        return {}
+
+    def integral(self, restart: float = 0.0) -> RunningIntegral:
+        """Return the integral from infinity on that mesh, see :class:`RunningIntegral`."""
+        return self._integrals.setdefault(restart, RunningIntegral(self.mesh, restart))
 
     @cached_property
     def _lowered(self) -> Array:
@@ -133,17 +140,40 @@ class FineOperators:
         found *= mesh.half_widths[:, None] / -np.pi
         return found.reshape(mesh.size, -1)
 
+    def lowered(self, pressure: Array) -> Array:
+        """Return rows of fine ``pressure`` at the coarse nodes, without their highest degrees."""
+        density = (pressure * self.mesh.stretch).reshape(len(pressure), self.mesh.panels, -1)
+        return np.asarray((density @ self._lowered.T).reshape(len(pressure), -1) / self.coarse.stretch)
+
+    def weights(self, operators: Operators) -> Array:
+        """Return the row that makes the load of fine pressures, as the ``operators`` do of coarse ones."""
+        mesh, tail = self.mesh, operators.tail
+        if tail is None:
+            return mesh.weights
+        found, own = mesh.weights.copy(), slice(-mesh.order, None)
+        found[own] = (tail.weights @ tail.interpolation(mesh.order)) * mesh.stretch[own]
+        return found
+
     def deflection(self, pressure: Array, operators: Operators) -> Array:
         """Return the deflection at the coarse nodes under rows of fine ``pressure``, by the ``operators`` of the mesh."""
+        if operators.deflection_by_tail is not None and operators.tail is not None:
+            own = slice(-self.mesh.order, None)
+            density = (pressure[:, own] * self.mesh.stretch[own]) @ operators.tail.interpolation(self.mesh.order).T
+            inner = pressure.copy()
+            inner[:, own] = 0.0
+            return self._deflection(inner, operators) + density @ operators.deflection_by_tail.T
+        return self._deflection(pressure, operators)
+
+    def _deflection(self, pressure: Array, operators: Operators) -> Array:
         density = (pressure * self.mesh.stretch).reshape(len(pressure), self.mesh.panels, -1)
-        lowered = (density @ self._lowered.T).reshape(len(pressure), -1) / self.coarse.stretch
+        lowered = self.lowered(pressure)
         highest = density @ reference(self.mesh.order).to_legendre[self.coarse.order :].T
         return lowered @ operators.deflection.T + highest.reshape(len(pressure), -1) @ self._of_highest.T
 
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """Estimated errors of the observables, each an array of shape (len(NAMES),); nan for one that does not exist.
+    """Estimated errors of the observables, each an array over NAMES, for other films than the article's over ALL_NAMES.
 
     Attributes
     ----------
@@ -188,8 +218,15 @@ class ErrorEstimate:
 
     @property
     def at_nodes(self) -> float:
-        """The part of it that mesh and iteration cause at the nodes."""
-        return float(np.nanmax(self.discretisation / self.scales))
+        """The part of it that mesh and iteration cause at the nodes; that of the ends of a film is :attr:`of_ends`."""
+        relative = self.discretisation / self.scales
+        relative[POSITIONS[0] :] = math.nan
+        return float(np.nanmax(relative))
+
+    @property
+    def of_ends(self) -> float:
+        """The error of the ends of a film; zero where it has none."""
+        return float(np.nanmax(self.discretisation[POSITIONS[0] :], initial=0.0))
 
     @property
     def floor(self) -> float:
@@ -202,7 +239,8 @@ class Perturbations:
     """What may be wrong with states.
 
     ``unknowns``, shape (1 + PATTERNS, rows, unknowns), are the changes that defect and rounding may cause, the defect first;
-    ``friction``, shape (2, rows), is by how much the two friction integrals change on the finer nodes.
+    ``friction``, shape (2 or 3, rows), is by how much the friction integrals change on the finer nodes: both definitions of
+    the film of the article, all three of others.
     """
 
     unknowns: Array = field(repr=False)
@@ -212,49 +250,129 @@ class Perturbations:
 def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -> Perturbations:
     """Return what defect, quadrature and rounding may change in states; ``observed`` as in :func:`error_estimates`."""
     equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
-    coarse, mesh = fine.coarse, fine.mesh
+    coarse, mesh, film, far_gap = fine.coarse, fine.mesh, states.equations.film, states.equations.far_gap(states.y)
+    integral, d = fine.integral(op.restart), equations.dilation(y)
     h, z0, h_star = y[:, at.gap], y[:, at.offset], y[:, at.flux_gap]
     balance, net = at.offset.start, at.flux_gap.start
     gap = np.exp(coarse.to_order(np.log(h / coarse.far), mesh.order)) * mesh.far
     own, finer = slice(-coarse.order, None), slice(-mesh.order, None)  # through infinity, where the gap holds a logarithm
     smooth = h[:, own] - far_gap(coarse.nodes[own])
     gap[:, finer] = smooth @ between_orders(coarse.order, mesh.order) + far_gap(mesh.nodes[finer])
-    slopes = reynolds.gradient(gap, h_star)
+    known = equations.pressures(y)[1] if film.uses_pressure else None
+    fluid = None if known is None else coarse.to_order(known * coarse.stretch, mesh.order) / mesh.stretch
     flat = (np.abs(h - h_star) < FLAT * h).reshape(len(y), coarse.panels, -1).all(axis=2)
-    if flat.any():
-        smooth = coarse.to_order(reynolds.gradient(h, h_star), mesh.order)
-        slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
-    pressure = equations.law.pressure(gap) + equations.speed * fine.integral(slopes)
+
+    def gradient(p: Array | None) -> Array:
+        slopes = gradient_in_film(film, integral, gap, p, h_star)
+        if flat.any():
+            smooth = coarse.to_order(gradient_in_film(film, op.integral, h, known, h_star), mesh.order)
+            slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
+        return slopes
+
+    slopes = gradient(fluid)
+    if fluid is None:
+        pressure = equations.speed * integral(slopes)
+        if d is not None:
+            pressure = d * pressure + np.where(integral.outside_gap, 0.0, op.model.cavity_pressure)
+    else:
+        pressure = _implied_pressure(equations, y, integral, gap, fluid)
+        slopes = gradient(pressure)
+    fluid = pressure
+    pressure = equations.law.pressure(gap) + fluid
     deflection = fine.deflection(pressure, op)
     residual = np.empty((1 + PATTERNS, *y.shape))
-    residual[0, :, at.gap] = h - z0 - op.parabola - deflection
-    residual[0, :, balance] = pressure @ mesh.weights - LOAD
-    residual[0, :, net] = np.ravel(equations.flux_scale) * (slopes @ mesh.weights)
+    parabola = op.parabola if not op.has_exit else 0.5 * equations.positions(y) ** 2
+    weights = fine.weights(op)
+    load = pressure @ weights
+    if d is not None:
+        deflection = d * deflection - d * np.log(d) / math.pi * load[:, None]
+        load = d[:, 0] * load
+    residual[0, :, at.gap] = h - z0 - parabola - deflection
+    residual[0, :, balance] = load - LOAD
+    residual[0, :, net] = np.ravel(equations.flux_scale) * (slopes @ integral.weights)
     size = np.finfo(float).eps * ROUNDING_UNITS
-    residual[1:, :, at.gap] = size * (np.abs(z0) + op.parabola + np.abs(deflection))
+    residual[1:, :, at.gap] = size * (np.abs(z0) + parabola + np.abs(deflection))
     residual[1:, :, balance] = size * LOAD
-    residual[1:, :, net] = size * np.ravel(equations.flux_scale) * (np.abs(slopes) @ mesh.weights)
-    residual[1:] *= _signs(coarse.panels, coarse.order)[:, None]
+    residual[1:, :, net] = size * np.ravel(equations.flux_scale) * (np.abs(slopes) @ integral.weights)
+    if op.has_exit:
+        _of_ends(states, residual, integral, slopes, size)
+    residual[:, :, at.pressure] = 0.0
+    residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)[:, None]
+    unknowns = states.correction(residual)
+    if known is not None:
+        unknowns[0][:, at.pressure] += fine.lowered(fluid) - known
+    if not op.is_article:
+        friction = np.zeros((len(DRAG), len(y)))
+        if equations.is_sliding:
+            friction = np.abs(
+                viscous_friction(equations, y, states.load, Nodal(integral, gap, fluid, weights)) - observed[:, DRAG].T
+            )
+        return Perturbations(unknowns, friction)
     friction = np.zeros((2, len(y)))
     if equations.is_sliding:
         scale = np.ravel(friction_scale(states.load, equations.speed))
-        friction = np.abs(scale * friction_integrals(mesh, gap, h_star, slopes) - observed[:, FRICTION].T)
-    return Perturbations(states.correction(residual), friction)
+        found = friction_integrals(mesh, gap, h_star, slopes, op.model.solid.far_gap)
+        friction = np.abs(scale * found - observed[:, FRICTION].T)
+    return Perturbations(unknowns, friction)
 
 
-def interpolation_errors(states: StackedStates, minimum_positions: Array) -> Array:
-    """Return the absolute errors of the interpolated central and minimum gap, shape (2, rows)."""
+def _implied_pressure(equations: Equations, y: Array, integral: RunningIntegral, gap: Array, guess: Array) -> Array:
+    """Return the fluid pressure that gaps on a finer mesh imply, rows of them, from that at the nodes."""
+    op, film, h_star = equations.operators, equations.film, y[:, equations.layout.flux_gap]
+    d = equations.dilation(y)
+    speed = np.broadcast_to(equations.speed * (1.0 if d is None else d), (len(y), 1))
+    cavity = np.where(integral.outside_gap, 0.0, op.model.cavity_pressure if op.has_reformation else 0.0)
+    pressure = guess
+    for _ in range(PRESSURE_STEPS):
+        rest = speed * integral(gradient_in_film(film, integral, gap, pressure, h_star)) + cavity - pressure
+        by_pressure = slopes_in_film(film, integral, gap, pressure, h_star).by_pressure
+        assert by_pressure is not None
+        factor = speed * by_pressure
+        pressure = pressure + rest + np.stack([Volterra(integral, f)(f * r) for f, r in zip(factor, rest, strict=True)])
+    return pressure
+
+
+def _of_ends(states: StackedStates, residual: Array, integral: RunningIntegral, slopes: Array, size: float) -> None:
+    """Write the rows of the ends of the film: what finer nodes leave, what the polynomial misses at the exit, and rounding."""
+    equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
+    coarse, mesh, scale = op.mesh, integral.mesh, np.ravel(equations.flux_scale)
+    left = slice((op.integral.middle - 1) * coarse.order, op.integral.middle * coarse.order)
+    of_fine = slice((integral.middle - 1) * mesh.order, integral.middle * mesh.order)
+    h, h_star = y[:, at.gap], y[:, at.flux_gap]
+    fluid = equations.pressures(y)[1] if equations.film.uses_pressure else None
+    by_gap = slopes_in_film(equations.film, op.integral, h, fluid, h_star).by_gap[:, left]
+    steep = np.abs(by_gap * h[:, left])[:, -1]
+    missed = interpolation_error(np.log(h[:, left] / coarse.far[left]))
+    at_edge = slopes[:, of_fine] @ reference(mesh.order).left_end[::-1]
+    residual[0][:, at.exit] = (scale * (np.abs(at_edge) + steep * missed))[:, None]
+    residual[1:, :, at.exit] = (size * scale * steep)[:, None]
+    dilation = equations.dilation(y)
+    if dilation is not None:
+        d, in_cavity = dilation[:, 0], op.model.cavity_pressure / np.ravel(equations.speed)
+        net = at.flux_gap.start
+        residual[0, :, net] = d * residual[0, :, net] - scale * in_cavity
+        residual[0, :, at.dilation.start] = scale * (d * (slopes @ integral.weights_beyond) + in_cavity)
+        beyond = np.abs(slopes) @ integral.weights_beyond
+        residual[1:, :, at.dilation.start] = size * scale * (d * beyond + np.abs(in_cavity))
+
+
+def interpolation_errors(states: StackedStates, minimum_positions: Array, central_positions: Array | None = None) -> Array:
+    """Return the absolute errors of the interpolated central and minimum gap, shape (2, rows), at coordinates of the mesh."""
     mesh = states.equations.operators.mesh
-    central = int(np.searchsorted(mesh.edges, 0.0))
     lowest = np.clip(np.searchsorted(mesh.edges, minimum_positions) - 1, 0, mesh.panels - 1)
-    panels = np.stack([np.full_like(lowest, central), lowest])
+    if central_positions is None:
+        central = np.full_like(lowest, int(np.searchsorted(mesh.edges, 0.0)))
+    else:
+        central = mesh.locate(central_positions)[0]
+    panels = np.stack([central, lowest])
     gap = states.y[:, states.equations.layout.gap].reshape(len(lowest), mesh.panels, -1)[np.arange(len(lowest)), panels]
     return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
 
 
-def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float) -> bool:
+def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float, centre: float = 0.0) -> bool:
     """Return whether central and minimum gap are interpolated to ``rtol``: a reused mesh loses them first."""
-    panels = [int(np.searchsorted(mesh.edges, 0.0)), int(np.argmin(gap)) // mesh.order]
+    central = int(np.searchsorted(mesh.edges, 0.0)) if centre == 0.0 else int(mesh.locate(np.array([centre]))[0][0])
+    panels = [central, int(np.argmin(gap)) // mesh.order]
     return bool((_between_nodes(mesh, gap.reshape(mesh.panels, -1)[panels], panels) <= rtol).all())
 
 
@@ -264,10 +382,11 @@ def _between_nodes(mesh: Mesh, gap: Array, panels: Indices | list[int]) -> Array
 
 
 @lru_cache(maxsize=64)
-def _signs(panels: int, order: int) -> Array:
-    """Return fixed patterns of signs, each the same all over a panel, shape (PATTERNS, panels * order + 2)."""
-    signs = np.random.default_rng(panels).choice(np.array([-1.0, 1.0]), (PATTERNS, panels + 2))
-    return np.hstack([np.repeat(signs[:, 2:], order, axis=1), signs[:, :2]])
+def _signs(panels: int, order: int, numbers: int, fields: int) -> Array:
+    """Return fixed patterns of signs, each the same all over a panel, shape (PATTERNS, fields + numbers)."""
+    signs = np.random.default_rng(panels).choice(np.array([-1.0, 1.0]), (PATTERNS, panels + numbers))
+    nodal = np.repeat(signs[:, numbers:], order, axis=1)
+    return np.hstack([nodal, np.zeros((PATTERNS, fields - panels * order)), signs[:, :numbers]])
 
 
 def error_estimates(states: StackedStates, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
@@ -275,24 +394,42 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
 
     At speed zero the values may be those of the same state under another load, see :mod:`stribeck.solver.at_rest`.
     """
-    values = np.array([one.array() for one in observed])
+    values = np.array([one.array(states.equations.operators.is_article) for one in observed])
     changed = perturbations(states, values, fine)
     rows = gradients(states.equations, states.y, states.load)
     effects = np.abs(np.matmul(rows.transpose(1, 0, 2), changed.unknowns.transpose(1, 2, 0)))
-    effects[:, FRICTION, 0] += changed.friction.T
+    op, positions = states.equations.operators, np.array([one.minimum_position for one in observed])
+    centres, stretch = None, np.ones(len(values))
+    if op.has_exit:
+        d, exits = states.equations.dilation(states.y), states.y[:, states.equations.layout.exit.start]
+        stretch = stretch if d is None else d[:, 0]
+        centres, positions = -exits / stretch, (positions - exits) / stretch
+    effects[:, FRICTION if op.is_article else DRAG, 0] += changed.friction.T
     interpolation = np.zeros_like(values)
-    interpolation[:, GAPS] = interpolation_errors(states, np.array([one.minimum_position for one in observed])).T
+    interpolation[:, GAPS] = interpolation_errors(states, positions, centres).T
     scales = np.abs(values)
+    if not op.is_article:
+        scales[:, POSITIONS] = np.maximum(1.0, scales[:, POSITIONS])
+        # Rolling friction has another sign on the other wall, and passes through zero.
+        scales[:, DRAG] = scales[:, DRAG].max(axis=1, keepdims=True)
     scales[:, SHARES] = 1.0
     scales[:, ROW["offset"]] = np.maximum(scales[:, ROW["offset"]], OFFSET_FLOOR)
     if not states.equations.is_sliding:
         scales[:, GAPS] = np.maximum(scales[:, GAPS], GAP_FLOOR * states.equations.law.decay_length)
     scales[scales == 0] = 1.0
     rounding = DEVIATIONS * np.sqrt((effects[:, :, 1:] ** 2).mean(axis=2))
-    positions, gap = np.array([one.minimum_position for one in observed]), states.y[:, states.equations.layout.gap]
+    gap = states.y[:, states.equations.layout.gap]
     minimum = ROW["minimum_gap"]
     depth = (effects[:, minimum, 0] + interpolation[:, minimum] + rounding[:, minimum]) / gap.min(axis=1)
     of_gap = changed.unknowns[:, :, states.equations.layout.gap]
-    places = position_errors(states.equations.operators.mesh, gap, of_gap, positions, depth).tolist()
-    parts = (DEFECT_SAFETY * effects[:, :, 0], interpolation, rounding, scales, places)
+    places = stretch * position_errors(op.mesh, gap, of_gap, positions, depth)
+    discretisation = DEFECT_SAFETY * effects[:, :, 0]
+    if op.has_exit:
+        places = places + (discretisation + rounding)[:, ROW["exit_position"]]
+    if not op.is_article:
+        missing = np.isnan(values)
+        missing[:, : len(NAMES)] = False
+        for part in (discretisation, interpolation, rounding):
+            part[missing] = math.nan
+    parts = (discretisation, interpolation, rounding, scales, places.tolist())
     return [ErrorEstimate(*row) for row in zip(*parts, strict=True)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
@@ -16,11 +17,16 @@ LARGEST_STEP = 0.2
 """Of the search for the minimum gap, the step in half-widths of a panel."""
 
 
-def gap_at(mesh: Mesh, h: Array, x: Array) -> Array:
-    """Return the gap at ``x`` from the panels' polynomials.
+def far_gap(x: Array) -> Array:
+    """Return ``x**2/2 - ln|x|/2``, the gap far away on the half-plane but for a smooth function of ``1/x``."""
+    return 0.5 * x**2 - 0.5 * np.log(np.abs(x))
+
+
+def gap_at(mesh: Mesh, h: Array, x: Array, far_gap: Callable[[Array], Array] = far_gap) -> Array:
+    """Return the gap at the coordinates ``x`` of the mesh from the panels' polynomials.
 
     Those are of the logarithm of the gap over its growth, or of the gap over its growth where it touches zero; on the panel
-    through infinity they are of what the gap has beyond ``x**2/2 - ln|x|/2``.
+    through infinity they are of what the gap has beyond ``far_gap``.
     """
     far = mesh.scale**2 + x * x
     if h.min() > 0:
@@ -36,16 +42,18 @@ def gap_at(mesh: Mesh, h: Array, x: Array) -> Array:
     return np.asarray(gap)
 
 
-def far_gap(x: Array) -> Array:
-    """Return ``x**2/2 - ln|x|/2``, the gap far away but for a smooth function of ``1/x``."""
-    return 0.5 * x**2 - 0.5 * np.log(np.abs(x))
-
-
 def central_gap(mesh: Mesh, h: Array) -> Array:
     """Return the gap at zero, where the panel right of it begins; that of every row of ``h``."""
     first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
     nodes = slice(first, first + mesh.order)
     return np.asarray(np.exp(np.log(h[..., nodes] / mesh.far[nodes]) @ reference(mesh.order).left_end) * mesh.scale**2)
+
+
+def log_gap_row(mesh: Mesh, x: float) -> tuple[slice, Array]:
+    """Return the nodes of the panel of a coordinate, and the row that interpolates the logarithm of the gap there."""
+    panel, s = mesh.locate(np.array([x]))
+    k = int(panel[0])
+    return slice(k * mesh.order, (k + 1) * mesh.order), reference(mesh.order).interpolation(s)[0]
 
 
 def minimum_gap(mesh: Mesh, h: Array) -> tuple[float, float]:

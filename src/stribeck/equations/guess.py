@@ -24,6 +24,14 @@ class Guess(Protocol):
         """Guess of the exit, from which x is measured if the film has a free one."""
 
     @property
+    def dilation(self) -> float:
+        """Guess of the dilation of the frame, one if the film does not begin anew."""
+
+    @property
+    def restart(self) -> float:
+        """Coordinate at which the film begins anew; infinite if it does not."""
+
+    @property
     def minimum_position(self) -> float:
         """About where the gap is at its minimum."""
 
@@ -32,18 +40,3 @@ class Guess(Protocol):
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and, if known, the fluid pressure at ``x``, shape (1 or 2, len(x))."""
-
-
-class StackedGuess(Protocol):
-    """What :func:`mesh_for` asks of guesses of stacked states."""
-
-    @property
-    def flux_gap(self) -> Array:
-        """Guess of the flux gaps, a column."""
-
-    @property
-    def minimum_position(self) -> Array:
-        """About where the gaps are at their minimum, a column."""
-
-    def fields(self, x: Array) -> Array:
-        """Return the logarithms of the gaps and, if known, the fluid pressures at ``x``, shape (1 or 2, rows, len(x))."""

@@ -13,102 +13,64 @@ s is a fixed length that makes the last row of order one.  If the gradient G dep
 is an unknown too, with the rows ``p_f - lambda A G``; Newton's step eliminates it.
 
 With a free exit the film ends at x_c, and x is measured from there: D, A and w do not depend on x_c, which enters by the
-parabola ``(x + x_c)**2/2`` alone.  The integrals of G end at the exit, and one more row asks that G vanish there.
+parabola ``(x + x_c)**2/2`` alone.  The integrals of G end at the exit, and one more row asks that G vanish there.  A film that
+ends at the pressure p_cav of the cavity and begins anew behind it has one more unknown still, the length of the cavity, which
+dilates the frame (:mod:`stribeck.equations.operators`); the two integrals of G are then ``p_cav/lambda`` and minus that.
 
 Source: [BP] Appendix A; theory.md Eqs. (1)-(5).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from stribeck._types import Array, Numbers
+from stribeck._types import Array, Flags, Numbers
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.equations.operators import LOAD, Operators
 from stribeck.equations.unknowns import Layout
-from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.fluid import Film
+from stribeck.fluids.fluid import Film, Slopes
 from stribeck.numerics.newton import LU, Inverse
-from stribeck.numerics.panels import Mesh, reference
 from stribeck.numerics.running_integral import RunningIntegral, Volterra
 from stribeck.quantities.outcome import Outcome
 
+__all__ = ["LOAD", "Equations", "Operators", "gradient_in_film", "slopes_in_film"]
+
 MOST_HALVINGS = 20
 
-LOAD = 0.5 * np.pi
-"""Load in Hertz units: the integral of the pressure."""
+
+def gradient_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | None, flux_gap: Numbers) -> Array:
+    """Return G at the nodes where the film is full, zero in the cavity."""
+    if integral.restart == 0.0:
+        return film.gradient(h, p, flux_gap)
+    wet = integral.integrated
+    found = np.zeros_like(h)
+    found[..., wet] = film.gradient(h[..., wet], None if p is None else p[..., wet], flux_gap)
+    return found
 
 
-@dataclass(frozen=True, eq=False)
-class Operators:
-    """What the equations need of a mesh; made once and kept for all states that share it."""
+def slopes_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | None, flux_gap: Numbers) -> Slopes:
+    """Return the derivatives of G at the nodes where the film is full, zero in the cavity."""
+    if integral.restart == 0.0:
+        return film.slopes(h, p, flux_gap)
+    wet = integral.integrated
+    by_gap, by_pressure, by_flux, by_speed = film.slopes(h[..., wet], None if p is None else p[..., wet], flux_gap)
+    return Slopes(
+        scattered(by_gap, wet, h),
+        None if by_pressure is None else scattered(by_pressure, wet, h),
+        scattered(by_flux, wet, h),
+        None if by_speed is None else scattered(by_speed, wet, h),
+    )
 
-    mesh: Mesh
-    model: Model = ARTICLE
 
-    @cached_property
-    def layout(self) -> Layout:
-        """The unknowns by name; the fluid pressure and the exit are among them if the model has them."""
-        n = self.mesh.size
-        fields = 2 * n if self.model.film.uses_pressure else n
-        size = fields + 2 + self.has_exit
-        return Layout(
-            size,
-            gap=slice(0, n),
-            numbers=slice(fields, size),
-            offset=slice(fields, fields + 1),
-            flux_gap=slice(fields + 1, fields + 2),
-            pressure=slice(n, fields),
-            exit=slice(fields + 2, size),
-        )
-
-    @property
-    def has_exit(self) -> bool:
-        """Whether the film ends at a free exit, from which x is measured."""
-        return self.model.cavitation is Cavitation.EXIT
-
-    @cached_property
-    def integral(self) -> RunningIntegral:
-        """A: nodal pressure gradients -> pressure."""
-        return RunningIntegral(self.mesh, one_sided=self.has_exit)
-
-    @cached_property
-    def deflection(self) -> Array:
-        """D: nodal pressures -> deflection."""
-        return self.model.solid.deflection(self.mesh)
-
-    @cached_property
-    def deflection_of_gradient(self) -> Array:
-        """D A: nodal pressure gradients -> deflection."""
-        return np.asfortranarray(self.integral.after(self.deflection))
-
-    @cached_property
-    def load_of_gradient(self) -> Array:
-        """Row w A: nodal pressure gradients -> load."""
-        return np.asarray(self.integral.after(self.mesh.weights[None, :])[0])
-
-    @cached_property
-    def moment_of_gradient(self) -> Array:
-        """Row w x A on the panels in x: nodal pressure gradients -> first moment of the pressure."""
-        row = self.mesh.weights * self.mesh.nodes
-        row[-self.mesh.order :] = 0.0
-        return np.asarray(self.integral.after(row[None, :])[0])
-
-    @cached_property
-    def parabola(self) -> Array:
-        """The undeformed gap x**2/2 at the nodes."""
-        return 0.5 * self.mesh.nodes**2
-
-    @cached_property
-    def at_exit(self) -> Array:
-        """Row: nodal values -> the value at zero, from the left."""
-        row = np.zeros(self.mesh.size)
-        last = slice((self.integral.middle - 1) * self.mesh.order, self.integral.middle * self.mesh.order)
-        row[last] = reference(self.mesh.order).left_end[::-1]
-        return row
+def scattered(values: Array, where: Flags, like: Array) -> Array:
+    """Return nodal values that are ``values`` at some nodes and zero at the others."""
+    found = np.zeros_like(like)
+    found[..., where] = values
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,13 +110,40 @@ class Equations:
         film = self.operators.model.film
         return film.at(self.speed) if film.uses_speed else film
 
+    def dilation(self, y: Array) -> Array | None:
+        """Return the dilation of the frame, a column of stacked states; None where the film does not begin anew."""
+        return y[..., self.layout.dilation] if self.operators.has_reformation else None
+
+    def positions(self, y: Array) -> Array:
+        """Return x at the nodes [a]."""
+        nodes, d = self.operators.mesh.nodes, self.dilation(y)
+        if not self.operators.has_exit:
+            return nodes
+        return np.asarray(y[..., self.layout.exit] + (nodes if d is None else d * nodes))
+
+    def far_gap(self, y: Array) -> Callable[[Array], Array]:
+        """Return the function of the coordinate that the gap is far away but for one that is smooth in its inverse."""
+        solid, d = self.operators.model.solid, self.dilation(y)
+        if not self.operators.has_exit:
+            return solid.far_gap
+        x_c = y[..., self.layout.exit]
+
+        def far(xi: Array) -> Array:
+            x = xi if d is None else d * xi
+            return np.asarray(solid.far_gap(x) + x_c * x)
+
+        return far
+
     def pressures(self, y: Array) -> tuple[Array, Array]:
         """Return the contact and the fluid pressure at the nodes [p_Hz]."""
-        at, film = self.layout, self.film
+        at, film, d = self.layout, self.film, self.dilation(y)
         h = y[..., at.gap]
         if film.uses_pressure:
             return self.law.pressure(h), y[..., at.pressure]
-        fluid = np.asarray(self.speed * self.operators.integral(film.gradient(h, None, y[..., at.flux_gap])))
+        op = self.operators
+        fluid = np.asarray(self.speed * op.integral(gradient_in_film(film, op.integral, h, None, y[..., at.flux_gap])))
+        if d is not None:
+            fluid = d * fluid + op.cavity_pressure
         return self.law.pressure(h), fluid
 
     @cached_property
@@ -164,31 +153,44 @@ class Equations:
 
     def residual(self, y: Array) -> Array:
         """Return the residual at ``y``, in its layout."""
-        op, at, film = self.operators, self.layout, self.film
+        op, at, film, d = self.operators, self.layout, self.film, self.dilation(y)
         h, z0, h_star = y[..., at.gap], y[..., at.offset], y[..., at.flux_gap]
         p_f = y[..., at.pressure] if film.uses_pressure else None
-        g = film.gradient(h, p_f, h_star)
+        g = gradient_in_film(film, op.integral, h, p_f, h_star)
         p_c = self.law.pressure(h)
         r = np.empty_like(y)
-        r[..., at.gap] = h - z0 - op.parabola - p_c @ op.deflection.T
-        r[..., at.offset.start] = p_c @ op.mesh.weights - LOAD
+        r[..., at.gap] = h - z0 - (op.parabola if d is None else 0.5 * (d * op.mesh.nodes) ** 2) - op.deflected(p_c, d)
+        r[..., at.offset.start] = p_c @ op.weights - LOAD
         r[..., at.flux_gap] = self.flux_scale * (g @ op.integral.weights)[..., None]
         if op.has_exit:
             x_c = y[..., at.exit]
-            r[..., at.gap] -= x_c * (op.mesh.nodes + 0.5 * x_c)
+            r[..., at.gap] -= x_c * ((op.mesh.nodes if d is None else d * op.mesh.nodes) + 0.5 * x_c)
             r[..., at.exit] = self.flux_scale * (g @ op.at_exit)[..., None]
-        if p_f is not None:
-            r[..., at.pressure] = p_f - self.speed * op.integral(g)
-            r[..., at.gap] -= p_f @ op.deflection.T
-            r[..., at.offset.start] += p_f @ op.mesh.weights
+        if d is not None:
+            in_cavity = op.model.cavity_pressure / self.speed
+            r[..., at.flux_gap] = d * r[..., at.flux_gap] - self.flux_scale * in_cavity
+            r[..., at.dilation] = self.flux_scale * (d * (g @ op.integral.weights_beyond)[..., None] + in_cavity)
+        if p_f is not None or d is not None:
+            fluid = self.speed * op.integral(g)
+            if d is not None:
+                fluid = d * fluid + op.cavity_pressure
+            if p_f is not None:
+                r[..., at.pressure] = p_f - fluid
+                fluid = p_f
+            r[..., at.gap] -= op.deflected(fluid, d)
+            r[..., at.offset.start] += fluid @ op.weights
         elif self.is_sliding:
             g *= self.speed
             r[..., at.gap] -= g @ op.deflection_of_gradient.T
             r[..., at.offset.start] += g @ op.load_of_gradient
+        if d is not None:
+            r[..., at.offset] += (d - 1) * (r[..., at.offset] + LOAD)
         return r
 
     def units(self, y: Array) -> Array:
         """Return the gaps and the flux gap themselves, and one for all else: what unknowns change relative to.
+
+        Where roughness carries fluid along, the flux gap may be zero: its unit is the smallest gap at least.
 
         From one speed to the next films grow as a whole: the derivatives with respect to relative changes of the gap hardly
         change, and an inverse in these units serves many states.
@@ -196,8 +198,13 @@ class Equations:
         at = self.layout
         units = np.ones_like(y)
         units[..., at.gap] = y[..., at.gap]
-        units[..., at.flux_gap] = y[..., at.flux_gap]
+        units[..., at.flux_gap] = y[..., at.flux_gap] if self.operators.is_article else self._flux_unit(y)
         return units
+
+    def _flux_unit(self, y: Array) -> Array:
+        """Return what the flux gap changes relative to, a column of stacked states."""
+        at = self.layout
+        return np.asarray(np.maximum(np.abs(y[..., at.flux_gap]), y[..., at.gap].min(axis=-1, keepdims=True)))
 
     def inverse(self, y: Array) -> Inverse:
         """Return the inverse of the Jacobian in :meth:`units` of the unknowns, by LU factors."""
@@ -215,43 +222,78 @@ class Equations:
             [   s**2 w diag(dG/dh)                          0     s**2 w dG/dh*           0      ]
             [   s**2 e diag(dG/dh)                          0     s**2 e dG/dh*           0      ]
 
-        The last row and column are those of a free exit, with e the value there.  A fluid pressure among the unknowns is
-        eliminated: A is then ``(I - lambda A diag(dG/dp))**-1 A``.
+        The last row and column are those of a free exit, with e the value there; a film that begins anew has one more of each.
+        A fluid pressure among the unknowns is eliminated: A is then ``(I - lambda A diag(dG/dp))**-1 A``.
         """
         op, at, film = self.operators, self.layout, self.film
-        n = op.mesh.size
+        n, dilation = op.mesh.size, self.dilation(y)
         h = y[at.gap]
-        u, v = (np.ones(n), np.ones(3)) if units is None else (units[at.gap], units[at.numbers])
+        numbers = at.size - at.numbers.start
+        u, v = (np.ones(n), np.ones(numbers)) if units is None else (units[at.gap], units[at.numbers])
         p_slope = self.law.slope(h, self.law.pressure(h)) * u
         p_f = y[at.pressure] if film.uses_pressure else None
-        by_h, by_p, by_flux, _ = film.slopes(h, p_f, y[at.flux_gap])
+        by_h, by_p, by_flux, _ = slopes_in_film(film, op.integral, h, p_f, y[at.flux_gap])
         g_h, g_flux = by_h * u, by_flux * v[1]
-        ends = [op.integral.weights, op.at_exit] if op.has_exit else [op.integral.weights]
-        size = n + 2 + op.has_exit
-        matrix = np.zeros((size, size), order="F")
+        d = None if dilation is None else float(dilation[0])
+        speed = self.speed if d is None else self.speed * d
+        scaled = op.dilated(d, self.is_sliding and by_p is None)
+        matrix = np.zeros((n + numbers, n + numbers), order="F")
         block, offset, flux = matrix[:n, :n], n, n + 1
-        np.multiply(op.deflection, -p_slope, out=block)
-        matrix[offset, :n] = op.mesh.weights * p_slope
+        np.multiply(scaled.deflection, -p_slope, out=block)
+        matrix[offset, :n] = scaled.weights * p_slope
         of_pressure = None
         if by_p is not None:
-            rows = [op.deflection, op.mesh.weights[None], *(end[None] * by_p for end in ends)]
-            of_pressure = Volterra(op.integral, self.speed * by_p).after(np.concatenate(rows))
+            rows = [scaled.deflection, scaled.weights[None], *(end[None] * by_p for end in scaled.ends)]
+            of_pressure = Volterra(op.integral, speed * by_p).after(np.concatenate(rows))
         if self.is_sliding:
-            deflection = op.deflection_of_gradient if of_pressure is None else of_pressure[:n]
-            load = op.load_of_gradient if of_pressure is None else of_pressure[n]
-            block -= deflection * (self.speed * g_h)
-            matrix[:n, flux] = deflection @ (-self.speed * g_flux)
-            matrix[offset, :n] += load * (self.speed * g_h)
-            matrix[offset, flux] = self.speed * (load @ g_flux)
+            deflection = scaled.deflection_of_gradient if of_pressure is None else of_pressure[:n]
+            load = scaled.load_of_gradient if of_pressure is None else of_pressure[n]
+            assert deflection is not None
+            block -= deflection * (speed * g_h)
+            matrix[:n, flux] = deflection @ (-speed * g_flux)
+            matrix[offset, :n] += load * (speed * g_h)
+            matrix[offset, flux] = speed * (load @ g_flux)
         block[np.diag_indices(n)] += u
         matrix[:n, offset] = -v[0]
-        for k, end in enumerate(ends):
-            row = end if of_pressure is None else end + self.speed * of_pressure[n + 1 + k]
+        rows_of_ends = [
+            end if of_pressure is None else end + speed * of_pressure[n + 1 + k] for k, end in enumerate(scaled.ends)
+        ]
+        for k, row in enumerate(rows_of_ends):
             matrix[n + 1 + k, :n] = row * g_h * self.flux_scale
             matrix[n + 1 + k, flux] = self.flux_scale * (row @ g_flux)
         if op.has_exit:
-            matrix[:n, n + 2] = -v[2] * (op.mesh.nodes + y[at.exit.start])
+            matrix[:n, n + 2] = -v[2] * self.positions(y)
+        if d is not None:
+            matrix[:, n + 3] = v[3] * self._by_dilation(y, d, by_p)
         return matrix
+
+    def _by_dilation(self, y: Array, d: float, by_pressure: Array | None) -> Array:
+        """Return the derivative of the residual with respect to the dilation, the fluid pressure eliminated."""
+        op, at = self.operators, self.layout
+        n = op.mesh.size
+        p_f = y[at.pressure] if by_pressure is not None else None
+        g = gradient_in_film(self.film, op.integral, y[at.gap], p_f, y[at.flux_gap])
+        contact, fluid = self.pressures(y)
+        pressure = contact + fluid
+        scaled = op.dilated(d, of_gradient=False)
+        of_fluid = self.fluid_by_dilation(g, d, by_pressure)
+        through_pressure = 0.0 if by_pressure is None else by_pressure * of_fluid
+        found = np.empty(n + 4)
+        found[:n] = -self.positions(y) * op.mesh.nodes - op.deflection @ pressure - scaled.deflection @ of_fluid
+        found[:n] += (np.log(d) + 1) / np.pi * (op.weights @ pressure)
+        found[n] = op.weights @ pressure + scaled.weights @ of_fluid
+        first, _, second = op.ends
+        explicit = (first @ g, 0.0, second @ g)
+        for k, end in enumerate(scaled.ends):
+            found[n + 1 + k] = self.flux_scale * (explicit[k] + np.sum(end * through_pressure))
+        return found
+
+    def fluid_by_dilation(self, g: Array, d: float, by_pressure: Array | None) -> Array:
+        """Return the derivative of the fluid pressure with respect to the dilation, at fixed gap and flux gap."""
+        integral = self.operators.integral
+        if by_pressure is None:
+            return np.asarray(self.speed * integral(g))
+        return np.asarray(Volterra(integral, self.speed * d * by_pressure)(self.speed * g))
 
     def parameter_derivative(self, y: Array, name: str) -> Array:
         """Return the derivative of the residual with respect to the logarithm of one group, in the layout of ``y``.
@@ -263,27 +305,35 @@ class Equations:
         name : {"speed", "load", "roughness"}
             The group; the other two are held.
         """
-        op, at, film = self.operators, self.layout, self.film
+        op, at, film, dilation = self.operators, self.layout, self.film, self.dilation(y)
         h, found = y[at.gap], np.zeros_like(y)
+        d = None if dilation is None else float(dilation[0])
+        scaled = op.dilated(d, of_gradient=name == "speed")
         if name == "speed":
             p_f = y[at.pressure] if film.uses_pressure else None
-            g = self.speed * film.gradient(h, p_f, y[at.flux_gap])
-            by_speed = film.slopes(h, p_f, y[at.flux_gap]).by_speed
+            speed = self.speed if d is None else self.speed * d
+            g = speed * gradient_in_film(film, op.integral, h, p_f, y[at.flux_gap])
+            by_speed = slopes_in_film(film, op.integral, h, p_f, y[at.flux_gap]).by_speed
+            blocks = (at.flux_gap, at.exit, at.dilation)
             if by_speed is not None:
-                g = g + self.speed * by_speed
-                found[at.flux_gap] = self.flux_scale * (by_speed @ op.integral.weights)
-                if op.has_exit:
-                    found[at.exit] = self.flux_scale * (by_speed @ op.at_exit)
+                g = g + speed * by_speed
+                for block, end in zip(blocks, scaled.ends, strict=False):
+                    found[block] = self.flux_scale * (by_speed @ end)
+            if d is not None:
+                in_cavity = self.flux_scale * op.model.cavity_pressure / self.speed
+                found[at.flux_gap] += in_cavity
+                found[at.dilation] -= in_cavity
             if p_f is not None:
                 found[at.pressure] = -op.integral(g)
             else:
-                found[at.gap] = -(op.deflection_of_gradient @ g)
-                found[at.offset] = op.load_of_gradient @ g
+                assert scaled.deflection_of_gradient is not None
+                found[at.gap] = -(scaled.deflection_of_gradient @ g)
+                found[at.offset] = scaled.load_of_gradient @ g
             return found
         derivative = self.law.load_derivative if name == "load" else self.law.roughness_derivative
         change = derivative(h, self.law.pressure(h))
-        found[at.gap] = -(op.deflection @ change)
-        found[at.offset] = op.mesh.weights @ change
+        found[at.gap] = -(scaled.deflection @ change)
+        found[at.offset] = scaled.weights @ change
         return found
 
     def admissible(self, y: Array, dy: Array) -> float:
@@ -294,10 +344,12 @@ class Equations:
         at = self.layout
         h, dh = y[at.gap], dy[at.gap]
         part = 0.7 / max(0.7, -float((dh / h).min()))
-        flux = dy[at.flux_gap.start] / y[at.flux_gap.start]
+        flux = dy[at.flux_gap.start] / (y[at.flux_gap.start] if self.operators.is_article else self._flux_unit(y)[0])
         part = min(part, 0.7 / max(0.7, abs(flux)))
         if self.operators.has_exit:
             part = min(part, 0.3 / max(0.3, abs(dy[at.exit.start])))
+        if self.operators.has_reformation:
+            part = min(part, 0.3 / max(0.3, abs(dy[at.dilation.start] / y[at.dilation.start])))
         if np.all(self.law.decay_length > 0):
             log_p = self.law.log_pressure(h)
             decays = dh / self.law.local_decay_length(h)
@@ -322,12 +374,13 @@ class Equations:
     def size(self, y: Array, dy: Array) -> float:
         """Return the relative size of a step: the largest relative change of gap and flux gap, in any row.
 
-        Exit and pressure change in their own units, a and p_Hz.
+        Pressure, exit and dilation change in their own units, p_Hz, a and one.
         """
         at = self.layout
         gaps = dy[..., at.gap] / y[..., at.gap]
-        fluxes = dy[..., at.flux_gap.start] / y[..., at.flux_gap.start]
-        others = (np.abs(dy[..., block]).max(initial=0.0) for block in (at.pressure, at.exit))
+        unit = y[..., at.flux_gap] if self.operators.is_article else self._flux_unit(y)
+        fluxes = dy[..., at.flux_gap] / unit
+        others = (np.abs(dy[..., block]).max(initial=0.0) for block in (at.pressure, at.exit, at.dilation))
         return float(max(np.abs(gaps).max(), np.abs(fluxes).max(), *others))
 
 
@@ -341,12 +394,19 @@ class _Eliminated:
     def __init__(self, equations: Equations, y: Array) -> None:
         self.equations = equations
         op, at, film = equations.operators, equations.layout, equations.film
+        dilation = equations.dilation(y)
+        d = None if dilation is None else float(dilation[0])
         self.units = equations.units(y)
-        self.slopes = film.slopes(y[at.gap], y[at.pressure], y[at.flux_gap])
+        self.slopes = slopes_in_film(film, op.integral, y[at.gap], y[at.pressure], y[at.flux_gap])
         assert self.slopes.by_pressure is not None
         self.by_pressure = self.slopes.by_pressure
-        self.factor = np.asarray(equations.speed * self.by_pressure)
-        self.volterra = Volterra(op.integral, self.factor)
+        self.speed = equations.speed if d is None else equations.speed * d
+        self.scaled = op.dilated(d, of_gradient=False)
+        self.volterra = Volterra(op.integral, np.asarray(self.speed * self.by_pressure))
+        self.by_dilation = None
+        if d is not None:
+            g = gradient_in_film(film, op.integral, y[at.gap], y[at.pressure], y[at.flux_gap])
+            self.by_dilation = equations.fluid_by_dilation(g, d, self.by_pressure)
         self.reduced = LU.of(equations.jacobian(y, self.units), overwrite=True)
 
     @property
@@ -361,22 +421,23 @@ class _Eliminated:
 
     def __call__(self, residuals: Array) -> Array:
         """Return ``-J^-1 r`` in units of the unknowns."""
-        equations, op, at = self.equations, self.equations.operators, self.equations.layout
-        n = op.mesh.size
+        equations, at = self.equations, self.equations.layout
+        n = equations.operators.mesh.size
         r_p = residuals[..., at.pressure]
-        q = r_p + self.volterra(self.factor * r_p)
+        q = r_p + self.volterra(self.speed * self.by_pressure * r_p)
         reduced = np.concatenate([residuals[..., at.gap], residuals[..., at.numbers]], axis=-1)
-        reduced[..., :n] += q @ op.deflection.T
-        reduced[..., n] -= q @ op.mesh.weights
-        scaled = equations.flux_scale * self.by_pressure * q
-        reduced[..., n + 1] -= scaled @ op.integral.weights
-        if op.has_exit:
-            reduced[..., n + 2] -= scaled @ op.at_exit
+        reduced[..., :n] += q @ self.scaled.deflection.T
+        reduced[..., n] -= q @ self.scaled.weights
+        of_gradient = equations.flux_scale * self.by_pressure * q
+        for k, end in enumerate(self.scaled.ends):
+            reduced[..., n + 1 + k] -= of_gradient @ end
         step = self.reduced(reduced)
         found = np.empty_like(residuals)
         found[..., at.gap], found[..., at.numbers] = step[..., :n], step[..., n:]
         by_gap = self.slopes.by_gap * self.units[at.gap]
         by_flux = self.slopes.by_flux * self.units[at.flux_gap]
-        gradients = equations.speed * (by_gap * step[..., :n] + by_flux * step[..., n + 1 : n + 2])
+        gradients = self.speed * (by_gap * step[..., :n] + by_flux * step[..., n + 1 : n + 2])
         found[..., at.pressure] = self.volterra(gradients) - q
+        if self.by_dilation is not None:
+            found[..., at.pressure] += self.by_dilation * step[..., n + 3 :]
         return found

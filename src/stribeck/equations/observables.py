@@ -15,24 +15,29 @@ force on the substrate, equal and opposite to the whole force on the cylinder; s
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.contacts.friction import Definition
-from stribeck.equations.gap import central_gap, far_gap, minimum_gap
-from stribeck.equations.line import LOAD, Equations
+from stribeck.equations.drag import Nodal, drag_gradients, friction_scale, viscous_friction
+from stribeck.equations.gap import central_gap, far_gap, gap_at, log_gap_row, minimum_gap
+from stribeck.equations.line import LOAD, Equations, slopes_in_film
 from stribeck.fluids import newtonian as reynolds
-from stribeck.numerics.panels import Mesh, reference
-from stribeck.quantities.outputs import NAMES
+from stribeck.numerics.panels import Mesh, reference, towards_infinity
+from stribeck.quantities.outputs import ALL_NAMES, NAMES
 
-ROW = {name: row for row, name in enumerate(NAMES)}
+__all__ = ["ROW", "Observables", "friction_integrals", "friction_scale", "gradients", "observables"]
+
+ROW = {name: row for row, name in enumerate(ALL_NAMES)}
 """Where each is in such an array."""
 
-TAIL_HALVINGS = 12
-"""Panels on each side of infinity on which the friction integrands, which hold a logarithm there, are summed."""
+PLACE_STEP = 1e-5
+"""Step of the difference that is the slope of the gap at the centre [a]."""
+
+VISCOUS = ("viscous_published", "viscous_balanced", "viscous_upper")
 
 
 @dataclass(frozen=True)
@@ -48,19 +53,17 @@ class Observables:
     offset: float
     viscous_published: float
     viscous_balanced: float
+    viscous_upper: float = math.nan
+    exit_position: float = math.nan
+    reformation_position: float = math.nan
 
     def viscous_friction(self, beta: float, definition: Definition = "balanced") -> float:
         """Return the viscous friction coefficient of a definition [-], which is proportional to beta."""
         return beta * float(getattr(self, f"viscous_{definition}"))
 
-    def array(self) -> Array:
-        """Return the observables in the order of :data:`NAMES`."""
-        return np.array([getattr(self, name) for name in NAMES])
-
-
-def friction_scale(load: Numbers, speed: Numbers) -> Array:
-    """Return C = 2 F**(1/2) lambda/(3 pi), the factor of both friction integrals for beta = 1."""
-    return np.asarray(2 * np.sqrt(load) * speed / (3 * math.pi))
+    def array(self, in_article: bool = True) -> Array:
+        """Return the observables in the order of :data:`NAMES`, or of :data:`ALL_NAMES`."""
+        return np.array([getattr(self, name) for name in (NAMES if in_article else ALL_NAMES)])
 
 
 def friction_integrands(x: Array, h: Array, h_star: Numbers, slopes: Array | None = None) -> Array:
@@ -80,64 +83,96 @@ def observables(equations: Equations, y: Array, load: float) -> Observables:
 
 def observables_of_stacked(equations: Equations, y: Array, load: Numbers) -> list[Observables]:
     """Return the observables of many states, the unknowns ``y`` of each in a row and their load groups in a column."""
-    mesh, at = equations.operators.mesh, equations.layout
+    op, mesh, at = equations.operators, equations.operators.mesh, equations.layout
     h, h_star = y[:, at.gap], y[:, at.flux_gap]
     contact = equations.law.pressure(h) @ mesh.weights / LOAD
     positions, lowest = np.array([minimum_gap(mesh, row) for row in h]).T
-    fluid, friction = np.zeros(len(y)), np.zeros((2, len(y)))
-    if equations.is_sliding:
-        fluid = (equations.speed * reynolds.gradient(h, h_star)) @ equations.operators.load_of_gradient / LOAD
-        friction = np.ravel(friction_scale(load, equations.speed)) * friction_integrals(mesh, h, h_star)
     numbers = (y[:, at.flux_gap.start], y[:, at.offset.start])
+    if not op.is_article:
+        return _of_any_film(equations, y, load, np.stack([contact, lowest, positions, *numbers]))
+    fluid, friction = np.zeros(len(y)), np.zeros((3, len(y)))
+    if equations.is_sliding:
+        fluid = (equations.speed * reynolds.gradient(h, h_star)) @ op.load_of_gradient / LOAD
+        scale, far = np.ravel(friction_scale(load, equations.speed)), op.model.solid.far_gap
+        friction[:2] = scale * friction_integrals(mesh, h, h_star, far=far)
+        friction[2] = scale * upper_integral(mesh, h, h_star, far)
     values = np.stack([contact, fluid, central_gap(mesh, h), lowest, positions, *numbers, *friction])
     return [Observables(*row) for row in values.T.tolist()]
 
 
-def friction_integrals(mesh: Mesh, h: Array, h_star: Numbers, slopes: Array | None = None) -> Array:
+def _of_any_film(equations: Equations, y: Array, load: Numbers, known: Array) -> list[Observables]:
+    """Return the observables of films that are not those of the article; ``known`` are those that films do not matter for."""
+    op, mesh, at = equations.operators, equations.operators.mesh, equations.layout
+    contact, lowest, positions, flux, offset = known
+    h, d = y[:, at.gap], equations.dilation(y)
+    stretch = np.ones(len(y)) if d is None else d[:, 0]
+    exit = y[:, at.exit.start] if op.has_exit else np.zeros(len(y))
+    friction, fluid = np.zeros((3, len(y))), np.zeros(len(y))
+    if equations.is_sliding:
+        pressure = equations.pressures(y)[1]
+        fluid = stretch * (pressure @ op.weights) / LOAD
+        friction = viscous_friction(equations, y, load, Nodal(op.integral, h, pressure, op.weights))
+    central = [float(gap_at(mesh, row, np.array([-x / s]))[0]) for row, x, s in zip(h, exit, stretch, strict=True)]
+    ends = [exit if op.has_exit else np.full(len(y), math.nan)]
+    ends.append(np.full(len(y), math.nan) if d is None else exit + stretch * mesh.restart)
+    positions = exit + stretch * positions
+    values = np.stack([stretch * contact, fluid, np.array(central), lowest, positions, flux, offset, *friction, *ends])
+    return [Observables(*row) for row in values.T.tolist()]
+
+
+def friction_integrals(
+    mesh: Mesh,
+    h: Array,
+    h_star: Numbers,
+    slopes: Array | None = None,
+    far: Callable[[Array], Array] = far_gap,
+) -> Array:
     """Return the integrals of :func:`friction_integrands` over the whole line, shape (2, ...).
 
-    Beyond the panels in ``x`` the gap is ``x**2/2 - ln|x|/2`` plus a smooth function of ``1/x``: that is interpolated, and
-    the integrand summed on panels that halve towards infinity.
+    Beyond the panels in ``x`` the gap is ``far`` plus a smooth function of ``1/x``: that is interpolated, and the integrand
+    summed on panels that halve towards infinity.
     """
     order = mesh.order
     inner_slopes = None if slopes is None else slopes[..., :-order]
     inner = friction_integrands(mesh.nodes[:-order], h[..., :-order], h_star, inner_slopes) @ mesh.weights[:-order]
-    t, weights, to_tail = _towards_infinity(order)
-    t = t * mesh.half_widths[-1]
-    x_tail = mesh.nodes[-order:]
-    smooth = h[..., -order:] - far_gap(x_tail)
-    x = 1 / t
-    h_tail = smooth @ to_tail.T + far_gap(x)
-    tail = friction_integrands(x, h_tail, h_star) @ (weights * mesh.half_widths[-1] * x**2)
+    x, weights, h_tail = _tail(mesh, h, far)
+    tail = friction_integrands(x, h_tail, h_star) @ weights
     return np.asarray(inner + tail)
 
 
-@lru_cache(maxsize=32)
-def _towards_infinity(order: int) -> tuple[Array, Array, Array]:
-    """Nodes and weights on [-1, 1] on panels that halve towards zero, and the interpolation to them."""
-    edges = np.append(0.0, 2.0 ** -np.arange(TAIL_HALVINGS, -1, -1.0))
-    half = 0.5 * np.diff(edges)
-    rule = reference(order)
-    t = (0.5 * (edges[1:] + edges[:-1])[:, None] + half[:, None] * rule.nodes).ravel()
-    weights = np.outer(half, rule.weights).ravel()
-    t = np.concatenate([-t, t])
-    return t, np.concatenate([weights, weights]), rule.interpolation(t)
+def upper_integral(mesh: Mesh, h: Array, h_star: Numbers, far: Callable[[Array], Array] = far_gap) -> Array:
+    """Return the integral of the drag on the cylinder, ``(3 h*/h - 2)/h``, of each row."""
+    order = mesh.order
+    _, weights, h_tail = _tail(mesh, h, far)
+    inner, tail = 1 / h[..., :-order], 1 / h_tail
+    found = (inner * (3 * h_star * inner - 2)) @ mesh.weights[:-order] + (tail * (3 * h_star * tail - 2)) @ weights
+    return np.asarray(found)
+
+
+def _tail(mesh: Mesh, h: Array, far: Callable[[Array], Array]) -> tuple[Array, Array, Array]:
+    """Return nodes beyond the panels in ``x``, the weights of integrals there, and the gap at these nodes."""
+    t, weights, to_tail = towards_infinity(mesh.order)
+    t = t * mesh.half_widths[-1]
+    smooth = h[..., -mesh.order :] - far(mesh.nodes[-mesh.order :])
+    x = 1 / t
+    return x, weights * mesh.half_widths[-1] * x**2, smooth @ to_tail.T + far(x)
 
 
 def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
-    """Return the derivatives of the observables with respect to the unknowns, shape (len(NAMES), ..., y.shape[-1]).
+    """Return the derivatives of the observables with respect to the unknowns, shape (len(ALL_NAMES), ..., y.shape[-1]).
 
-    The position of the minimum gap is held, to first order without effect.  The projected pressure enters as its moment,
-    ``3 int x**2 g dx = -6 int x A g dx`` without the panel through infinity: the two forms respond alike to true changes of
-    the gap, but this one is insensitive to what the quadrature of g leaves.
+    Those of the film of the article are the first alone.  The position of the minimum gap is held, to first order without
+    effect.  The projected pressure enters as its moment, ``3 int x**2 g dx = -6 int x A g dx`` without the panel through
+    infinity: the two forms respond alike to true changes of the gap, but this one is insensitive to what the quadrature of g
+    leaves.
     """
     op, mesh, speed, at = equations.operators, equations.operators.mesh, equations.speed, equations.layout
     of_gap, flux, offset = at.gap, at.flux_gap.start, at.offset.start
     h, h_star = y[..., of_gap], y[..., at.flux_gap]
-    found = np.zeros((len(NAMES), *y.shape))
-    rows = dict(zip(NAMES, found, strict=True))
+    found = np.zeros((len(NAMES if op.is_article else ALL_NAMES), *y.shape))
+    rows = dict(zip(ALL_NAMES, found, strict=False))
     rows["contact_load_share"][..., of_gap] = mesh.weights / LOAD * equations.law.slope(h, equations.law.pressure(h))
-    if equations.is_sliding:
+    if equations.is_sliding and op.is_article:
         u = 1 / h
         g_h, g_flux = reynolds.gap_derivative(h, h_star), reynolds.flux_derivative(h)
         of_load = speed * op.load_of_gradient / LOAD
@@ -149,10 +184,57 @@ def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
         rows["viscous_published"][..., flux] = 3 * weights.sum(axis=-1) + (moment * g_flux).sum(axis=-1)
         rows["viscous_balanced"][..., of_gap] = weights * (6 * h_star * u - 4)
         rows["viscous_balanced"][..., flux] = -3 * weights.sum(axis=-1)
-    first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
-    middle = slice(first, first + mesh.order)
-    rows["central_gap"][..., middle] = central_gap(mesh, h)[..., None] * reference(mesh.order).left_end / h[..., middle]
+    elif equations.is_sliding:
+        for name, row in zip(VISCOUS, drag_gradients(equations, y, load), strict=True):
+            rows[name][...] = row
+        _of_fluid_share(equations, y, rows["fluid_load_share"])
+    if op.has_exit:
+        _of_frame(equations, y, rows)
+    else:
+        first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
+        middle = slice(first, first + mesh.order)
+        rows["central_gap"][..., middle] = central_gap(mesh, h)[..., None] * reference(mesh.order).left_end / h[..., middle]
     np.put_along_axis(rows["minimum_gap"], np.argmin(h, axis=-1)[..., None], 1.0, axis=-1)
     rows["flux_gap"][..., flux] = 1.0
     rows["offset"][..., offset] = 1.0
     return found
+
+
+def _of_fluid_share(equations: Equations, y: Array, row: Array) -> None:
+    """Write the derivatives of the load on the fluid, over the load, into ``row``."""
+    op, at, d = equations.operators, equations.layout, equations.dilation(y)
+    stretch = np.ones(1) if d is None else d
+    if equations.film.uses_pressure:
+        row[..., at.pressure] = stretch * op.weights / LOAD
+    else:
+        h, h_star = y[..., at.gap], y[..., at.flux_gap]
+        slopes = slopes_in_film(equations.film, op.integral, h, None, h_star)
+        of_load = equations.speed * stretch * stretch * op.load_of_gradient / LOAD
+        row[..., at.gap] = of_load * slopes.by_gap
+        row[..., at.flux_gap] = (of_load * slopes.by_flux).sum(axis=-1, keepdims=True)
+    if d is not None:
+        fluid = equations.pressures(y)[1]
+        explicit = fluid if equations.film.uses_pressure else 2 * fluid - op.cavity_pressure
+        row[..., at.dilation] = (explicit @ op.weights)[..., None] / LOAD
+
+
+def _of_frame(equations: Equations, y: Array, rows: dict[str, Array]) -> None:
+    """Write what the exit and the dilation of the frame change, and the derivatives of the central gap, into ``rows``."""
+    mesh, at, d = equations.operators.mesh, equations.layout, equations.dilation(y)
+    rows["exit_position"][..., at.exit] = 1.0
+    if d is not None:
+        contact = rows["contact_load_share"]
+        contact *= d
+        contact[..., at.dilation] = (equations.law.pressure(y[..., at.gap]) @ mesh.weights)[..., None] / LOAD
+        rows["reformation_position"][..., at.exit] = 1.0
+        rows["reformation_position"][..., at.dilation] = mesh.restart
+    central = rows["central_gap"].reshape(-1, at.size)
+    for found, own in zip(central, y.reshape(-1, at.size), strict=True):
+        h, stretch = own[at.gap], 1.0 if d is None else float(own[at.dilation.start])
+        place = -float(own[at.exit.start]) / stretch
+        nodes, row = log_gap_row(mesh, place)
+        middle, ahead, behind = gap_at(mesh, h, np.array([place, place + PLACE_STEP, place - PLACE_STEP]))
+        slope = (ahead - behind) / (2 * PLACE_STEP)
+        found[nodes] = middle * row / h[nodes]
+        found[at.exit] = -slope / stretch
+        found[at.dilation] = -slope * place / stretch

@@ -27,7 +27,9 @@ class Extrapolation:
 
     @property
     def flux_gap(self) -> float:
-        """Extrapolated in its logarithm."""
+        """Extrapolated in its logarithm, or as it is if it is not positive everywhere."""
+        if min(s.flux_gap for s in self.states) <= 0:
+            return float(sum(w * s.flux_gap for w, s in zip(self.weights, self.states, strict=True)))
         return math.exp(sum(w * math.log(s.flux_gap) for w, s in zip(self.weights, self.states, strict=True)))
 
     @property
@@ -41,6 +43,19 @@ class Extrapolation:
         return float(sum(w * s.exit for w, s in zip(self.weights, self.states, strict=True)))
 
     @property
+    def restart(self) -> float:
+        """That of the last state."""
+        return self.states[-1].restart
+
+    @property
+    def dilation(self) -> float:
+        """Extrapolated in its logarithm."""
+        if self.restart == math.inf:
+            return 1.0
+        lengths = [math.log(s.dilation * s.restart) for s in self.states]
+        return math.exp(sum(w * length for w, length in zip(self.weights, lengths, strict=True))) / self.restart
+
+    @property
     def minimum_position(self) -> float:
         """That of the last state."""
         return self.states[-1].minimum_position
@@ -49,15 +64,19 @@ class Extrapolation:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
         log_gap = np.zeros(mesh.size)
         for w, s in zip(self.weights, self.states, strict=True):
-            log_gap += w * s.log_gap(mesh)
+            log_gap += w * (s.log_gap(mesh) if s.restart == self.restart else self._seen(s, mesh.nodes)[0])
         return log_gap
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and the fluid pressure at ``x``."""
         fields = np.zeros((2, x.size))
         for w, s in zip(self.weights, self.states, strict=True):
-            fields += w * s.fields(x)
+            fields += w * self._seen(s, x)
         return fields
+
+    def _seen(self, state: State, x: Array) -> Array:
+        """Return the fields of a state whose cavity may have another length on its mesh."""
+        return state.fields(x if state.restart == self.restart else x * (state.restart / self.restart))
 
 
 def extrapolate(history: Sequence[tuple[float, State]], s: float) -> Guess:
@@ -77,13 +96,20 @@ class SeenFrom:
     Attributes
     ----------
     state : State
-        The state, of a film without an exit.
+        The state, of a film with another end or none.
     exit : float
         The guessed exit [a], the new origin.
+    restart : float
+        The guessed length of the cavity [a]; infinite if the film does not begin anew.
+    cavity_pressure : float
+        The pressure there [p_Hz].
     """
 
     state: State
     exit: float
+    restart: float = math.inf
+    cavity_pressure: float = 0.0
+    dilation: float = 1.0
 
     @property
     def flux_gap(self) -> float:
@@ -98,14 +124,15 @@ class SeenFrom:
     @property
     def minimum_position(self) -> float:
         """That of the state, from the new origin."""
-        return self.state.minimum_position - self.exit
+        return self.state.exit + self.state.dilation * self.state.minimum_position - self.exit
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
         return np.asarray(self.fields(mesh.nodes)[0])
 
     def fields(self, x: Array) -> Array:
-        """Return the logarithm of the gap and the fluid pressure at ``x``; beyond the exit the film carries nothing."""
-        found = self.state.fields(x + self.exit)
-        found[1, x > 0] = 0.0
+        """Return the logarithm of the gap and the fluid pressure at ``x``; in the cavity that is the guessed one."""
+        found = self.state.fields((x + self.exit - self.state.exit) / self.state.dilation)
+        cavity = (x > 0) & (x < self.restart)
+        found[1] = np.where(cavity, self.cavity_pressure, found[1])
         return found

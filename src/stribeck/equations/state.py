@@ -17,10 +17,11 @@ from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
-from stribeck.equations.guess import Guess, StackedGuess
+from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
-from stribeck.numerics.panels import Mesh, adapt
+from stribeck.numerics.panels import Mesh, adapt, graded
 from stribeck.quantities.outcome import Outcome
 
 CHORD = 0.25
@@ -32,6 +33,15 @@ ROUNDING = 1e-9
 LONG_REACH_ORDER = 14
 """Nodes a panel from which the panel through infinity begins twice as far out, to keep up with them: the logarithm in the
 gap limits its order."""
+
+END_GAIN = 5.0
+"""Factor by which the error of the end of a film falls when the panels beside it are halved, at least."""
+
+END_TAIL = 3.5e-4
+"""Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels."""
+
+SAME_FRAME = 1.5
+"""Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made."""
 
 PREDICTION_GOAL = 0.5
 """Relative error of the predicted gap at which the step of a path is kept."""
@@ -110,6 +120,17 @@ class State:
         return float(self.y[layout.exit.start]) if self.equations.operators.has_exit else 0.0
 
     @property
+    def dilation(self) -> float:
+        """Dilation of the frame; one if the film does not begin anew."""
+        layout = self.equations.layout
+        return float(self.y[layout.dilation.start]) if self.equations.operators.has_reformation else 1.0
+
+    @property
+    def restart(self) -> float:
+        """Coordinate of the mesh at which the film begins anew; infinite if it does not."""
+        return self.mesh.restart
+
+    @property
     def minimum_position(self) -> float:
         """The node where the gap is at its minimum."""
         return float(self.mesh.nodes[np.argmin(self.gap)])
@@ -172,24 +193,25 @@ class State:
 
 
 def mesh_for(
-    guess: Guess | StackedGuess,
+    guess: Guess,
     groups: Groups,
     law: ContactLaw,
     order: int,
     tolerance: float,
     gap_tolerance: float = 1e-2,
     profile_tolerance: float = np.inf,
+    halvings: int = 0,
 ) -> Mesh:
-    """Return the coarsest mesh that resolves a guess, or those of many states that are to share it.
+    """Return the coarsest mesh that resolves a guess; where a film begins anew its panels halve towards that place.
 
     Parameters
     ----------
-    guess : Guess or StackedGuess
+    guess : Guess
         The fields to resolve: contact and fluid pressure to ``tolerance``, relative to what a Hertz pressure has at that
         distance from its edge, the square root of the half-width of the panel; the viscous shear 1/h, relative to that at
         zero, to ``tolerance`` too, the logarithm of the gap to ten times that.
     groups : Groups
-        Scalar groups; columns for stacked states.
+        Scalar groups.
     law : ContactLaw
         Contact pressure from the gap.
     order : int
@@ -200,51 +222,80 @@ def mesh_for(
         That of the logarithm of the gap on all other panels, where it is below ten times ``tolerance``.
     gap_tolerance : float
         That of the logarithm of the gap on the panels where the central and the minimum gap are read off.
+    halvings : int
+        How often the panels beside the ends of a film are halved, beyond what the tolerance asks for.
 
     Raises
     ------
     MeshTooLargeError
         If more panels are needed than :data:`mesh.MAX_PANELS`.
     """
-    central_gap = np.exp(guess.fields(np.zeros(1))[0])
+    cavitation = groups.model.cavitation
+    ends, restart = cavitation is not Cavitation.NONE, math.inf
+    if cavitation is Cavitation.REFORM:
+        restart = _cavity_on_mesh(guess)
+    to_guess = guess.restart / restart if restart < math.inf else 1.0
+    centre = -guess.exit / (guess.dilation * to_guess) if ends else 0.0
+    central_gap = np.exp(guess.fields(np.array([centre * to_guess]))[0])
     width = np.sqrt(1.0 + central_gap)
     scale = 2.0 ** round(float(np.log2(width).mean()))
+    minimum_position = guess.minimum_position / to_guess
 
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
-        found = guess.fields(flat)
+        found = guess.fields(flat * to_guess if ends else flat)
+        if ends and restart == math.inf and stretch[0, 0] != 1.0 and len(found) == 2:  # seen from one side of infinity alone
+            found[1] = guess.fields(-np.abs(flat))[1] * np.sign(flat)
         gap = np.exp(found[0])
         if len(found) == 2:
             fluid = found[1]
         else:
             slopes = groups.speed * (gap - guess.flux_gap) / gap**3
             fluid = slopes * np.repeat(half_widths, x.shape[1])
+            if ends and stretch[0, 0] == 1.0:
+                fluid = np.where(flat > 0, 0.0, fluid)
         edge_scale = np.minimum(1.0, half_widths / width) ** 0.5
         pressures = width / np.repeat(edge_scale, x.shape[1], axis=-1) * np.stack([law.pressure(gap), fluid])
         nodal = (*gap.shape[:-1], *x.shape)
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
-        at_zero = np.abs(centres) <= (1 + ROUNDING) * half_widths
-        read_off = at_zero | (np.abs(centres - guess.minimum_position) <= half_widths)
+        at_centre = np.abs(centres - centre) <= (1 + ROUNDING) * half_widths
+        read_off = at_centre | (np.abs(centres - minimum_position) <= half_widths)
         read_off &= stretch[:, 0] == 1.0
         weight = max(0.1, tolerance / profile_tolerance)
         shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[..., None]
         shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
         return np.concatenate([stretch * pressures.reshape(2, *nodal), shape[None], shear[None]])
 
-    start = guess.mesh if isinstance(guess, State) else None
     reach = (8 if order < LONG_REACH_ORDER else 16) * scale
-    return adapt(fields, scale, reach, order, tolerance, start)
+    if not ends:
+        return adapt(fields, scale, reach, order, tolerance, guess.mesh if isinstance(guess, State) else None)
+    mesh = adapt(fields, scale, 2 * reach, order, tolerance)
+    levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))
+    places = [0.0] if restart == math.inf else [0.0, restart]
+    return replace(graded(mesh, places, levels), restart=restart)
+
+
+def _cavity_on_mesh(guess: Guess) -> float:
+    """Return the length of the cavity on a mesh for a guess: that on its own if it is near, else the nearest power of two."""
+    length = guess.dilation * guess.restart
+    near = 1 / SAME_FRAME < guess.dilation < SAME_FRAME and math.log2(guess.restart).is_integer()
+    return guess.restart if near else 2.0 ** round(math.log2(length))
 
 
 def unknowns_on(operators: Operators, guess: Guess) -> Array:
     """Return the unknowns of a guess on the mesh of ``operators``."""
     mesh, at = operators.mesh, operators.layout
     y = np.empty(at.size)
-    y[at.gap] = np.exp(guess.log_gap(mesh))
+    same = guess.restart == mesh.restart
+    nodes = mesh.nodes if same else mesh.nodes * (guess.restart / mesh.restart)
+    y[at.gap] = np.exp(guess.log_gap(mesh) if same else guess.fields(nodes)[0])
     y[at.offset], y[at.flux_gap], y[at.exit] = guess.offset, guess.flux_gap, guess.exit
+    if operators.has_reformation:
+        y[at.dilation] = guess.dilation if same else guess.dilation * guess.restart / mesh.restart
     if operators.model.film.uses_pressure:
-        y[at.pressure] = guess.fields(mesh.nodes)[1]
+        fields = guess.fields(nodes)
+        y[at.pressure] = fields[1] if len(fields) == 2 else 0.0
     return y
 
 

@@ -2,7 +2,8 @@
 
 Fields have a value at every node, numbers have one.  The residual has the same layout: the row of the gap is that of the
 elastic shape, the row of the pressure that of Reynolds' equation, the row of the offset the load balance, the row of the flux
-gap the pressure that the film must end with, and the row of the exit the gradient there.
+gap the pressure that the film must end with, the row of the exit the gradient there, and the row of the dilation the pressure
+with which the film begins anew.
 """
 
 from __future__ import annotations
@@ -24,8 +25,9 @@ class Layout(NamedTuple):
         Fields: the gap, and the fluid pressure if it is an unknown of its own.
     numbers : slice
         All numbers.
-    offset, flux_gap, exit : slice
-        Numbers: the height of the undeformed cylinder, the flux gap, and the exit of a film that ends.
+    offset, flux_gap, exit, dilation : slice
+        Numbers: the height of the undeformed cylinder, the flux gap, the exit of a film that ends, and the length of the
+        cavity behind it in units of that on the mesh.
     """
 
     size: int
@@ -35,3 +37,4 @@ class Layout(NamedTuple):
     flux_gap: slice
     pressure: slice = NOWHERE
     exit: slice = NOWHERE
+    dilation: slice = NOWHERE

@@ -15,3 +15,6 @@ class Cavitation(StrEnum):
 
     EXIT = "exit"
     """The film ruptures at ambient pressure, at the exit, where pressure and pressure gradient are zero."""
+
+    REFORM = "reform"
+    """The film ruptures at the pressure of the cavity and forms anew where it must."""

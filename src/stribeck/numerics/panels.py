@@ -10,8 +10,9 @@ Here are nodes, weights, interpolation, the running integral and the choice of p
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -22,6 +23,9 @@ from stribeck._types import Array, Flags, Indices
 MAX_PANELS = 128
 """Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator."""
 
+
+TAIL_HALVINGS = 12
+"""Panels on each side of infinity on which integrands that hold a logarithm there are summed."""
 
 MIN_PART = 0.19
 """Part of two panels together that the smaller must be for them to become one: the nodes of both see less too little."""
@@ -82,6 +86,18 @@ def between_orders(order: int, other: int) -> Array:
     return reference(order).interpolation(reference(other).nodes).T
 
 
+@lru_cache(maxsize=32)
+def towards_infinity(order: int) -> tuple[Array, Array, Array]:
+    """Nodes and weights on [-1, 1] on panels that halve towards zero, and the interpolation to them."""
+    edges = np.append(0.0, 2.0 ** -np.arange(TAIL_HALVINGS, -1, -1.0))
+    half = 0.5 * np.diff(edges)
+    rule = reference(order)
+    t = (0.5 * (edges[1:] + edges[:-1])[:, None] + half[:, None] * rule.nodes).ravel()
+    weights = np.outer(half, rule.weights).ravel()
+    t = np.concatenate([-t, t])
+    return t, np.concatenate([weights, weights]), rule.interpolation(t)
+
+
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """Panels on the real line, closed at infinity.
@@ -94,6 +110,8 @@ class Mesh:
         Nodes on each panel, even (so that no node lies at infinity).
     scale : float
         Length on which the fields vary in the middle; gaps are interpolated over ``scale**2 + x**2``.
+    restart : float
+        Edge beyond zero where a field that ends at zero begins anew; infinite where it does not.
 
     Notes
     -----
@@ -103,6 +121,7 @@ class Mesh:
     edges: Array
     order: int
     scale: float = 1.0
+    restart: float = math.inf
 
     @property
     def panels(self) -> int:
@@ -171,13 +190,48 @@ class Mesh:
 
     def refined(self, order: int) -> Mesh:
         """Return the same panels with ``order`` nodes each."""
-        return Mesh(self.edges, order, self.scale)
+        return Mesh(self.edges, order, self.scale, self.restart)
 
     def to_order(self, values: Array, order: int) -> Array:
         """Return nodal values on :meth:`refined` from nodal ``values`` of this mesh."""
         nodal = values.reshape(*values.shape[:-1], self.panels, self.order)
         fine = nodal @ between_orders(self.order, order)
         return np.asarray(fine.reshape(*values.shape[:-1], self.panels * order))
+
+
+@dataclass(frozen=True, eq=False)
+class HalfTail:
+    """The half of the panel through infinity that lies at ``x < -X``, as a panel of its own: ``-1/X < t < 0``.
+
+    What ends at zero has a kink at infinity, which the nodes of the whole panel do not resolve.
+    """
+
+    mesh: Mesh
+
+    @property
+    def half_width(self) -> float:
+        """Its half-width in t, minus which is its centre."""
+        return 0.5 * float(self.mesh.half_widths[-1])
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Its nodes in t."""
+        return self.half_width * (reference(self.mesh.order).nodes - 1)
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights of the integral over t."""
+        return self.half_width * reference(self.mesh.order).weights
+
+    def interpolation(self, order: int) -> Array:
+        """Return the matrix from values on the whole panel to the nodes of the half, for what vanishes at infinity."""
+        own, nodes = reference(self.mesh.order).nodes / 2 - 0.5, reference(order).nodes
+        left = np.append(nodes[nodes < 0], 0.0)
+        found = np.zeros((len(own), order))
+        for j in range(len(left) - 1):
+            others = np.delete(left, j)
+            found[:, j] = np.prod((own[:, None] - others) / (left[j] - others), axis=1)
+        return found
 
 
 def legendre_tail(values: Array, order: int) -> Array:
@@ -279,6 +333,17 @@ def adapt(
     panels = np.concatenate(done)
     edges = np.append(np.sort(panels[:, 0]), panels[:, 1].max())
     return Mesh(_merged(edges, unresolved, 2 if start is not None else 4), order, scale)
+
+
+def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
+    """Return a mesh whose panels halve ``levels`` times towards each of ``places``, on both sides; these become edges."""
+    edges = np.unique(np.concatenate([mesh.edges, places]))
+    halvings = 0.5 ** np.arange(1, levels + 1)
+    added = [edges]
+    for place in places:
+        at = int(np.searchsorted(edges, place))
+        added += [place + (edges[at + side] - place) * halvings for side in (-1, 1)]
+    return replace(mesh, edges=np.unique(np.concatenate(added)))
 
 
 def _merged(edges: Array, unresolved: Callable[[Array], Flags], passes: int) -> Array:

@@ -3,7 +3,8 @@ r"""The integral of a nodal function from infinity to each node, and what it mak
 .. math:: F' = v, \qquad F(\pm\infty) = 0
 
 Left of ``x = 0``, which is always an edge, it integrates from minus infinity, right of it from plus infinity; the two meet if
-the whole integral vanishes.  One-sided, it integrates from minus infinity to zero and is zero beyond.
+the whole integral vanishes.  With a gap between 0 and an edge ``restart`` it integrates from plus infinity down to that edge
+and is zero within the gap; with a gap up to infinity it is zero beyond 0.
 
 The matrix A of this integral is never formed: inside a panel it is a block of the order of the panel, from panel to panel a
 running sum.  The same holds for the Volterra equation ``q = A (v + f q)`` with a nodal factor f, whose solution is
@@ -17,7 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
-from stribeck._types import Array
+from stribeck._types import Array, Flags
 from stribeck.numerics.panels import Mesh, reference
 
 
@@ -29,17 +30,44 @@ class RunningIntegral:
     ----------
     mesh : Mesh
         The panels.
-    one_sided : bool
-        Whether the integral ends at zero, from the left.
+    restart : float
+        Edge at which the integral from plus infinity ends: zero, or beyond it where there is a gap; infinite where that
+        integral does not exist.
     """
 
     mesh: Mesh
-    one_sided: bool = False
+    restart: float = 0.0
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether the integral ends at zero, from the left."""
+        return self.restart == np.inf
 
     @cached_property
     def middle(self) -> int:
         """Number of panels left of zero."""
         return int(np.searchsorted(self.mesh.edges, 0.0))
+
+    @cached_property
+    def second(self) -> int:
+        """First panel right of the gap; the number of panels in ``x`` where there is none."""
+        return int(np.searchsorted(self.mesh.edges, self.restart)) if self.restart < np.inf else self.mesh.panels - 1
+
+    @cached_property
+    def integrated(self) -> Flags:
+        """Whether the value at each node is needed: outside the gap, and all over the panel through infinity."""
+        found = self.outside_gap.copy()
+        found[-self.mesh.order :] = True
+        return found
+
+    @cached_property
+    def outside_gap(self) -> Flags:
+        """Whether each node lies outside the gap, shape (size,)."""
+        found = np.ones((self.mesh.panels, self.mesh.order), dtype=bool)
+        found[self.middle : self.second] = False
+        if self.one_sided:
+            found[-1] = self.mesh.local[-1] < 0
+        return found.ravel()
 
     @cached_property
     def blocks(self) -> Array:
@@ -52,8 +80,9 @@ class RunningIntegral:
         rule = reference(mesh.order)
         half = mesh.half_widths[:-1, None, None]
         from_left = half * rule.integral
-        right = (mesh.centres[:-1] > 0)[:, None, None]
-        inner = np.where(right, 0.0 if self.one_sided else from_left - half * rule.weights, from_left)
+        panel = np.arange(mesh.panels - 1)[:, None, None]
+        inner = np.where(panel >= self.second, from_left - half * rule.weights, from_left)
+        inner[self.middle : self.second] = 0.0
         tail = mesh.half_widths[-1] * (rule.left_half - rule.integral) * mesh.stretch[-mesh.order :]
         if self.one_sided:
             tail[mesh.local[-1] > 0] = 0.0
@@ -68,13 +97,22 @@ class RunningIntegral:
 
     @cached_property
     def weights(self) -> Array:
-        """Weights of the whole integral: over the line, or one-sided up to zero; shape (size,)."""
-        if not self.one_sided:
+        """Weights of the whole integral: over the line, or up to zero where there is a gap; shape (size,)."""
+        if self.restart == 0.0:
             return self.mesh.weights
         found = np.zeros(self.mesh.size)
         upstream = slice(0, self.middle * self.mesh.order)
         found[upstream] = self.mesh.weights[upstream]
         found[-self.mesh.order :] = self._tail_weights[0]
+        return found
+
+    @cached_property
+    def weights_beyond(self) -> Array:
+        """Weights of the integral from the edge ``restart`` to infinity, shape (size,)."""
+        found = np.zeros(self.mesh.size)
+        beyond = slice(self.second * self.mesh.order, -self.mesh.order)
+        found[beyond] = self.mesh.weights[beyond]
+        found[-self.mesh.order :] = self._tail_weights[1]
         return found
 
     def __call__(self, values: Array) -> Array:
@@ -87,8 +125,9 @@ class RunningIntegral:
         before = np.cumsum(np.concatenate([left_tail, whole[..., : middle - 1]], axis=-1), axis=-1)
         result[..., :middle, :] += before[..., None]
         if not self.one_sided:
-            after = np.cumsum(np.concatenate([right_tail, whole[..., :middle:-1]], axis=-1), axis=-1)[..., ::-1]
-            result[..., middle:-1, :] -= after[..., None]
+            second = self.second
+            after = np.cumsum(np.concatenate([right_tail, whole[..., :second:-1]], axis=-1), axis=-1)[..., ::-1]
+            result[..., second:-1, :] -= after[..., None]
         return np.asarray(result.reshape(values.shape))
 
     def after(self, operator: Array) -> Array:
@@ -106,8 +145,9 @@ class RunningIntegral:
         if self.one_sided:
             result[:, -1] += np.outer(later[:, 0], left_tail)
         else:
-            earlier = np.cumsum(sums[:, middle:-1], axis=1)
-            result[:, middle + 1 : -1] -= earlier[:, :-1, None] * whole[middle + 1 :]
+            second = self.second
+            earlier = np.cumsum(sums[:, second:-1], axis=1)
+            result[:, second + 1 : -1] -= earlier[:, :-1, None] * whole[second + 1 :]
             result[:, -1] += np.outer(later[:, 0], left_tail) - np.outer(earlier[:, -1], right_tail)
         return np.asarray(result.reshape(rows, mesh.size))
 
@@ -148,7 +188,7 @@ class Volterra:
         left, right = self.integral._tail_weights
         chains = [(range(self.integral.middle), left, 1.0)]
         if not self.integral.one_sided:
-            chains.append((range(self.integral.mesh.panels - 2, self.integral.middle - 1, -1), right, -1.0))
+            chains.append((range(self.integral.mesh.panels - 2, self.integral.second - 1, -1), right, -1.0))
         return chains
 
     def __call__(self, values: Array) -> Array:

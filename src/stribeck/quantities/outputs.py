@@ -11,7 +11,20 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-__all__ = ["AREA", "FILMS", "GROUPS", "HERTZ", "OBSERVABLES", "OUTPUT_TABLES", "ROWS", "Observable", "OutputTable"]
+__all__ = [
+    "ALL_NAMES",
+    "AREA",
+    "ENDING",
+    "ENDS",
+    "FILMS",
+    "GROUPS",
+    "HERTZ",
+    "OBSERVABLES",
+    "OUTPUT_TABLES",
+    "ROWS",
+    "Observable",
+    "OutputTable",
+]
 
 GROUPS = ("speed", "load", "roughness")
 
@@ -138,6 +151,24 @@ class OutputTable:
 LINE = OutputTable(ROWS)
 """The observables of the line."""
 
+UPPER = Observable("viscous_upper", "viscous friction, upper", "viscous friction on the cylinder", "friction", listed=False)
+"""The drag on the other wall, whose error is estimated for films that are not the article's."""
+
+ENDS = (
+    Observable("exit_position", "end of the film", "position where the film ends", "width", "film_exit_position"),
+    Observable(
+        "reformation_position",
+        "film begins anew",
+        "position where the film begins anew behind the cavity",
+        "width",
+        "film_reformation_position",
+    ),
+)
+"""Positions that films have which end; their error is relative to the larger of the position and the half-width."""
+
+ENDING = {"none": LINE, "exit": OutputTable((*ROWS, ENDS[0])), "reform": OutputTable((*ROWS, *ENDS))}
+"""The observables of the line by cavitation."""
+
 _SHARED = {row.name: row for row in ROWS}
 
 POINT = OutputTable(
@@ -204,6 +235,9 @@ OUTPUT_TABLES = {"line": LINE, "point": POINT}
 
 NAMES, ABSOLUTE, OBSERVABLES, FILMS = LINE.names, LINE.absolute, LINE.listed, LINE.films
 """Those of the line."""
+
+ALL_NAMES = (*NAMES, UPPER.name, *(row.name for row in ENDS))
+"""Those with an estimated error if the film is not that of the article, in the order of every array of them."""
 
 AREA = {
     "central_area_fraction": ("1", "real over apparent contact area at the centre"),

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Flags, Indices
-from stribeck.numerics.panels import Mesh, reference
+from stribeck.numerics.panels import HalfTail, Mesh, reference
 
 FAR_ACCURACY = 4e-13
 """Error of a panel's own Gauss rule for the logarithm from which a target counts as far: rho**(-2 order) for a distance of
@@ -261,6 +261,20 @@ def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:
     at_infinity = log_moments(np.zeros(1), order) @ _from_moments(order) + np.log(half_tail) * rule.weights
     kernel[:, -1, :] = half_tail * (tail - at_infinity) * mesh.stretch[-order:]
     return np.asarray(kernel.reshape(len(x), mesh.size) / -np.pi)
+
+
+def deflection_by_half_tail(tail: HalfTail) -> Array:
+    """Return the matrix from densities ``p x**2`` at the nodes of half the panel through infinity to the deflection."""
+    mesh, half, x = tail.mesh, tail.half_width, tail.mesh.nodes
+    order = mesh.order
+    weights = reference(order).weights
+    s = (1 / x + half) / half
+    far = np.abs(s) >= near_distance(order)
+    found = np.empty((len(x), order))
+    found[far] = np.log1p(-x[far, None] * tail.nodes) * weights
+    found[~far] = _log_integrals(s[~far], order) + np.log(half * np.abs(x[~far]))[:, None] * weights
+    at_infinity = _log_integrals(np.ones(1), order) + np.log(half) * weights
+    return np.asarray(half * (found - at_infinity) / -np.pi)
 
 
 @dataclass(frozen=True)

@@ -112,6 +112,15 @@ class BaseSolution(ABC):
         """Whether asperities rub: not where both surfaces move at one speed."""
         return getattr(self.contact, "slide_to_roll", 2.0) > 0
 
+    @property
+    def _sliding(self) -> float:
+        """Part and sign of the sliding friction of asperities that acts."""
+        return float(self.is_sliding)
+
+    def _walls(self, beta: float) -> tuple[float, float]:
+        """Return the viscous friction coefficients on the substrate and on the other body, nan where they are not known."""
+        return math.nan, math.nan
+
     @cached_property
     def _own(self) -> frozenset[str]:
         return frozenset(self.observables.__dataclass_fields__)
@@ -212,9 +221,11 @@ class BaseSolution(ABC):
         Source: [BP] Eq. (friction); theory.md, section 6, for the balanced form.
         """
         boundary_friction, beta = coefficients(self.contact, boundary_friction, beta)
-        contact = self.is_sliding * boundary_friction * self.contact_load_share
+        contact = self._sliding * boundary_friction * self.contact_load_share
         viscous, error = self._viscous(beta, check_definition(definition))
-        return Friction(contact, viscous, contact + viscous, boundary_friction * self.errors["contact_load_share"] + error)
+        error += abs(self._sliding) * boundary_friction * self.errors["contact_load_share"]
+        lower, upper = (contact + wall for wall in self._walls(beta))
+        return Friction(contact, viscous, contact + viscous, error, lower, upper)
 
     @refuse_former
     def to_dict(self, boundary_friction: float | None = None, beta: float | None = None) -> dict[str, object]:

@@ -18,6 +18,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.scaled import BlendedLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
+from stribeck.contacts.model import ARTICLE
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import extrapolate
@@ -26,6 +27,7 @@ from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
+from stribeck.solver.towards_model import path_to_model
 
 RIGID_SPEED = 30.0
 """Speed group above which the rigid film starts Newton's iteration safely."""
@@ -60,8 +62,8 @@ class RigidGuess:
         Height of the cylinder [u_Hz].
     flux_gap : float
         Flux gap of the rigid parabola, 4/3 of its height [u_Hz].
-    minimum_position, exit : float
-        The middle: a rigid film starts full films only [a].
+    minimum_position, exit, dilation, restart : float
+        Those of a full film: a rigid film starts no other [a].
     """
 
     speed: float
@@ -69,6 +71,8 @@ class RigidGuess:
     flux_gap: float
     minimum_position: float = 0.0
     exit: float = 0.0
+    dilation: float = 1.0
+    restart: float = math.inf
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
@@ -173,6 +177,13 @@ def cold_start(groups: Groups) -> Path[State]:
 
 def first_path(groups: Groups) -> Path[State]:
     """Return the path from cold to ``groups``: :func:`cold_start`, or :func:`start_by_exponential` if that fails."""
+    if groups.model != ARTICLE:
+        return path_to_model(groups, path_of_article)
+    return path_of_article(groups)
+
+
+def path_of_article(groups: Groups) -> Path[State]:
+    """Return the path from cold to groups with the model of the article."""
     path = cold_start(groups)
     settled = path.outcome.ok or path.outcome is Outcome.INTERRUPTED or groups.law is None
     return path if settled else start_by_exponential(groups)

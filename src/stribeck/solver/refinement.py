@@ -14,7 +14,7 @@ from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, erro
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.state import State, mesh_for, solve_state
+from stribeck.equations.state import END_GAIN, State, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
@@ -81,10 +81,11 @@ def converge(
     tail, gap_tail = mesh_tolerances_for(rtol) if tolerances is None else tolerances
     best = RefinedState(groups, None, None, None, Outcome.REFINEMENT_LIMIT)
     last: tuple[int, Array] | None = None
+    halvings = 0
     outcome = Outcome.REFINEMENT_LIMIT
     for _ in range(MAX_REFINEMENTS):
         try:
-            mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail, profile_tolerance)
+            mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail, profile_tolerance, halvings)
         except MeshTooLargeError:
             profile_tolerance *= 10.0
             tail *= 3.0 if profile_tolerance > 10 * tail else 1.0
@@ -95,11 +96,12 @@ def converge(
             break
         if isinstance(guess, State):  # what was predicted is the first state on the way to this one
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
-        fine, values = FineOperators(mesh), values_of(state, groups)
+        fine, values, in_article = FineOperators(mesh), values_of(state, groups), state.equations.operators.is_article
         [estimate] = error_estimates(state.stacked, [values], fine)
-        if last is not None and mesh.size >= CLEARLY_FINER * last[0]:
-            estimate = estimate.at_most(np.abs(values.array() - last[1]))
-        last = mesh.size, values.array()
+        # Where a film ends, meshes may share what makes their error.
+        if last is not None and mesh.size >= CLEARLY_FINER * last[0] and not state.equations.operators.has_exit:
+            estimate = estimate.at_most(np.abs(values.array(in_article) - last[1]))
+        last = mesh.size, values.array(in_article)
         if best.estimate is None or estimate.total < best.estimate.total:
             best = RefinedState(groups, state, values, estimate, reached(estimate, rtol), (tail, gap_tail), fine)
         if best.outcome.ok:
@@ -107,6 +109,7 @@ def converge(
         if estimate.total <= 3 * estimate.floor:
             outcome = Outcome.ROUNDING
             break
+        halvings += halvings_for(estimate.of_ends / rtol)
         tail *= shrink(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
         between = shrink(rtol / (estimate.between_nodes + 1e-300))
         if gap_tail * between >= MIN_GAP_TAIL * rtol:
@@ -127,6 +130,11 @@ def _noise(point: RefinedState) -> float:
 def shrink(excess: float) -> float:
     """Return the factor for a mesh tolerance whose error exceeds what is allowed by 1/``excess``."""
     return 1.0 if excess > 2 else min(0.5, max(0.3, 0.5 * excess))
+
+
+def halvings_for(excess: float) -> int:
+    """Return how often the panels beside the ends of a film must be halved for their error to fall by a factor."""
+    return 0 if not excess > 0.5 else math.ceil(math.log(2 * excess) / math.log(END_GAIN))
 
 
 def verify(state: State, groups: Groups, fine: FineOperators, rtol: float) -> RefinedState:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,13 +12,13 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, Friction
+from stribeck.contacts.friction import Definition, Friction, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.equations.gap import gap_at
 from stribeck.equations.observables import Observables
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import NAMES
+from stribeck.quantities.outputs import ALL_NAMES, ENDING, NAMES, OutputTable
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import BaseSolution, Profile
 
@@ -64,6 +65,8 @@ class Solution(BaseSolution):
         What :attr:`gap` adds to ``nodal_gap``: at speed zero the load only shifts the gap [u_Hz].
     newton_steps : int
         Steps of its Newton iteration.
+    origin : tuple of float
+        What a coordinate of the mesh is in x: the first of the two, and the second times the coordinate.
 
     Notes
     -----
@@ -85,6 +88,7 @@ class Solution(BaseSolution):
     gap_shift: float = field(repr=False)
     nodal_pressures: Callable[[], tuple[Array, Array]] = field(repr=False)
     newton_steps: int = 0
+    origin: tuple[float, float] = (0.0, 1.0)
 
     @property
     def nodes(self) -> int:
@@ -101,8 +105,21 @@ class Solution(BaseSolution):
 
     @property
     def errors(self) -> dict[str, float]:
-        """Estimated relative error of each observable; absolute for the load shares."""
-        return dict(zip(NAMES, map(float, self.relative_errors), strict=True))
+        """Estimated relative error of each observable; absolute for the load shares, and only of those that the film has."""
+        found = dict(zip(ALL_NAMES, map(float, self.relative_errors), strict=False))
+        return {name: error for name, error in found.items() if name in NAMES or not math.isnan(error)}
+
+    @property
+    def outputs(self) -> OutputTable:
+        """The table of the observables of this film."""
+        return ENDING[self.groups.model.cavitation]
+
+    @property
+    def _sliding(self) -> float:
+        return sliding_part(2 * self.groups.model.film.slide)
+
+    def _walls(self, beta: float) -> tuple[float, float]:
+        return beta * self.observables.viscous_balanced, beta * self.observables.viscous_upper
 
     def _viscous(self, beta: float, definition: Definition) -> tuple[float, float]:
         viscous = self.observables.viscous_friction(beta, definition)
@@ -119,7 +136,9 @@ class Solution(BaseSolution):
     @property
     def x(self) -> Array:
         """Positions of the nodes, ascending [a]; the outermost lie thousands of half-widths away."""
-        return np.asarray(self.mesh.nodes[self._ordered])
+        exit, dilation = self.origin
+        nodes = self.mesh.nodes[self._ordered]
+        return np.asarray(nodes) if self.origin == (0.0, 1.0) else exit + dilation * nodes
 
     @property
     def gap(self) -> Array:
@@ -133,7 +152,7 @@ class Solution(BaseSolution):
 
     @property
     def fluid_pressure(self) -> Array:
-        """Fluid pressure at :attr:`x` [p_Hz]; negative behind the contact, as the fluid does not cavitate."""
+        """Fluid pressure at :attr:`x` [p_Hz]; negative behind the contact where the fluid does not cavitate."""
         return np.asarray(self._pressures[1][self._ordered])
 
     @property
@@ -181,9 +200,19 @@ class Solution(BaseSolution):
         points = np.atleast_1d(real_array("x", x))
         if points.ndim != 1 or not np.isfinite(points).all():
             raise InputError(f"x = {show(x)}; positions must be finite numbers in one dimension.")
-        pressures = np.stack(self._pressures)
-        contact, fluid = self.mesh.interpolate(pressures, points)
-        return Profile(points, gap_at(self.mesh, self.nodal_gap, points) + self.gap_shift, contact, fluid)
+        exit, dilation = self.origin
+        on_mesh = points if self.origin == (0.0, 1.0) else (points - exit) / dilation
+        contact, fluid = self.mesh.interpolate(np.stack(self._pressures), on_mesh)
+        if not math.isnan(self.exit_position):
+            cavity = (on_mesh > 0) & (on_mesh < self.mesh.restart)
+            fluid = np.where(cavity, self.groups.model.cavity_pressure, fluid)
+        gap = gap_at(self.mesh, self.nodal_gap, on_mesh, self._far_gap)
+        return Profile(points, gap + self.gap_shift, contact, fluid)
+
+    def _far_gap(self, xi: Array) -> Array:
+        """Return the gap at a coordinate of the mesh, but for what is smooth in its inverse."""
+        exit, dilation = self.origin
+        return np.asarray(self.groups.model.solid.far_gap(dilation * xi) + exit * dilation * xi)
 
     def to_si(self, x: Array | None = None) -> Profile:
         """Return the fields in SI units: positions and gaps in m, pressures in Pa.

@@ -1,0 +1,199 @@
+r"""What the equations need of a mesh: the undeformed gap, the integral of the pressure gradient, deflection and load.
+
+A film that ends is described from its exit: ``x = x_c + d xi``, with xi the coordinate of the mesh.  Without a second end
+the dilation d is one.  A film that begins anew does so at the edge :attr:`Mesh.restart` of the mesh, so that d is the length
+of the cavity in units of that edge.  All operators are those in xi; the deflection of the half-plane changes with d by
+
+.. math:: w(x) = d \, (D p)(\xi) - \frac{d \ln d}{\pi} \int p \, d\xi
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from stribeck._types import Array, Flags, Numbers
+from stribeck.contacts.model import ARTICLE, Model
+from stribeck.equations.unknowns import Layout
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.newtonian import Newtonian
+from stribeck.numerics.panels import HalfTail, Mesh, reference
+from stribeck.numerics.running_integral import RunningIntegral
+from stribeck.solids.half_plane import HalfPlane, deflection_by_half_tail
+
+LOAD = 0.5 * np.pi
+"""Load in Hertz units: the integral of the pressure."""
+
+
+class Dilated(NamedTuple):
+    """Operators in x of a frame dilated by d."""
+
+    deflection: Array
+    deflection_of_gradient: Array | None
+    weights: Array
+    load_of_gradient: Array
+    ends: tuple[Array, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Operators:
+    """What the equations need of a mesh; made once and kept for all states that share it."""
+
+    mesh: Mesh
+    model: Model = ARTICLE
+
+    @cached_property
+    def layout(self) -> Layout:
+        """The unknowns by name; the fluid pressure and the ends of the film are among them if the model has them."""
+        n = self.mesh.size
+        fields = 2 * n if self.model.film.uses_pressure else n
+        exit = fields + 2 + self.has_exit
+        size = exit + self.has_reformation
+        return Layout(
+            size,
+            gap=slice(0, n),
+            numbers=slice(fields, size),
+            offset=slice(fields, fields + 1),
+            flux_gap=slice(fields + 1, fields + 2),
+            pressure=slice(n, fields),
+            exit=slice(fields + 2, exit),
+            dilation=slice(exit, size),
+        )
+
+    @property
+    def has_exit(self) -> bool:
+        """Whether the film ends at a free exit, from which x is measured."""
+        return self.model.cavitation is not Cavitation.NONE
+
+    @property
+    def has_reformation(self) -> bool:
+        """Whether it begins anew behind the cavity."""
+        return self.model.cavitation is Cavitation.REFORM
+
+    @cached_property
+    def is_article(self) -> bool:
+        """Whether film and friction are those of the article, whose integrals have a closed form in the gap."""
+        film = self.model.film
+        return not self.has_exit and isinstance(film, Newtonian) and film.is_plain and film.slide == 1.0
+
+    @cached_property
+    def integral(self) -> RunningIntegral:
+        """A: nodal pressure gradients -> pressure."""
+        return RunningIntegral(self.mesh, self.restart)
+
+    @property
+    def restart(self) -> float:
+        """Where the integral from plus infinity ends."""
+        return self.mesh.restart if self.has_reformation else math.inf if self.has_exit else 0.0
+
+    @property
+    def wet(self) -> Flags:
+        """Whether each node lies in the full film."""
+        return self.integral.outside_gap
+
+    @cached_property
+    def cavity_pressure(self) -> Array:
+        """The pressure of the cavity at its nodes, zero at others."""
+        return np.where(self.wet, 0.0, self.model.cavity_pressure)
+
+    @cached_property
+    def tail(self) -> HalfTail | None:
+        """Half the panel through infinity, where the film does not reach infinity on the other side."""
+        return HalfTail(self.mesh) if self.integral.one_sided else None
+
+    @cached_property
+    def deflection_by_tail(self) -> Array | None:
+        """Densities on that half -> deflection; None where the solid feels nothing so far away."""
+        known = self.tail is not None and isinstance(self.model.solid, HalfPlane)
+        return deflection_by_half_tail(self.tail) if known and self.tail is not None else None
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights of the integral of a pressure over the whole line."""
+        if self.tail is None:
+            return self.mesh.weights
+        found, order = self.mesh.weights.copy(), self.mesh.order
+        found[-order:] = (self.tail.weights @ self.tail.interpolation(order)) * self.mesh.stretch[-order:]
+        return found
+
+    @cached_property
+    def deflection(self) -> Array:
+        """D: nodal pressures -> deflection."""
+        found = self.model.solid.deflection(self.mesh)
+        if self.tail is not None and self.deflection_by_tail is not None:
+            order = self.mesh.order
+            of_density = self.deflection_by_tail @ self.tail.interpolation(order)
+            found[:, -order:] = of_density * self.mesh.stretch[-order:]
+        return found
+
+    @cached_property
+    def deflection_of_gradient(self) -> Array:
+        """D A: nodal pressure gradients -> deflection."""
+        return np.asfortranarray(self.integral.after(self.deflection))
+
+    @cached_property
+    def load_of_gradient(self) -> Array:
+        """Row w A: nodal pressure gradients -> load."""
+        return np.asarray(self.integral.after(self.weights[None, :])[0])
+
+    @cached_property
+    def moment(self) -> Array:
+        """Row w xi: nodal pressures -> first moment, on the panels in x alone if the film is full."""
+        row, order = self.mesh.weights * self.mesh.nodes, self.mesh.order
+        row[-order:] = 0.0
+        if self.tail is not None:
+            of_density = self.tail.weights / self.tail.nodes @ self.tail.interpolation(order)
+            row[-order:] = of_density * self.mesh.stretch[-order:]
+        return row
+
+    @cached_property
+    def moment_of_gradient(self) -> Array:
+        """Row w xi A: nodal pressure gradients -> first moment of the pressure."""
+        return np.asarray(self.integral.after(self.moment[None, :])[0])
+
+    @cached_property
+    def parabola(self) -> Array:
+        """The undeformed gap xi**2/2 at the nodes."""
+        return 0.5 * self.mesh.nodes**2
+
+    @cached_property
+    def at_exit(self) -> Array:
+        """Row: nodal values -> the value at zero, from the left."""
+        row = np.zeros(self.mesh.size)
+        last = slice((self.integral.middle - 1) * self.mesh.order, self.integral.middle * self.mesh.order)
+        row[last] = reference(self.mesh.order).left_end[::-1]
+        return row
+
+    @cached_property
+    def ends(self) -> tuple[Array, ...]:
+        """Rows of the gradient that must vanish: its integral, the value at the exit, the integral beyond the cavity."""
+        if not self.has_exit:
+            return (self.integral.weights,)
+        if not self.has_reformation:
+            return self.integral.weights, self.at_exit
+        return self.integral.weights, self.at_exit, self.integral.weights_beyond
+
+    def dilated(self, d: float | None, of_gradient: bool = True) -> Dilated:
+        """Return the operators in x; None stands for the frame that is not dilated."""
+        if d is None:
+            of = self.deflection_of_gradient if of_gradient else None
+            return Dilated(self.deflection, of, self.weights, self.load_of_gradient, self.ends)
+        shift = d * math.log(d) / math.pi
+        first, at_exit, second = self.ends
+        return Dilated(
+            d * self.deflection - shift * self.weights,
+            d * self.deflection_of_gradient - shift * self.load_of_gradient if of_gradient else None,
+            d * self.weights,
+            d * self.load_of_gradient,
+            (d * first, at_exit, d * second),
+        )
+
+    def deflected(self, pressure: Array, d: Numbers | None) -> Array:
+        """Return the deflection under rows of nodal pressure."""
+        if d is None:
+            return pressure @ self.deflection.T
+        return d * (pressure @ self.deflection.T) - d * np.log(d) / math.pi * (pressure @ self.weights)[..., None]

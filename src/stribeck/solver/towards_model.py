@@ -1,0 +1,314 @@
+r"""Cold start of models that are not the article's: from its state, one part of the model after the other.
+
+First the film ends: where the pressure of the full film falls to zero, or as that of a rigid parabola does.  Then fluid and
+solid change into their own, at once if Newton's iteration manages that, else along
+
+.. math::
+
+    G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film}, \qquad
+    D = (1 - t) \, D_\mathrm{half-plane} + t \, D_\mathrm{solid}
+
+Last a film that ends at ambient pressure begins anew behind a cavity of lower pressure.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import cast
+
+import numpy as np
+
+from stribeck._types import Array, Numbers
+from stribeck.contacts.groups import contact_law
+from stribeck.contacts.line import Groups
+from stribeck.contacts.model import ARTICLE, Model
+from stribeck.equations.guess import Guess
+from stribeck.equations.line import LOAD, Operators
+from stribeck.equations.prediction import SeenFrom, extrapolate
+from stribeck.equations.state import State, mesh_for, solve_state
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import Film, Slopes
+from stribeck.fluids.newtonian import Newtonian
+from stribeck.numerics.continuation import Path, Steps, march
+from stribeck.numerics.panels import Mesh, MeshTooLargeError
+from stribeck.quantities.outcome import Outcome
+from stribeck.solids.half_plane import HalfPlane
+from stribeck.solids.solid import Solid
+
+__all__ = ["path_to_model"]
+
+ORDER = 10
+MESH_TOLERANCE = 1e-3
+NEWTON_TOLERANCE = 1e-5
+MOST_STEPS = 100
+
+LOOKED_AT = 4001
+"""Points at which the end of the full film is looked for."""
+
+NEAREST_EXIT = 0.4
+"""Part of the width of a contact from the middle within which no film ends."""
+
+RIGID_EXIT, RIGID_FLUX, RIGID_LOAD = 0.4751299, 1.2257484, 0.25968614
+"""Of a rigid parabola: exit over (2 h_0)**(1/2), flux gap over h_0, and h_0 over lambda where the film carries all."""
+
+RIGID_SPEED = 300.0
+"""Speed from which that starts Newton's iteration."""
+
+HEIGHTS = (-400.0, 400.0)
+"""Logarithms of its lowest and its largest height."""
+
+BLENDING = Steps(1.0, 1.0, 1e-3)
+SLOWING = Steps(0.7, 2.0, 1e-3)
+
+
+@dataclass(frozen=True)
+class RigidEnding:
+    """The gap of a rigid parabola, seen from the exit of its film.
+
+    Attributes
+    ----------
+    speed : float
+        Speed group [-].
+    offset : float
+        Height of the parabola [u_Hz].
+    restart, dilation : float
+        Those of a film that does not begin anew.
+    """
+
+    speed: float
+    offset: float
+    restart: float = math.inf
+    dilation: float = 1.0
+
+    @classmethod
+    def of(cls, groups: Groups) -> RigidEnding | None:
+        """Return the parabola whose film and asperities carry the load; None where double precision holds none."""
+        speed, law = float(groups.speed), contact_law(groups)
+        x, dx = np.linspace(-6, 6, 241, retstep=True)
+        x, dx = x * math.sqrt(law.decay_length), dx * math.sqrt(law.decay_length)
+
+        def excess(log_height: float) -> float:
+            height = math.exp(log_height)
+            with np.errstate(over="ignore"):
+                contact = float(law.pressure(height + x * x / 2).sum() * dx)
+            return min(LOAD * (RIGID_LOAD * speed / height - 1) + contact, 1e9)
+
+        if not excess(HEIGHTS[0]) > 0 > excess(HEIGHTS[1]):
+            return None
+        low, high = HEIGHTS
+        while high - low > 1e-6:
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if excess(middle) > 0 else (low, middle)
+        return cls(speed, math.exp(0.5 * (low + high)))
+
+    @property
+    def flux_gap(self) -> float:
+        """That of the rigid parabola."""
+        return RIGID_FLUX * self.offset
+
+    @property
+    def exit(self) -> float:
+        """That of the rigid parabola."""
+        return RIGID_EXIT * math.sqrt(2 * self.offset)
+
+    @property
+    def minimum_position(self) -> float:
+        """The middle, from the exit."""
+        return -self.exit
+
+    def log_gap(self, mesh: Mesh) -> Array:
+        """Return the logarithm of the gap at the nodes of ``mesh``."""
+        return np.asarray(self.fields(mesh.nodes)[0])
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap at ``x``: the fluid pressure is left to its gradient."""
+        return np.asarray(np.log(self.offset + (x + self.exit) ** 2 / 2)[None, :])
+
+
+@dataclass(frozen=True)
+class BlendedFilm:
+    """A film whose gradient lies between that of a Newtonian fluid and its own."""
+
+    film: Film
+    part: float
+    plain: Film = Newtonian()
+
+    @property
+    def name(self) -> str:
+        """That of the film."""
+        return self.film.name
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """Those of the film."""
+        return self.film.parameters
+
+    @property
+    def uses_pressure(self) -> bool:
+        """Whether the film does."""
+        return self.film.uses_pressure
+
+    def at(self, speed: Numbers) -> BlendedFilm:
+        """Return the blend at a speed."""
+        return replace(self, film=self.film.at(speed))
+
+    def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
+        """Return the weighted mean of both gradients."""
+        own = self.film.gradient(gap, pressure, flux_gap)
+        return np.asarray((1 - self.part) * self.plain.gradient(gap, None, flux_gap) + self.part * own)
+
+    def slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
+        """Return that of their derivatives."""
+        plain, own = self.plain.slopes(gap, None, flux_gap), self.film.slopes(gap, pressure, flux_gap)
+        return Slopes(
+            (1 - self.part) * plain.by_gap + self.part * own.by_gap,
+            None if own.by_pressure is None else self.part * own.by_pressure,
+            (1 - self.part) * plain.by_flux + self.part * own.by_flux,
+        )
+
+    def __getattr__(self, name: str) -> object:
+        """Return what else a film has: nobody asks a blend for more than its gradient."""
+        return getattr(self.film, name)
+
+
+@dataclass(frozen=True)
+class BlendedSolid:
+    """A solid whose deflection lies between that of the half-plane and its own."""
+
+    solid: Solid
+    part: float
+    plain: Solid = HalfPlane()
+
+    @property
+    def name(self) -> str:
+        """That of the solid."""
+        return self.solid.name
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """Those of the solid."""
+        return self.solid.parameters
+
+    def deflection(self, mesh: Mesh) -> Array:
+        """Return the weighted mean of both."""
+        return np.asarray((1 - self.part) * self.plain.deflection(mesh) + self.part * self.solid.deflection(mesh))
+
+    def far_gap(self, x: Array) -> Array:
+        """Return the weighted mean of both."""
+        return (1 - self.part) * self.plain.far_gap(x) + self.part * self.solid.far_gap(x)
+
+
+def path_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> Path[State]:
+    """Return a path whose last state is a first, coarse one of the groups and their model.
+
+    Parameters
+    ----------
+    groups : Groups
+        Scalar groups with their model.
+    article : callable
+        The path from cold to groups with the model of the article.
+    """
+    model = groups.model
+    path = article(replace(groups, model=ARTICLE))
+    if not path.outcome.ok:
+        return path
+    state = path.states[-1]
+    if model.cavitation is not Cavitation.NONE and groups.speed > 0:
+        ending = replace(groups, model=Model(cavitation=Cavitation.EXIT))
+        found = _ended(ending, path)
+        if found is None:
+            return replace(path, outcome=Outcome.PATH_LOST)
+        state = found
+    if model.film == Newtonian() and isinstance(model.solid, HalfPlane):
+        return _extended(path, state)
+    return _blended(groups, path, state)
+
+
+def _extended(path: Path[State], state: State) -> Path[State]:
+    return replace(path, coordinates=(*path.coordinates, path.coordinates[-1]), states=(*path.states, state))
+
+
+def _coarse(groups: Groups, guess: Guess) -> State | None:
+    """Return a coarse state from a guess, or None."""
+    try:
+        mesh = mesh_for(guess, groups, contact_law(groups), ORDER, MESH_TOLERANCE)
+    except MeshTooLargeError:
+        return None
+    return solve_state(groups, Operators(mesh, groups.model), guess, NEWTON_TOLERANCE, MOST_STEPS)
+
+
+def _settled(groups: Groups, guess: Guess) -> State | None:
+    """Return a coarse state on a mesh that was made for it, or None."""
+    state = _coarse(groups, guess)
+    if state is None or not state.outcome.ok:
+        return None
+    again = _coarse(groups, state)
+    return again if again is not None and again.outcome.ok else None
+
+
+def _ended(groups: Groups, full: Path[State]) -> State | None:
+    """Return the state whose film ends, from that of the full film; along the path of loads if that is too far."""
+    rigid = RigidEnding.of(groups) if groups.speed > RIGID_SPEED else None
+    for guess in (rigid, _seen_from_exit(full.states[-1])):
+        found = None if guess is None else _settled(groups, guess)
+        if found is not None:
+            return found
+    for start in range(len(full.states) - 2, -1, -1):
+        begun = full.states[start]
+        here = replace(begun.groups, model=groups.model)
+        first = _settled(here, _seen_from_exit(begun))
+        if first is None:
+            continue
+        path = _along(here, groups, first)
+        if path.outcome.ok:
+            return path.states[-1]
+    return None
+
+
+def _along(start: Groups, end: Groups, first: State) -> Path[State]:
+    """Return the path of states between two groups, straight in their logarithms."""
+    names = ("speed", "load", "roughness")
+    ends = [(float(getattr(start, name)), float(getattr(end, name))) for name in names]
+    length = max(abs(math.log(b / a)) for a, b in ends if a > 0)
+
+    def correct(s: float, history: Sequence[tuple[float, State]]) -> State | None:
+        t = s / length
+        speed, load, roughness = (a ** (1 - t) * b**t if a > 0 else 0.0 for a, b in ends)
+        here = end if s == length else replace(end, speed=speed, load=load, roughness=roughness)
+        return _coarse(here, extrapolate(history, s))
+
+    return march(correct, 0.0, length, SLOWING, history=[(0.0, first)])
+
+
+def _seen_from_exit(state: State) -> SeenFrom:
+    """Return the guess of a film that ends where the pressure of the full film falls to zero behind its maximum."""
+    width = math.sqrt(1.0 + float(state.gap.min()))
+    x = np.linspace(-2 * width, 2 * width, LOOKED_AT)
+    pressure = state.fields(x)[1]
+    highest = int(np.argmax(pressure))
+    behind = np.flatnonzero(pressure[highest:] <= 0)
+    end = float(x[highest + behind[0]]) if len(behind) else width
+    return SeenFrom(state, max(end, NEAREST_EXIT * width))
+
+
+def _blended(groups: Groups, path: Path[State], start: State) -> Path[State]:
+    """Return the path on which fluid and solid change into those of the groups."""
+    model = start.groups.model
+    own = groups.model
+
+    def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
+        film: Film = own.film
+        solid: Solid = own.solid
+        if part < 1.0:
+            film = cast(Film, BlendedFilm(own.film, part)) if own.film != model.film else film
+            solid = BlendedSolid(own.solid, part) if own.solid != model.solid else solid
+        here = replace(groups, model=replace(model, film=film, solid=solid))
+        return _coarse(here, extrapolate(history, part) if history else start)
+
+    found = march(correct, 0.0, 1.0, BLENDING, history=[(0.0, start)])
+    if not found.outcome.ok:
+        return found
+    settled = _settled(found.states[-1].groups, found.states[-1])
+    return found if settled is None else _extended(found, settled)

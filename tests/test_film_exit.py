@@ -1,0 +1,123 @@
+"""Films that end: states through `solve` against an independent solver, and what follows from their equations."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.contacts.model import Model
+from stribeck.equations.line import Operators
+from stribeck.equations.observables import gradients, observables
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.numerics.panels import Mesh
+from stribeck.quantities.outputs import ALL_NAMES as NAMES
+from stribeck.solver.solve import solved_point
+
+REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())
+ENDING = Model(cavitation=Cavitation.EXIT)
+COLUMNS = {
+    "contact_load_share": "contact_share",
+    "central_gap": "h0",
+    "minimum_gap": "hmin",
+    "flux_gap": "m",
+    "exit_position": "xc",
+    "viscous_balanced": "mu_traction_1",
+    "viscous_upper": "mu_traction_2",
+}
+
+
+def differences(solution, row):
+    """Return how far observables are from a row of the reference, relative but for shares and positions."""
+    found = {}
+    for name, column in COLUMNS.items():
+        if row.get(column) is not None:
+            scale = 1.0 if name == "contact_load_share" else max(abs(row[column]), name == "exit_position")
+            found[name] = abs(getattr(solution, name) - row[column]) / scale
+    return found
+
+
+@pytest.mark.parametrize("row", REFERENCE["a_free_exit"], ids=lambda row: f"{row['speed']:g}-{row['kappa']:g}")
+def test_a_film_that_ends_is_that_of_an_independent_solver(row):
+    groups = sb.Groups(row["speed"], row["load"], row["kappa"] * row["load"], model=ENDING)
+    solution = sb.solve(groups)
+    assert max(differences(solution, row).values()) < 1e-6
+    assert solution.error_estimate <= 1e-6
+
+
+@pytest.mark.quick
+def test_a_rigid_film_that_ends_is_that_of_the_textbook():
+    solution = sb.solve(sb.Groups(1e6, 0.1, 0.0, model=ENDING))
+    gap = solution.central_gap
+    assert solution.exit_position / np.sqrt(2 * gap) == pytest.approx(0.47512992, rel=1e-5)
+    assert solution.flux_gap / gap == pytest.approx(1.22574844, rel=1e-5)
+    assert 3 * np.pi**2 / 4 * gap / 1e6 * 4 / np.pi == pytest.approx(2.44748424, rel=1e-5)
+
+
+@pytest.mark.quick
+def test_pressure_and_gradient_vanish_at_the_exit_and_the_cavity_is_at_ambient_pressure():
+    solution = sb.solve(sb.Groups(1e-3, 0.1, 1e-4, model=ENDING))
+    x_c = solution.exit_position
+    behind = solution.profile(x_c + np.array([1e-6, 0.1, 1.0, 30.0])).fluid_pressure
+    before = solution.profile(x_c - np.array([1e-3, 1e-4])).fluid_pressure
+    assert not behind.any()
+    assert 0 < before[1] < 0.015 * before[0]  # as the square of the distance
+    assert solution.fluid_pressure.min() > -1e-9
+
+
+@pytest.mark.quick
+def test_the_deflection_by_a_pressure_that_ends_at_zero_is_its_integral():
+    def pressure(x):
+        return np.where(x < 0, x**2 / (1 + x**2) ** 2.5, 0.0)  # falls as |x|**-3 on one side alone
+
+    edges = 2.0 ** np.arange(-4, 5)
+    operators = Operators(Mesh(np.concatenate([-edges[::-1], [0.0], edges]), 12), ENDING)
+    nodes = operators.mesh.nodes
+    assert operators.weights @ pressure(nodes) == pytest.approx(1 / 3, abs=1e-13)
+    cells = -np.concatenate([np.geomspace(1e6, 10, 50_001), np.linspace(10, 0, 100_001)[1:]])
+    found = operators.deflection @ pressure(nodes)
+    for k in (np.argmin(np.abs(nodes - x)) for x in (-100.0, -20.0, -1.0, 0.5, 30.0)):
+        antiderivative = (cells - nodes[k]) * (np.log(np.abs(cells - nodes[k])) - 1)
+        exact = -np.diff(antiderivative) @ pressure(0.5 * (cells[1:] + cells[:-1])) / np.pi
+        assert found[k] == pytest.approx(exact, abs=2e-9)
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name != "minimum_gap"])
+def test_gradients_of_the_observables_are_their_derivatives(name):
+    groups = sb.Groups(1e-2, 0.1, 1e-3, model=ENDING)
+    state = state_of(groups)
+    row = gradients(state.equations, state.y, 0.1)[NAMES.index(name)]
+    at, rng = state.equations.layout, np.random.default_rng(71)
+    change = np.empty_like(state.y)
+    change[at.gap] = state.gap * np.cos(rng.uniform(1, 3) * np.arctan(state.mesh.nodes))
+    change[at.numbers] = [0.3, 0.4 * state.flux_gap, 0.2]
+    ahead, behind = (getattr(observables(state.equations, state.y + d * change, 0.1), name) for d in (1e-5, -1e-5))
+    slope = (ahead - behind) / 2e-5
+    if np.isnan(slope):
+        assert name == "reformation_position"
+        return
+    assert row @ change == pytest.approx(slope, rel=2e-4, abs=1e-9)
+
+
+def state_of(groups):
+    """Return the discrete state that a solve of the groups ends with."""
+    return solved_point(groups, 1e-7).state
+
+
+@pytest.mark.slow
+def test_random_cold_starts_of_films_that_end_are_solved_and_their_errors_covered():
+    rng, missed, states = np.random.default_rng(20_261), 0, 200
+    for _ in range(states):
+        load = 10 ** rng.uniform(-8, 1)
+        kappa = 0.0 if rng.random() < 0.15 else 10 ** rng.uniform(-6, 3)
+        groups = sb.Groups(10 ** rng.uniform(-12, 6), load, kappa * load, model=ENDING)
+        coarse, fine = sb.solve(groups), sb.solve(groups, rtol=1e-8, on_failure="return")
+        values, exact = coarse.observables.array(False), fine.observables.array(False)
+        scale = np.abs(exact)
+        for name, least in (("contact_load_share", 1), ("fluid_load_share", 1), ("exit_position", 1), ("offset", 1e-3)):
+            scale[NAMES.index(name)] = max(least, scale[NAMES.index(name)])
+        ratio = np.abs(values - exact) / scale / (coarse.relative_errors + fine.relative_errors)
+        missed += np.nanmax(ratio) > 1
+        assert np.nanmax(ratio) < 30, groups
+    assert missed <= 0.05 * states
