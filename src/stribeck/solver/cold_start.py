@@ -27,7 +27,7 @@ from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
-from stribeck.solver.towards_model import path_to_model
+from stribeck.solver.models.towards import path_to_model
 
 RIGID_SPEED = 30.0
 """Speed group above which the rigid film starts Newton's iteration safely."""
