@@ -303,7 +303,7 @@ def _blended(groups: Groups, path: Path[State], start: State) -> Path[State]:
         solid: Solid = own.solid
         if part < 1.0:
             film = cast(Film, BlendedFilm(own.film, part)) if own.film != model.film else film
-            solid = BlendedSolid(own.solid, part) if own.solid != model.solid else solid
+            solid = cast(Solid, BlendedSolid(own.solid, part)) if own.solid != model.solid else solid
         here = replace(groups, model=replace(model, film=film, solid=solid))
         return _coarse(here, extrapolate(history, part) if history else start)
 
