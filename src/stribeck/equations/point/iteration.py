@@ -33,6 +33,12 @@ NEAR = 0.03
 SMALLEST_PART = 1e-6
 """A step damped below this part of Newton's makes no progress."""
 
+LINEAR = 1e-2
+"""Relative error of a Newton step that GMRES may leave."""
+
+ACCEPTED = 0.1
+"""The same from which a kept preconditioner is given up."""
+
 MOST_HALVINGS = 20
 
 BENDING = 3.0
@@ -144,21 +150,21 @@ def iterate(
             right = linear.right(residual)
             if not np.isfinite(right).all():
                 return ended(Outcome.NOT_FINITE)
-            wanted = max(1e-10, min(1e-2, 0.1 * size, 0.3 * size * size if size < 0.1 else 1.0))
+            wanted = min(LINEAR, 0.1 * size) if size < NEAR else LINEAR
             solved = None
             if preconditioner is not None:
-                solved = gmres(linear.product, preconditioner, right, wanted, 2 * WORN_NEAR)
+                solved = _solved(linear, preconditioner, right, residual[0], wanted, 2 * WORN_NEAR)
                 krylov += solved.steps
-                if solved.left > wanted:
+                if not solved.accepted:
                     solved = None
             if solved is None or preconditioner is None:
                 preconditioner = BandedModes(linear, band)
                 factorisations += 1
-                solved = gmres(linear.product, preconditioner, right, wanted, MAX_KRYLOV)
+                solved = _solved(linear, preconditioner, right, residual[0], wanted, MAX_KRYLOV)
                 krylov += solved.steps
             if not np.isfinite(solved.x).all():
                 return ended(Outcome.SINGULAR)
-            step = linear.changes(solved.x, residual[0])
+            step = solved.step
             part = longest_step(law, y.gap, step.gap)
             if not part >= SMALLEST_PART:
                 return ended(Outcome.STALLED)
@@ -171,16 +177,44 @@ def iterate(
                 size, preconditioner = max(size, 1.0), None
                 continue
             bending = max(BENDING, min(100.0, size / before**2)) if math.isfinite(before) else BENDING
-            left = bending * size * size
+            left = bending * size * size + solved.missed
             if left <= tolerance:
-                # What GMRES has left, in the gap itself.
-                rest = preconditioner(right - linear.product(solved.x))
-                missed = linear.changes(rest)
-                error = step_size(law, y.gap, missed.gap)
-                y = y.moved(missed, 1.0)
-                left += 0.1 * error + error * solved.left
-                if left <= tolerance:
-                    return ended(Outcome.CONVERGED)
+                return ended(Outcome.CONVERGED)
             if solved.steps > (WORN_NEAR if size < NEAR else WORN):
                 preconditioner = None
         return ended(Outcome.STEP_LIMIT)
+
+
+@dataclass(frozen=True, eq=False)
+class _Step:
+    """A Newton step, how many steps of GMRES it took, and the size of what they miss of it in the gap."""
+
+    x: Array
+    step: Unknowns
+    steps: int
+    missed: float
+    accepted: bool
+
+
+def _solved(linear: Linear, preconditioner: BandedModes, right: Array, shape: Array, wanted: float, most: int) -> _Step:
+    """Return the Newton step, its error in the gap at most ``wanted`` times its size where ``most`` steps of GMRES allow.
+
+    A small preconditioned residual in the pressure may still be a large one in the gap, where that is stiff against it: the
+    residual of the residual tells, and is a correction of its own.
+    """
+    law, h = linear.equations.law, linear.y.gap
+    x, rest, steps, tolerance = np.zeros_like(right), right, 0, 0.1 * wanted
+    while True:
+        solved = gmres(linear.product, preconditioner, rest, tolerance, most - steps)
+        x, steps = x + solved.x, steps + solved.steps
+        rest = right - linear.product(x)
+        correction = preconditioner(rest)
+        step = linear.changes(x, shape)
+        missed, size = step_size(law, h, linear.changes(correction).gap), step_size(law, h, step.gap)
+        if not math.isfinite(missed + size):
+            return _Step(x, step, steps, math.inf, False)
+        if missed <= wanted * size or steps >= most:
+            # The correction is good to what GMRES contracts with, which is far below one.
+            x = x + correction
+            return _Step(x, linear.changes(x, shape), steps + 1, 0.1 * missed, missed <= max(wanted, ACCEPTED) * size)
+        tolerance = max(1e-9, 0.1 * wanted * size / missed)

@@ -1,8 +1,7 @@
 """Cold start of the point contact: a first, coarse state anywhere.
 
-The dry contact under a law as soft as the film is thick has the shape of the lubricated one: its pressure, less what the
-asperities of the state carry at that gap, is the first guess of the film pressure.  So the elastic shape and the load hold
-from the beginning.  Where Newton's iteration does not end from there, the speed comes up from the dry contact, or down from a
+A dry contact in which a cushion, as thick as the film, helps the asperities has about the shape of the lubricated one, and what
+the cushion carries is the first guess of the film pressure.  So the elastic shape and the load hold from the beginning.  Where Newton's iteration does not end from there, the speed comes up from the dry contact, or down from a
 rigid ball.
 """
 
@@ -10,10 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from stribeck.contact_laws.exponential import ExponentialLaw
+from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.point.dry import dry_contact
 from stribeck.equations.point.mesh_choice import MeshTooLargeError, film_scale, gaps_at, layout, operators_of, resolution
@@ -31,8 +31,8 @@ TOLERANCE = 1e-4
 MAX_STEPS = 25
 """Newton steps after which a first guess is given up."""
 
-DRY = 0.3
-"""Film of the smooth contact over the gap of the dry one below which the dry contact is the first guess."""
+STEEPNESS = 4.0
+"""Film thickness over the decay of the cushion that stands for the film in a first guess."""
 
 FAST, SLOW = 30.0, 1e-3
 """The speed at which the path from the rigid ball begins, and that of the path from the dry contact over the state's."""
@@ -52,22 +52,58 @@ def _dry_gap(law: ContactLaw) -> float:
     return float(gaps_at(law, np.zeros(1))[0]) if float(np.max(law.decay_length)) > 0 else 0.0
 
 
+@dataclass(frozen=True)
+class WithCushion:
+    """A contact law, and a cushion that gives way at a film thickness, as a film does."""
+
+    law: ContactLaw
+    film: float
+    name: str = "with cushion"
+    constant_decay: bool = False
+
+    @property
+    def decay_length(self) -> float:
+        """The longer of the two decays."""
+        return max(float(np.max(self.law.decay_length)), self.film / STEEPNESS)
+
+    def cushion(self, gap: Array) -> Array:
+        """Return the pressure of the cushion, one at the film thickness."""
+        return np.asarray(np.exp(STEEPNESS * (1.0 - gap / self.film)))
+
+    def pressure(self, gap: Array) -> Array:
+        """Return the sum of both pressures."""
+        return self.law.pressure(gap) + self.cushion(gap)
+
+    def log_pressure(self, gap: Array) -> Array:
+        """Return its logarithm."""
+        return np.asarray(np.logaddexp(self.law.log_pressure(gap), STEEPNESS * (1.0 - gap / self.film)))
+
+    def slope(self, gap: Array, pressure: Array) -> Array:
+        """Return its derivative."""
+        del pressure
+        return self.law.slope(gap, self.law.pressure(gap)) - STEEPNESS / self.film * self.cushion(gap)
+
+    def local_decay_length(self, gap: Array) -> Array:
+        """Return the length over which it falls by a factor e."""
+        with np.errstate(all="ignore"):
+            decay = np.asarray(self.pressure(gap) / -self.slope(gap, gap))
+        return np.where(np.isfinite(decay), decay, self.decay_length)
+
+    def load_derivative(self, gap: Array, pressure: Array) -> Array:
+        """Refuse: no group moves a first guess."""
+        raise NotImplementedError
+
+    roughness_derivative = load_derivative
+
+
 def first_guess(operators: Operators, speed: float, law: ContactLaw, lift: float = 1.0) -> Unknowns | None:
     """Return the first guess, with a film ``lift`` times as thick as expected; None where the dry contact fails."""
     mesh = operators.mesh
-    film, at_rest = lift * film_scale(speed), _dry_gap(law)
-    if film < DRY * at_rest:
-        dry = dry_contact(operators, law)
-        fluid = np.zeros_like(dry.gap)
-    else:
-        height = (at_rest**3 + film**3) ** (1.0 / 3.0)
-        decay = 0.25 * film
-        if at_rest > 0.0:
-            decay = max(decay, float(np.max(law.local_decay_length(np.array([at_rest])))))
-        dry = dry_contact(operators, ExponentialLaw(math.exp(-2.0 * height / decay), decay))
-        fluid = dry.pressure - law.pressure(dry.gap)
+    cushioned = WithCushion(law, lift * film_scale(speed))
+    dry = dry_contact(operators, cushioned, 1e-6)
     if not dry.outcome.ok or not dry.gap.min() > 0:
         return None
+    fluid = cushioned.cushion(dry.gap)
     return Unknowns(np.tile(dry.gap, (mesh.modes, 1)), np.tile(fluid, (mesh.modes, 1)), dry.offset)
 
 
