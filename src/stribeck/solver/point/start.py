@@ -1,8 +1,8 @@
 """Cold start of the point contact: a first, coarse state anywhere.
 
-A dry contact in which a cushion, as thick as the film, helps the asperities has about the shape of the lubricated one, and what
-the cushion carries is the first guess of the film pressure.  So the elastic shape and the load hold from the beginning.  Where Newton's iteration does not end from there, the speed comes up from the dry contact, or down from a
-rigid ball.
+A dry contact in which a cushion, as thick as the film, helps the asperities has about the shape of the lubricated one, and
+what the cushion carries is the first guess of the film pressure.  So the elastic shape and the load hold from the beginning.
+Where Newton's iteration does not end from there, the speed comes up from the dry contact, or down from a rigid ball.
 """
 
 from __future__ import annotations
