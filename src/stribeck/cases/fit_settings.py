@@ -31,10 +31,16 @@ FREE = tuple(
 
 DEFAULT_FREE = ("boundary_friction", "roughness")
 
-COLUMNS = ("speed", "speed_viscosity", "hersey_number", "friction", "error", "curve")
+COLUMNS = (
+    *("speed", "speed_viscosity", "hersey_number", "friction", "error", "curve"),
+    *("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "friction_force", "normal_force", "run"),
+)
 """What a column of the data may be, beside the inputs of :data:`FREE`, which tell curves apart."""
 
-KEYS = ("free", "per_curve", "noise", "relative_error", "absolute_error", "robust", "magnitudes", "header_row")
+KEYS = (
+    *("free", "per_curve", "noise", "relative_error", "absolute_error", "robust", "magnitudes", "header_row"),
+    *("repeats", "run_in"),
+)
 TABLES = ("columns", "units", "bounds", "priors", "curves")
 
 LARGEST_FACTOR = 1e6
@@ -74,6 +80,11 @@ class FitSettings:
         Whether outliers are kept from steering the fit.
     magnitudes : bool
         Whether signs of speed and friction are dropped, as of strokes to and fro.
+    repeats : bool, optional
+        Whether rows at the same speed of a curve are put together, their scatter becoming the error of the mean; by default
+        where the file numbers its runs.
+    run_in : {"leave", "keep"}
+        Whether a first run that differs from the later ones is left out of the means.
     header_row : int, optional
         Row of the data file that holds the names of the columns; the first that is no comment by default.
     columns : dict
@@ -95,6 +106,8 @@ class FitSettings:
     absolute_error: float | None = None
     robust: bool = False
     magnitudes: bool = False
+    repeats: bool | None = None
+    run_in: Literal["leave", "keep"] = "leave"
     header_row: int | None = None
     columns: dict[str, str | list[str]] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
@@ -202,7 +215,11 @@ def _setting(key: str, value: Any) -> Any:
         if value not in ("relative", "absolute"):
             raise InputError(f"noise = {show(value)} must be 'relative' or 'absolute'.")
         return value
-    if key in ("robust", "magnitudes"):
+    if key == "run_in":
+        if value not in ("leave", "keep"):
+            raise InputError(f"run_in = {show(value)} must be 'leave' (out of the means) or 'keep'.")
+        return value
+    if key in ("robust", "magnitudes", "repeats"):
         if not isinstance(value, bool):
             raise InputError(f"{key} = {show(value)} must be true or false, without quotes.")
         return value
@@ -224,7 +241,7 @@ def _entry(table: str, name: str, value: Any) -> tuple[str, Any]:
     meant = LETTERS.get(name, name)
     if meant not in known:
         raise InputError(_unknown(name, value, known))
-    texts = value if table == "columns" and name == "friction" and isinstance(value, list) else [value]
+    texts = value if table == "columns" and name in ("friction", "surface_speeds") and isinstance(value, list) else [value]
     if not texts or not all(isinstance(text, str) and text.strip() for text in texts):
         wanted = "the header of a column" if table == "columns" else "a unit"
         raise InputError(f"{name} = {show(value)} must be {wanted}, as text in quotes.")

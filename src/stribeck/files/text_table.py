@@ -17,6 +17,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.files.reading import read_bounded
+from stribeck.files.spreadsheet import SPREADSHEETS, text_of_spreadsheet
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
 __all__ = ["MISSING", "TextTable", "cells_of", "number_of", "read_table", "read_two_columns", "text_of", "values_of"]
@@ -27,6 +28,9 @@ MISSING = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "
 SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar"}
 
 LARGEST_TABLE = 20_000_000  # [byte]
+
+BLOCK = "step"
+"""Header of the column that numbers the tables of a file that has the same header above each."""
 
 EXPECTED = "add a header such as 'speed [mm/s];friction' above rows of numbers"
 
@@ -96,7 +100,10 @@ def read_table(path: Path, header_row: int | None = None, expected: str = EXPECT
     InputError
         If the file cannot be read, has no header, or a row has another number of cells than the header.
     """
-    text = text_of(path, LARGEST_TABLE, "a table is a few pages of text", "a text file of columns")
+    if path.suffix.lower() in SPREADSHEETS and path.is_file():
+        text = text_of_spreadsheet(path)
+    else:
+        text = text_of(path, LARGEST_TABLE, "a table is a few pages of text", "a text file of columns")
     filled = _filled(text)
     skipped = 0
     if header_row is not None:
@@ -127,7 +134,8 @@ def read_table(path: Path, header_row: int | None = None, expected: str = EXPECT
                 f"{path}: row {number} has the column {show(name)} twice; give each column its own name{elsewhere}."
             )
     rows, numbers = [], []
-    for i, line in filled[1:]:
+    body, blocks = _one_table(filled, separator)
+    for i, line in body:
         cells = _row(line, separator, len(header), path, i)
         if len(cells) != len(header):
             raise InputError(_ragged(path, i, line, cells, header, separator, elsewhere))
@@ -141,6 +149,10 @@ def read_table(path: Path, header_row: int | None = None, expected: str = EXPECT
             rows, numbers = rows[1:], numbers[1:]
     if not rows:
         raise InputError(f"{path} has a header in row {number} and no rows of numbers below it{elsewhere}.")
+    if blocks:
+        header = (*header, BLOCK)
+        rows = [(*row, str(blocks[i])) for row, i in zip(rows, numbers, strict=True)]
+        units = (*units, "") if units else ()
     comma = _decimal_comma(path, header, rows, numbers)
     return TextTable(str(path), header, tuple(rows), tuple(numbers), SEPARATORS.get(separator, "space"), comma, units, skipped)
 
@@ -263,6 +275,27 @@ def cells_of(line: str, separator: str, path: Path, number: int) -> list[str]:
     return cells
 
 
+def _one_table(filled: list[tuple[int, str]], separator: str) -> tuple[list[tuple[int, str]], dict[int, int]]:
+    """Return the rows below a header that may come again above each step of a rig, and the step of each; text is left out.
+
+    Text after the last row of numbers, such as "end of test", is left out too.
+    """
+    head = filled[0][1].strip()
+    body = filled[1:]
+    while len(body) > 1 and separator not in body[-1][1] and not _has_number(body[-1][1]):
+        body = body[:-1]
+    if not any(line.strip() == head for _, line in body):
+        return body, {}
+    kept, blocks, block = [], {}, 1
+    for i, line in body:
+        if line.strip() == head:
+            block += 1
+        elif sum(_has_number(cell) for cell in cells_of(line, separator, Path(), i)) > 1:
+            kept.append((i, line))
+            blocks[i] = block
+    return kept, blocks
+
+
 def _filled(text: str) -> list[tuple[int, str]]:
     """Return the lines that are neither empty nor comments, with their numbers."""
     lines = enumerate(text.splitlines(), 1)
@@ -292,7 +325,8 @@ def _header_at(lines: list[tuple[int, str]]) -> int:
     """Return the place of the header: that of the first line, unless only one below it has numbers below it as it should."""
     found = [k for k in range(len(lines)) if _is_header(lines[k : k + 1 + LOOK_AHEAD])]
     found = [k for k in found if k - 1 not in found]  # a row of units is none
-    return found[0] if len(found) == 1 and 0 not in found else 0
+    same = {lines[k][1].strip() for k in found}  # a rig may write its header again above each step
+    return found[0] if len(same) == 1 and 0 not in found else 0
 
 
 def _is_header(lines: list[tuple[int, str]]) -> bool:

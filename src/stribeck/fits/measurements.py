@@ -17,6 +17,7 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.text_table import MISSING, TextTable, number_of, read_table
+from stribeck.fits.rig import MADE_SPEED, RIG, Row, average_repeats, prepared
 from stribeck.quantities.inputs import QUANTITIES, ROWS, quantity
 from stribeck.quantities.units import InputError, show, to_si
 
@@ -48,9 +49,6 @@ LARGEST_FRICTION = 10.0
 BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}
 """Units of a friction coefficient."""
 
-_MEAN = re.compile(r"\b(mean|average|entrain\w*|rolling)\b.*\b(speed|velocity)\b", re.IGNORECASE)
-"""Headers of the speed that is half of what the model calls speed."""
-
 _FORCE = re.compile(r"force|kraft|\(m?N\)|\[m?N\]", re.IGNORECASE)
 _HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 
@@ -81,6 +79,10 @@ class Measurements:
         Row of the file in which each stands, counted from 1.
     notes : tuple of str
         What was left out or assumed, one sentence each.
+    taken : str
+        What each column was taken for, and how to change that.
+    run_in : tuple of int
+        Rows of the file that look like run-in.
     """
 
     abscissa: Abscissa
@@ -93,6 +95,8 @@ class Measurements:
     rows: Indices
     path: str = ""
     notes: tuple[str, ...] = field(default=())
+    taken: str = ""
+    run_in: tuple[int, ...] = ()
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -123,10 +127,12 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     """
     settings = settings or FitSettings()
     table = read_table(Path(path), settings.header_row)
+    table, made, run = prepared(table, settings, lambda meaning: _has(table, settings, meaning))
     columns = _columns(table, settings)
     abscissa = _abscissa(table, columns)
     reader = _Reader(table, settings)
-    rows: list[tuple[str, int, float, float, float, dict[str, float]]] = []
+    rows: list[Row] = []
+    runs: list[str] = []
     empty: list[int] = []
     frictions = columns["friction"]
     given = [name for name in columns if name in QUANTITIES and name not in ("speed", "boundary_friction")]
@@ -143,8 +149,13 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
             name = label if len(frictions) == 1 else f"{label} {_split(column)[0]}".strip()
             known = {key: value for key, value in inputs.items() if value is not None}
             rows.append((name, number, place, mu, error, known))
+            runs.append(table.rows[i][table.header.index(run)] if run else "")
     if not rows:
         raise InputError(f"{path}: no row holds both {abscissa.replace('_', ' ')} and friction; check the columns.")
+    averaged = None
+    if "error" not in columns and settings.repeats is not False and (run or settings.repeats):
+        averaged = average_repeats(rows, runs, settings.run_in == "keep")
+        rows = rows if averaged is None else averaged.rows
     names, of_row, differing = _curves(table.path, rows, settings, "curve" in columns or len(frictions) > 1)
     order = sorted(range(len(rows)), key=lambda i: (of_row[i], rows[i][2], rows[i][1]))
     found = Measurements(
@@ -152,12 +163,14 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
         abscissa=abscissa,
         values=np.array([rows[i][2] for i in order]),
         friction=np.array([rows[i][3] for i in order]),
-        error=np.array([rows[i][4] for i in order]) if "error" in columns else None,
+        error=np.array([rows[i][4] for i in order]) if "error" in columns or averaged is not None else None,
         curve=np.array([of_row[i] for i in order]),
         curves=names,
         inputs=differing,
         rows=np.array([rows[i][1] for i in order]),
-        notes=_notes(table, columns, empty),
+        notes=(*_notes(table, columns, empty, made, run), *(() if averaged is None else averaged.notes)),
+        taken=_taken(columns, made, run),
+        run_in=() if averaged is None else averaged.run_in,
     )
     _check_spread(found, frictions)
     return found
@@ -261,6 +274,8 @@ def _columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     for meaning, wanted in settings.columns.items():
         texts = wanted if isinstance(wanted, list) else [wanted]
+        if meaning in RIG:
+            continue
         for text in texts:
             same = [name for name in table.header if text.strip() in (name, _split(name)[0])]
             if len(same) != 1:
@@ -269,10 +284,13 @@ def _columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
                 )
             found.setdefault(meaning, []).append(same[0])
     declared = {name for names in found.values() for name in names}
+    declared |= {name for name in table.header if _declared_for_rig(name, settings)}
     for name in table.header:
         words = _plain(_split(name)[0])
         for meaning, known in WORDS.items():
             if name in declared or words not in known or meaning in settings.columns:
+                continue
+            if meaning == "speed" and MADE_SPEED in table.header and name != MADE_SPEED:
                 continue
             if meaning in found:
                 raise InputError(
@@ -292,12 +310,6 @@ def _columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
                 "friction, the friction force over the normal force."
             )
         examples = {"speed": (speeds or unknown)[0], "friction": (bare or unknown)[-1]}
-        means = [name for name in unknown if "speed" in missing and _MEAN.search(name)]
-        if means:
-            raise InputError(
-                f"{table.path}: {show(means[0])} is the mean of two surface speeds, and the speed here is their sum, twice "
-                "that: double the values and call the column speed."
-            )
         raise InputError(
             f"{table.path}: {_listed(table)}, none of which is known as {' or '.join(missing)}; say which in [fit.columns] of "
             f"the case, as in {' and '.join(f'{name} = {show(examples[name])}' for name in missing)}."
@@ -317,9 +329,6 @@ def _abscissa(table: TextTable, columns: dict[str, list[str]]) -> Abscissa:
             return "speed"
         raise InputError(f"{table.path}: the file has {' and '.join(there)}; keep one of them.")
     return there[0]
-
-
-Row = tuple[str, int, float, float, float, dict[str, float]]
 
 
 def _curves(
@@ -350,7 +359,35 @@ def _curves(
     return tuple(labels), of_row, inputs_of
 
 
-def _notes(table: TextTable, columns: dict[str, list[str]], empty: list[int]) -> tuple[str, ...]:
+def _has(table: TextTable, settings: FitSettings, meaning: str) -> bool:
+    """Return whether a table has friction, or an abscissa, as a column of its own that cannot mean anything else."""
+    wanted = ABSCISSAS if meaning == "speed" else (meaning,)
+    if any(each in settings.columns for each in wanted):
+        return True
+    words = {_plain(_split(name)[0]) for name in table.header if not _declared_for_rig(name, settings)}
+    ratio = any(word in ("srr", "slide roll ratio", "slide to roll ratio") for word in words)
+    sliding = {"sliding speed", "sliding velocity"} if ratio else set()
+    return any(words & (WORDS[each] - sliding) for each in wanted)
+
+
+def _declared_for_rig(name: str, settings: FitSettings) -> bool:
+    """Return whether the settings say that a column is one of a rig."""
+    texts = [text for meaning in RIG for text in np.atleast_1d(settings.columns.get(meaning, [])).tolist()]
+    return any(text.strip() in (name, _split(name)[0]) for text in texts)
+
+
+def _taken(columns: dict[str, list[str]], made: tuple[str, ...], run: str) -> str:
+    """Return what each column was taken for."""
+    parts = [f"{' and '.join(map(show, names))} as {meaning.replace('_', ' ')}" for meaning, names in columns.items()]
+    own = {"friction": "'friction' as", "speed [m/s]": "'speed [m/s]' as"}
+    parts = [part for part in parts if not (made and part.startswith(tuple(own.values())))]
+    parts = [*made, *parts, *([f"{show(run)} as run"] if run else [])]
+    return f"Read: {'; '.join(parts)}. To change this, name the columns in [fit.columns] of the case."
+
+
+def _notes(
+    table: TextTable, columns: dict[str, list[str]], empty: list[int], made: tuple[str, ...] = (), run: str = ""
+) -> tuple[str, ...]:
     notes = []
     if table.skipped:
         notes.append(f"{table.skipped} row{'s' * (table.skipped > 1)} of other text above the header skipped.")
@@ -360,7 +397,8 @@ def _notes(table: TextTable, columns: dict[str, list[str]], empty: list[int]) ->
         rows = ", ".join(map(str, sorted(set(empty))[:10])) + (", ..." if len(set(empty)) > 10 else "")
         notes.append(f"{len(empty)} row{'s' * (len(empty) != 1)} without a value left out: {rows}.")
     used = {name for names in columns.values() for name in names}
-    unused = [name for name in table.header if name and name not in used]
+    told = " ".join(made)
+    unused = [name for name in table.header if name and name not in used and name != run and show(name) not in told]
     if unused:
         notes.append(f"Columns not used: {', '.join(unused)}.")
     return tuple(notes)

@@ -51,6 +51,8 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
     data = fit.data
     curves = f", {len(data.curves)} curves" if len(data.curves) > 1 else ""
     say(f"{len(data)} rows{curves} of {data.path or 'measured friction'}; contact law: {fit.law}; friction: {fit.definition}.")
+    if data.taken:
+        say(data.taken)
     say(fit.outcome.value, "" if fit.outcome is FitOutcome.CONVERGED else "bold red")
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for name in ["input", "fitted", "error", "68 %", "95 %", "case", *(["posterior 95 %"] if posterior else [])]:

@@ -1,0 +1,300 @@
+"""Tables as test rigs write them: forces in place of friction, mean speeds, both surfaces' speeds, repeats and run-in.
+
+A mean speed is never taken for the sum of the surface speeds, nor the other way round: where a file leaves open which it has,
+the reader asks.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.files.text_table import MISSING, TextTable, number_of
+from stribeck.quantities.units import InputError, show, to_si
+
+__all__ = ["MADE_SPEED", "RIG", "Averaged", "Row", "average_repeats", "prepared"]
+
+RIG = ("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "friction_force", "normal_force", "run")
+"""What a column of a rig may be beside those of a friction curve."""
+
+_UNIT = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
+
+PATTERNS = {
+    "entrainment_speed": r"(mean|average|entrain\w*|rolling)( \w+)? (speed|velocity)|(speed|velocity) (mean|rolling)",
+    "sliding_speed": r"(sliding|slip|rubbing) (speed|velocity)",
+    "surface_speeds": r"(ball|disc|disk|upper|lower|roller|ring) ?\d? (speed|velocity)",
+    "slide_to_roll": r"srr|slide (to )?roll( ratio)?|slip ratio",
+    "friction_force": r"(friction|traction|tangential|lateral|shear) force|f ?[xtf]|ft|reibkraft",
+    "normal_force": r"(normal|ball|contact|vertical|applied) (force|load)|f ?[zn]|normalkraft|load",
+    "run": r"run|repeat|repetition|cycle|stroke|pass|step|sweep|test( no)?|lauf",
+}
+"""What the words of a header mean, in lower case."""
+
+MADE_SPEED = "speed [m/s]"
+"""Header of the column of the speed that was made of others."""
+
+SAME_SPEED = 0.01
+"""Relative difference up to which speeds are the same point."""
+
+FEWEST = 3
+"""Repeats from which their scatter is an error."""
+
+RUN_IN, CLEAR = 0.03, 3.0
+"""Relative difference of a first run from the later ones, and that in standard errors, from which it is run-in."""
+
+
+def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], bool]) -> tuple[TextTable, tuple[str, ...], str]:
+    """Return a table with friction and speed made of what a rig measured.
+
+    Parameters
+    ----------
+    table : TextTable
+        The cells.
+    settings : FitSettings
+        The ``[fit]`` table, whose columns are believed.
+    known : callable
+        Whether the table has a column of a meaning, ``"friction"`` or ``"speed"``, as it is.
+
+    Returns
+    -------
+    TextTable
+        The table, with columns ``friction`` and ``speed [m/s]`` added where they had to be made.
+    tuple of str
+        What was made of what, one sentence each.
+    str
+        Header of the column that numbers the runs; empty if there is none.
+
+    Raises
+    ------
+    InputError
+        If a speed may be the mean or the sum, or a force is zero.
+    """
+    found = _rig_columns(table, settings)
+    said = []
+    if not known("friction") and "friction_force" in found and "normal_force" in found:
+        force, normal = found["friction_force"][0], found["normal_force"][0]
+        pairs = zip(_numbers(table, force, "force", "N"), _numbers(table, normal, "force", "N"), strict=True)
+        values = [abs(f / n) if f is not None and n else None for f, n in pairs]
+        table = _with_column(table, "friction", values)
+        said.append(f"friction = |{show(force)} / {show(normal)}|")
+    if not known("speed"):
+        made = _speed(table, found)
+        if made is not None:
+            values, sentence = made
+            table = _with_column(table, MADE_SPEED, values)
+            said.append(sentence)
+    elif "slide_to_roll" in found and "speed" not in settings.columns:
+        plain = next((name for name in table.header if _words(name) in ("speed", "velocity", "u", "v")), None)
+        if plain is not None:
+            raise InputError(
+                f"{table.path}: the file has a slide-to-roll ratio, so that {show(plain)} may be the mean of both surface "
+                f"speeds or their sum; say which in [fit.columns] of the case: entrainment_speed = {show(plain)} (the mean) "
+                f"or speed = {show(plain)} (the sum)."
+            )
+    return table, tuple(said), found.get("run", [""])[0]
+
+
+def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
+    """Return what is in the table -> headers of its columns; those of the settings first."""
+    found: dict[str, list[str]] = {}
+    declared = set()
+    for meaning, wanted in settings.columns.items():
+        texts = wanted if isinstance(wanted, list) else [wanted]
+        declared |= {name for name in table.header for text in texts if text.strip() in (name, _split(name)[0])}
+        if meaning in RIG:
+            found[meaning] = [name for name in table.header if name in declared and _is_named(name, texts)]
+    for name in table.header:
+        for meaning, pattern in PATTERNS.items():
+            if name not in declared and meaning not in settings.columns and re.fullmatch(pattern, _words(name)):
+                if meaning == "normal_force" and _split(name)[1] not in ("N", "mN", "kN"):
+                    continue
+                found.setdefault(meaning, []).append(name)
+                break
+    return found
+
+
+def _speed(table: TextTable, found: dict[str, list[str]]) -> tuple[list[float | None], str] | None:
+    """Return the sum of the surface speeds and how it was made; None where the rig gives no speed."""
+    if "entrainment_speed" in found:
+        name = found["entrainment_speed"][0]
+        values = [None if value is None else 2 * value for value in _numbers(table, name, "speed", "m/s")]
+        return values, f"speed = 2 x {show(name)}, a mean of two surface speeds; the speed of a case is their sum"
+    if len(found.get("surface_speeds", [])) == 2:
+        first, second = found["surface_speeds"]
+        pairs = zip(_numbers(table, first, "speed", "m/s"), _numbers(table, second, "speed", "m/s"), strict=True)
+        values = [None if a is None or b is None else abs(a + b) for a, b in pairs]
+        return values, f"speed = {show(first)} + {show(second)}"
+    if "sliding_speed" in found and "slide_to_roll" in found:
+        name, ratio = found["sliding_speed"][0], found["slide_to_roll"][0]
+        pairs = zip(_numbers(table, name, "speed", "m/s"), _ratios(table, ratio), strict=True)
+        values = [None if a is None or not b else abs(2 * a / b) for a, b in pairs]
+        return values, f"speed = 2 x {show(name)} / {show(ratio)}, the sum of the surface speeds"
+    return None
+
+
+def _ratios(table: TextTable, name: str) -> list[float | None]:
+    """Return a slide-to-roll ratio as a number; in per cent if its unit says so."""
+    factor = 0.01 if _split(name)[1] == "%" else 1.0
+    return [None if value is None else factor * value for value in _cells(table, name)]
+
+
+def _numbers(table: TextTable, name: str, dimension: str, unit: str) -> list[float | None]:
+    """Return the numbers of a column in SI units."""
+    at = table.header.index(name)
+    written = _split(name)[1] or (table.units_row[at] if table.units_row else "")
+    if not written:
+        raise InputError(f"{table.path}: column {show(name)} has no unit; write it in the header, as in '{name} [{unit}]'.")
+    factor = to_si(f"1 {written}", dimension, f"the unit of column {show(name)}")
+    return [None if value is None else factor * value for value in _cells(table, name)]
+
+
+def _cells(table: TextTable, name: str) -> list[float | None]:
+    at, decimal = table.header.index(name), "," if table.decimal_comma else "."
+    found: list[float | None] = []
+    for number, row in zip(table.numbers, table.rows, strict=True):
+        read = None if row[at].lower() in MISSING else number_of(row[at], decimal)
+        if read is None and row[at].lower() not in MISSING:
+            raise InputError(f"{table.path}: row {number}, column {show(name)}: {show(row[at])} is not a number.")
+        found.append(None if read is None else read[0])
+    return found
+
+
+def _with_column(table: TextTable, name: str, values: Sequence[float | None]) -> TextTable:
+    """Return the table with a column more, in the decimal sign of the others."""
+    texts = ["" if value is None or not math.isfinite(value) else repr(value) for value in values]
+    if table.decimal_comma:
+        texts = [text.replace(".", ",") for text in texts]
+    rows = tuple((*row, text) for row, text in zip(table.rows, texts, strict=True))
+    units = (*table.units_row, "") if table.units_row else ()
+    return replace(table, header=(*table.header, name), rows=rows, units_row=units)
+
+
+def _split(header: str) -> tuple[str, str]:
+    parts = _UNIT.fullmatch(header)
+    if parts is None or not parts[1]:
+        return header.strip(), ""
+    return parts[1].strip(), next(unit for unit in parts.groups()[1:] if unit is not None).strip()
+
+
+def _words(header: str) -> str:
+    return " ".join(re.sub(r"[^0-9a-z]+", " ", _split(header)[0].lower()).split())
+
+
+def _is_named(name: str, texts: Sequence[str]) -> bool:
+    return any(text.strip() in (name, _split(name)[0]) for text in texts)
+
+
+Row = tuple[str, int, float, float, float, dict[str, float]]
+
+
+@dataclass(frozen=True)
+class Averaged:
+    """Rows of which repeats were put together.
+
+    Attributes
+    ----------
+    rows : list of tuple
+        The rows: curve, number, speed, friction, its standard error, inputs.
+    notes : tuple of str
+        What was put together and left out.
+    run_in : tuple of int
+        Numbers of the rows that look like run-in.
+    """
+
+    rows: list[Row]
+    notes: tuple[str, ...]
+    run_in: tuple[int, ...]
+
+
+def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool) -> Averaged | None:
+    r"""Put repeats at the same speed of a curve together: their mean, and the standard error of that.
+
+    .. math:: \bar\mu = \frac{1}{n} \sum_i \mu_i, \qquad s = \bar\mu \, \sigma / n^{1/2}
+
+    with the relative scatter :math:`\sigma` of single rows about their means, pooled over all speeds.
+
+    Parameters
+    ----------
+    rows : sequence of tuple
+        Curve, number, speed, friction, error and inputs of each row.
+    runs : sequence of str
+        The run of each row; all empty if the file has none.
+    keep_run_in : bool
+        Whether runs that look like run-in are kept.
+
+    Returns
+    -------
+    Averaged or None
+        None where fewer than three rows share a speed throughout.
+    """
+    marked, sentences = _run_in(rows, runs)
+    kept = [row for row in rows if keep_run_in or row[1] not in marked]
+    groups: dict[Any, list[Row]] = {}
+    for row in sorted(kept, key=lambda row: (row[0], sorted(row[5].items()), row[2])):
+        key = row[0], tuple(sorted(row[5].items()))
+        at = [k for k in groups if k[0] == key and abs(k[1] / row[2] - 1) <= SAME_SPEED]
+        groups.setdefault(at[-1] if at else (key, row[2]), []).append(row)
+    sizes = [len(group) for group in groups.values()]
+    if not sizes or np.median(sizes) < FEWEST:
+        return None
+    freedom = sum(size - 1 for size in sizes)
+    squares = 0.0
+    means = {}
+    for key, group in groups.items():
+        mean = sum(row[3] for row in group) / len(group)
+        means[key] = mean
+        squares += sum((row[3] / mean - 1) ** 2 for row in group)
+    scatter = math.sqrt(squares / freedom) if freedom else 0.0
+    made = [
+        (
+            group[0][0],
+            group[0][1],
+            math.exp(sum(math.log(row[2]) for row in group) / len(group)),
+            means[key],
+            max(scatter, 1e-6) * means[key] / math.sqrt(len(group)),
+            group[0][5],
+        )
+        for key, group in groups.items()
+    ]
+    sentences.append(
+        f"{len(kept)} rows at {len(made)} speeds put together: the scatter of repeats, {100 * scatter:.2g} % of a single row, "
+        "became the error of each mean; repeats = false in [fit] keeps all rows."
+    )
+    return Averaged(made, tuple(sentences), tuple(sorted(marked)))
+
+
+def _run_in(rows: Sequence[Row], runs: Sequence[str]) -> tuple[set[int], list[str]]:
+    """Return the rows of first runs that differ from later ones, and what to say of them."""
+    marked: set[int] = set()
+    said = []
+    for curve in dict.fromkeys(row[0] for row in rows):
+        mine = [(row, run) for row, run in zip(rows, runs, strict=True) if row[0] == curve]
+        names = list(dict.fromkeys(run for _, run in mine))
+        if len(names) < FEWEST:
+            continue
+        first = [row for row, run in mine if run == names[0]]
+        later = [row for row, run in mine if run != names[0]]
+        ratios, scatter = [], []
+        for row in first:
+            others = [math.log(each[3]) for each in later if abs(each[2] / row[2] - 1) <= SAME_SPEED]
+            if len(others) >= 2:
+                ratios.append(math.log(row[3]) - float(np.mean(others)))
+                scatter.append(float(np.var(others, ddof=1)) * (1 + 1 / len(others)))
+        if len(ratios) < 3:
+            continue
+        mean, error = float(np.mean(ratios)), math.sqrt(float(np.mean(scatter)) / len(ratios))
+        if abs(mean) > max(RUN_IN, CLEAR * error):
+            numbers = [row[1] for row in first]
+            marked |= set(numbers)
+            of = f" of curve {curve}" if curve else ""
+            said.append(
+                f"Run {names[0]}{of} lies {100 * math.expm1(mean):+.0f} % from the later ones: run-in, rows "
+                f'{min(numbers)} to {max(numbers)}, left out of the means; run_in = "keep" in [fit] keeps it.'
+            )
+    return marked, said

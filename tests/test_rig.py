@@ -1,0 +1,160 @@
+"""Files as test rigs write them: forces, mean speeds, repeats, run-in, steps, spreadsheets.
+
+The layouts are made from public descriptions of ball-on-disc (mini traction machine) and pin-on-disc exports.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from command_line import call, case_text
+from fit_data import exact
+
+import stribeck as sb
+from stribeck.cases.fit_settings import check_fit_table
+
+SPEEDS = (0.001, 0.01, 0.1, 1.0)
+FRICTIONS = (0.5, 0.25, 0.0625, 0.125)
+
+
+@pytest.fixture
+def read(tmp_path):
+    def reader(text, name="rig.txt", **table):
+        path = tmp_path / name
+        path.write_text(text)
+        return sb.read_measurements(path, check_fit_table(table))
+
+    return reader
+
+
+def ball_on_disc(steps=1, comma=False):
+    """Return an export of a mini traction machine: a preamble, then for each step a header and a table with tabs."""
+    lines = [f"Setting {i}:\tvalue {i}" for i in range(40)]
+    lines[3] = "Lubricant:\tSaliva model, 0.5 % gum"
+    for step in range(steps):
+        lines += ["", f"Step {step + 1} Stribeck", ""]
+        lines.append("Rolling Speed (mm/s)\tTraction Force (N)\tBall Load (N)\tTraction Coeff (-)\tSRR (%)\tPot Temp (°C)")
+        for u, mu in zip(SPEEDS, FRICTIONS, strict=True):
+            scatter = 1 + 0.01 * math.sin(7 * step + 40 * u)
+            lines.append(f"{500 * u:.6f}\t{1.3 * mu * scatter:.8f}\t1.3\t{mu * scatter:.8f}\t50\t25.1")
+    text = "\n".join([*lines, "", "End of test"])
+    return text.replace(".", ",") if comma else text
+
+
+PIN_ON_DISC = "\n".join(
+    [
+        "Instrument;Pin-on-disc tribometer",
+        "Sample;PDMS",
+        "",
+        "Time [s];Linear Speed [cm/s];Fx [N];Fz [mN];Penetration [um]",
+        *(f"{i};{100 * u};{-0.5 * mu};500;{i}" for i, (u, mu) in enumerate(zip(SPEEDS, FRICTIONS, strict=True))),
+    ]
+)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("comma", [False, True])
+def test_the_export_of_a_ball_on_disc_rig_is_read_as_it_is(read, comma):
+    found = read(ball_on_disc(comma=comma), columns={"friction": "Traction Coeff"})
+    assert found.values == pytest.approx(SPEEDS)
+    assert found.friction == pytest.approx(FRICTIONS, rel=0.011)
+    assert "speed = 2 x 'Rolling Speed (mm/s)', a mean of two surface speeds" in found.taken
+    assert "[fit.columns]" in found.taken
+    assert any("Pot Temp" in note for note in found.notes)
+
+
+@pytest.mark.quick
+def test_friction_is_made_of_two_forces(read):
+    text = ball_on_disc().replace("Traction Coeff (-)", "Wear (-)")
+    found = read(text)
+    assert found.friction == pytest.approx(FRICTIONS, rel=0.011)
+    assert "friction = |'Traction Force (N)' / 'Ball Load (N)'|" in found.taken
+    pin = read(PIN_ON_DISC, columns={"speed": "Linear Speed"})
+    assert pin.friction == pytest.approx(FRICTIONS) and pin.values == pytest.approx(SPEEDS)
+
+
+@pytest.mark.quick
+def test_a_speed_that_may_be_mean_or_sum_is_asked_for(read):
+    text = ball_on_disc().replace("Rolling Speed", "Speed").replace("Traction Coeff", "COF")
+    with pytest.raises(sb.InputError, match="may be the mean of both surface speeds or their sum; say which in"):
+        read(text)
+    mean = read(text, columns={"entrainment_speed": "Speed"}).values
+    total = read(text, columns={"speed": "Speed"}).values
+    assert mean == pytest.approx(2 * total) and mean == pytest.approx(SPEEDS)
+
+
+@pytest.mark.quick
+def test_sliding_speed_and_both_surface_speeds_become_their_sum(read):
+    rows = [f"{u * 0.5 * 0.5};{u * 0.625};{u * 0.375};50;{mu}" for u, mu in zip(SPEEDS, FRICTIONS, strict=True)]
+    header = "Sliding speed [m/s];Ball speed [m/s];Disc speed [m/s];SRR [%];COF"
+    both = read("\n".join([header, *rows]))
+    assert both.values == pytest.approx(SPEEDS) and "'Ball speed [m/s]' + 'Disc speed [m/s]'" in both.taken
+    slid = read("\n".join([header.replace("Ball speed", "A").replace("Disc speed", "B"), *rows]))
+    assert slid.values == pytest.approx(SPEEDS) and "2 x 'Sliding speed [m/s]' / 'SRR [%]'" in slid.taken
+    alone = "\n".join(["Sliding speed [m/s];COF", *(f"{u};{mu}" for u, mu in zip(SPEEDS, FRICTIONS, strict=True))])
+    assert read(alone).values == pytest.approx(SPEEDS)  # one surface at rest
+
+
+@pytest.mark.quick
+def test_repeats_become_error_bars(read):
+    found = read(ball_on_disc(steps=5), columns={"friction": "Traction Coeff"})
+    assert len(found) == 4 and found.values == pytest.approx(SPEEDS)
+    scatters = [np.array([1 + 0.01 * math.sin(7 * step + 40 * u) for step in range(5)]) for u in SPEEDS]
+    assert found.friction == pytest.approx([mu * s.mean() for mu, s in zip(FRICTIONS, scatters, strict=True)])
+    pooled = math.sqrt(np.mean([(s / s.mean()).var(ddof=1) for s in scatters]))
+    assert found.error == pytest.approx(pooled * found.friction / math.sqrt(5), rel=1e-6)
+    assert any("20 rows at 4 speeds put together" in note for note in found.notes)
+    assert "'step' as run" in found.taken
+    apart = read(ball_on_disc(steps=5), columns={"friction": "Traction Coeff"}, repeats=False)
+    assert len(apart) == 20 and apart.error is None
+
+
+@pytest.mark.quick
+def test_a_first_run_that_differs_is_marked_as_run_in(read):
+    rows = []
+    for run in range(1, 6):
+        for k, (u, mu) in enumerate(zip(SPEEDS, FRICTIONS, strict=True)):
+            rows.append(f"{run};{u};{mu * (1.2 if run == 1 else 1) * (1 + 0.01 * math.sin(3 * run + k))}")
+    text = "\n".join(["Run;speed [m/s];COF", *rows])
+    found = read(text)
+    assert found.run_in == (2, 3, 4, 5)
+    assert found.friction == pytest.approx(FRICTIONS, rel=0.01)
+    [note] = [note for note in found.notes if "run-in" in note]
+    assert note.startswith("Run 1 lies +19 %") and "rows 2 to 5, left out" in note
+    kept = read(text, run_in="keep")
+    assert kept.friction == pytest.approx([1.04 * mu for mu in FRICTIONS], rel=0.01)
+    assert kept.run_in == found.run_in
+
+
+@pytest.mark.quick
+def test_a_spreadsheet_is_read_like_text(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    book.active.append(["Report", "of a rig"])
+    sheet = book.create_sheet("Data")
+    for row in (["Operator", "N. N."], [], ["Entrainment speed [mm/s]", "COF [-]", "Remark"]):
+        sheet.append(row)
+    for u, mu in zip(SPEEDS, FRICTIONS, strict=True):
+        sheet.append([500 * u, mu, "ok"])
+    path = tmp_path / "rig.xlsx"
+    book.save(path)
+    found = sb.read_measurements(path)
+    assert found.values == pytest.approx(SPEEDS) and found.friction == pytest.approx(FRICTIONS)
+    assert found.rows[0] == 4
+    (tmp_path / "bad.xlsx").write_text("no zip")
+    with pytest.raises(sb.InputError, match="cannot be read as a spreadsheet"):
+        sb.read_measurements(tmp_path / "bad.xlsx")
+    openpyxl.Workbook().save(tmp_path / "empty.xlsx")
+    with pytest.raises(sb.InputError, match="holds no numbers"):
+        sb.read_measurements(tmp_path / "empty.xlsx")
+
+
+def test_a_fit_prints_what_the_columns_were_taken_for(tmp_path, capsys):
+    speeds, frictions = exact()
+    rows = "\n".join(f"{u / 2}\t{0.3 * f}\t0.3" for u, f in zip(speeds, frictions, strict=True))
+    data, case = tmp_path / "rig.txt", tmp_path / "case.toml"
+    data.write_text(f"Mean speed (m/s)\tFriction force (N)\tNormal force (N)\n{rows}")
+    case.write_text(case_text())
+    answer = call(capsys, "fit", data, case, "--free", "boundary_friction")
+    assert answer.code == 0, answer.err
+    assert "Read: friction = |'Friction force (N)' / 'Normal force (N)'|; speed = 2 x 'Mean speed (m/s)'" in answer.out
