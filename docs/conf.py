@@ -20,6 +20,9 @@ from stribeck.figures import load_figure, make_figures
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent
+sys.path.insert(0, str(HERE))
+
+import live_curve  # noqa: E402
 
 CONTENTS = {
     "index": ["readers", "guide", "gallery/index", "theory", "numerics", "api", "about"],
@@ -34,6 +37,20 @@ CONTENTS = {
 
 ABOVE = {"CHANGELOG.md": "changelog", "CONTRIBUTING.md": "contributing"}
 """Pages that lie above this folder, and their names among what is generated."""
+
+LIVE = r"""<div id="live-curve">
+
+\1
+
+</div>
+
+<script defer src="_static/atlas_table.js"></script>
+<script defer src="_static/live_curve.js"></script>
+
+*Move the sliders: the [atlas](atlas.md) of solved states is evaluated in your browser, and friction is within 0.01 % of a
+solve. The first contact is the [PDMS cylinder](../examples/pdms_cylinder.toml) of `make demo`, with a source for every value.*
+"""
+"""What the front page has in place of its picture, which stays where no script runs."""
 
 project = "stribeck"
 author = "The stribeck developers"
@@ -144,6 +161,10 @@ def complete(app, docname, content):
         text = re.sub(r"(?:docs/)?\b(\w+)\.md\b", r":doc:`/\1`", text)
     if docname == "figures":
         text += "\n".join(map(figure_entry, sorted((HERE / "generated" / "figures").glob("*.nc"), key=number_of)))
+    if docname == "index":
+        text, found = re.subn(r"(!\[[^\]]*\]\(images/curve\.png\))\s+\*.*?\*\n", LIVE, text, flags=re.DOTALL)
+        if found != 1:
+            raise ExtensionError("index.md has no picture for the live curve to replace")
     if docname == "symbols":
         theory = (HERE / "theory.md").read_text()
         text += theory[theory.index("\n## 4.") : theory.index("\n## 5.")].split("\n", 2)[2].replace("](#", "](theory.md#")
@@ -177,6 +198,7 @@ def finish(app, problem):
     """Put MathJax beside the pages, and refuse a page that would ask another server for anything."""
     if problem or app.builder.format != "html":
         return
+    live_curve.write(Path(app.outdir) / "_static")
     to = Path(app.outdir) / "_static" / "mathjax"
     fonts = Path("output/chtml/fonts/woff-v2")
     shutil.copytree(MATHJAX / fonts, to / fonts, dirs_exist_ok=True)

@@ -1,0 +1,115 @@
+"""The table that the live curve of the front page reads: the packaged atlas, as a script that a browser runs.
+
+`make docs` writes it beside docs/_static/live_curve.js. By itself: ``python docs/live_curve.py FOLDER``.
+"""
+
+import base64
+import json
+import sys
+import tomllib
+import zlib
+from dataclasses import asdict
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+
+from stribeck import atlas
+from stribeck.atlas.grid import BREAK_TERMS, HEAVY, REGIONS
+from stribeck.atlas.table import FILE, FILM_RANGE, STEP, TABULATED
+from stribeck.quantities.inputs import INPUTS, QUANTITIES, quantity
+from stribeck.quantities.units import DIMENSIONS
+
+FUNCTIONS = ("log_odds", "viscous_balanced", "central_gap", "minimum_gap")
+"""What of the table the page shows, in the order in which the script reads it."""
+
+EXAMPLE = Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml"
+
+SLIDERS = {
+    "radius": (1e-3, 0.1),
+    "modulus": (1e5, 1e8),
+    "load": (1.0, 1e3),
+    "viscosity": (1e-3, 10.0),
+    "speed": (1e-6, 10.0),
+    "roughness": (1e-8, 1e-5),
+    "beta": (5e-3, 1.0),
+    "boundary_friction": (0.02, 2.0),
+}
+"""Ends of sliders that are narrower than what contacts have, so that most places of them lie on the atlas."""
+
+GROUPS = {
+    "speed_group": ("speed group", (1e-9, 1e2), 1e-5),
+    "load_group": ("load group", atlas.BOX["load"], 0.1),
+    "roughness_group": ("roughness group", (1e-8, 1.0), 1e-4),
+}
+"""Label, ends and first value of the sliders of the groups."""
+
+
+def text(raw: bytes) -> str:
+    """Return bytes, deflated, as text."""
+    return base64.b64encode(zlib.compress(raw, 9)).decode()
+
+
+def planes(whole: np.ndarray) -> bytes:
+    """Return whole numbers of 32 bits as four planes of bytes, the lowest first."""
+    return np.ascontiguousarray(whole.astype("<i4").view(np.uint8).reshape(-1, 4).T).tobytes()
+
+
+def table() -> dict:
+    """Return all that the script needs, ready for JSON."""
+    chosen = [TABULATED.index(name) for name in FUNCTIONS]
+    with files("stribeck.atlas").joinpath(FILE).open("rb") as stream, np.load(stream) as data:
+        flat, breaks, film = data["blocks"], data["breaks"], data["film"]
+    parts, position = [], 0
+    for region in REGIONS:
+        for _ in range(region.pieces[0] * region.pieces[1]):
+            for count in region.speeds:
+                size = len(TABULATED) * count * region.nodes[0] * region.nodes[1]
+                parts.append(flat[position : position + size].reshape(len(TABULATED), -1)[chosen].ravel())
+                position += size
+    assert position == len(flat)
+    film = np.ascontiguousarray(film[:, :, [k - 1 for k in chosen[1:]]])  # smooth films have no odds
+    return {
+        "functions": FUNCTIONS,
+        "regions": [asdict(region) for region in REGIONS],
+        "step": STEP,
+        "breakTerms": BREAK_TERMS,
+        "heavy": HEAVY,
+        "filmShape": film.shape,
+        "filmRange": FILM_RANGE,
+        "box": {"speed": atlas.BOX["speed"], "load": atlas.BOX["load"], "kappa": atlas.BOX["relative_roughness"]},
+        "coefficients": text(planes(np.concatenate(parts))),
+        "breaks": text(breaks.astype("<f8").tobytes()),
+        "film": text(film.astype("<f8").tobytes()),
+        "inputs": inputs(),
+    }
+
+
+def inputs() -> dict[str, list[dict]]:
+    """Return the rows of the sliders, in SI units and as groups: name, label, symbol, unit, ends and value at first."""
+    given = tomllib.loads(EXAMPLE.read_text())["contact"]
+    si = []
+    for name in INPUTS:
+        row = QUANTITIES[name]
+        kind = DIMENSIONS[row.dimension]
+        low, high = SLIDERS.get(name, row.usual)
+        steps = {str(power): unit for power, unit in kind.steps.items()}
+        value = quantity(name, given[name])
+        si.append({"name": name, "label": row.label, "steps": steps, "low": low, "high": high, "value": value})
+    by_name = {row["name"]: row for row in si}
+    beta, mu0 = by_name["beta"], by_name["boundary_friction"]
+    groups = [
+        {"name": name, "label": label, "steps": {"0": ""}, "low": low, "high": high, "value": value}
+        for name, (label, (low, high), value) in GROUPS.items()
+    ]
+    return {"si": si, "groups": [*groups, beta, mu0]}
+
+
+def write(folder: Path) -> None:
+    """Write the script."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "atlas_table.js").write_text(f"window.stribeckTable = {json.dumps(table(), separators=(',', ':'))};\n")
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]))
