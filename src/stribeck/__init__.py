@@ -17,7 +17,7 @@ _HOMES = {
     "contacts.line": ("Groups", "HertzScales", "InputError", "LineContact"),
     "contacts.point": ("PointContact",),
     "curves.landmarks": ("Landmark",),
-    "curves.regime": ("regime_of",),
+    "contacts.regime": ("regime_of",),
     "curves.result": ("StribeckCurve",),
     "curves.stribeck_curve": ("stribeck_curve",),
     "data_sheet.new_case": ("new_case",),

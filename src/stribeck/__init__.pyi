@@ -13,8 +13,8 @@ from stribeck.contact_laws.table import TableLaw
 from stribeck.contacts.friction import Friction
 from stribeck.contacts.line import Groups, HertzScales, InputError, LineContact
 from stribeck.contacts.point import PointContact
+from stribeck.contacts.regime import regime_of
 from stribeck.curves.landmarks import Landmark
-from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.data_sheet.new_case import new_case

@@ -19,6 +19,7 @@ from scipy import special
 from stribeck._types import Array, Indices
 from stribeck.contact_laws.persson_integral import Integral, tabulate
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum, height_of_roughness
+from stribeck.quantities.results import ByValue
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["GAMMA", "PerssonLaw", "exponential_limit", "persson_law"]
@@ -31,7 +32,7 @@ NEARLY_FULL = 0.42
 
 
 @dataclass(frozen=True, eq=False)
-class PerssonLaw:
+class PerssonLaw(ByValue):
     r"""Pressure against separation, from first touch to full contact, in the units of the exponential law.
 
     .. math:: \Phi = \frac{p}{\beta E^*} \text{ at } s = \frac{\alpha u}{h_\mathrm{rms}}, \qquad

@@ -21,13 +21,14 @@ from functools import cached_property
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.quantities.results import ByValue
 from stribeck.quantities.units import InputError, format_si, show
 
 __all__ = ["SelfAffine", "Spectrum", "height_of_roughness", "positive"]
 
 
 @dataclass(frozen=True, eq=False)
-class Spectrum:
+class Spectrum(ByValue):
     r"""Isotropic power spectrum as a table, a power law between neighbouring points and zero outside.
 
     Parameters

@@ -3,14 +3,25 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Callable
+from typing import Any, Literal, Self
 
+import numpy as np
+
+from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["DEFINITIONS", "Definition", "Friction", "check_definition", "coefficients", "sliding_part"]
+__all__ = [
+    "DEFINITIONS",
+    "Definition",
+    "Friction",
+    "FrictionArray",
+    "check_definition",
+    "coefficients",
+    "sliding_part",
+]
 
 Definition = Literal["balanced", "published"]
 
@@ -22,31 +33,115 @@ STICKING = 0.01
 """Slide-to-roll ratio from which asperities slide fully."""
 
 
-@dataclass(frozen=True)
-class Friction:
-    """Friction coefficient and its contributions from asperities and fluid.
+class Friction(float):
+    """Friction coefficient of one state, a number with its parts; called, the one for other coefficients.
 
-    Attributes
+    Parameters
     ----------
     contact : float
         Part from asperities, boundary_friction times their share of the load [-].
     viscous : float
         Part from the fluid [-].
     total : float
-        Their sum [-].
+        Their sum, the value of the number itself [-].
     error : float
         Estimated absolute error of the sum [-].
     lower, upper : float
         Tangential force on the substrate and on the cylinder over the load [-], positive where it brakes a substrate that is
         the faster.  They differ by the pull of the pressures on the curved surface; nan where they are not known.
+
+    Examples
+    --------
+    >>> friction = Friction(contact=0.3, viscous=0.1, total=0.4, error=1e-7)
+    >>> friction + 1, friction.contact
+    (1.4, 0.3)
     """
 
     contact: float
     viscous: float
-    total: float
     error: float
-    lower: float = math.nan
-    upper: float = math.nan
+    lower: float
+    upper: float
+    _other: Callable[..., Friction]
+
+    def __new__(
+        cls,
+        contact: float,
+        viscous: float,
+        total: float,
+        error: float,
+        lower: float = math.nan,
+        upper: float = math.nan,
+        _other: Callable[..., Friction] | None = None,
+    ) -> Self:
+        """Make the number, which cannot change."""
+        made = super().__new__(cls, total)
+        made.contact, made.viscous, made.error, made.lower, made.upper = contact, viscous, error, lower, upper
+        if _other is not None:
+            made._other = _other
+        return made
+
+    @property
+    def total(self) -> float:
+        """The sum of both parts [-], as a plain number."""
+        return float(self)
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Friction:
+        """Return the friction coefficient for another boundary_friction, beta or definition."""
+        return self._other(*args, **kwargs)
+
+    def __repr__(self) -> str:
+        """Return the parts."""
+        total = float(self)
+        return f"Friction(contact={self.contact!r}, viscous={self.viscous!r}, total={total!r}, error={self.error!r})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the numbers."""
+        return type(self), (self.contact, self.viscous, float(self), self.error, self.lower, self.upper)
+
+
+class FrictionArray(np.ndarray[Any, np.dtype[np.float64]]):
+    """Friction coefficients of many states, an array with its parts; called, those for other coefficients.
+
+    Attributes
+    ----------
+    contact, viscous, error : ndarray
+        Parts from asperities and fluid, and estimated absolute error of their sum [-].
+    """
+
+    contact: Array
+    viscous: Array
+    error: Array
+    _other: Callable[..., FrictionArray]
+
+    def __new__(
+        cls, contact: Array, viscous: Array, total: Array, error: Array, other: Callable[..., FrictionArray]
+    ) -> Self:
+        """Make the array of the sums."""
+        made = np.asarray(total).view(cls)
+        made.contact, made.viscous, made.error, made._other = contact, viscous, error, other
+        return made
+
+    @property
+    def total(self) -> Array:
+        """The sum of both parts [-], as a plain array."""
+        return np.asarray(self)
+
+    def __call__(self, *args: Any, **kwargs: Any) -> FrictionArray:
+        """Return the friction coefficients for another boundary_friction, beta or definition."""
+        return self._other(*args, **kwargs)
+
+    def __getitem__(self, key: Any) -> Any:
+        """Return plain numbers."""
+        return np.asarray(self)[key]
+
+    def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
+        """Let what is computed of it be plain numbers."""
+        return np.asarray(array)[()]
+
+    def __reduce__(self) -> Any:
+        """Pickle the total, which is a plain array then."""
+        return np.asarray(self).__reduce__()
 
 
 def sliding_part(slide_to_roll: float) -> float:

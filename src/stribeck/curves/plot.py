@@ -21,6 +21,7 @@ from stribeck.files.pictures import (
     MARK,
     TINTS,
     add_legend,
+    figure_of,
     finish_figure,
     footer_lines,
     make_logarithmic,
@@ -46,7 +47,9 @@ FEW = 25
 """Number of points up to which each is marked."""
 
 
-def plot_curve(curve: StribeckCurve, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
+def plot_curve(
+    curve: StribeckCurve, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+) -> Figure:
     """Draw a Stribeck curve.
 
     The first panel shows friction and its parts against the Hersey number, or against what varies where that
@@ -60,6 +63,8 @@ def plot_curve(curve: StribeckCurve, path: PathLike | None = None, *, force: boo
         The curve.
     path : str or path-like, optional
         Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw friction into, over what varies, in place of a new figure.
     force : bool
         Whether an existing file is replaced; otherwise it is kept.
     title : str
@@ -77,6 +82,13 @@ def plot_curve(curve: StribeckCurve, path: PathLike | None = None, *, force: boo
     MissingExtraError
         If matplotlib is not installed.
     """
+    if ax is not None:
+        figure = figure_of(ax)
+        label = _abscissa_of_values(curve)
+        _draw_friction(ax, curve, curve.values)
+        ax.set(xlabel=label, ylabel=r"friction coefficient $\mu$")
+        ax.legend(frameon=False, fontsize=8.5)
+        return finish_figure(figure, path, force)
     by_speed = curve.over == "speed" and curve.contact is not None
     figure, (left, right) = new_figure(
         (11.0, 5.0 if by_speed else 4.6),
@@ -130,11 +142,20 @@ def _abscissa(curve: StribeckCurve) -> tuple[Array, str]:
     """Return the first panel's abscissa and its label."""
     if curve.over == "speed":
         return curve.hersey_number, r"Hersey number $\eta U/F_N$"
+    return curve.values, _abscissa_of_values(curve)
+
+
+def _abscissa_of_values(curve: StribeckCurve) -> str:
+    """Return the label of what varies."""
     if curve.contact is None:
-        symbol = {"load": r"$F_N/(\pi\beta^2 R E^*)$", "roughness": r"$h_\mathrm{rms}/(4\alpha\beta^2 R)$"}[curve.over]
-        return curve.values, f"{curve.over} group {symbol}"
+        symbol = {
+            "speed": r"$\lambda$",
+            "load": r"$F_N/(\pi\beta^2 R E^*)$",
+            "roughness": r"$h_\mathrm{rms}/(4\alpha\beta^2 R)$",
+        }[curve.over]
+        return f"{curve.over} group {symbol}"
     unit = DIMENSIONS[QUANTITIES[curve.over].dimension].unit
-    return curve.values, f"{curve.over} {SYMBOLS[curve.over]} ({unit})"
+    return f"{curve.over} {SYMBOLS[curve.over]} ({unit})"
 
 
 def _draw_friction(axes: Axes, curve: StribeckCurve, x: Array, *, parts: bool = True) -> None:

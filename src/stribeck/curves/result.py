@@ -15,7 +15,7 @@ from stribeck._types import Array
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction import Definition, FrictionArray, check_definition, coefficients
 from stribeck.contacts.groups import Groups
 from stribeck.curves.coordinate import Coordinate, Over
 from stribeck.curves.landmarks import Landmark, locate
@@ -23,10 +23,11 @@ from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SH
 from stribeck.equations.sensitivity import GROUPS, friction_slopes
 from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.units import format_si
+from stribeck.quantities.results import ByValue, Card, Shown
+from stribeck.quantities.units import InputError, format_si
 from stribeck.solver.notes import HARD, minimum_note
 from stribeck.solver.refinement import RefinedState
-from stribeck.solver.solution import Solution
+from stribeck.solver.solution import Solution, si_films
 
 if TYPE_CHECKING:
     import xarray
@@ -34,8 +35,8 @@ if TYPE_CHECKING:
 __all__ = ["StribeckCurve"]
 
 
-@dataclass(frozen=True, eq=False)
-class StribeckCurve:
+@dataclass(frozen=True, eq=False, repr=False)
+class StribeckCurve(Shown, ByValue):
     """Converged states along one coordinate, and the friction on them.
 
     Attributes
@@ -70,8 +71,8 @@ class StribeckCurve:
     rtol: float
     outcome: Outcome
     requested: int
-    _points: tuple[RefinedState, ...] = field(repr=False)
-    _path: Coordinate = field(repr=False)
+    _points: tuple[RefinedState, ...] = field(repr=False, compare=False)
+    _path: Coordinate = field(repr=False, compare=False)
 
     def __len__(self) -> int:
         """Return the number of points."""
@@ -105,7 +106,10 @@ class StribeckCurve:
 
     @cached_property
     def _friction(self) -> Array:
-        found = [s.friction(self.boundary_friction, self.beta, self.definition) for s in self.solutions]
+        return self._friction_of(self.boundary_friction, self.beta, self.definition)
+
+    def _friction_of(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
+        found = [s.friction(boundary_friction, beta, definition) for s in self.solutions]
         return np.array([[f.contact, f.viscous, f.total, f.error] for f in found]).reshape(-1, 4)
 
     @property
@@ -119,9 +123,27 @@ class StribeckCurve:
         return np.asarray(self._friction[:, 1])
 
     @property
-    def friction(self) -> Array:
-        """Friction coefficient [-]."""
-        return np.asarray(self._friction[:, 2])
+    def friction(self) -> FrictionArray:
+        """Friction coefficients [-]: an array with its parts ``contact``, ``viscous`` and its ``error``.
+
+        By coefficients and definition of the curve; ``friction(boundary_friction, beta, definition)`` is the same for others,
+        each of which may be left out.
+        """
+        return self._friction_for()
+
+    def _friction_for(
+        self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition | None = None
+    ) -> FrictionArray:
+        if boundary_friction is None and beta is None and definition is None:
+            found = self._friction
+        else:
+            given = coefficients(
+                None,
+                self.boundary_friction if boundary_friction is None else boundary_friction,
+                self.beta if beta is None else beta,
+            )
+            found = self._friction_of(*given, self.definition if definition is None else check_definition(definition))
+        return FrictionArray(found[:, 0], found[:, 1], found[:, 3], self._friction_for)
 
     @property
     def friction_error(self) -> Array:
@@ -305,13 +327,33 @@ class StribeckCurve:
 
         write_csv(self.to_dataset(), path, force=force)
 
-    def plot(self, path: Any = None, *, force: bool = False) -> Any:
+    def to_si(self) -> dict[str, Array]:
+        """Return films and Hertz scales of the points in SI units.
+
+        Returns
+        -------
+        dict of str to ndarray
+            By name, such as ``central_film_thickness`` [m] and ``hertz_pressure`` [Pa].
+
+        Raises
+        ------
+        InputError
+            If the curve comes from groups alone, which do not fix the scales.
+        """
+        if self.contact is None:
+            raise InputError("to_si needs the Hertz scales of a contact; solve a LineContact instead of Groups.")
+        films = [si_films(solution) for solution in self.solutions]
+        return {name: np.array([film[name][0] for film in films]) for name in (films[0] if films else ())}
+
+    def plot(self, path: Any = None, *, ax: Any = None, force: bool = False) -> Any:
         """Draw the curve.
 
         Parameters
         ----------
         path : str or path-like, optional
             Image file to write as well, its format by its ending.
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw friction into, over what varies, in place of a new figure.
         force : bool
             Whether an existing file is replaced; else it is kept and the call refused.
 
@@ -327,7 +369,23 @@ class StribeckCurve:
         """
         from stribeck.curves.plot import plot_curve
 
-        return plot_curve(self, path, force=force)
+        return plot_curve(self, path, ax=ax, force=force)
+
+    def _card(self) -> Card:
+        if not len(self):
+            return Card(f"no points over {self.over}", (), (self.outcome.value,))
+        points = f"{len(self)} points" if len(self) == self.requested else f"{len(self)} of {self.requested} points"
+        rows = [
+            ("friction", f"{self.friction.min():.4g} to {self.friction.max():.4g} ({self.definition})"),
+            *((mark.name, f"{mark.friction:.4g} at {self._where(mark.value)}") for mark in self.transitions),
+            ("regimes", ", ".join(dict.fromkeys(self.regimes))),
+            ("dry friction, beta", f"{self.boundary_friction:g}, {self.beta:g}"),
+            ("contact law", self.solutions[0].law),
+            ("estimated error", f"{self.error_estimate:.1e} (rtol {self.rtol:g})"),
+        ]
+        ends = self._where(float(self.values[0]), float(self.values[-1]))
+        outcome = "" if self.outcome.ok else f"; {self.outcome.value}"
+        return Card(f"{points}, {ends}{outcome}", rows, self.notes)
 
 
 def _fluid(point: RefinedState) -> float:

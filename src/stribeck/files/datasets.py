@@ -6,6 +6,8 @@ xarray and netCDF4 come with the extra ``data`` and are imported on first use.
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,12 +18,49 @@ if TYPE_CHECKING:
     import xarray
 
 
-__all__ = ["CSV", "DATA", "NETCDF", "write_csv", "write_data", "write_netcdf"]
+__all__ = ["CSV", "DATA", "NETCDF", "new_dataset", "write_csv", "write_data", "write_netcdf"]
+
+Column = tuple[str | Sequence[str], Any, str, str]
+"""Dimensions, values, unit and long name of a variable."""
 
 NETCDF = (".nc",)
 CSV = (".csv",)
 DATA = (*NETCDF, *CSV)
 """Endings of the data files."""
+
+
+def new_dataset(columns: Mapping[str, Column], coords: Mapping[str, Column], attributes: Mapping[str, Any]) -> xarray.Dataset:
+    """Return a dataset whose variables have units and long names.
+
+    Parameters
+    ----------
+    columns, coords : mapping of str to tuple
+        Dimensions, values, unit and long name of each variable.
+    attributes : mapping
+        What belongs to the whole.
+
+    Returns
+    -------
+    xarray.Dataset
+        The dataset.
+
+    Raises
+    ------
+    MissingExtraError
+        If xarray is not installed.
+    """
+    try:
+        import xarray
+    except ImportError:
+        raise MissingExtraError("a dataset", "data", "xarray") from None
+
+    def described(table: Mapping[str, Column]) -> dict[str, Any]:
+        return {
+            name: (dims, values, {"units": unit, "long_name": label}) for name, (dims, values, unit, label) in table.items()
+        }
+
+    source = {"source": f"stribeck {version('stribeck')}"}
+    return xarray.Dataset(described(columns), described(coords), source | dict(attributes))
 
 
 def write_netcdf(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:

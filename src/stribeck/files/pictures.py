@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, show
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,6 +75,14 @@ def new_figure(
     for i, (line, colour) in enumerate(reversed(footer)):
         figure.text(0.8 / width, (0.14 + LINE * i) / height, line, size=8, color=colour, va="bottom")
     return figure, axes
+
+
+def figure_of(axes: Axes) -> Figure:
+    """Return the figure of axes that a caller gave."""
+    if not hasattr(axes, "get_figure"):
+        raise InputError(f"ax = {show(axes)} is no axes of matplotlib; give one, as of matplotlib.pyplot.subplots().")
+    found: Any = axes.get_figure()
+    return found  # type: ignore[no-any-return]
 
 
 def make_logarithmic(axes: Axes, which: str, values: Array) -> None:

@@ -17,6 +17,7 @@ from stribeck.files.pictures import (
     INK,
     MARK,
     add_legend,
+    figure_of,
     finish_figure,
     footer_lines,
     make_logarithmic,
@@ -27,6 +28,7 @@ from stribeck.fits.case_file import format_interval, format_value
 from stribeck.fits.result import Fit
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 __all__ = ["plot_fit"]
@@ -44,7 +46,9 @@ LABELS = {
 }
 
 
-def plot_fit(fit: Fit, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
+def plot_fit(
+    fit: Fit, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+) -> Figure:
     """Draw a fit.
 
     Parameters
@@ -53,6 +57,8 @@ def plot_fit(fit: Fit, path: PathLike | None = None, *, force: bool = False, tit
         The fit.
     path : str or path-like, optional
         Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw friction into, in place of a new figure.
     force : bool
         Whether an existing file is replaced; otherwise it is kept.
     title : str
@@ -71,10 +77,13 @@ def plot_fit(fit: Fit, path: PathLike | None = None, *, force: bool = False, tit
         If matplotlib is not installed.
     """
     data = fit.data
-    figure, (above, below) = new_figure((8.5, 6.2), _footer(fit), rows=2, title=title or "Fit to measured friction")
+    below: Axes | None
+    if ax is None:
+        figure, (above, below) = new_figure((8.5, 6.2), _footer(fit), rows=2, title=title or "Fit to measured friction")
+    else:
+        figure, above, below = figure_of(ax), ax, None
     make_logarithmic(above, "x", data.values)
     make_logarithmic(above, "y", data.friction)
-    make_logarithmic(below, "x", data.values)
     bars: Any = fit._minimum.objective.sigma
     for k, name in enumerate(data.curves):
         rows = data.curve == k
@@ -89,14 +98,20 @@ def plot_fit(fit: Fit, path: PathLike | None = None, *, force: bool = False, tit
         above.fill_between(
             x, low, high, color=colour, alpha=0.18, lw=0, zorder=2, label="95 % band of the curve" if k == 0 else None
         )
-        below.plot(data.values[rows], fit.residuals[rows], zorder=3, **style)
+        if below is not None:
+            below.plot(data.values[rows], fit.residuals[rows], zorder=3, **style)
+    above.set_ylabel(r"friction coefficient $\mu$")
+    if below is None:
+        above.set_xlabel(LABELS[data.abscissa])
+        above.legend(frameon=False, fontsize=8.5)
+        return finish_figure(figure, path, force)
+    make_logarithmic(below, "x", data.values)
     for level, dashes in ((0.0, "-"), (-2.0, (0, (5, 3))), (2.0, (0, (5, 3)))):
         below.axhline(level, color=GREY, lw=0.9, ls=dashes, zorder=1)
     reach = 1.1 * max(3.0, float(np.abs(fit.residuals).max()))
     below.set_ylim(-reach, reach)
     below.set_xlim(above.get_xlim())
     above.tick_params(labelbottom=False, which="both")
-    above.set_ylabel(r"friction coefficient $\mu$")
     below.set_ylabel("residual (standard errors)")
     below.set_xlabel(LABELS[data.abscissa])
     add_legend(figure, (above, below))

@@ -15,9 +15,12 @@ from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.regime import Regime, regime_of
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import HERTZ, OUTPUT_TABLES, OutputTable
+from stribeck.quantities.results import ByValue, Card, Shown
+from stribeck.quantities.units import format_si
 
 __all__ = ["BaseSolution", "Profile", "si_films"]
 
@@ -50,7 +53,7 @@ class Profile:
         return self.contact_pressure + self.fluid_pressure
 
 
-class BaseSolution(ABC):
+class BaseSolution(Shown, ByValue, ABC):
     """One solved state; see the solution of a geometry for its fields.
 
     Attributes
@@ -129,7 +132,7 @@ class BaseSolution(ABC):
         """Return an observable under its own name."""
         if not name.startswith("_") and name != "observables" and name in self._own:
             return float(getattr(self.observables, name))
-        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
+        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
 
     def __dir__(self) -> list[str]:
         """Return the names of attributes, observables among them."""
@@ -185,33 +188,16 @@ class BaseSolution(ABC):
         """Hersey number eta U/F_N [-], U the sum of the surface speeds; for beta = 1 where only groups are known."""
         return float(self.groups.hersey_number() if self.contact is None else self.contact.hersey_number)
 
-    @refuse_former
-    def friction(
-        self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
-    ) -> Friction:
-        r"""Return the friction coefficient.
+    @property
+    def friction(self) -> Friction:
+        r"""The friction coefficient [-], balanced: a number with its parts ``contact``, ``viscous`` and its ``error``.
 
         .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \mu_f(\beta)
 
-        Parameters
-        ----------
-        boundary_friction : float, optional
-            Friction coefficient of the dry contact [-], >= 0; that of the contact, or 1, if omitted.
-        beta : float, optional
-            Coefficient of the contact law [-], > 0; that of the contact, or 1, if omitted.
-        definition : {"balanced", "published"}
-            Viscous part as the force on the substrate, which balances all forces on the other body, or as published.
-            They agree where asperities carry nothing; in boundary lubrication the published one is larger.
-
-        Returns
-        -------
-        Friction
-            Contact, viscous and total friction [-].
-
-        Raises
-        ------
-        InputError
-            If an argument is outside its range.
+        The coefficients are those of the contact, or 1 where only groups are known.  ``friction(boundary_friction, beta,
+        definition)`` is the same for other coefficients, each of which may be left out.  By definition ``"balanced"`` the
+        viscous part is the force on the substrate, which balances all forces on the other body, by ``"published"`` that of
+        the article.  They agree where asperities carry nothing; in boundary lubrication the published one is larger.
 
         Notes
         -----
@@ -220,12 +206,42 @@ class BaseSolution(ABC):
 
         Source: [BP] Eq. (friction); theory.md, section 6, for the balanced form.
         """
+        return self._friction()
+
+    @refuse_former
+    def _friction(
+        self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
+    ) -> Friction:
         boundary_friction, beta = coefficients(self.contact, boundary_friction, beta)
         contact = self._sliding * boundary_friction * self.contact_load_share
         viscous, error = self._viscous(beta, check_definition(definition))
         error += abs(self._sliding) * boundary_friction * self.errors["contact_load_share"]
         lower, upper = (contact + wall for wall in self._walls(beta))
-        return Friction(contact, viscous, contact + viscous, error, lower, upper)
+        return Friction(contact, viscous, contact + viscous, error, lower, upper, self._friction)
+
+    @property
+    def regime(self) -> Regime:
+        """Lubrication regime: ``"boundary"``, ``"mixed"`` or ``"hydrodynamic"``, see :func:`stribeck.regime_of`."""
+        friction = self.friction
+        return regime_of(self.fluid_load_share, friction.contact / friction.total if friction.total > 0 else 0.0)
+
+    def _card(self) -> Card:
+        friction = self.friction
+        parts = f"{friction.contact:.4g} from asperities, {friction.viscous:.4g} from the fluid"
+        rows = [
+            ("friction", f"{friction.total:.4g} ({parts})"),
+            ("load on asperities", f"{self.contact_load_share:.4g}"),
+            ("load on the fluid", f"{self.fluid_load_share:.4g}"),
+        ]
+        for name, words in (("central_gap", "central film"), ("minimum_gap", "minimum film")):
+            value = getattr(self, name)
+            si = "" if self.contact is None else f", {format_si(value * self.contact.hertz.indentation, 'length', 4)}"
+            rows.append((words, f"{value:.4g} u_Hz{si}"))
+        rows += [("Lambda", f"{self.lambda_ratio:.4g}"), ("contact law", self.law)]
+        groups = ", ".join(f"{name} {float(getattr(self.groups, name)):.4g}" for name in ("speed", "load", "roughness"))
+        rows += [("groups", groups), ("estimated error", f"{self.error_estimate:.1e} (rtol {self.rtol:g})")]
+        outcome = "" if self.outcome.ok else f"; {self.outcome.value}"
+        return Card(f"{self.regime} lubrication{outcome}", rows, self.notes)
 
     @refuse_former
     def to_dict(self, boundary_friction: float | None = None, beta: float | None = None) -> dict[str, object]:

@@ -18,6 +18,7 @@ from stribeck.files.pictures import (
     GREY,
     INK,
     add_legend,
+    figure_of,
     finish_figure,
     footer_lines,
     make_logarithmic,
@@ -29,12 +30,15 @@ from stribeck.quantities.units import DIMENSIONS, format_si
 from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 __all__ = ["plot_profile"]
 
 
-def plot_profile(solution: Solution, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
+def plot_profile(
+    solution: Solution, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+) -> Figure:
     """Draw gap and pressures along the contact, in SI units where the solution has a contact.
 
     Parameters
@@ -43,6 +47,8 @@ def plot_profile(solution: Solution, path: PathLike | None = None, *, force: boo
         The state.
     path : str or path-like, optional
         Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw the pressures into, in place of a new figure.
     force : bool
         Whether an existing file is replaced; otherwise it is kept.
     title : str
@@ -60,7 +66,11 @@ def plot_profile(solution: Solution, path: PathLike | None = None, *, force: boo
     MissingExtraError
         If matplotlib is not installed.
     """
-    figure, (above, below) = new_figure((7.5, 6.0), _footer(solution), rows=2, title=title or "Gap and pressure")
+    above: Axes | None
+    if ax is None:
+        figure, (above, below) = new_figure((7.5, 6.0), _footer(solution), rows=2, title=title or "Gap and pressure")
+    else:
+        figure, above, below = figure_of(ax), None, ax
     x = _positions(solution)
     fields = solution.profile(x)
     if solution.contact is None:
@@ -74,18 +84,8 @@ def plot_profile(solution: Solution, path: PathLike | None = None, *, force: boo
         to_x = _axis(scales.half_width, "length", "position $x$")
         to_gap = _axis(scales.indentation, "length", "gap $h$", float(np.abs(fields.gap).max()))
         to_pressure = _axis(scales.pressure, "pressure", "pressure")
-    above.plot(x * to_x[0], fields.gap * to_gap[0], color=INK, lw=1.8, label="gap")
-    drawn = fields.gap
-    alpha = 1.0 if solution.contact is None else solution.contact.alpha
-    rms = alpha * float(solution.groups.relative_roughness)
-    if rms > 0 and rms > 0.03 * fields.gap.min():
-        drawn = np.append(drawn, rms)
-        name = r"$h_\mathrm{rms}/\alpha$" if solution.contact is None else SYMBOLS["roughness"]
-        above.axhline(rms * to_gap[0], color=GREY, lw=1.0, ls=(0, (5, 3)), label=f"roughness {name}")
-    if fields.gap.min() > 0:
-        make_logarithmic(above, "y", drawn * to_gap[0])
-    above.set_ylabel(to_gap[1])
-    above.tick_params(labelbottom=False)
+    if above is not None:
+        _draw_gap(above, solution, x * to_x[0], fields.gap, to_gap)
     hertz = np.sqrt(np.clip(1 - x**2, 0, None))
     curves: list[tuple[Array, dict[str, Any]]] = [
         (hertz, {"color": GREY, "lw": 1.0, "ls": (0, (2, 2)), "label": "dry smooth contact (Hertz)"}),
@@ -101,10 +101,29 @@ def plot_profile(solution: Solution, path: PathLike | None = None, *, force: boo
     below.axhline(0.0, color=GREY, lw=0.6, zorder=1)
     below.set_xlabel(f"{to_x[1]}; fluid enters from the left")
     below.set_ylabel(to_pressure[1])
-    for axes in (above, below):
-        axes.set_xlim(x[0] * to_x[0], x[-1] * to_x[0])
-    add_legend(figure, (above, below), columns=3)
+    below.set_xlim(x[0] * to_x[0], x[-1] * to_x[0])
+    if above is None:
+        below.legend(frameon=False, fontsize=8.5)
+    else:
+        above.set_xlim(below.get_xlim())
+        add_legend(figure, (above, below), columns=3)
     return finish_figure(figure, path, force)
+
+
+def _draw_gap(axes: Axes, solution: Solution, x: Array, gap: Array, to_gap: tuple[float, str]) -> None:
+    """Draw the gap, and the roughness where it can be seen beside it."""
+    axes.plot(x, gap * to_gap[0], color=INK, lw=1.8, label="gap")
+    drawn = gap
+    alpha = 1.0 if solution.contact is None else solution.contact.alpha
+    rms = alpha * float(solution.groups.relative_roughness)
+    if rms > 0 and rms > 0.03 * gap.min():
+        drawn = np.append(drawn, rms)
+        name = r"$h_\mathrm{rms}/\alpha$" if solution.contact is None else SYMBOLS["roughness"]
+        axes.axhline(rms * to_gap[0], color=GREY, lw=1.0, ls=(0, (5, 3)), label=f"roughness {name}")
+    if gap.min() > 0:
+        make_logarithmic(axes, "y", drawn * to_gap[0])
+    axes.set_ylabel(to_gap[1])
+    axes.tick_params(labelbottom=False)
 
 
 def _footer(solution: Solution) -> list[tuple[str, str]]:

@@ -6,13 +6,14 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, Friction, sliding_part
+from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.equations.gap import gap_at
 from stribeck.equations.observables import Observables
@@ -22,10 +23,13 @@ from stribeck.quantities.outputs import ALL_NAMES, ENDING, NAMES, OutputTable
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import BaseSolution, Profile
 
+if TYPE_CHECKING:
+    import xarray
+
 __all__ = ["Friction", "Profile", "Solution"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Solution(BaseSolution):
     r"""One solved state of the contact.
 
@@ -86,7 +90,7 @@ class Solution(BaseSolution):
     mesh: Mesh = field(repr=False)
     nodal_gap: Array = field(repr=False)
     gap_shift: float = field(repr=False)
-    nodal_pressures: Callable[[], tuple[Array, Array]] = field(repr=False)
+    nodal_pressures: Callable[[], tuple[Array, Array]] = field(repr=False, compare=False)
     newton_steps: int = 0
     origin: tuple[float, float] = (0.0, 1.0)
 
@@ -248,3 +252,60 @@ class Solution(BaseSolution):
             p.fluid_pressure * scales.pressure,
             "SI",
         )
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the fields along the contact as an xarray Dataset, in SI units if there is a contact.
+
+        Returns
+        -------
+        xarray.Dataset
+            Along ``x`` of the nodes: gap, contact pressure, fluid pressure; numbers of :meth:`to_dict` as attributes; needs
+            the extra ``data``.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        from stribeck.files.datasets import new_dataset
+
+        fields_, units = (
+            (Profile(self.x, self.gap, self.contact_pressure, self.fluid_pressure), ("a", "u_Hz", "p_Hz"))
+            if self.contact is None
+            else (self.to_si(), ("m", "m", "Pa"))
+        )
+        columns = {
+            "gap": ("x", fields_.gap, units[1], "gap"),
+            "contact_pressure": ("x", fields_.contact_pressure, units[2], "pressure of the asperities"),
+            "fluid_pressure": ("x", fields_.fluid_pressure, units[2], "pressure of the fluid"),
+        }
+        numbers = {name: value for name, value in self.to_dict().items() if isinstance(value, float | int | str)}
+        numbers |= {f"friction_{each}": self.friction(definition=each).total for each in DEFINITIONS}
+        x = {"x": ("x", fields_.x, units[0], "position along the contact; fluid enters from the left")}
+        return new_dataset(columns, x, {"title": "Fields along a lubricated rough line contact"} | numbers)
+
+    def plot(self, path: Any = None, *, ax: Any = None, force: bool = False) -> Any:
+        """Draw gap and pressures along the contact.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            Image file to write as well, its format by its ending.
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw the pressures into, in place of a new figure.
+        force : bool
+            Whether an existing file is replaced; else it is kept and the call refused.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure; needs the extra ``plot``.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given.
+        """
+        from stribeck.solver.plot import plot_profile
+
+        return plot_profile(self, path, ax=ax, force=force)

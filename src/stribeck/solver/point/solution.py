@@ -128,7 +128,7 @@ class PointObservables:
         return 1.5 / math.pi * float(self._groups.slope(beta)) * error
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PointSolution(BaseSolution):
     r"""One solved state of a ball.
 

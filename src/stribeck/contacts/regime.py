@@ -1,0 +1,37 @@
+"""The lubrication regime of a state, by the shares of fluid and asperities in load and friction."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+__all__ = ["BOUNDARY_FLUID_SHARE", "HYDRODYNAMIC_CONTACT_SHARE", "Regime", "regime_of"]
+
+Regime = Literal["boundary", "mixed", "hydrodynamic"]
+
+BOUNDARY_FLUID_SHARE = 0.05
+"""Part of the load on the fluid up to which lubrication is called boundary: friction is within 5 % of the plateau."""
+
+HYDRODYNAMIC_CONTACT_SHARE = 0.1
+"""Part of the friction from asperities up to which lubrication is called hydrodynamic; at the friction minimum of smooth
+contacts it is about 2/(2 + 3 Lambda), 6 to 18 % for Lambda from 10 to 3."""
+
+
+def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:
+    """Return the regime from the fluid load share and the fraction of friction that asperities cause.
+
+    Parameters
+    ----------
+    fluid_load_share : float
+        Part of the load that the fluid carries [-].
+    contact_friction_share : float
+        Contact part of the friction over all of it [-].
+
+    Returns
+    -------
+    str
+        ``"hydrodynamic"`` where asperities cause at most 10 % of the friction, else ``"boundary"`` where the fluid carries
+        at most 5 % of the load, else ``"mixed"``.
+    """
+    if contact_friction_share <= HYDRODYNAMIC_CONTACT_SHARE:
+        return "hydrodynamic"
+    return "boundary" if fluid_load_share <= BOUNDARY_FLUID_SHARE else "mixed"

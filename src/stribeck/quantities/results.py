@@ -1,0 +1,94 @@
+"""What all results have in common: they show themselves in a screen, and are equal if their numbers are."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+__all__ = ["ByValue", "Card", "Shown", "same"]
+
+
+@dataclass(frozen=True)
+class Card:
+    """What a result shows of itself.
+
+    Attributes
+    ----------
+    headline : str
+        What it is, in a line.
+    rows : sequence of pairs of str
+        Name and value of what matters.
+    notes : sequence of str
+        What to know before using it, in sentences.
+    """
+
+    headline: str
+    rows: Sequence[tuple[str, str]]
+    notes: Sequence[str] = ()
+
+
+class Shown:
+    """A result that shows a :class:`Card`: lines in a terminal, a table in a notebook."""
+
+    def _card(self) -> Card:
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        """Return the card as lines of text."""
+        card = self._card()
+        width = max((len(name) for name, _ in card.rows), default=0)
+        lines = [f"{name:>{width}}: {value}" for name, value in card.rows]
+        return "\n".join([f"{type(self).__name__}: {card.headline}", *lines, *(f"Note: {note}" for note in card.notes)])
+
+    def _repr_html_(self) -> str:
+        """Return the card as a table."""
+        return card_html(type(self).__name__, self._card())
+
+
+def card_html(kind: str, card: Card) -> str:
+    """Return a card as a table of HTML."""
+    rows = "".join(
+        f"<tr><th scope='row' style='text-align:left'>{html.escape(name)}</th>"
+        f"<td style='text-align:left'>{html.escape(value)}</td></tr>"
+        for name, value in card.rows
+    )
+    notes = "".join(f"<p>{html.escape(note)}</p>" for note in card.notes)
+    return f"<div><b>{html.escape(kind)}:</b> {html.escape(card.headline)}<table>{rows}</table>{notes}</div>"
+
+
+class ByValue:
+    """A result that equals another if all its numbers do, as after pickling; NaN equals NaN."""
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether the other has the same type and the same values."""
+        if type(other) is not type(self):
+            return NotImplemented
+        names = [each.name for each in fields(self) if each.compare]  # type: ignore[arg-type]
+        return all(same(getattr(self, name), getattr(other, name)) for name in names)
+
+    def __hash__(self) -> int:
+        """Hash by type: equal results have equal hashes, and few of them meet in one dictionary."""
+        return hash(type(self))
+
+
+def same(one: Any, other: Any) -> bool:
+    """Return whether two values are equal, arrays and numbers bit for bit, NaN to NaN; functions are left out."""
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        numeric = np.asarray(one).dtype.kind == "f" and np.asarray(other).dtype.kind == "f"
+        return np.array_equal(one, other, equal_nan=numeric)
+    if isinstance(one, tuple | list) and isinstance(other, tuple | list):
+        return len(one) == len(other) and all(map(same, one, other))
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(same(value, other[key]) for key, value in one.items())
+    if isinstance(one, float) and isinstance(other, float) and one != one:
+        return other != other
+    if type(one) is type(other) and is_dataclass(one) and not isinstance(one, ByValue | type):
+        names = [each.name for each in fields(one) if each.compare]
+        return all(same(getattr(one, name), getattr(other, name)) for name in names)
+    if isinstance(one, Callable) and isinstance(other, Callable):  # type: ignore[arg-type]
+        return True
+    return bool(one == other)
