@@ -43,6 +43,12 @@ __all__ = ["plot_curve", "plot_profile"]
 DECADES_BELOW = 1.3
 """How far below the minimum friction the axis goes on, so that both parts of the friction show."""
 
+SYMBOLS_OF_GROUPS = {
+    "speed": r"$\lambda$",
+    "load": r"$F_N/(\pi\beta^2 R E^*)$",
+    "roughness": r"$h_\mathrm{rms}/(4\alpha\beta^2 R)$",
+}
+
 FEW = 25
 """Number of points up to which each is marked."""
 
@@ -148,11 +154,7 @@ def _abscissa(curve: StribeckCurve) -> tuple[Array, str]:
 def _abscissa_of_values(curve: StribeckCurve) -> str:
     """Return the label of what varies."""
     if curve.contact is None:
-        symbol = {
-            "speed": r"$\lambda$",
-            "load": r"$F_N/(\pi\beta^2 R E^*)$",
-            "roughness": r"$h_\mathrm{rms}/(4\alpha\beta^2 R)$",
-        }[curve.over]
+        symbol = SYMBOLS_OF_GROUPS[curve.over]
         return f"{curve.over} group {symbol}"
     unit = DIMENSIONS[QUANTITIES[curve.over].dimension].unit
     return f"{curve.over} {SYMBOLS[curve.over]} ({unit})"

@@ -64,7 +64,7 @@ def numbers(answer: Answer) -> list[Row]:
     errors, scales = solution.errors, contact.hertz
     rows = []
     for definition, name in (("balanced", "Friction µ, balanced"), ("published", "Friction µ, as published")):
-        friction = solution.friction(definition=definition)  # type: ignore[arg-type]
+        friction = solution.friction(definition=definition)
         rows.append(_row(f"friction_{definition}", name, friction.total, friction.error))
     chosen = solution.friction(definition=answer.inputs.definition)
     if chosen.total > 0:

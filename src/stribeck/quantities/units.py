@@ -139,8 +139,9 @@ def to_si(value: Any, dimension: str, name: str) -> float:
 
     Parameters
     ----------
-    value : str or number
-        Text with a unit, such as ``"10 mPa*s"``, or a real number that is already in SI units.
+    value : str or number or pint.Quantity
+        Text with a unit, such as ``"10 mPa*s"``, a quantity of any registry of pint, or a real number that is already in SI
+        units.
     dimension : str
         One of the keys of :data:`DIMENSIONS`; ``"number"`` accepts bare numbers only.
     name : str
@@ -162,6 +163,7 @@ def to_si(value: Any, dimension: str, name: str) -> float:
     2.5e-06
     """
     kind = DIMENSIONS[dimension]
+    value = _text_of_quantity(value, kind)
     exact = _from_text(value, kind, name) if isinstance(value, str) else value
     if isinstance(exact, bool) or not isinstance(exact, numbers.Real):
         raise InputError(f"{name} = {show(value)} is not a single real number; {_advice(kind)}.")
@@ -316,6 +318,19 @@ def show(value: Any) -> str:
     """Return ``repr(value)`` on one line and short enough for a sentence."""
     text = " ".join(repr(value).split())
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _text_of_quantity(value: Any, kind: Dimension) -> Any:
+    """Return a quantity of pint as text, which has its own sentences for what is wrong; another value as it is."""
+    if not (hasattr(value, "magnitude") and hasattr(value, "units")):
+        return value
+    number = value.magnitude
+    if not isinstance(number, numbers.Real) or not math.isfinite(number):
+        return number
+    units = "" if not str(value.units) or str(value.units) == "dimensionless" else str(value.units)
+    if not units and not kind.unit:
+        return float(number)
+    return f"{float(number)!r} {units}".rstrip()
 
 
 def _advice(kind: Dimension) -> str:
