@@ -1,0 +1,157 @@
+"""What results have in common: they show themselves in a screen, are equal by value, draw into axes, have one friction."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.quantities.results import Card, Shown, same
+
+CONTACT = sb.LineContact(
+    radius="10 mm", modulus="2.7 MPa", load="30 N/m", viscosity="50 mPa*s", speed="1 mm/s", roughness="1 um", alpha=2.0,
+    beta=0.06, boundary_friction=0.7,
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def state():
+    return sb.solve(CONTACT)
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return sb.stribeck_curve(CONTACT, points=17)
+
+
+@pytest.fixture(params=["state", "curve"])
+def result(request):
+    return request.getfixturevalue(request.param)
+
+
+@pytest.mark.quick
+def test_a_result_shows_itself_in_a_screen(result):
+    lines = repr(result).splitlines()
+    assert 5 < len(lines) < 25 and len(repr(result)) < 2500
+    assert lines[0].startswith(f"{type(result).__name__}: ")
+    assert f"{result.error_estimate:.1e} (rtol 1e-06)" in repr(result)
+
+
+def test_the_state_says_its_regime_friction_and_film(state):
+    text = repr(state)
+    assert text.startswith("Solution: mixed lubrication\n") and state.regime == "mixed"
+    assert f"friction: {state.friction:.4g} (" in text and "702.2 nm" in text
+
+
+def test_the_curve_says_its_range_minimum_and_notes(curve):
+    assert curve.minimum.name in repr(curve) and f"{curve.minimum.friction:.4g} at speed 27.6 mm/s" in repr(curve)
+    assert all(note in repr(curve) for note in curve.notes)
+
+
+def test_a_notebook_gets_a_table_in_which_no_text_is_code(result):
+    html = result._repr_html_()
+    assert html.count("<tr>") == html.count("</tr>") > 5
+
+    class Odd(Shown):
+        def _card(self):
+            return Card("<b>", [("<i>", "&")], ["<script>"])
+
+    assert "<script>" not in Odd()._repr_html_() and "&lt;i&gt;" in Odd()._repr_html_()
+
+
+@pytest.mark.quick
+def test_a_result_equals_itself_after_pickling_and_no_other(state):
+    again = pickle.loads(pickle.dumps(state))
+    assert again == state and hash(again) == hash(state)
+    assert state == sb.solve(CONTACT)
+    assert state != sb.solve(CONTACT.replace(speed="1.001 mm/s")) and state != "state"
+
+
+def test_curves_and_laws_equal_themselves_after_pickling(curve):
+    assert pickle.loads(pickle.dumps(curve)) == curve
+    assert curve != sb.stribeck_curve(CONTACT, points=16)
+    law = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e7, hurst=0.8))
+    contact = CONTACT.replace(law=law)
+    assert pickle.loads(pickle.dumps(contact)) == contact != CONTACT.replace(law=law.scaled(2e-6))
+
+
+def test_nan_equals_nan_and_no_number():
+    assert same(np.array([1.0, np.nan]), np.array([1.0, np.nan])) and same(float("nan"), float("nan"))
+    assert not same(np.array([1.0, np.nan]), np.array([1.0, 2.0])) and not same(float("nan"), 1.0)
+    assert same({"a": (1, [np.nan])}, {"a": (1, [np.nan])}) and not same({"a": 1}, {"b": 1})
+
+
+@pytest.mark.quick
+def test_friction_means_the_same_on_state_and_curve(state, curve):
+    on_curve = sb.stribeck_curve(CONTACT, speed=[1e-3, 2e-3]).friction
+    assert float(state.friction) == state.friction.total == state.friction.contact + state.friction.viscous
+    assert on_curve[0] == pytest.approx(state.friction, rel=2e-6)
+    for arguments in ({}, {"boundary_friction": 0.3}, {"definition": "published"}, {"beta": 0.1}):
+        one, many = state.friction(**arguments), on_curve(**arguments)
+        for part in ("contact", "viscous", "total"):
+            assert getattr(many, part)[0] == pytest.approx(getattr(one, part), rel=2e-6)
+    assert state.friction(0.3)(definition="published").viscous == state.friction(definition="published").viscous
+    np.testing.assert_array_equal(curve.friction, curve.friction_contact + curve.friction_viscous)
+    assert type(curve.friction * 2) is type(curve.friction[1:]) is np.ndarray and type(curve.friction.min()) is np.float64
+    assert pickle.loads(pickle.dumps(state.friction)) == state.friction
+    with pytest.raises(sb.InputError, match="definition"):
+        _ = curve.friction(definition="paper")
+
+
+def test_results_draw_into_axes_that_are_given(state, curve):
+    pyplot = pytest.importorskip("matplotlib.figure")
+    figure = pyplot.Figure()
+    axes = figure.subplots(1, 2)
+    for each, ax in zip((state, curve), axes, strict=True):
+        assert each.plot(ax=ax) is figure
+        assert ax.lines and ax.get_xlabel() and ax.get_ylabel() and ax.get_legend()
+    np.testing.assert_array_equal(axes[1].lines[0].get_xdata(), curve.values)
+    np.testing.assert_array_equal(axes[1].lines[0].get_ydata(), curve.friction)
+    with pytest.raises(sb.InputError, match="ax = 3 is no axes of matplotlib"):
+        state.plot(ax=3)
+
+
+def test_a_state_is_a_dataset_in_si_units(state):
+    pytest.importorskip("xarray")
+    data = state.to_dataset()
+    fields = state.to_si()
+    np.testing.assert_array_equal(data.gap, fields.gap)
+    assert (data.gap.units, data.x.units, data.fluid_pressure.units) == ("m", "m", "Pa")
+    assert data.attrs["friction_balanced"] == state.friction.total
+    assert sb.solve(state.groups).to_dataset().gap.units == "u_Hz"
+
+
+def test_a_curve_in_si_units(curve):
+    hertz = CONTACT.hertz
+    np.testing.assert_allclose(
+        curve.to_si()["central_film_thickness"], curve.observable("central_gap") * hertz.indentation, rtol=1e-15
+    )
+    with pytest.raises(sb.InputError, match="to_si needs the Hertz scales"):
+        sb.stribeck_curve(load=0.1, roughness=1e-4, speed=[1e-4, 2e-4]).to_si()
+
+
+@pytest.mark.quick
+def test_a_quantity_of_pint_is_an_input():
+    pint = pytest.importorskip("pint")
+    unit = pint.UnitRegistry()
+    given = {
+        "radius": unit.Quantity(10, "mm"),
+        "modulus": 2.7 * unit.newton / unit.mm**2,
+        "viscosity": 50 * unit.mPa * unit.s,
+        "alpha": 2 * unit.dimensionless,
+        "roughness": 1 * unit.um,
+    }
+    assert CONTACT.replace(**given) == CONTACT
+    for wrong, said in (
+        (50 * unit.N, "is a force"),
+        (unit.Quantity([1, 2], "N/m"), "is not a single real number"),
+        (float("nan") * unit.N / unit.m, "not a finite number"),
+    ):
+        with pytest.raises(sb.InputError, match=said):
+            CONTACT.replace(load=wrong)
+
+
+def test_an_attribute_that_is_misspelled_is_answered_with_the_nearest(state):
+    with pytest.raises(AttributeError) as caught:
+        state.minimum_gpa  # noqa: B018
+    assert (caught.value.name, caught.value.obj) == ("minimum_gpa", state)  # of which Python makes "Did you mean"
