@@ -190,7 +190,7 @@ def test_a_tolerance_out_of_range_is_refused():
 
 
 def test_groups_are_asked_for():
-    with pytest.raises(sb.InputError, match="they must be Groups"):
+    with pytest.raises(sb.InputError, match="it must be a contact or Groups"):
         sb.solve_batch([1.0, 2.0, 3.0])
 
 

@@ -4,7 +4,8 @@ from importlib import import_module as _import_module
 
 _PACKAGES = ("asymptotics", "atlas", "fluids", "solids", "surfaces")
 _HOMES = {
-    "batches.solve_batch": ("BatchSolution", "solve_batch"),
+    "batches.result": ("BatchSolution",),
+    "batches.solve_batch": ("solve_batch",),
     "cases.case": ("Case", "load_case"),
     "cases.fit_settings": ("FitSettings",),
     "checks.check": ("Check", "Checks"),

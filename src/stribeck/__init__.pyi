@@ -1,7 +1,8 @@
 """The public names with their types; at run time each is imported on first use."""
 
 from stribeck import asymptotics, atlas, fluids, solids, surfaces
-from stribeck.batches.solve_batch import BatchSolution, solve_batch
+from stribeck.batches.result import BatchSolution
+from stribeck.batches.solve_batch import solve_batch
 from stribeck.cases.case import Case, load_case
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.checks.check import Check, Checks

@@ -2,133 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Sequence
+from dataclasses import fields
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, Flags, Indices
+from stribeck._types import Indices
 from stribeck.batches.chain import Ended, solve_in_order
+from stribeck.batches.inputs import varied
 from stribeck.batches.order import chains_of
-from stribeck.contacts.friction import Definition, check_definition
+from stribeck.batches.result import BatchSolution
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE
 from stribeck.equations.observables import Observables
-from stribeck.quantities.inputs import quantity
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import ALL_NAMES, NAMES
+from stribeck.quantities.outputs import ALL_NAMES, GROUPS, NAMES
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solve import check_rtol
 
-__all__ = ["BatchSolution", "solve_batch"]
+__all__ = ["solve_batch"]
 
 Progress = Callable[[int, int], object]
 
 
-@dataclass(frozen=True, eq=False)
-class BatchSolution:
-    """Observables of many states, in arrays of the shape of the groups; gaps in u_Hz, nan if there is no state.
-
-    Attributes
-    ----------
-    groups : Groups
-        The states.
-    rtol : float
-        The relative tolerance asked for.
-    outcome : ndarray of Outcome
-        How the solve of each state ended.
-    contact_load_share, fluid_load_share : ndarray
-        Parts of the load on asperities and fluid [-].
-    central_gap, minimum_gap, flux_gap : ndarray
-        Gap at x = 0, minimum gap and flux gap [u_Hz].
-    minimum_position : ndarray
-        Where the gap is at its minimum [a].
-    offset : ndarray
-        Height of the apex of the undeformed cylinder [u_Hz].
-    viscous_published, viscous_balanced : ndarray
-        Viscous friction for beta = 1 in its two definitions [-].
-    viscous_upper : ndarray
-        Viscous friction on the cylinder, for beta = 1 [-].
-    exit_position, reformation_position : ndarray
-        Where the film ends and begins anew [a]; nan where it does not.
-    relative_errors : ndarray, shape (observables, ...)
-        Estimated relative errors of the observables, absolute for the load shares; by name in :attr:`errors`.
-    """
-
-    groups: Groups
-    rtol: float
-    outcome: np.ndarray[Any, np.dtype[np.object_]]
-    contact_load_share: Array = field(repr=False)
-    fluid_load_share: Array = field(repr=False)
-    central_gap: Array = field(repr=False)
-    minimum_gap: Array = field(repr=False)
-    minimum_position: Array = field(repr=False)
-    flux_gap: Array = field(repr=False)
-    offset: Array = field(repr=False)
-    viscous_published: Array = field(repr=False)
-    viscous_balanced: Array = field(repr=False)
-    viscous_upper: Array = field(repr=False)
-    exit_position: Array = field(repr=False)
-    reformation_position: Array = field(repr=False)
-    relative_errors: Array = field(repr=False)
-
-    @property
-    def ok(self) -> Flags:
-        """Whether each state converged."""
-        return np.array([one.ok for one in self.outcome.ravel()], dtype=bool).reshape(self.outcome.shape)
-
-    @property
-    def error_estimate(self) -> Array:
-        """Largest estimated relative error of the observables of each state; load shares count absolutely."""
-        return np.asarray(np.fmax.reduce(self.relative_errors))
-
-    @property
-    def errors(self) -> dict[str, Array]:
-        """Estimated relative error of each observable; absolute for the load shares."""
-        return dict(zip(ALL_NAMES, self.relative_errors, strict=False))
-
-    def friction(self, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced") -> Array:
-        r"""Return the friction coefficients.
-
-        .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
-
-        Parameters
-        ----------
-        boundary_friction : float
-            Friction coefficient of the dry contact [-], >= 0.
-        beta : float
-            Coefficient of the contact law [-], > 0.
-        definition : {"balanced", "published"}
-            Definition of the viscous part, theory.md, section 6.
-
-        Returns
-        -------
-        ndarray
-            Friction coefficients [-].
-
-        Raises
-        ------
-        InputError
-            If an argument is outside its range.
-        """
-        boundary_friction, beta = quantity("boundary_friction", boundary_friction), quantity("beta", beta)
-        viscous: Array = getattr(self, f"viscous_{check_definition(definition)}")
-        return boundary_friction * self.contact_load_share + beta * viscous
-
-
-def solve_batch(groups: Groups, *, rtol: float = 1e-6, on_progress: Progress | None = None) -> BatchSolution:
+def solve_batch(
+    problem: Groups | Contact,
+    *,
+    rtol: float = 1e-6,
+    dims: Sequence[str] | None = None,
+    on_progress: Progress | None = None,
+    **inputs: Any,
+) -> BatchSolution:
     r"""Solve many states, each from its neighbour.
 
     Parameters
     ----------
-    groups : Groups
-        The states; arrays broadcast. Their contact law may be any.
+    problem : Groups or LineContact or PointContact
+        The states, groups of arrays that broadcast, or the contact of which inputs vary. Their contact law may be any.
     rtol : float
         Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2.
     on_progress : callable, optional
         ``on_progress(done, total)`` is called after every state. It may raise KeyboardInterrupt.
+    dims : sequence of str, optional
+        Names of the dimensions of plain arrays; by default that of the only input that varies along each.
+    **inputs : number, str, pint.Quantity, array_like of these, or xarray.DataArray
+        Inputs of the contact, or groups, that vary: arrays broadcast as those of NumPy do, those of xarray by the names of
+        their dimensions.
 
     Returns
     -------
@@ -148,9 +70,15 @@ def solve_batch(groups: Groups, *, rtol: float = 1e-6, on_progress: Progress | N
 
     Source: [BP] Appendix A; numerics.md, "Many states".
     """
-    if not isinstance(groups, Groups):
-        raise InputError(f"groups = {show(groups)}; they must be Groups(speed, load, roughness) of arrays.")
+    if not isinstance(problem, Groups | Contact):
+        raise InputError(f"problem = {show(problem)}; it must be a contact or Groups(speed, load, roughness) of arrays.")
     check_rtol(rtol)
+    groups, contacts, names = varied(problem, inputs, dims)
+    if isinstance(problem, Contact):
+        kept = {name: other.of for other in problem.INPUTS.alternatives for name in other.inputs}
+        given = tuple(dict.fromkeys(kept.get(name, name) for name in inputs))
+    else:
+        given = tuple(name for name in GROUPS if name in inputs or np.ndim(getattr(problem, name)))
     shape = groups.shape
     parts = (groups.speed, groups.load, groups.roughness)
     states = np.stack([np.broadcast_to(part, shape).ravel() for part in parts], axis=1)
@@ -179,4 +107,5 @@ def solve_batch(groups: Groups, *, rtol: float = 1e-6, on_progress: Progress | N
     except KeyboardInterrupt:
         pass
     found = {f.name: value.reshape(shape) for f, value in zip(fields(Observables), values, strict=True)}
-    return BatchSolution(groups, rtol, outcome.reshape(shape), relative_errors=errors.reshape(len(errors), *shape), **found)
+    relative = errors.reshape(len(errors), *shape)
+    return BatchSolution(groups, contacts, names, given, rtol, outcome.reshape(shape), relative_errors=relative, **found)

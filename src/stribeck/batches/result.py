@@ -1,0 +1,264 @@
+"""What :func:`stribeck.solve_batch` returns: observables, friction and outcomes of many states in arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.batches.inputs import Contacts
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray, check_definition, sliding_part
+from stribeck.contacts.groups import Groups
+from stribeck.files.datasets import Column, new_dataset
+from stribeck.quantities.inputs import quantity, refuse_former, unit_of
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import ALL_NAMES, FILMS, NAMES, OBSERVABLES, ROWS
+from stribeck.quantities.results import ByValue, Card, Shown
+from stribeck.quantities.units import InputError
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["BatchSolution"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BatchSolution(Shown, ByValue):
+    """Observables of many states, in arrays of the shape of the groups; gaps in u_Hz, nan if there is no state.
+
+    Attributes
+    ----------
+    groups : Groups
+        The states.
+    contacts : ndarray of LineContact or PointContact, or None
+        The contacts they came from.
+    dims : tuple of str
+        Name of each dimension of the arrays.
+    varied : tuple of str
+        Inputs that were given for the batch.
+    rtol : float
+        The relative tolerance asked for.
+    outcome : ndarray of Outcome
+        How the solve of each state ended.
+    contact_load_share, fluid_load_share : ndarray
+        Parts of the load on asperities and fluid [-].
+    central_gap, minimum_gap, flux_gap : ndarray
+        Gap at x = 0, minimum gap and flux gap [u_Hz].
+    minimum_position : ndarray
+        Where the gap is at its minimum [a].
+    offset : ndarray
+        Height of the apex of the undeformed cylinder [u_Hz].
+    viscous_published, viscous_balanced : ndarray
+        Viscous friction for beta = 1 in its two definitions [-].
+    viscous_upper : ndarray
+        Viscous friction on the cylinder, for beta = 1 [-].
+    exit_position, reformation_position : ndarray
+        Where the film ends and begins anew [a]; nan where it does not.
+    relative_errors : ndarray, shape (observables, ...)
+        Estimated relative errors of the observables, absolute for the load shares; by name in :attr:`errors`.
+    """
+
+    groups: Groups
+    contacts: Contacts | None
+    dims: tuple[str, ...]
+    varied: tuple[str, ...]
+    rtol: float
+    outcome: np.ndarray[Any, np.dtype[np.object_]]
+    contact_load_share: Array = field(repr=False)
+    fluid_load_share: Array = field(repr=False)
+    central_gap: Array = field(repr=False)
+    minimum_gap: Array = field(repr=False)
+    minimum_position: Array = field(repr=False)
+    flux_gap: Array = field(repr=False)
+    offset: Array = field(repr=False)
+    viscous_published: Array = field(repr=False)
+    viscous_balanced: Array = field(repr=False)
+    viscous_upper: Array = field(repr=False)
+    exit_position: Array = field(repr=False)
+    reformation_position: Array = field(repr=False)
+    relative_errors: Array = field(repr=False)
+
+    @property
+    def ok(self) -> Flags:
+        """Whether each state converged."""
+        return np.array([one.ok for one in self.outcome.ravel()], dtype=bool).reshape(self.outcome.shape)
+
+    @property
+    def error_estimate(self) -> Array:
+        """Largest estimated relative error of the observables of each state; load shares count absolutely."""
+        return np.asarray(np.fmax.reduce(self.relative_errors))
+
+    @property
+    def errors(self) -> dict[str, Array]:
+        """Estimated relative error of each observable; absolute for the load shares."""
+        return dict(zip(ALL_NAMES, self.relative_errors, strict=False))
+
+    @property
+    def friction(self) -> FrictionArray:
+        r"""The friction coefficients [-], balanced: an array with its parts ``contact``, ``viscous`` and its ``error``.
+
+        .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
+
+        The coefficients are those of the contacts, or 1 where only groups are known.  ``friction(boundary_friction, beta,
+        definition)`` is the same for other coefficients, each of which may be left out, as on a :class:`Solution`.
+        """
+        return self._friction()
+
+    @refuse_former
+    def _friction(
+        self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
+    ) -> FrictionArray:
+        mu0 = sliding_part(2 * self.groups.model.film.slide) * self._coefficient("boundary_friction", boundary_friction)
+        strength = self._coefficient("beta", beta)
+        name = f"viscous_{check_definition(definition)}"
+        viscous = strength * getattr(self, name)
+        error = np.abs(mu0) * self.relative_errors[0] + np.abs(viscous) * self.relative_errors[NAMES.index(name)]
+        return FrictionArray(mu0 * self.contact_load_share, viscous, error, self._friction)
+
+    def _coefficient(self, name: str, given: float | None) -> float | Array:
+        if given is not None or self.contacts is None:
+            return quantity(name, 1.0 if given is None else given)
+        return np.array([getattr(contact, name) for contact in self.contacts.ravel()]).reshape(self.contacts.shape)
+
+    def to_si(self) -> dict[str, Array]:
+        """Return the films in SI units.
+
+        Returns
+        -------
+        dict of str to ndarray
+            By name, such as ``central_film_thickness`` [m].
+
+        Raises
+        ------
+        InputError
+            If the states come from groups alone, which do not fix the scales.
+        """
+        if self.contacts is None:
+            raise InputError("to_si needs the Hertz scales of a contact; give solve_batch a contact instead of Groups.")
+        hertz = [contact.hertz for contact in self.contacts.ravel()]
+        scales = {
+            "gap": np.reshape([each.indentation for each in hertz], self.contacts.shape),
+            "width": np.reshape([each.half_width for each in hertz], self.contacts.shape),
+        }
+        rows = [row for row in ROWS if row.film and hasattr(self, row.name)]
+        return {row.film: getattr(self, row.name) * scales[row.scale] for row in rows}
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return all states as an xarray Dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Along :attr:`dims`: inputs that were given, observables, friction by both definitions, films in SI units if there
+            are contacts, errors and outcomes; needs the extra ``data``.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        columns: dict[str, Column] = {}
+        for row in ROWS:
+            if hasattr(self, row.name) and row.listed:
+                columns[row.name] = (self.dims, getattr(self, row.name), *OBSERVABLES[row.name])
+        for definition in DEFINITIONS:
+            found = self.friction(definition=definition)
+            label = f"friction coefficient, definition {definition}"
+            columns[f"friction_{definition}"] = (self.dims, found.total, "1", label)
+            columns[f"friction_{definition}_error"] = (self.dims, found.error, "1", f"{label}: estimated absolute error")
+        if self.contacts is not None:
+            for name, values in self.to_si().items():
+                columns[name] = (self.dims, values, *FILMS[name])
+        columns["outcome"] = (self.dims, np.vectorize(_name, otypes=[object])(self.outcome), "1", "how the solve ended")
+        coords = {}
+        for name in self.varied:
+            dims, values = _along(self.dims, self.input(name))
+            coords[name] = (dims, values, self.unit(name), name.replace("_", " "))
+        return new_dataset(columns, coords, {"title": "States of a lubricated rough contact", "rtol": self.rtol})
+
+    def input(self, name: str) -> Array:
+        """Return an input of each state.
+
+        Parameters
+        ----------
+        name : str
+            Its name; groups for a batch of groups.
+
+        Returns
+        -------
+        ndarray
+            Values in SI units, of the shape of the batch.
+        """
+        if self.contacts is None:
+            return np.broadcast_to(getattr(self.groups, name), self.groups.shape)
+        kept = [getattr(contact, name) for contact in self.contacts.ravel()]
+        return np.array(kept, dtype=float).reshape(self.contacts.shape)
+
+    def unit(self, name: str) -> str:
+        """Return the SI unit of an input; ``"1"`` of a bare number.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+
+        Returns
+        -------
+        str
+            The unit.
+        """
+        if self.contacts is None:
+            return "1"
+        first: Contact = self.contacts.ravel()[0]
+        return unit_of(name, first.INPUTS)
+
+    def plot(self, path: Any = None, *, ax: Any = None, force: bool = False) -> Any:
+        """Draw friction over the input that varies along the longest dimension, a line for each other state.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            Image file to write as well, its format by its ending.
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw into, in place of a new figure.
+        force : bool
+            Whether an existing file is replaced; else it is kept and the call refused.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure; needs the extra ``plot``.
+
+        Raises
+        ------
+        InputError
+            If nothing varies, or the file cannot be written, or exists and ``force`` is not given.
+        """
+        from stribeck.batches.plot import plot_batch
+
+        return plot_batch(self, path, ax=ax, force=force)
+
+    def _card(self) -> Card:
+        shape = ", ".join(f"{name} {size}" for name, size in zip(self.dims, self.groups.shape, strict=True)) or "one state"
+        rows = [("given", ", ".join(self.varied) or "nothing"), ("converged", f"{int(self.ok.sum())} of {self.ok.size}")]
+        if self.ok.any():
+            friction = np.asarray(self.friction)[self.ok]
+            rows.append(("friction", f"{friction.min():.4g} to {friction.max():.4g} (balanced)"))
+            rows.append(("estimated error", f"{self.error_estimate[self.ok].max():.1e} (rtol {self.rtol:g})"))
+        return Card(shape, rows)
+
+
+def _name(outcome: Outcome) -> str:
+    return outcome.name
+
+
+def _along(dims: tuple[str, ...], values: Array) -> tuple[tuple[str, ...], Array]:
+    """Return an array along those dimensions only on which it depends."""
+    for axis in reversed(range(values.ndim)):
+        first = values.take([0], axis)
+        if len(dims) > 1 and np.array_equal(values, np.broadcast_to(first, values.shape)):
+            values, dims = np.asarray(values.take(0, axis)), (*dims[:axis], *dims[axis + 1 :])
+    return dims, values

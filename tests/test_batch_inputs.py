@@ -1,0 +1,101 @@
+"""Batches over arrays of any input: broadcast as NumPy does, or by names of dimensions, and told apart by both."""
+
+import pickle
+
+import numpy as np
+import pytest
+from test_results import CONTACT
+
+import stribeck as sb
+from stribeck.batches.inputs import broadcast_inputs
+
+SPEEDS = np.geomspace(1e-3, 1e-2, 3)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return sb.solve_batch(CONTACT, speed=SPEEDS, viscosity=[["40 mPa*s"], ["50 mPa*s"]], boundary_friction=0.5)
+
+
+@pytest.mark.quick
+def test_arrays_of_inputs_broadcast_and_each_state_is_that_of_its_contact(found):
+    assert found.groups.shape == (2, 3) and found.dims == ("viscosity", "speed") and found.ok.all()
+    for i, viscosity in enumerate((0.04, 0.05)):
+        contact = CONTACT.replace(viscosity=viscosity, speed=SPEEDS[2], boundary_friction=0.5)
+        assert found.contacts[i, 2] == contact
+        state = sb.solve(contact)
+        for arguments in ({}, {"definition": "published"}, {"boundary_friction": 0.9}):
+            one, many = state.friction(**arguments), found.friction(**arguments)
+            assert many[i, 2] == pytest.approx(one, rel=2e-6)
+            assert many.contact[i, 2] == pytest.approx(one.contact, rel=2e-6)
+        film = state.minimum_gap * contact.hertz.indentation
+        assert found.to_si()["minimum_film_thickness"][i, 2] == pytest.approx(film, rel=2e-6)
+
+
+def test_a_batch_is_a_dataset_along_its_inputs(found):
+    pytest.importorskip("xarray")
+    data = found.to_dataset()
+    assert dict(data.sizes) == {"viscosity": 2, "speed": 3}
+    assert data.speed.dims == ("speed",) and data.speed.units == "m/s"
+    np.testing.assert_array_equal(data.friction_balanced.sel(viscosity=0.05), np.asarray(found.friction)[1])
+    assert (data.outcome == "CONVERGED").all() and data.central_film_thickness.units == "m"
+
+
+def test_a_batch_shows_itself_draws_and_equals_itself(found):
+    figures = pytest.importorskip("matplotlib.figure")
+    assert "converged: 6 of 6" in repr(found) and "viscosity 2, speed 3" in repr(found) and "<table>" in found._repr_html_()
+    assert pickle.loads(pickle.dumps(found)) == found
+    ax = figures.Figure().subplots()
+    found.plot(ax=ax)
+    assert len(ax.lines) == 2 and ax.get_xlabel() == "speed (m/s)"
+    np.testing.assert_array_equal(ax.lines[1].get_ydata(), np.asarray(found.friction)[1])
+
+
+def test_groups_take_arrays_by_name_and_have_no_scales():
+    found = sb.solve_batch(sb.Groups(1e-5, 0.1, 1e-4), speed=[1e-5, 2e-5])
+    assert found.dims == ("speed",) and found.contacts is None
+    assert found.friction[0] == pytest.approx(sb.solve(sb.Groups(1e-5, 0.1, 1e-4)).friction, rel=2e-6)
+    with pytest.raises(sb.InputError, match="give solve_batch a contact"):
+        found.to_si()
+
+
+@pytest.mark.quick
+def test_names_of_dimensions_join_arrays():
+    xarray = pytest.importorskip("xarray")
+    runs, both = xarray.DataArray([1.0, 2.0, 3.0], dims="run"), xarray.DataArray(np.ones((2, 3)), dims=("surface", "run"))
+    columns, dims = broadcast_inputs({"speed": runs, "beta": both, "load": 30}, None)
+    assert dims == ("run", "surface") and all(column.shape == (3, 2) for column in columns.values())
+    assert columns["speed"][:, 1].tolist() == [1.0, 2.0, 3.0]
+    columns, dims = broadcast_inputs({"a": np.ones((2, 1)), "b": np.ones((2, 4))}, None)
+    assert dims == ("dim_0", "dim_1")
+    assert broadcast_inputs({"a": np.ones((2, 1)), "b": np.ones(4)}, ("day", "run"))[1] == ("day", "run")
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("inputs", "said"),
+    [
+        ({"speeed": [1]}, "speeed = 1 is not an input of LineContact; did you mean speed"),
+        ({"speed": [1, 2], "load": [1, 2, 3]}, r"do not broadcast: speed \(2,\), load \(3,\)\."),
+        ({"speed": [1, 2], "dims": ("a", "b")}, "must be 1 names"),
+        ({"speed": [1, 2], "dims": "a"}, "must be 1 names"),
+        ({"speed": [[1, 2]], "dims": ("a", "a")}, "must be different names"),
+        ({"speed": ["1 mm/s", "2 MPa"]}, "is a pressure"),
+        ({"speed": [[1], [2, 3]]}, "rows have different lengths"),
+    ],
+)
+def test_what_does_not_fit_is_a_sentence(inputs, said):
+    with pytest.raises(sb.InputError, match=said):
+        sb.solve_batch(CONTACT, **inputs)
+
+
+@pytest.mark.quick
+def test_a_quantity_of_pint_may_be_an_array():
+    unit = pytest.importorskip("pint").UnitRegistry()
+    columns, dims = broadcast_inputs({"speed": unit.Quantity([1, 2], "mm/s")}, None)
+    assert dims == ("speed",) and CONTACT.replace(speed=columns["speed"][1]).speed == 2e-3
+
+
+def test_a_group_that_is_none_is_refused():
+    with pytest.raises(sb.InputError, match="viscosity is no group"):
+        sb.solve_batch(sb.Groups(1e-5, 0.1, 1e-4), viscosity=[1, 2])
