@@ -1,9 +1,11 @@
 """What results have in common: they show themselves in a screen, are equal by value, draw into axes, have one friction."""
 
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
+from fit_data import noisy
 
 import stribeck as sb
 from stribeck.quantities.results import Card, Shown, same
@@ -155,3 +157,60 @@ def test_an_attribute_that_is_misspelled_is_answered_with_the_nearest(state):
     with pytest.raises(AttributeError) as caught:
         state.minimum_gpa  # noqa: B018
     assert (caught.value.name, caught.value.obj) == ("minimum_gpa", state)  # of which Python makes "Did you mean"
+
+
+def test_the_words_of_the_regimes_command_are_there_in_python(capsys):
+    from stribeck.cli import main
+
+    case = Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml"
+    assert main(["regimes", str(case)]) == 0
+    printed = [" ".join(line.split()) for line in capsys.readouterr().out.splitlines()]
+    found = sb.explain(sb.load_case(case))
+    assert [" ".join(line.split()) for line in str(found).splitlines()] == printed
+    assert repr(found) == str(found) and "<pre" in found._repr_html_()
+    assert "Mixed lubrication at 1 mm/s" in sb.explain(CONTACT)
+    with pytest.raises(sb.InputError, match="give a contact"):
+        sb.explain("pdms_cylinder.toml")
+
+
+@pytest.mark.quick
+def test_a_keyword_that_is_misspelled_is_answered_with_the_nearest(state):
+    for call, said in (
+        (lambda: sb.solve(CONTACT, rtoll=1e-6), "did you mean rtol"),
+        (lambda: sb.stribeck_curve(CONTACT, pionts=5), "did you mean points"),
+        (lambda: state.friction(bta=1), "did you mean beta"),
+        (lambda: CONTACT.replace(viscositty=1), "did you mean viscosity"),
+        (lambda: sb.solve(CONTACT, zzz=1), "it takes problem, rtol, law"),
+    ):
+        with pytest.raises((TypeError, sb.InputError), match=said):
+            call()
+
+
+@pytest.mark.quick
+def test_a_contact_is_a_table_in_a_notebook_and_a_dictionary_in_si():
+    assert "50 mPa·s" in CONTACT._repr_html_() and "effective modulus" in CONTACT._repr_html_()
+    assert CONTACT.to_si()["viscosity"] == 0.05 and sb.LineContact(**CONTACT.to_si()) == CONTACT
+
+
+def test_a_fit_shows_itself_and_is_a_dataset():
+    xarray = pytest.importorskip("xarray")
+    figures = pytest.importorskip("matplotlib.figure")
+    found = sb.fit(CONTACT, noisy(seed=5_417), free=["boundary_friction", "beta"])
+    assert repr(found).startswith("Fit: The fit converged.") and len(repr(found).splitlines()) < 20
+    assert "boundary_friction" in found._repr_html_() and found.to_si()["beta"] == found["beta"].value
+    data = found.to_dataset()
+    assert isinstance(data, xarray.Dataset) and data.speed.units == "m s-1"
+    np.testing.assert_array_equal(data.fitted_friction, found.friction)
+    ax = figures.Figure().subplots()
+    found.plot(ax=ax)
+    assert ax.get_legend() and ax.get_xlabel() == "sliding speed $U$ (m/s)"
+
+
+def test_a_sweep_shows_itself_and_draws(tmp_path):
+    figures = pytest.importorskip("matplotlib.figure")
+    (tmp_path / "sweep.toml").write_text("[groups]\nload = 0.1\nroughness = 1e-4\n[vary]\nspeed = [1e-5, 1e-4]\n")
+    found = sb.sweep(tmp_path / "sweep.toml", tmp_path / "store")
+    assert "finished: 2 of 2" in repr(found) and sb.open_sweep(tmp_path / "store") != "store"
+    ax = figures.Figure().subplots()
+    found.plot(ax=ax)
+    assert ax.lines[0].get_xdata().tolist() == pytest.approx([1e-5, 1e-4]) and ax.get_xlabel().startswith("speed")

@@ -10,6 +10,7 @@ _HOMES = {
     "cases.fit_settings": ("FitSettings",),
     "checks.check": ("Check", "Checks"),
     "checks.table": ("check",),
+    "cli.reports.explain": ("Explanation", "explain"),
     "contact_laws.finite_surface": ("FiniteSurface",),
     "contact_laws.function": ("FunctionLaw",),
     "contact_laws.greenwood": ("GreenwoodTripp", "GreenwoodWilliamson"),

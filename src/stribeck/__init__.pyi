@@ -7,6 +7,8 @@ from stribeck.cases.case import Case, load_case
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.checks.check import Check, Checks
 from stribeck.checks.table import check
+from stribeck.cli.reports.explain import Explanation as Explanation
+from stribeck.cli.reports.explain import explain as explain
 from stribeck.contact_laws.finite_surface import FiniteSurface
 from stribeck.contact_laws.function import FunctionLaw
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
@@ -40,6 +42,7 @@ __all__ = [
     "Case",
     "Check",
     "Checks",
+    "Explanation",
     "Field",
     "FiniteSurface",
     "Fit",
@@ -73,6 +76,7 @@ __all__ = [
     "asymptotics",
     "atlas",
     "check",
+    "explain",
     "fit",
     "fluids",
     "load_case",

@@ -32,9 +32,6 @@ from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, format_si
 
-REGIME_POINTS = 41
-"""Points of the curve on which ``stribeck regimes`` looks for transitions, which are then located exactly."""
-
 
 def solve_command(
     case: CaseFile = None,
@@ -215,42 +212,21 @@ def regimes_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     """
     if case is None:
         raise InputError("CASE is missing; give a case file, as in: stribeck regimes case.toml.")
-    from stribeck.checks.table import checks_of_curve
-    from stribeck.curves.sensitivities import friction_sensitivities
-    from stribeck.regimes.margins import regime_margins
+    from stribeck.cli.reports import json as report_json
+    from stribeck.cli.reports.explain import print_words, regimes_of
+    from stribeck.cli.reports.words import conversions_json
 
     loaded = sb.load_case(case)
-    solution, sensitivities = friction_sensitivities(loaded.contact, rtol=loaded.rtol, definition=loaded.definition)
     with interruptible() as progress:
-        curve = sb.stribeck_curve(
-            loaded.contact,
-            points=REGIME_POINTS,
-            rtol=loaded.rtol,
-            definition=loaded.definition,
-            on_point=progress,
-        )
-        _ = curve.transitions
-        if curve.outcome is Outcome.INTERRUPTED:
-            raise KeyboardInterrupt
-        margins = regime_margins(loaded.contact, rtol=loaded.rtol, definition=loaded.definition, on_point=progress)
-    from stribeck.cli.reports import json as report_json
-    from stribeck.cli.reports import regimes as report_regimes
-
-    checks = checks_of_curve(curve, loaded.facts, solution)
-    from stribeck.cli.reports.words import conversions_json, print_conversions
-
-    errors = sb.propagate(loaded.contact, loaded.errors, definition=loaded.definition) if loaded.errors else None
+        found = regimes_of(loaded, progress)
     if json:
-        found = report_json.regimes_json(solution, sensitivities, curve, margins, loaded.title, checks)
-        found |= {"uncertainty": errors.to_dict()} if errors is not None else {}
-        print(report_json.dump(found | conversions_json(loaded)))
+        parts = found.solution, found.sensitivities, found.curve, found.margins, loaded.title, found.checks
+        content = report_json.regimes_json(*parts)
+        content |= {"uncertainty": found.errors.to_dict()} if found.errors is not None else {}
+        print(report_json.dump(content | conversions_json(loaded)))
     else:
-        console = stdout_console()
-        report_regimes.print_regimes(console, solution, sensitivities, curve, margins, loaded.title, checks)
-        if errors is not None:
-            report_regimes.print_uncertainty(console, errors)
-        print_conversions(console, loaded)
-    return 0 if curve.outcome.ok else complain(curve.outcome.value, FAILED)
+        print_words(stdout_console(), found, loaded)
+    return 0 if found.curve.outcome.ok else complain(found.curve.outcome.value, FAILED)
 
 
 def check_command(case: CaseFile = None, /, *, json: Flag = False) -> int:

@@ -15,6 +15,7 @@ from stribeck.contact_laws.law import AsperityLaw, check_law
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.conversions import converted
 from stribeck.quantities.inputs import InputTable, contact_values, refuse_former, replaced, si_text
+from stribeck.quantities.results import Card, card_html
 from stribeck.quantities.units import InputError
 
 __all__ = ["Contact", "HertzScales", "input_texts"]
@@ -127,6 +128,21 @@ class Contact(ABC):
         """
         pairs = ((name, getattr(self, name)) for name in self.INPUTS.names)
         return ((name, value) for name, value in pairs if value is not None)
+
+    def to_si(self) -> dict[str, float]:
+        """Return the inputs in SI units.
+
+        Returns
+        -------
+        dict of str to float
+            By name, in the order in which outputs name them.
+        """
+        return dict(self.inputs())
+
+    def _repr_html_(self) -> str:
+        rows = [(self.INPUTS.quantities[name].label, si_text(value, name, 4, self.INPUTS)) for name, value in self.inputs()]
+        law = "exponential" if self.law is None else self.law.name
+        return card_html(type(self).__name__, Card("inputs", [*rows, ("contact law", law)]))
 
     def replace(self, **changes: Any) -> Self:
         """Return a copy with some of the inputs changed.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,11 +13,16 @@ from stribeck.cases.fit_settings import FREE
 from stribeck.checks.check import Checks
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.files.datasets import Column, new_dataset
 from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
 from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import DIMENSIONS
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["Fit", "FitOutcome", "FittedInput"]
 
@@ -81,8 +86,8 @@ class FittedInput:
         return words if self.curve is None else f"{words} ({self.curve})"
 
 
-@dataclass(frozen=True, eq=False)
-class Fit:
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit(Shown, ByValue):
     """Inputs of a contact fitted to measured friction, with their intervals.
 
     Attributes
@@ -152,7 +157,7 @@ class Fit:
     solver_shift: float
     model_error: float
     evaluations: int
-    _minimum: Any = field(repr=False)
+    _minimum: Any = field(repr=False, compare=False)
     _threshold: float = field(repr=False)
 
     @property
@@ -275,6 +280,80 @@ class Fit:
                 "residual": self.residuals.tolist(),
             },
         }
+
+    def to_si(self) -> dict[str, float]:
+        """Return the fitted values in SI units.
+
+        Returns
+        -------
+        dict of str to float
+            By the label of each fitted input.
+        """
+        return {each.label: each.value for each in self.inputs}
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return measured and fitted friction as an xarray Dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Along ``row`` of the data: curve, abscissa, measured and fitted friction, residual; values and intervals of the
+            inputs as attributes; needs the extra ``data``.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        units = {"speed": "m s-1", "speed_viscosity": "Pa m", "hersey_number": "1"}
+        abscissa, names = self.data.abscissa, np.array(self.data.curves, dtype=object)
+        columns: dict[str, Column] = {
+            "curve": ("row", names[self.data.curve], "1", "name of the curve"),
+            abscissa: ("row", self.data.values, units[abscissa], abscissa.replace("_", " ")),
+            "friction": ("row", self.data.friction, "1", "measured friction coefficient"),
+            "fitted_friction": ("row", self.friction, "1", "fitted friction coefficient"),
+            "residual": ("row", self.residuals, "1", "fitted less measured friction over the standard error of the row"),
+        }
+        values: dict[str, Any] = {each.label: each.value for each in self.inputs}
+        values |= {f"{each.label} interval_95": np.array(each.interval_95) for each in self.inputs}
+        coords: dict[str, Column] = {"row": ("row", self.data.rows, "1", "row of the file")}
+        return new_dataset(columns, coords, {"title": "Fit to measured friction", "message": self.outcome.value} | values)
+
+    def plot(self, path: Any = None, *, ax: Any = None, force: bool = False) -> Any:
+        """Draw measured friction with the fitted curves and their 95 % bands.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            Image file to write as well, its format by its ending.
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw into, in place of a new figure with residuals.
+        force : bool
+            Whether an existing file is replaced; else it is kept and the call refused.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure; needs the extra ``plot``.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given.
+        """
+        from stribeck.fits.plot import plot_fit
+
+        return plot_fit(self, path, ax=ax, force=force)
+
+    def _card(self) -> Card:
+        rows = [
+            (each.label, f"{each.value:.4g} {each.unit} (95 %: {each.interval_95[0]:.4g} to {each.interval_95[1]:.4g})")
+            for each in self.inputs
+        ]
+        rows.append(("noise", f"{self.noise:.2g}{' of the friction' if self.logarithmic else ''}"))
+        rows.append(("data", f"{len(self.data)} rows, {len(self.data.curves)} curve{'s' * (len(self.data.curves) > 1)}"))
+        notes = (*self.quality.messages, *(each.message for each in self.undetermined), *self.notes)
+        return Card(self.outcome.value, rows, notes)
 
 
 def unit_of(name: str, is_factor: bool) -> str:

@@ -10,6 +10,8 @@ from collections.abc import Callable
 from functools import lru_cache, wraps
 from typing import Any, ParamSpec, TypeVar
 
+from stribeck.quantities.keywords import with_nearest
+
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -74,6 +76,8 @@ def one_blas_thread(function: Callable[P, R]) -> Callable[P, R]:
             _OF_THREAD.limit.enter(of_thread)
         try:
             return function(*args, **kwargs)
+        except TypeError as problem:
+            raise with_nearest(problem, function) from None
         finally:
             with _LOCK:
                 _OF_THREAD.limit.leave()

@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ParamSpec, TypeVar
 
+from stribeck.quantities.keywords import with_nearest
 from stribeck.quantities.units import DIMENSIONS, InputError, format_si, show, to_si
 
 __all__ = [
@@ -493,7 +494,10 @@ def refuse_former(function: Callable[P, R]) -> Callable[P, R]:
     def checked(*args: P.args, **kwargs: P.kwargs) -> R:
         for old in FORMER.keys() & kwargs.keys():
             raise InputError(f"{old} = {show(kwargs[old])}: this input is called {FORMER[old]}; write {FORMER[old]} = ...")
-        return function(*args, **kwargs)
+        try:
+            return function(*args, **kwargs)
+        except TypeError as problem:
+            raise with_nearest(problem, function) from None
 
     return checked
 

@@ -14,6 +14,7 @@ from stribeck.curves.regime import regime_of
 from stribeck.files.datasets import write_netcdf
 from stribeck.files.writing import MissingExtraError, PathLike
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.sweeps.rows import Rows, read_rows
 from stribeck.sweeps.store import describe_store, read_inputs
 
@@ -26,8 +27,8 @@ PENDING = "NOT_COMPUTED"
 """Outcome, in a dataset, of a state that is not finished."""
 
 
-@dataclass(frozen=True, eq=False)
-class Sweep:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Shown, ByValue):
     """The states of a store at the time it was read.
 
     Attributes
@@ -141,6 +142,55 @@ class Sweep:
             If the file cannot be written, or exists and ``force`` is not given.
         """
         write_netcdf(self.to_dataset(), path, force=force)
+
+    def plot(self, path: PathLike | None = None, *, ax: Any = None, force: bool = False) -> Any:
+        """Draw friction over the first input that varies, a point for each finished state.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            Image file to write as well, its format by its ending.
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw into, in place of a new figure.
+        force : bool
+            Whether an existing file is replaced; else it is kept and the call refused.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure; needs the extra ``plot``.
+
+        Raises
+        ------
+        InputError
+            If the store is not what was written, or the file cannot be written.
+        """
+        from stribeck.files import pictures
+
+        data, name = self.to_dataset(), self.about["varied"][0]
+        x, y = np.asarray(data[name].values, dtype=float), data.friction_balanced.values
+        if ax is None:
+            figure, (ax,) = pictures.new_figure((7.0, 4.6), [], title=self.about["title"] or "Sweep")
+        else:
+            figure = pictures.figure_of(ax)
+        ax.plot(x, y, ".", color=pictures.INK, ms=4)
+        for which, values in (("x", x), ("y", y)):
+            if np.nanmin(values, initial=np.inf) > 0:
+                pictures.make_logarithmic(ax, which, values[np.isfinite(values)])
+        unit = data[name].attrs["units"]
+        ax.set_xlabel(f"{name.replace('_', ' ')}{'' if unit == '1' else f' ({unit})'}")
+        ax.set_ylabel(r"friction coefficient $\mu$")
+        return pictures.finish_figure(figure, path, force)
+
+    def _card(self) -> Card:
+        rows = [
+            ("store", str(self.path)),
+            ("finished", f"{self.finished} of {len(self)}"),
+            *((name, str(count)) for name, count in self.outcomes.items()),
+            ("varied", ", ".join(self.about["varied"])),
+            ("rtol", f"{self.about['rtol']:g}"),
+        ]
+        return Card(self.about["title"] or "sweep", rows, (self.note,) if self.note else ())
 
     def _regimes(self, columns: dict[str, tuple[Any, str, str]]) -> Any:
         """Return the regime of each state, empty where there is none."""

@@ -1,0 +1,153 @@
+"""What ``stribeck regimes`` prints about a contact, as text for Python."""
+
+from __future__ import annotations
+
+import html
+import io
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import stribeck as sb
+from stribeck.checks.check import Checks
+from stribeck.checks.table import checks_of_curve
+from stribeck.cli.reports.regimes import print_regimes, print_uncertainty
+from stribeck.cli.reports.words import print_conversions
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import Definition
+from stribeck.curves.result import StribeckCurve
+from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.quantities.units import InputError, show
+from stribeck.regimes.margins import RegimeMargins, regime_margins
+from stribeck.solver.solution import Solution
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+__all__ = ["Explanation", "Regimes", "explain", "print_words", "regimes_of"]
+
+POINTS = 41
+"""Points of the curve on which transitions are looked for, which are then located exactly."""
+
+
+@dataclass(frozen=True)
+class Regimes:
+    """All that is said about the regime of a contact.
+
+    Attributes
+    ----------
+    solution : Solution
+        Its state.
+    sensitivities : dict of str to float
+        Those of its friction.
+    curve : StribeckCurve
+        The curve over the speed through it.
+    margins : RegimeMargins
+        The way to the next regimes.
+    checks : Checks or None
+        Whether the model applies.
+    errors : Uncertainty or None
+        What uncertain inputs make of the results, if any are given as uncertain.
+    """
+
+    solution: Solution
+    sensitivities: dict[str, float]
+    curve: StribeckCurve
+    margins: RegimeMargins
+    checks: Checks | None
+    errors: sb.Uncertainty | None
+
+
+class Explanation(str):
+    """Text that shows itself as it would be printed."""
+
+    def __repr__(self) -> str:
+        """Return the text itself."""
+        return str(self)
+
+    def _repr_html_(self) -> str:
+        return f"<pre style='white-space: pre-wrap'>{html.escape(self)}</pre>"
+
+
+def regimes_of(case: sb.Case, on_point: Callable[[int, int], object] | None = None) -> Regimes:
+    """Solve what there is to say about the regime of a case.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    on_point : callable, optional
+        ``on_point(done, total)`` is called as points are finished.
+
+    Returns
+    -------
+    Regimes
+        State, sensitivities, curve, margins and checks.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user interrupted it.
+    """
+    contact, rtol, definition = case.contact, case.rtol, case.definition
+    solution, sensitivities = friction_sensitivities(contact, rtol=rtol, definition=definition)
+    curve = sb.stribeck_curve(contact, points=POINTS, rtol=rtol, definition=definition, on_point=on_point)
+    _ = curve.transitions
+    if curve.outcome is sb.Outcome.INTERRUPTED:
+        raise KeyboardInterrupt
+    margins = regime_margins(contact, rtol=rtol, definition=definition, on_point=on_point)
+    errors = sb.propagate(contact, case.errors, definition=definition) if case.errors else None
+    return Regimes(solution, sensitivities, curve, margins, checks_of_curve(curve, case.facts, solution), errors)
+
+
+def print_words(console: Console, found: Regimes, case: sb.Case) -> None:
+    """Print what there is to say about the regime of a case.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where to.
+    found : Regimes
+        What was solved.
+    case : Case
+        The case.
+    """
+    print_regimes(console, found.solution, found.sensitivities, found.curve, found.margins, case.title, found.checks)
+    if found.errors is not None:
+        print_uncertainty(console, found.errors)
+    print_conversions(console, case)
+
+
+def explain(problem: Contact | sb.Case, *, rtol: float = 1e-6, definition: Definition = "balanced") -> Explanation:
+    """Explain the regime of a contact: what carries the load, how far the next regimes are, what moves its friction.
+
+    Parameters
+    ----------
+    problem : LineContact or Case
+        The contact, or a case from :func:`stribeck.load_case`, whose tolerance, definition and facts then hold.
+    rtol : float
+        Relative tolerance of the states.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+
+    Returns
+    -------
+    Explanation
+        The words of ``stribeck regimes``, a string that shows itself as printed.
+
+    Raises
+    ------
+    InputError
+        If ``problem`` is no contact and no case, or an argument is out of range.
+    """
+    from rich.console import Console
+
+    if isinstance(problem, Contact):
+        problem = sb.Case(path=Path(), contact=problem, rtol=rtol, definition=definition)
+    if not isinstance(problem, sb.Case):
+        raise InputError(f"problem = {show(problem)}; give a contact, or a case from load_case.")
+    stream = io.StringIO()
+    console = Console(file=stream, width=100, color_system=None)
+    print_words(console, regimes_of(problem), problem)
+    return Explanation(stream.getvalue().rstrip())

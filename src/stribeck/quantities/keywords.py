@@ -1,0 +1,35 @@
+"""A typing error in the name of an argument, answered with the nearest name."""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+import re
+from collections.abc import Callable
+from typing import Any
+
+__all__ = ["with_nearest"]
+
+
+def with_nearest(problem: TypeError, function: Callable[..., Any]) -> TypeError:
+    """Return the error with the name that was probably meant, if it says that ``function`` has no such argument.
+
+    Parameters
+    ----------
+    problem : TypeError
+        What the call raised.
+    function : callable
+        What was called.
+
+    Returns
+    -------
+    TypeError
+        A new error, or the same one.
+    """
+    said = re.fullmatch(r"(\S+)\(\) got an unexpected keyword argument '(\w+)'", str(problem))
+    if said is None or said[1].rpartition(".")[2] != function.__name__:
+        return problem
+    names = [name for name in inspect.signature(function).parameters if not name.startswith("_") and name != "self"]
+    near = difflib.get_close_matches(said[2], names, n=1)
+    hint = f"did you mean {near[0]}?" if near else f"it takes {', '.join(names)}."
+    return TypeError(f"{problem}; {hint}")
