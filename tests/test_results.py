@@ -195,7 +195,7 @@ def test_a_contact_is_a_table_in_a_notebook_and_a_dictionary_in_si():
 def test_a_fit_shows_itself_and_is_a_dataset():
     xarray = pytest.importorskip("xarray")
     figures = pytest.importorskip("matplotlib.figure")
-    found = sb.fit(CONTACT, noisy(seed=5_417), free=["boundary_friction", "beta"])
+    found = sb.fit(noisy(seed=5_417), CONTACT, free=["boundary_friction", "beta"])
     assert repr(found).startswith("Fit: The fit converged.") and len(repr(found).splitlines()) < 20
     assert "boundary_friction" in found._repr_html_() and found.to_si()["beta"] == found["beta"].value
     data = found.to_dataset()

@@ -116,7 +116,8 @@ class BatchSolution(Shown, ByValue):
         name = f"viscous_{check_definition(definition)}"
         viscous = strength * getattr(self, name)
         error = np.abs(mu0) * self.relative_errors[0] + np.abs(viscous) * self.relative_errors[NAMES.index(name)]
-        return FrictionArray(mu0 * self.contact_load_share, viscous, error, self._friction)
+        contact = mu0 * self.contact_load_share
+        return FrictionArray(contact, viscous, contact + viscous, error, self._friction)
 
     def _coefficient(self, name: str, given: float | None) -> float | Array:
         if given is not None or self.contacts is None:

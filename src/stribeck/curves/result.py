@@ -143,7 +143,7 @@ class StribeckCurve(Shown, ByValue):
                 self.beta if beta is None else beta,
             )
             found = self._friction_of(*given, self.definition if definition is None else check_definition(definition))
-        return FrictionArray(found[:, 0], found[:, 1], found[:, 3], self._friction_for)
+        return FrictionArray(*found.T, self._friction_for)
 
     @property
     def friction_error(self) -> Array:

@@ -168,6 +168,7 @@ class Sweep(Shown, ByValue):
         from stribeck.files import pictures
 
         data, name = self.to_dataset(), self.about["varied"][0]
+        name = name if name in data else f"{name}_group"
         x, y = np.asarray(data[name].values, dtype=float), data.friction_balanced.values
         if ax is None:
             figure, (ax,) = pictures.new_figure((7.0, 4.6), [], title=self.about["title"] or "Sweep")
