@@ -25,9 +25,10 @@ from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, format_si
+from stribeck.solver.base_solution import si_films
 from stribeck.solver.notes import HARD, minimum_note
 from stribeck.solver.refinement import RefinedState
-from stribeck.solver.solution import Solution, si_films
+from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:
     import xarray
@@ -143,7 +144,7 @@ class StribeckCurve(Shown, ByValue):
                 self.beta if beta is None else beta,
             )
             found = self._friction_of(*given, self.definition if definition is None else check_definition(definition))
-        return FrictionArray(*found.T, self._friction_for)
+        return FrictionArray(found[:, 0], found[:, 1], found[:, 2], found[:, 3], self._friction_for)
 
     @property
     def friction_error(self) -> Array:
