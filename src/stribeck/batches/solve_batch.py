@@ -44,10 +44,10 @@ def solve_batch(
         The states, groups of arrays that broadcast, or the contact of which inputs vary. Their contact law may be any.
     rtol : float
         Relative error allowed in every observable, absolute for the load shares; from 1e-11 to 1e-2.
-    on_progress : callable, optional
-        ``on_progress(done, total)`` is called after every state. It may raise KeyboardInterrupt.
     dims : sequence of str, optional
         Names of the dimensions of plain arrays; by default that of the only input that varies along each.
+    on_progress : callable, optional
+        ``on_progress(done, total)`` is called after every state. It may raise KeyboardInterrupt.
     **inputs : number, str, pint.Quantity, array_like of these, or xarray.DataArray
         Inputs of the contact, or groups, that vary: arrays broadcast as those of NumPy do, those of xarray by the names of
         their dimensions.
