@@ -63,8 +63,8 @@ def varied(
     flat = [contact.groups for contact in contacts.ravel()]
     if any(each.physics != flat[0].physics for each in flat):
         raise InputError(
-            f"the states of one batch need the same law, fluid and motion; of {', '.join(inputs)} only what changes the groups "
-            "of speed, load and roughness may vary in one call. Call it for each of the others."
+            f"the states of one batch need the same law, fluid and motion; of {', '.join(inputs)} only what changes the "
+            "groups of speed, load and roughness may vary in one call."
         )
     arrays = {name: np.array([float(getattr(each, name)) for each in flat]).reshape(shape) for name in GROUPS}
     return replace(flat[0] if flat else problem.groups, **arrays), contacts, names

@@ -114,9 +114,7 @@ class FrictionArray(np.ndarray[Any, np.dtype[np.float64]]):
     error: Array
     _other: Callable[..., FrictionArray]
 
-    def __new__(
-        cls, contact: Array, viscous: Array, total: Array, error: Array, other: Callable[..., FrictionArray]
-    ) -> Self:
+    def __new__(cls, contact: Array, viscous: Array, total: Array, error: Array, other: Callable[..., FrictionArray]) -> Self:
         """Make the array of the sums."""
         made = np.asarray(total).view(cls)
         made.contact, made.viscous, made.error, made._other = contact, viscous, error, other

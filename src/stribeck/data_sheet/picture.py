@@ -46,7 +46,7 @@ def draw_report(content: Content) -> Figure:
     left.plot(speed, curve.friction, color=INK, lw=2, label="friction")
     left.plot(speed, curve.friction_contact, color=CONTACT, lw=1.2, label="from asperities")
     left.plot(speed, curve.friction_viscous, color=FLUID, lw=1.2, label="from the fluid")
-    shown = [curve.friction]
+    shown = [curve.friction.total]
     if content.uncertainty is not None:
         low, high = content.uncertainty["friction"].interval_95
         middle = content.uncertainty["friction"].value
