@@ -180,7 +180,7 @@ def test_a_keyword_that_is_misspelled_is_answered_with_the_nearest(state):
         (lambda: sb.stribeck_curve(CONTACT, pionts=5), "did you mean points"),
         (lambda: state.friction(bta=1), "did you mean beta"),
         (lambda: CONTACT.replace(viscositty=1), "did you mean viscosity"),
-        (lambda: sb.solve(CONTACT, zzz=1), "it takes problem, rtol, law"),
+        (lambda: sb.solve(CONTACT, zzz=1), "it takes problem, rtol, law, on_failure"),
     ):
         with pytest.raises((TypeError, sb.InputError), match=said):
             call()

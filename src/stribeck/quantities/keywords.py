@@ -26,10 +26,11 @@ def with_nearest(problem: TypeError, function: Callable[..., Any]) -> TypeError:
     TypeError
         A new error, or the same one.
     """
-    said = re.fullmatch(r"(\S+)\(\) got an unexpected keyword argument '(\w+)'", str(problem))
-    if said is None or said[1].rpartition(".")[2] != function.__name__:
+    said = re.fullmatch(r"(?:(\S+)\(\) )?got an unexpected keyword argument '(\w+)'", str(problem))
+    if said is None or (said[1] or function.__name__).rpartition(".")[2] != function.__name__:
         return problem
-    names = [name for name in inspect.signature(function).parameters if not name.startswith("_") and name != "self"]
+    parameters = inspect.signature(function).parameters.values()
+    names = [each.name for each in parameters if each.kind is not each.VAR_KEYWORD and each.name != "self"]
     near = difflib.get_close_matches(said[2], names, n=1)
     hint = f"did you mean {near[0]}?" if near else f"it takes {', '.join(names)}."
     return TypeError(f"{problem}; {hint}")
