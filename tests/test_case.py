@@ -162,7 +162,7 @@ def test_a_case_knows_every_quantity(write):
         ),
         (
             {"contact": {"pressure_viscosity": "1e-8"}},
-            "[contact] pressure_viscosity = 1e-08 is not a known key; it is pressure_viscosity in the table [check]",
+            "[contact] pressure_viscosity = 1e-08 is not a known key; it is pressure_viscosity in the table [fluid]",
         ),
         ({"contact": {"pressure_viscosity_coefficient": "1"}}, "[contact] pressure_viscosity_coefficient = 1 is not a known"),
         (

@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal
 
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
+from stribeck.cases.model_parts import take_parts
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import CONTACTS, check_geometry
 from stribeck.contacts.groups import Geometry
@@ -133,7 +134,8 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     path : str or path-like
         A TOML file: a table ``[contact]`` (``geometry``, the arguments of :class:`LineContact` or
         :class:`PointContact`, and ``law`` by its name), a table
-        ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and where wanted ``[curve]``
+        ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and where wanted ``[fluid]``,
+        ``[cavitation]``, ``[motion]``, ``[flow_factors]`` and ``[solid]`` (see fluids.md), ``[curve]``
         (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md),
         ``[check]`` (facts that :func:`stribeck.check` judges by), ``title`` and ``notes``.
 
@@ -183,6 +185,8 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         problems.append(f"[contact] {problem}")
     inputs = INPUT_TABLES[geometry]
     model = _model(geometry)
+    table, parts, wrong = take_parts(table, geometry)
+    problems += wrong
     fit = FitSettings()
     if "fit" in table:
         try:
@@ -206,7 +210,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     if not problems:
         law = checked["contact"]["law"]
         try:
-            contact = CONTACTS[geometry](**contact_inputs(checked, path.parent))
+            contact = CONTACTS[geometry](**contact_inputs(checked, path.parent), **parts)
         except InputError as problem:
             text = str(problem)
             problems = [line if line.startswith(("[", "the table")) else f"[contact] {line}" for line in text.splitlines()]

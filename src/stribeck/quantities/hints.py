@@ -21,7 +21,6 @@ SHORTEST = 4
 """Smallest number of letters of a word that stands for the key that begins with it."""
 
 _RMS = "heights are root mean squares: rq or ra in [contact], h_rms in [surface]"
-_FLUID = "the fluid is Newtonian, and its viscosity is the same everywhere: give viscosity at the temperature and pressure"
 _LINE = "give load: of a cylinder in N/m, or force in N with its width; of a ball, geometry = 'point', the force in N"
 
 # Whole words of a key, and what the package has instead.  The first that matches is said.
@@ -30,11 +29,15 @@ _ABSENT = (
     (("ra", "rq", "r_a", "r_q", "sq", "sa"), _RMS),
     (
         ("pressure_viscosity", "piezoviscous", "barus", "roelands"),
-        f"it is pressure_viscosity in the table [check], which no equation takes: {_FLUID} of the contact",
+        "it is pressure_viscosity in the table [fluid]",
     ),
     (
         ("temperature", "viscosity_index", "thermal"),
-        f"there is no temperature: {_FLUID} of the contact",
+        "there is no temperature: give viscosity at that of the contact, or a preset with its temperature in [fluid]",
+    ),
+    (
+        ("relaxation_time", "infinite_viscosity", "shear_thinning"),
+        "what makes a fluid thin is in the table [fluid]",
     ),
     (
         ("density", "rho"),
@@ -54,7 +57,7 @@ _ABSENT = (
     ),
     (
         ("slide_to_roll", "srr", "slip"),
-        "friction is that of one surface at rest: give the sum of both speeds as speed, or their mean as entrainment_speed",
+        "write slide_to_roll in the table [motion], and the sum of both speeds as speed or their mean as entrainment_speed",
     ),
     (
         ("rpm", "angular_velocity", "rotation"),

@@ -1,0 +1,211 @@
+"""The tables ``[fluid]``, ``[cavitation]``, ``[motion]``, ``[flow_factors]`` and ``[solid]`` of a case file.
+
+Each becomes one or two arguments of the contact; what a number may be is checked by the law that it goes into.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from typing import Any
+
+from stribeck.fluids.description import Fluid
+from stribeck.fluids.effective_medium import EffectiveMedium
+from stribeck.fluids.flow_factors import PatirCheng
+from stribeck.fluids.presets import PRESETS
+from stribeck.fluids.rate_laws import Carreau, Cross, Eyring, PowerLaw
+from stribeck.fluids.viscosity import Barus, DowsonHigginson, Roelands
+from stribeck.quantities.units import InputError, show
+from stribeck.solids.layer import Layer
+
+__all__ = ["KEYS", "take_parts"]
+
+RHEOLOGIES: dict[str, tuple[Any, tuple[str, ...], tuple[str, ...]]] = {
+    "newtonian": (None, (), ()),
+    "carreau": (Carreau, ("relaxation_time", "exponent"), ("infinite_viscosity",)),
+    "cross": (Cross, ("relaxation_time", "exponent"), ("infinite_viscosity",)),
+    "eyring": (Eyring, ("stress",), ()),
+    "power-law": (PowerLaw, ("relaxation_time", "exponent"), ()),
+}
+"""Model of a fluid -> its class, its keys that are needed and those that are not."""
+
+VISCOSITY_LAWS = ("constant", "barus", "roelands")
+DENSITIES = ("incompressible", "dowson-higginson")
+CONDITIONS = ("weight_fraction", "temperature", "grade")
+
+KEYS = {
+    "fluid": (
+        "model",
+        "relaxation_time",
+        "exponent",
+        "infinite_viscosity",
+        "stress",
+        "pressure_viscosity",
+        "viscosity_law",
+        "reference_pressure",
+        "reference_viscosity",
+        "density",
+        "preset",
+        *CONDITIONS,
+    ),
+    "cavitation": ("model", "pressure"),
+    "motion": ("slide_to_roll",),
+    "flow_factors": ("model", "gamma", "substrate_share", "friction_factors", "argument"),
+    "solid": ("layer_thickness", "poisson_ratio"),
+}
+"""Table -> its keys."""
+
+
+def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
+    """Return the tables without those of the model, what these say, and what is wrong with them.
+
+    Parameters
+    ----------
+    tables : dict
+        The tables of a file as they stand there.
+    geometry : {"line", "point"}
+        The geometry of the contact.
+
+    Returns
+    -------
+    dict
+        The other tables; ``[contact]`` has the viscosity of a preset and, of a ball, the slide-to-roll ratio.
+    dict
+        Arguments of the contact.
+    list of str
+        A sentence for each problem, with its table.
+    """
+    rest = {name: value for name, value in tables.items() if name not in KEYS}
+    parts: dict[str, Any] = {}
+    problems: list[str] = []
+    if isinstance(rest.get("contact"), dict):
+        rest["contact"] = dict(rest["contact"])
+    for name, read in READERS.items():
+        if name not in tables:
+            continue
+        table = tables[name]
+        try:
+            if not isinstance(table, dict):
+                raise InputError(f"{name} = {show(table)} must be a table, [{name}].")
+            unknown = [key for key in table if key not in KEYS[name]]
+            if unknown:
+                raise InputError("\n".join(_unknown(key, table[key], KEYS[name]) for key in unknown))
+            if geometry == "point" and name != "motion":
+                raise InputError("a ball has the fluid and the solid of the article only; leave the table out.")
+            parts |= read(table, rest.get("contact"))
+        except InputError as problem:
+            problems += [f"[{name}] {line}" for line in str(problem).split("\n")]
+    if geometry == "point" and "slide_to_roll" in parts and isinstance(rest.get("contact"), dict):
+        rest["contact"].setdefault("slide_to_roll", parts.pop("slide_to_roll"))
+    return rest, parts, problems
+
+
+def _unknown(key: str, value: Any, known: tuple[str, ...]) -> str:
+    near = difflib.get_close_matches(key, known, n=1, cutoff=0.8)
+    advice = f"did you mean {near[0]}" if near else f"known are {', '.join(known)}"
+    return f"{key if key.isprintable() else repr(key)} = {show(value)} is not a known key; {advice}."
+
+
+def _one_of(table: dict[str, Any], key: str, known: tuple[str, ...], default: str) -> str:
+    value = table.get(key, default)
+    if value not in known:
+        raise InputError(f"{key} = {show(value)} must be one of {', '.join(map(repr, known))}.")
+    return str(value)
+
+
+def _only(table: dict[str, Any], keys: tuple[str, ...], of: str) -> None:
+    """Refuse keys that another choice would need."""
+    for key in table:
+        if key not in keys:
+            raise InputError(f"{key} = {show(table[key])} is given, but {of} has no such key; remove it.")
+
+
+def _fluid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+    if "preset" in table:
+        return _preset(table, contact)
+    _only(table, tuple(key for key in KEYS["fluid"] if key not in CONDITIONS), "a fluid without preset")
+    model = _one_of(table, "model", tuple(RHEOLOGIES), "newtonian")
+    law, needed, optional = RHEOLOGIES[model]
+    for key in ("relaxation_time", "exponent", "infinite_viscosity", "stress"):
+        if key in table and key not in (*needed, *optional):
+            raise InputError(f"{key} = {show(table[key])} is given, but model = {model!r} has no such key; remove it.")
+    missing = [key for key in needed if key not in table]
+    if missing:
+        examples = {"relaxation_time": '"1 ms"', "exponent": "0.5", "stress": '"5 MPa"'}
+        raise InputError(f"{missing[0]} is missing, which model = {model!r} needs; add {missing[0]} = {examples[missing[0]]}.")
+    rheology = None if law is None else law(**{key: table[key] for key in (*needed, *optional) if key in table})
+    return {"fluid": Fluid(rheology, _viscosity(table), _density(table))}
+
+
+def _viscosity(table: dict[str, Any]) -> Barus | Roelands | None:
+    given = "pressure_viscosity" in table
+    law = _one_of(table, "viscosity_law", VISCOSITY_LAWS, "barus" if given else "constant")
+    if law == "constant":
+        if given:
+            raise InputError("pressure_viscosity is given with viscosity_law = 'constant'; remove one of them.")
+        return None
+    if not given:
+        raise InputError(f'pressure_viscosity is missing, which viscosity_law = {law!r} needs; add "15 1/GPa" for an oil.')
+    references = {key: table[key] for key in ("reference_pressure", "reference_viscosity") if key in table}
+    if law == "barus":
+        if references:
+            raise InputError(f"{next(iter(references))} is given, but viscosity_law = 'barus' has no such key; remove it.")
+        return Barus(table["pressure_viscosity"])
+    return Roelands(table["pressure_viscosity"], **references)
+
+
+def _density(table: dict[str, Any]) -> DowsonHigginson | None:
+    return DowsonHigginson() if _one_of(table, "density", DENSITIES, DENSITIES[0]) == DENSITIES[1] else None
+
+
+def _preset(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+    name = _one_of(table, "preset", tuple(PRESETS), "")
+    _only(table, ("preset", *CONDITIONS), "a preset")
+    liquid = PRESETS[name](**{key: table[key] for key in CONDITIONS if key in table})
+    if isinstance(contact, dict):
+        if "viscosity" in contact:
+            raise InputError(
+                f"preset = {name!r} and viscosity = {show(contact['viscosity'])} in [contact] are both given; "
+                "remove one of them."
+            )
+        contact["viscosity"] = liquid.viscosity
+    return {"fluid": liquid.fluid}
+
+
+def _cavitation(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+    if "model" not in table:
+        raise InputError('model is missing; add model = "exit", "reform" or "none".')
+    found = {"cavitation": table["model"]}
+    return found | ({"cavity_pressure": table["pressure"]} if "pressure" in table else {})
+
+
+def _motion(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+    if "slide_to_roll" not in table:
+        raise InputError("slide_to_roll is missing; 2 is pure sliding with the cylinder at rest, 0 pure rolling.")
+    return {"slide_to_roll": table["slide_to_roll"]}
+
+
+def _flow_factors(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+    model = _one_of(table, "model", ("none", "patir-cheng", "effective-medium"), "")
+    rest = {key: value for key, value in table.items() if key != "model"}
+    if model == "patir-cheng":
+        return {"flow_factors": PatirCheng(**rest)}
+    _only(rest, (), f"model = {model!r}")
+    return {"flow_factors": EffectiveMedium() if model == "effective-medium" else None}
+
+
+def _solid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+    if "layer_thickness" not in table:
+        raise InputError('layer_thickness is missing; add it as "2 mm", or leave the table out for a half-space.')
+    ratio = {"poisson_ratio": table["poisson_ratio"]} if "poisson_ratio" in table else {}
+    return {"solid": Layer(table["layer_thickness"], **ratio)}
+
+
+READERS: dict[str, Callable[[dict[str, Any], Any], dict[str, Any]]] = {
+    "fluid": _fluid,
+    "cavitation": _cavitation,
+    "motion": _motion,
+    "flow_factors": _flow_factors,
+    "solid": _solid,
+}
+"""Table -> what makes arguments of a contact of it."""

@@ -1,0 +1,129 @@
+"""The tables of a case for fluid, cavitation, motion, flow factors and solid."""
+
+from pathlib import Path
+
+import pytest
+
+import stribeck as sb
+from stribeck.cases.case import check_case
+
+CONTACT = {
+    "radius": "10 mm",
+    "modulus": "2.1 MPa",
+    "load": "50 N/m",
+    "viscosity": "1 Pa*s",
+    "entrainment_speed": "50 mm/s",
+    "roughness": "1 um",
+    "alpha": 2.0,
+    "beta": 0.05,
+    "boundary_friction": 0.8,
+}
+
+
+def case_of(contact=None, **tables):
+    return check_case({"contact": CONTACT if contact is None else contact, **tables}, Path("a.toml"))
+
+
+@pytest.mark.quick
+def test_the_tables_become_parts_of_the_contact():
+    contact = case_of(
+        fluid={
+            "model": "carreau",
+            "relaxation_time": "1 ms",
+            "exponent": 0.5,
+            "infinite_viscosity": "10 mPa*s",
+            "pressure_viscosity": "15 1/GPa",
+            "viscosity_law": "roelands",
+            "density": "dowson-higginson",
+        },
+        cavitation={"model": "exit"},
+        motion={"slide_to_roll": 1.0},
+        solid={"layer_thickness": "2 mm", "poisson_ratio": 0.5},
+    ).contact
+    f = sb.fluids
+    assert contact.fluid == f.Fluid(f.Carreau(1e-3, 0.5, 0.01), f.Roelands(1.5e-8), f.DowsonHigginson())
+    assert contact.cavitation == "exit"
+    assert contact.slide_to_roll == 1.0
+    assert contact.speed == 0.1
+    assert contact.solid == sb.solids.Layer(2e-3, 0.5)
+    assert contact.groups.model.film.name == "carreau + roelands + dowson-higginson"
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("table", "fluid"),
+    [
+        ({"model": "eyring", "stress": "5 MPa"}, sb.fluids.Fluid(sb.fluids.Eyring(5e6))),
+        ({"model": "cross", "relaxation_time": 0.1, "exponent": 0.7}, sb.fluids.Fluid(sb.fluids.Cross(0.1, 0.7))),
+        ({"model": "power-law", "relaxation_time": "1 s", "exponent": 0.7}, sb.fluids.Fluid(sb.fluids.PowerLaw(1.0, 0.7))),
+        ({"pressure_viscosity": "15 1/GPa"}, sb.fluids.Fluid(viscosity=sb.fluids.Barus(1.5e-8))),
+        ({}, sb.fluids.Fluid()),
+    ],
+)
+def test_every_model_of_a_fluid_is_read(table, fluid):
+    assert case_of(fluid=table).contact.fluid == fluid
+
+
+@pytest.mark.quick
+def test_a_preset_gives_the_viscosity_too():
+    contact = {name: value for name, value in CONTACT.items() if name != "viscosity"}
+    liquid = {"preset": "glycerol-water", "weight_fraction": 0.8, "temperature": "20 degC"}
+    assert case_of(contact, fluid=liquid).contact.viscosity == sb.fluids.glycerol_water(0.8, 20).viscosity
+    thinning = case_of(contact, fluid={"preset": "xanthan"}).contact
+    assert thinning.fluid == sb.fluids.PRESETS["xanthan"]().fluid
+    with pytest.raises(sb.InputError, match=r"\[fluid\] preset = 'water' and viscosity = .* are both given"):
+        case_of(fluid={"preset": "water"})
+
+
+@pytest.mark.quick
+def test_flow_factors_take_alpha_and_roughness_of_the_contact():
+    flow = case_of(flow_factors={"model": "patir-cheng", "gamma": 3}).contact.groups.model.film.flow
+    assert flow.gamma == 3
+    assert flow.sigma == pytest.approx(1e-6 / case_of().contact.hertz.indentation)
+    assert case_of(flow_factors={"model": "effective-medium"}).contact.flow_factors == sb.fluids.EffectiveMedium()
+    assert case_of(flow_factors={"model": "none"}).contact == case_of().contact
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("tables", "said"),
+    [
+        ({"fluid": {"model": "carreau"}}, r"\[fluid\] relaxation_time is missing, which model = 'carreau' needs"),
+        ({"fluid": {"model": "eyring", "stress": "5 MPa", "exponent": 1}}, r"\[fluid\] exponent = 1 is given, but model"),
+        ({"fluid": {"modle": "carreau"}}, r"\[fluid\] modle = 'carreau' is not a known key; did you mean model"),
+        ({"fluid": {"model": "bingham"}}, r"\[fluid\] model = 'bingham' must be one of"),
+        ({"fluid": {"viscosity_law": "barus"}}, r"\[fluid\] pressure_viscosity is missing"),
+        ({"fluid": {"pressure_viscosity": "15 GPa"}}, r"\[fluid\] pressure_coefficient = '15 GPa' is a pressure"),
+        ({"fluid": {"preset": "honey"}}, r"\[fluid\] preset = 'honey' must be one of"),
+        ({"fluid": {"preset": "water", "model": "cross"}}, r"\[fluid\] model = 'cross' is given, but a preset"),
+        ({"fluid": "water"}, r"\[fluid\] fluid = 'water' must be a table"),
+        ({"cavitation": {}}, r"\[cavitation\] model is missing"),
+        ({"cavitation": {"model": "swift"}}, "must be one of 'none', 'exit'"),
+        ({"motion": {}}, r"\[motion\] slide_to_roll is missing"),
+        ({"flow_factors": {"model": "effective-medium", "gamma": 1}}, r"\[flow_factors\] gamma = 1 is given"),
+        ({"solid": {"poisson_ratio": 0.5}}, r"\[solid\] layer_thickness is missing"),
+        ({"solid": {"layer_thickness": "-1 mm"}}, r"\[solid\] thickness = '-1 mm'"),
+    ],
+)
+def test_what_is_wrong_in_a_table_is_said_with_its_name(tables, said):
+    with pytest.raises(sb.InputError, match=said):
+        case_of(**tables)
+
+
+@pytest.mark.quick
+def test_all_problems_are_told_at_once():
+    with pytest.raises(sb.InputError) as problem:
+        case_of(fluid={"model": "carreau"}, motion={"slip": 1}, solid={})
+    assert [line.split("]")[0] for line in str(problem.value).split("\n")] == [
+        "a.toml: [fluid",
+        "a.toml: [motion",
+        "a.toml: [solid",
+    ]
+
+
+@pytest.mark.quick
+def test_a_ball_has_motion_only():
+    ball = {**CONTACT, "geometry": "point", "load": "50 mN"}
+    assert case_of(ball, motion={"slide_to_roll": 0.5}).contact.slide_to_roll == 0.5
+    with pytest.raises(sb.InputError, match=r"\[cavitation\] a ball has"):
+        case_of(ball, cavitation={"model": "exit"})
