@@ -135,7 +135,7 @@ class LineContact(WithParts, Contact):
             load=F_N / R / E_star / self.beta / self.beta / math.pi,
             roughness=self.roughness / R / self.beta / self.beta / self.alpha / 4,
             law=self.law,
-            model=ARTICLE if self.parts is DEFAULT else self.parts.model(self.film_units, self.hertz.half_width),
+            model=ARTICLE if self.parts is DEFAULT else self.parts.model(self.film_units, self.hertz.half_width, U),
         )
 
     @property

@@ -104,7 +104,7 @@ class Parts:
         """Half the slide-to-roll ratio, ``s = (u1 - u2)/(u1 + u2)``."""
         return 0.5 * self.slide_to_roll
 
-    def model(self, units: FilmUnits, length: float = 1.0) -> Model:
+    def model(self, units: FilmUnits, length: float = 1.0, speed: float = 1.0) -> Model:
         """Return the model in Hertz units.
 
         Parameters
@@ -113,6 +113,8 @@ class Parts:
             Of the film.
         length : float
             The Hertz half-width a, in the unit of the lengths of the solid.
+        speed : float
+            Sum of the surface speeds, in the unit of that length over the times of the solid.
 
         Returns
         -------
@@ -127,7 +129,7 @@ class Parts:
         if self is DEFAULT or self == DEFAULT:
             return ARTICLE
         film = self.fluid.at(units, self.slide, self.flow_factors)
-        solid: Solid = HalfPlane() if self.solid is None else self.solid.scaled(length)
+        solid: Solid = HalfPlane() if self.solid is None else self.solid.scaled(length, 0.5 * (1 + self.slide) * speed)
         return Model(film, self.cavitation, solid, self.cavity_pressure / units.pressure)
 
 

@@ -14,7 +14,7 @@ from stribeck.contacts.parts import NAMES, Parts
 from stribeck.fluids.laws import FilmUnits
 from stribeck.quantities.units import InputError
 
-__all__ = ["hertz_units", "with_parts"]
+__all__ = ["check_solid", "hertz_units", "with_parts"]
 
 Problem = TypeVar("Problem")
 
@@ -75,3 +75,13 @@ def hertz_units(groups: Groups) -> FilmUnits:
         values.append(float(value[0]))
     speed, roughness = values
     return FilmUnits(pressure=1.0, time=speed or 1.0, gap=1.0, viscosity=1.0, decay_length=roughness)
+
+
+def check_solid(problem: Contact | Groups) -> None:
+    """Refuse curves on a viscoelastic body, whose deflection changes with the speed."""
+    groups = problem.groups if isinstance(problem, Contact) else problem
+    if getattr(groups.model.solid, "uses_speed", False):
+        raise InputError(
+            f"solid = {groups.model.solid.name}: its deflection changes with the speed, which curves do not follow; "
+            "solve the states one by one."
+        )

@@ -13,7 +13,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, coefficients
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.with_parts import with_parts
+from stribeck.contacts.with_parts import check_solid, with_parts
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_problem
 from stribeck.curves.landmarks import Landmark
@@ -142,6 +142,7 @@ def stribeck_curve(
     base, over, ends = read_problem(problem, given)
     base = with_law(base, law)
     base = with_parts(base, **parts) if parts else base
+    check_solid(base)
     contact = base if isinstance(base, Contact) else None
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     if isinstance(points, bool) or not isinstance(points, int) or not POINTS_RANGE[0] <= points <= POINTS_RANGE[1]:

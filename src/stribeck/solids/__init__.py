@@ -5,6 +5,8 @@ from importlib import import_module as _import_module
 _HOMES = {
     "half_plane": ("HalfPlane",),
     "layer": ("Layer",),
+    "two_bodies": ("TwoBodies",),
+    "viscoelastic": ("Prony", "StandardLinearSolid", "hysteresis_friction"),
 }
 __all__ = sorted(name for names in _HOMES.values() for name in names)
 

@@ -288,7 +288,7 @@ class HalfPlane:
         """None."""
         return {}
 
-    def scaled(self, length: float) -> HalfPlane:
+    def scaled(self, length: float, speed: float = 1.0) -> HalfPlane:
         """Return the body itself: it has no length."""
         return self
 

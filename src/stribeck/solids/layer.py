@@ -83,7 +83,7 @@ class Layer:
         """Thickness and Poisson's ratio."""
         return {"thickness": self.thickness, "poisson_ratio": self.poisson_ratio}
 
-    def scaled(self, length: float) -> Layer:
+    def scaled(self, length: float, speed: float = 1.0) -> Layer:
         """Return the layer with its thickness over a length, the Hertz half-width."""
         return Layer(self.thickness / length, self.poisson_ratio)
 

@@ -22,8 +22,8 @@ class Solid(Protocol):
     def parameters(self) -> dict[str, float | str]:
         """What distinguishes this body from others of its name, for outputs."""
 
-    def scaled(self, length: float) -> Solid:
-        """Return the body in Hertz units, from SI; ``length`` is the Hertz half-width."""
+    def scaled(self, length: float, speed: float = 1.0) -> Solid:
+        """Return the body in Hertz units, from SI, by the Hertz half-width and the speed of its surface."""
 
     def deflection(self, mesh: Mesh) -> Array:
         """Return the matrix from nodal pressures to the deflection at the nodes, shape (size, size), in Fortran order."""

@@ -1,0 +1,8 @@
+"""The public names with their types; at run time each is imported on first use."""
+
+from stribeck.solids.half_plane import HalfPlane
+from stribeck.solids.layer import Layer
+from stribeck.solids.two_bodies import TwoBodies
+from stribeck.solids.viscoelastic import Prony, StandardLinearSolid, hysteresis_friction
+
+__all__ = ["HalfPlane", "Layer", "Prony", "StandardLinearSolid", "TwoBodies", "hysteresis_friction"]

@@ -1,0 +1,267 @@
+r"""Viscoelastic bodies in steady sliding: the deflection remembers the pressure that has passed.
+
+A point of the surface that moves with the speed :math:`u_1` in x sees :math:`d/dt = u_1 \, d/dx`.  With the creep compliance
+over the relaxed one, :math:`J(t) = j_0 + \sum_i j_i (1 - e^{-t/\tau_i})`, :math:`j_0 + \sum_i j_i = 1`,
+
+.. math::
+
+    w = D \Big[ j_0 + \sum_i j_i E_i \Big] p, \qquad E_i = \Big(1 + \mathrm{De}_i \frac{d}{dx}\Big)^{-1}, \quad
+    \mathrm{De}_i = \frac{u_1 \tau_i}{a}
+
+with D the deflection of the elastic body that has the relaxed modulus.  E is solved panel by panel from upstream, as the
+Volterra equation :math:`\mathrm{De} \, q' + q = p`, exact for polynomials on the panels.  The deflection lags
+behind, and the pressure of a dry contact resists the motion by the hysteresis friction
+
+.. math:: \mu_\mathrm{h} = \frac aR \, \frac2\pi \int p \, w' \, dx
+
+Source: [Hunter 1961] for rolling on the standard linear solid; tested against Parseval's form of the same integral.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.numerics.panels import Mesh, reference
+from stribeck.quantities.units import InputError, show, to_si
+from stribeck.solids.half_plane import HalfPlane
+from stribeck.solids.solid import Solid
+
+__all__ = ["Prony", "StandardLinearSolid", "creep_of_relaxation", "hysteresis_friction", "memory"]
+
+MOST_TERMS = 40
+
+
+class _Viscoelastic:
+    """What bodies with a creep compliance have in common."""
+
+    uses_speed: ClassVar[bool] = True
+    base: Solid
+
+    def _creep(self) -> tuple[float, tuple[tuple[float, float], ...]]:
+        """Return j_0 and pairs of j and time."""
+        raise NotImplementedError
+
+    def deflection(self, mesh: Mesh) -> Array:
+        """Return the matrix from nodal pressures to the deflection at the nodes [u_Hz per p_Hz].
+
+        Panels must reach to 30 of the largest Deborah number on both sides, and resolve the pressure.
+        """
+        return np.asfortranarray(self.base.deflection(mesh) @ self._remembered(mesh))
+
+    def _remembered(self, mesh: Mesh) -> Array:
+        instant, rest = self._creep()
+        matrix = instant * np.eye(mesh.size)
+        for part, time in rest:
+            matrix += part * memory(mesh, time)
+        return matrix
+
+    def far_gap(self, x: Array) -> Array:
+        """Return that of the relaxed body."""
+        return self.base.far_gap(x)
+
+
+@dataclass(frozen=True, init=False)
+class StandardLinearSolid(_Viscoelastic):
+    r"""The body with one retardation time: a spring in series with a spring and a damper side by side.
+
+    .. math:: J(t) = \frac1r + \Big(1 - \frac1r\Big) (1 - e^{-t/\tau})
+
+    Parameters
+    ----------
+    time : str or float
+        Retardation time :math:`\tau > 0` of creep [s]; the relaxation time is :math:`\tau/r`.  With groups the Deborah number
+        :math:`u_1 \tau/a` of the state.
+    ratio : float
+        :math:`r > 1`, the modulus at once over that of the relaxed body, which is the contact's [-].
+    base : solid of sb.solids, optional
+        The shape of the body; a half-space without it.
+
+    Raises
+    ------
+    InputError
+        Where a value is impossible or a unit is wrong.
+    """
+
+    time: float
+    ratio: float
+    base: Solid
+
+    def __init__(self, time: str | float, ratio: float, base: Solid | None = None) -> None:
+        values = {"time": _positive("time", time), "ratio": to_si(ratio, "number", "ratio")}
+        if not values["ratio"] > 1:
+            raise InputError(f"ratio = {show(ratio)} must be above 1: the modulus at once over that of the relaxed body.")
+        for name, value in {**values, "base": HalfPlane() if base is None else base}.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print."""
+        return f"standard linear solid, {self.base.name}"
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """Time, ratio and those of the base."""
+        return {"retardation_time": self.time, "modulus_ratio": self.ratio, **self.base.parameters}
+
+    def scaled(self, length: float, speed: float = 1.0) -> Solid:
+        """Return the body in Hertz units; at rest it is relaxed."""
+        base = self.base.scaled(length, speed)
+        return base if speed == 0 else StandardLinearSolid(self.time * speed / length, self.ratio, base)
+
+    def _creep(self) -> tuple[float, tuple[tuple[float, float], ...]]:
+        return 1 / self.ratio, ((1 - 1 / self.ratio, self.time),)
+
+
+@dataclass(frozen=True, init=False)
+class Prony(_Viscoelastic):
+    r"""The body with a Prony series of its relaxation.
+
+    .. math:: E(t) = E_\infty \Big[1 + \sum_i g_i e^{-t/\tau_i}\Big]
+
+    Parameters
+    ----------
+    times : sequence of str or float
+        Relaxation times :math:`\tau_i > 0` [s]; with groups :math:`u_1 \tau_i/a` of the state.
+    moduli : sequence of float
+        :math:`g_i > 0`, over the relaxed modulus, which is the contact's [-].
+    base : solid of sb.solids, optional
+        The shape of the body; a half-space without it.
+
+    Raises
+    ------
+    InputError
+        Where a value is impossible, a unit is wrong, or times and moduli are not as many.
+
+    Notes
+    -----
+    Poisson's ratio does not relax.  The series is turned into that of creep by the roots of a polynomial, to 1e-12.
+    """
+
+    times: tuple[float, ...]
+    moduli: tuple[float, ...]
+    base: Solid
+
+    def __init__(self, times: Any, moduli: Any, base: Solid | None = None) -> None:
+        if isinstance(times, str) or not hasattr(times, "__len__") or not hasattr(moduli, "__len__"):
+            raise InputError(f"times = {show(times)} and moduli = {show(moduli)} must be lists, of the same length.")
+        if not 0 < len(times) == len(moduli) <= MOST_TERMS:
+            raise InputError(f"times has {len(times)} and moduli {len(moduli)} ; give as many of both, 1 to {MOST_TERMS}.")
+        tau = tuple(_positive("times", each) for each in times)
+        g = tuple(to_si(each, "number", "moduli") for each in moduli)
+        if min(g) <= 0 or len(set(tau)) < len(tau):
+            raise InputError(f"moduli = {show(moduli)} must be above zero, and the times differ from each other.")
+        for name, value in {"times": tau, "moduli": g, "base": HalfPlane() if base is None else base}.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def name(self) -> str:
+        """Name that outputs print."""
+        return f"Prony series, {self.base.name}"
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """Times and moduli as text, and those of the base."""
+        texts = (" ".join(f"{each:g}" for each in values) for values in (self.times, self.moduli))
+        return {**dict(zip(("relaxation_times", "moduli"), texts, strict=True)), **self.base.parameters}
+
+    def scaled(self, length: float, speed: float = 1.0) -> Solid:
+        """Return the body in Hertz units; at rest it is relaxed."""
+        base = self.base.scaled(length, speed)
+        return base if speed == 0 else Prony([each * speed / length for each in self.times], self.moduli, base)
+
+    def _creep(self) -> tuple[float, tuple[tuple[float, float], ...]]:
+        return creep_of_relaxation(self.times, self.moduli)
+
+
+def creep_of_relaxation(times: tuple[float, ...], moduli: tuple[float, ...]) -> tuple[float, tuple[tuple[float, float], ...]]:
+    r"""Return the creep compliance over the relaxed one: :math:`j_0`, and :math:`j_i` with its time, of a Prony series.
+
+    With :math:`m(s) = 1 + \sum g_i s\tau_i/(1 + s\tau_i)` the compliance is :math:`1/m(s)`, with poles :math:`-1/\tau` of the
+    creep, one between each two of the relaxation.
+    """
+    tau, g = (np.array(each) for each in zip(*sorted(zip(times, moduli, strict=True)), strict=True))
+
+    def m(s: float) -> float:
+        return float(1 + (g * s * tau / (1 + s * tau)).sum())
+
+    # Between two poles of m, and left of the last of the slow ones, m has one zero each.
+    poles = np.append(-1 / tau, 0.0)
+    found = []
+    for left, right in zip(poles[:-1], poles[1:], strict=True):
+        low, high = left * (1 - 1e-15), right
+        for _ in range(200):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if m(middle) < 0 else (low, middle)
+        s = 0.5 * (low + high)
+        slope = float((g * tau / (1 + s * tau) ** 2).sum())
+        found.append((-1 / (s * slope), -1 / s))
+    instant = 1 / (1 + float(g.sum()))
+    return instant, tuple(found)
+
+
+def memory(mesh: Mesh, deborah: float) -> Array:
+    """Return the matrix from nodal p to the nodal q with ``De q' + q = p``, zero far upstream.
+
+    Upstream of the panels q is p there, to De over their reach; downstream of them it decays to p.
+    """
+    n, panels, rule = mesh.order, mesh.panels - 1, reference(mesh.order)
+    found = np.zeros((mesh.size, mesh.size))
+    tail = slice(panels * n, mesh.size)
+    carry = np.zeros(mesh.size)
+    carry[tail] = rule.left_end  # p at the left edge, seen from the panel through infinity
+    for k in range(panels):
+        here = slice(k * n, (k + 1) * n)
+        ratio = mesh.half_widths[k] / deborah
+        solve = np.linalg.inv(np.eye(n) + ratio * rule.integral)
+        found[here] = np.outer(solve.sum(axis=1), carry)
+        found[here, here] += ratio * solve @ rule.integral
+        gained = -rule.weights @ found[here]
+        gained[here] += rule.weights
+        carry = carry + ratio * gained
+    found[tail, tail] = np.eye(n)
+    beyond = np.flatnonzero(mesh.local[-1] > 0) + panels * n
+    carry[tail] -= rule.left_end[::-1]
+    found[beyond] += np.outer(np.exp(-(mesh.nodes[beyond] - mesh.edges[-1]) / deborah), carry)
+    return found
+
+
+def hysteresis_friction(mesh: Mesh, solid: Solid, pressure: Array) -> float:
+    r"""Return the hysteresis friction over the slope a/R: :math:`\tfrac2\pi \int p \, w' dx`.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Panels that carry the pressure.
+    solid : Solid
+        The body, in Hertz units.
+    pressure : ndarray, shape (mesh.size,)
+        All that presses on it at the nodes [p_Hz].
+
+    Returns
+    -------
+    float
+        Friction coefficient over a/R [-]; zero for elastic bodies.
+    """
+    n = mesh.order
+    w = (solid.deflection(mesh) @ pressure)[:-n].reshape(-1, n)
+    slope = w @ _nodal_derivative(n).T / mesh.half_widths[:-1, None]
+    return float(2 / math.pi * (mesh.weights[:-n] * pressure[:-n]) @ slope.ravel())
+
+
+def _nodal_derivative(order: int) -> Array:
+    """Return the matrix from nodal values to nodal derivatives on [-1, 1]."""
+    rule = reference(order)
+    degrees = np.polynomial.legendre.legvander(rule.nodes, order - 1)
+    return np.asarray(degrees @ rule.derivative @ rule.to_legendre)
+
+
+def _positive(name: str, value: str | float) -> float:
+    time = to_si(value, "time", name)
+    if time <= 0:
+        raise InputError(f"{name} = {show(value)} must be above zero, such as '10 ms'.")
+    return time

@@ -1,0 +1,166 @@
+"""Viscoelastic and combined solids: memory, hysteresis friction, dry contacts against an independent solver."""
+
+import numpy as np
+import pytest
+from test_model_parts import REFERENCE, observed
+
+import stribeck as sb
+from stribeck.contacts.groups import contact_law
+from stribeck.contacts.model import Model
+from stribeck.equations.line import LOAD, Operators
+from stribeck.equations.state import mesh_for, solve_state
+from stribeck.numerics.panels import Mesh
+from stribeck.solids.half_plane import HalfPlane
+from stribeck.solids.layer import Layer
+from stribeck.solids.two_bodies import TwoBodies
+from stribeck.solids.viscoelastic import Prony, StandardLinearSolid, creep_of_relaxation, hysteresis_friction, memory
+from stribeck.solver.cold_start import cold_start
+
+FINE = Mesh(np.concatenate([[-256, -128, -64, -32, -16, -8], np.arange(-4, 4.01, 0.125), [8, 16, 32, 64, 128, 256.0]]), 12)
+DRY = REFERENCE["g_standard_linear_solid_dry"]["rows"]
+
+
+def bump(x, width=0.3):
+    return np.exp(-((x / width) ** 2))
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("deborah", [0.03, 0.3, 3.0])
+def test_the_memory_is_the_exponential_mean_of_what_has_passed(deborah):
+    found = memory(FINE, deborah) @ bump(FINE.nodes)
+    x = np.array([-0.5, 0.0, 0.3, 1.0, 6.0])
+    age, weights = np.polynomial.legendre.leggauss(2000)
+    age, weights = 20 * (1 + age) * deborah, 20 * weights
+    expected = [np.sum(weights * np.exp(-age / deborah) * bump(each - age)) for each in x]
+    np.testing.assert_allclose(FINE.interpolate(found, x), expected, atol=1e-9)
+    assert FINE.weights @ found == pytest.approx(FINE.weights @ bump(FINE.nodes), rel=1e-9)  # the load is kept
+
+
+@pytest.mark.quick
+def test_the_hysteresis_friction_is_parsevals_integral():
+    deborah, ratio, width = 0.5, 3.0, 0.4
+    found = hysteresis_friction(FINE, StandardLinearSolid(deborah, ratio), bump(FINE.nodes, width))
+    # w^ = J(k) p^/|k|, so that int p w' = int_0^inf Im(J) |p^|^2 dk/pi, with |p^|^2 of the bump.
+    k = np.linspace(1e-6, 60, 400_001)
+    loss = (1 - 1 / ratio) * k * deborah / (1 + (k * deborah) ** 2)
+    power = np.pi * width**2 * np.exp(-((k * width) ** 2) / 2)
+    assert found == pytest.approx(2 / np.pi * np.trapezoid(loss * power, k) / np.pi, rel=1e-8)
+    assert abs(hysteresis_friction(FINE, HalfPlane(), bump(FINE.nodes))) < 1e-12
+
+
+@pytest.mark.quick
+def test_a_prony_series_of_one_term_is_the_standard_linear_solid():
+    instant, [(part, time)] = creep_of_relaxation((0.2,), (1.5,))
+    assert (instant, part, time) == (pytest.approx(1 / 2.5), pytest.approx(0.6), pytest.approx(0.5))
+    one, other = Prony([0.2], [1.5]), StandardLinearSolid(0.5, 2.5)
+    np.testing.assert_allclose(one.deflection(FINE), other.deflection(FINE), atol=1e-12)
+
+
+@pytest.mark.quick
+def test_the_creep_of_a_prony_series_inverts_its_relaxation():
+    times, moduli = (1e-3, 0.1, 2.0, 50.0), (3.0, 0.5, 2.0, 0.1)
+    instant, rest = creep_of_relaxation(times, moduli)
+    for s in (1e-4, 0.03, 1.0, 40.0, 1e5):
+        stiffness = 1 + sum(g * s * t / (1 + s * t) for t, g in zip(times, moduli, strict=True))
+        compliance = instant + sum(part / (1 + s * time) for part, time in rest)
+        assert stiffness * compliance == pytest.approx(1.0, rel=1e-10)
+
+
+def dry(model, kappa=1e-3, load=0.1, guess=None):
+    """Return a dry state and its mesh."""
+    groups = sb.Groups(0.0, load, kappa * load)
+    guess = cold_start(groups).states[-1] if guess is None else guess
+    for tolerance in (1e-3, 1e-5, 1e-7):
+        mesh = mesh_for(guess, groups, contact_law(groups), 12, tolerance, 0.01 * tolerance)
+        far = mesh.edges[-1] * 2.0 ** np.arange(1, 6)
+        mesh = Mesh(np.unique(np.concatenate([mesh.edges, far, -far])), 12, mesh.scale)
+        guess = solve_state(groups, Operators(mesh, model), guess, 1e-11, max_steps=100)
+        assert guess.outcome.ok, guess.outcome
+    return guess
+
+
+@pytest.mark.parametrize("row", DRY[:3], ids=lambda row: f"{row['De']:g}")
+def test_a_dry_contact_on_a_standard_linear_solid_is_that_of_an_independent_solver(row):
+    solid = StandardLinearSolid(row["De"], row["r"])
+    state = dry(Model(solid=solid))
+    pressure = state.equations.pressures(state.y)[0]
+    tolerance = max(1e-6, 10 * row["change"])
+    assert hysteresis_friction(state.mesh, solid, pressure) == pytest.approx(row["mu_over_aR"], rel=max(2e-5, tolerance))
+    assert pressure.max() == pytest.approx(row["pmax"], rel=1e-3)
+    # The friction is the moment of the pressure on the punch, too.
+    moment = -(state.mesh.weights[:-12] * state.mesh.nodes[:-12]) @ pressure[:-12] / LOAD
+    assert moment == pytest.approx(row["mu_over_aR"], rel=max(2e-5, tolerance))
+
+
+def test_slow_sliding_has_the_friction_of_a_small_lag():
+    friction = []
+    for deborah in (0.02, 0.01):
+        solid = StandardLinearSolid(deborah, 2.0)
+        state = dry(Model(solid=solid))
+        friction.append(hysteresis_friction(state.mesh, solid, state.equations.pressures(state.y)[0]) / (0.5 * deborah))
+    assert abs(friction[1] - 1) < abs(friction[0] - 1) < 0.031
+
+
+@pytest.mark.parametrize("row", REFERENCE["f_layer_dry"], ids=lambda row: f"{row['d']:g}")
+def test_a_dry_contact_on_a_layer_is_that_of_an_independent_solver(row):
+    guess = None
+    for d in [each for each in (1.0, 0.7) if each > row["d"]] + [row["d"]]:
+        guess = dry(Model(solid=Layer(d, row["nu"])), guess=guess)
+    found = observed(guess)
+    tolerance = max(1e-6, 10 * row["change"])
+    for name in ("h0", "hmin", "m"):
+        assert found[name] == pytest.approx(row[name], rel=tolerance)
+
+
+@pytest.mark.quick
+def test_two_half_spaces_are_one_and_a_body_of_no_share_does_nothing():
+    p = bump(FINE.nodes)
+    both = TwoBodies(first_share=0.3)
+    np.testing.assert_allclose(both.deflection(FINE) @ p, HalfPlane().deflection(FINE) @ p, atol=1e-13)
+    np.testing.assert_allclose(both.far_gap(FINE.nodes), HalfPlane().far_gap(FINE.nodes))
+    layered = TwoBodies(Layer(1.0), None, 1.0)
+    np.testing.assert_allclose(layered.deflection(FINE) @ p, Layer(1.0).deflection(FINE) @ p)
+
+
+@pytest.mark.quick
+def test_solids_of_a_contact_are_scaled_from_si_units():
+    contact = sb.LineContact(
+        radius="10 mm",
+        modulus="2.1 MPa",
+        load="50 N/m",
+        viscosity="1 Pa*s",
+        speed="0.1 m/s",
+        roughness="1 um",
+        alpha=2.0,
+        beta=0.05,
+        boundary_friction=0.8,
+        slide_to_roll=1.0,
+        solid=sb.solids.TwoBodies(sb.solids.StandardLinearSolid("10 ms", 2.0, sb.solids.Layer("2 mm"))),
+    )
+    a, solid = contact.hertz.half_width, contact.groups.model.solid.first
+    assert solid.time == pytest.approx(0.75 * 0.1 * 0.01 / a)  # the substrate moves with u1 = (1 + s) U/2
+    assert solid.base.thickness == pytest.approx(2e-3 / a)
+    assert contact.replace(speed=0.0).groups.model.solid.first == Layer(solid.base.thickness)
+
+
+@pytest.mark.quick
+def test_a_curve_on_a_viscoelastic_body_is_refused():
+    with pytest.raises(sb.InputError, match="solve the states one by one"):
+        sb.stribeck_curve(sb.Groups(1e-3, 0.1, 1e-4), solid=StandardLinearSolid(0.3, 2.0), points=3)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: StandardLinearSolid(0, 2.0), "time"),
+        (lambda: StandardLinearSolid("10 ms", 1.0), "ratio"),
+        (lambda: Prony("1 s", [1.0]), "lists"),
+        (lambda: Prony([1.0], [1.0, 2.0]), "as many"),
+        (lambda: Prony([1.0, 1.0], [1.0, 2.0]), "differ"),
+        (lambda: TwoBodies(first_share=1.2), "first_share"),
+    ],
+)
+def test_impossible_solids_are_refused_by_name(make, said):
+    with pytest.raises(sb.InputError, match=said):
+        make()
