@@ -27,23 +27,26 @@ from stribeck.files.pictures import (
 from stribeck.files.writing import PathLike
 from stribeck.quantities.inputs import SYMBOLS
 from stribeck.quantities.units import DIMENSIONS, format_si
+from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["plot_profile"]
+    from stribeck.solver.point.solution import PointSolution
+
+__all__ = ["axis_in_si", "draw_gap", "footer_of", "law_text", "plot_profile"]
 
 
 def plot_profile(
-    solution: Solution, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+    solution: Solution | PointSolution, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
 ) -> Figure:
-    """Draw gap and pressures along the contact, in SI units where the solution has a contact.
+    """Draw gap and pressures along the contact, of a ball on its plane too, in SI units where the solution has a contact.
 
     Parameters
     ----------
-    solution : Solution
+    solution : Solution or PointSolution
         The state.
     path : str or path-like, optional
         Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
@@ -66,9 +69,13 @@ def plot_profile(
     MissingExtraError
         If matplotlib is not installed.
     """
+    if not isinstance(solution, Solution):
+        from stribeck.solver.point.plot import plot_point_solution
+
+        return plot_point_solution(solution, path, force=force, title=title)
     above: Axes | None
     if ax is None:
-        figure, (above, below) = new_figure((7.5, 6.0), _footer(solution), rows=2, title=title or "Gap and pressure")
+        figure, (above, below) = new_figure((7.5, 6.0), footer_of(solution), rows=2, title=title or "Gap and pressure")
     else:
         figure, above, below = figure_of(ax), None, ax
     x = _positions(solution)
@@ -81,11 +88,11 @@ def plot_profile(
         )
     else:
         scales = solution.contact.hertz
-        to_x = _axis(scales.half_width, "length", "position $x$")
-        to_gap = _axis(scales.indentation, "length", "gap $h$", float(np.abs(fields.gap).max()))
-        to_pressure = _axis(scales.pressure, "pressure", "pressure")
+        to_x = axis_in_si(scales.half_width, "length", "position $x$")
+        to_gap = axis_in_si(scales.indentation, "length", "gap $h$", float(np.abs(fields.gap).max()))
+        to_pressure = axis_in_si(scales.pressure, "pressure", "pressure")
     if above is not None:
-        _draw_gap(above, solution, x * to_x[0], fields.gap, to_gap)
+        draw_gap(above, solution, x * to_x[0], fields.gap, to_gap)
     hertz = np.sqrt(np.clip(1 - x**2, 0, None))
     curves: list[tuple[Array, dict[str, Any]]] = [
         (hertz, {"color": GREY, "lw": 1.0, "ls": (0, (2, 2)), "label": "dry smooth contact (Hertz)"}),
@@ -110,7 +117,7 @@ def plot_profile(
     return finish_figure(figure, path, force)
 
 
-def _draw_gap(axes: Axes, solution: Solution, x: Array, gap: Array, to_gap: tuple[float, str]) -> None:
+def draw_gap(axes: Axes, solution: BaseSolution, x: Array, gap: Array, to_gap: tuple[float, str]) -> None:
     """Draw the gap, and the roughness where it can be seen beside it."""
     axes.plot(x, gap * to_gap[0], color=INK, lw=1.8, label="gap")
     drawn = gap
@@ -126,7 +133,8 @@ def _draw_gap(axes: Axes, solution: Solution, x: Array, gap: Array, to_gap: tupl
     axes.tick_params(labelbottom=False)
 
 
-def _footer(solution: Solution) -> list[tuple[str, str]]:
+def footer_of(solution: BaseSolution) -> list[tuple[str, str]]:
+    """Return what stands below the picture of a state: inputs, groups, law, error and notes."""
     groups = [f"{name} group {float(getattr(solution.groups, name)):.4g}" for name in ("speed", "load", "roughness")]
     second = [
         law_text(solution),
@@ -147,14 +155,14 @@ def _positions(solution: Solution) -> Array:
     return np.unique(np.concatenate([np.linspace(-reach, reach, 801), nodes]))
 
 
-def _axis(scale: float, dimension: str, name: str, largest: float = 1.0) -> tuple[float, str]:
+def axis_in_si(scale: float, dimension: str, name: str, largest: float = 1.0) -> tuple[float, str]:
     """Return the factor from Hertz units to a unit with readable numbers, and the label with that unit."""
     unit = format_si(scale * largest, dimension).rpartition(" ")[2]
     power = next(power for power, known in DIMENSIONS[dimension].steps.items() if known == unit)
     return scale / 10.0**power, f"{name} ({unit})"
 
 
-def law_text(solution: Solution) -> str:
+def law_text(solution: BaseSolution) -> str:
     """Return name and parameters of the contact law."""
     if solution.law in ("dry contact", "smooth"):
         return solution.law
