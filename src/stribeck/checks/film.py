@@ -83,7 +83,7 @@ def supply(subject: Subject) -> Check | None:
     arriving = subject.fact("supply_film")
     if arriving is None or subject.contact.speed == 0:
         return None
-    passing = subject.film(subject.solution.flux_gap) / 2
+    passing = subject.film(subject.passing_gap) / 2
     ratio = passing / arriving if arriving > 0 else math.inf
     verdict = verdict_of(ratio, FINE_SUPPLY, STARVED)
     meaning = {
@@ -132,7 +132,7 @@ def inertia(subject: Subject) -> Check:
     r"""Return the check of the fluid's inertia: the reduced Reynolds number :math:`\rho U h^{*2}/(\eta a)`."""
     contact = subject.contact
     density = subject.fact("density") or USUAL_DENSITY
-    film = subject.film(subject.solution.flux_gap)
+    film = subject.film(subject.passing_gap)
     number = density * contact.speed * film**2 / (contact.viscosity * contact.hertz.half_width)
     verdict = verdict_of(number, FINE_INERTIA, INERTIA)
     meaning = (

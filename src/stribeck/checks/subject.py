@@ -68,6 +68,11 @@ class Subject:
         return stribeck_curve(contact, points=POINTS, rtol=RTOL, definition=self.definition)
 
     @property
+    def passing_gap(self) -> float:
+        """Gap of the film that passes [u_Hz]: h* of a cylinder, the central gap of a ball."""
+        return float(getattr(self.solution, "flux_gap", self.solution.central_gap))
+
+    @property
     def minimum(self) -> Landmark | None:
         """The minimum of friction over the speed."""
         return self.curve.minimum

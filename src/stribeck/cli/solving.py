@@ -28,7 +28,6 @@ from stribeck.cli.arguments import (
 )
 from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain, stdout_console
 from stribeck.cli.progress import interruptible
-from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, format_si
 
@@ -356,4 +355,4 @@ def _too_small(curve: sb.StribeckCurve) -> str:
 
 def _si(curve: sb.StribeckCurve) -> str:
     value = float(curve.values[0])
-    return f"{value:.3g}" if curve.contact is None else format_si(value, QUANTITIES[curve.over].dimension)
+    return f"{value:.3g}" if curve.contact is None else format_si(value, curve.contact.INPUTS.quantities[curve.over].dimension)

@@ -15,7 +15,7 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.equations.sensitivity import GROUPS
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups
 
@@ -70,7 +70,7 @@ def read_problem(problem: Contact | Groups | None, given: dict[Over, Any]) -> tu
             raise InputError(
                 f"{' and '.join(missing)} missing; give a LineContact or PointContact, or the groups that do not vary."
             )
-        low = 1.0 if not ranges else float(_ends(over, given[over], si=False)[0])
+        low = 1.0 if not ranges else float(_ends(over, given[over], None)[0])
         base: Contact | Groups = Groups(**{over: low, **fixed})
     elif isinstance(problem, Contact):
         base = problem.replace(**fixed) if fixed else problem
@@ -79,7 +79,7 @@ def read_problem(problem: Contact | Groups | None, given: dict[Over, Any]) -> tu
         base = replace(problem, **fixed)
     if not ranges:
         return base, over, None
-    return base, over, _ends(over, given[over], isinstance(base, Contact))
+    return base, over, _ends(over, given[over], base.INPUTS if isinstance(base, Contact) else None)
 
 
 def _dimensions(name: str, value: Any) -> int:
@@ -93,11 +93,11 @@ def _dimensions(name: str, value: Any) -> int:
     return found
 
 
-def _ends(over: Over, value: Any, si: bool) -> Array:
+def _ends(over: Over, value: Any, table: InputTable | None) -> Array:
     """Return the ends or points of a range as ascending positive numbers."""
     items = [value] if isinstance(value, str) else list(value)
-    if si:
-        numbers = [to_si(item, QUANTITIES[over].dimension, over) for item in items]
+    if table is not None:
+        numbers = [to_si(item, table.quantities[over].dimension, over) for item in items]
     else:
         try:
             numbers = [float(item) for item in items]

@@ -28,7 +28,7 @@ from stribeck.files.pictures import (
     new_figure,
 )
 from stribeck.files.writing import PathLike
-from stribeck.quantities.inputs import QUANTITIES, SYMBOLS, si_text
+from stribeck.quantities.inputs import si_text
 from stribeck.quantities.units import DIMENSIONS
 from stribeck.solver.plot import law_text, plot_profile
 
@@ -156,8 +156,8 @@ def _abscissa_of_values(curve: StribeckCurve) -> str:
     if curve.contact is None:
         symbol = SYMBOLS_OF_GROUPS[curve.over]
         return f"{curve.over} group {symbol}"
-    unit = DIMENSIONS[QUANTITIES[curve.over].dimension].unit
-    return f"{curve.over} {SYMBOLS[curve.over]} ({unit})"
+    row = curve.contact.INPUTS.quantities[curve.over]
+    return f"{curve.over} {row.symbol} ({DIMENSIONS[row.dimension].unit})"
 
 
 def _draw_friction(axes: Axes, curve: StribeckCurve, x: Array, *, parts: bool = True) -> None:
@@ -262,7 +262,7 @@ def _strip(axes: Axes, curve: StribeckCurve, x: Array) -> None:
 def _place(curve: StribeckCurve, value: float) -> str:
     if curve.contact is None:
         return f"{curve.over} group {value:.3g}"
-    return si_text(value, curve.over, 3)
+    return si_text(value, curve.over, 3, curve.contact.INPUTS)
 
 
 def _footer(curve: StribeckCurve) -> list[tuple[str, str]]:

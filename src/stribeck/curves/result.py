@@ -21,7 +21,6 @@ from stribeck.curves.coordinate import Coordinate, Over
 from stribeck.curves.landmarks import Landmark, locate
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.equations.sensitivity import GROUPS, friction_slopes
-from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, format_si
@@ -221,7 +220,8 @@ class StribeckCurve(Shown, ByValue):
         """Return values of what the curve runs over in words, such as ``"speed 1 mm/s to 1 m/s"``."""
         if self.contact is None:
             return f"{self.over} group {' to '.join(f'{value:.3g}' for value in values)}"
-        return f"{self.over} {' to '.join(format_si(value, QUANTITIES[self.over].dimension) for value in values)}"
+        dimension = self.contact.INPUTS.quantities[self.over].dimension
+        return f"{self.over} {' to '.join(format_si(value, dimension) for value in values)}"
 
     def _note(self, points: list[tuple[float, str]]) -> str:
         where = self._where(points[0][0], points[-1][0])

@@ -11,8 +11,8 @@ import numpy as np
 from stribeck.contact_laws.law import WithArea, law_attributes
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.files.writing import MissingExtraError
-from stribeck.quantities.inputs import INPUTS, unit_of
-from stribeck.quantities.outputs import AREA, GROUPS, OBSERVABLES
+from stribeck.quantities.inputs import unit_of
+from stribeck.quantities.outputs import AREA, GROUPS, OUTPUT_TABLES
 from stribeck.solver.base_solution import si_films
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def curve_dataset(curve: StribeckCurve, title: str = "") -> xarray.Dataset:
 
 
 def _unit_over(curve: StribeckCurve) -> str:
-    return "1" if curve.contact is None else unit_of(curve.over)
+    return "1" if curve.contact is None else unit_of(curve.over, curve.contact.INPUTS)
 
 
 def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
@@ -82,7 +82,7 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
             "friction coefficient of smooth surfaces by the law of the hydrodynamic branch",
         ),
     }
-    for name, (unit, label) in OBSERVABLES.items():
+    for name, (unit, label) in OUTPUT_TABLES[curve.groups.geometry].listed.items():
         columns[name] = (curve.observable(name), unit, label)
     for name in GROUPS:
         columns[f"{name}_group"] = (np.asarray(getattr(curve.groups, name)), "1", f"{name} group")
@@ -115,13 +115,14 @@ def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
     """Return what belongs to the whole curve: provenance, inputs, settings, landmarks, outcome."""
     finished = curve.outcome.ok and len(curve) == curve.requested
     found: dict[str, Any] = {
-        "title": title or "Stribeck curve of a lubricated rough line contact",
+        "title": title or f"Stribeck curve of a lubricated rough {curve.groups.geometry} contact",
         "source": f"stribeck {version('stribeck')}",
         "outcome": curve.outcome.value,
         "complete": int(finished),
         "points": len(curve),
         "requested_points": curve.requested,
         "over": curve.over,
+        "geometry": curve.groups.geometry,
         "definition": curve.definition,
         **law_attributes(curve.law, bool(len(curve)) and curve.solutions[0].law == "smooth"),
         "rtol": curve.rtol,
@@ -130,9 +131,9 @@ def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
         "beta": curve.beta,
     }
     if curve.contact is not None:
-        names = [name for name in INPUTS if name != curve.over]
-        found |= {f"input_{name}": getattr(curve.contact, name) for name in names}
-        found["input_units"] = ", ".join(f"{name} {unit_of(name)}" for name in names)
+        inputs = {name: value for name, value in curve.contact.inputs() if name != curve.over}
+        found |= {f"input_{name}": value for name, value in inputs.items()}
+        found["input_units"] = ", ".join(f"{name} {unit_of(name, curve.contact.INPUTS)}" for name in inputs)
     for name in GROUPS:
         values = np.asarray(getattr(curve.groups, name))
         if len(values) and np.ptp(values) <= 1e-12 * values[0]:

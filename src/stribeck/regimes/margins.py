@@ -12,6 +12,7 @@ import numpy as np
 from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.groups import Geometry
 from stribeck.curves.coordinate import Over
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.curves.result import StribeckCurve
@@ -113,11 +114,14 @@ class RegimeMargins:
         For speed, load, roughness and viscosity.
     notes : tuple of str
         What to know: why an input leads nowhere, and whether the contact stands at a threshold.
+    geometry : {"line", "point"}
+        That of the contact.
     """
 
     regime: Regime
     margins: tuple[Margin, ...]
     notes: tuple[str, ...]
+    geometry: Geometry = "line"
 
     @property
     def targets(self) -> tuple[Regime, ...]:
@@ -193,7 +197,7 @@ def regime_margins(
     close = [mark for margin in found for mark in (margin.less, margin.more) if mark is not None and _at_threshold(mark)]
     if close:
         notes.append(f"The contact is at the threshold to {close[0].regime} lubrication.")
-    return RegimeMargins(present, tuple(found), tuple(notes))
+    return RegimeMargins(present, tuple(found), tuple(notes), contact.groups.geometry)
 
 
 def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from stribeck.contact_laws.law import law_attributes
 from stribeck.contacts.line import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE
 from stribeck.files.writing import MissingExtraError
-from stribeck.quantities.inputs import INPUTS, unit_of
+from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.outputs import GROUPS, OBSERVABLES
 from stribeck.regimes.phase_grid import AXES, MARKS, REGIMES, Diagram
 
@@ -103,7 +103,7 @@ def diagram_dataset(diagram: Diagram) -> xarray.Dataset:
 
 
 def _unit(diagram: Diagram, name: str) -> str:
-    return "1" if diagram.contact is None else unit_of(name)
+    return "1" if diagram.contact is None else unit_of(name, diagram.contact.INPUTS)
 
 
 def _axis_attributes(diagram: Diagram, name: str) -> dict[str, str]:
@@ -180,7 +180,7 @@ def _formula_merging(diagram: Diagram) -> Array:
 def _attributes(diagram: Diagram) -> dict[str, Any]:
     complete = diagram.outcome.ok and bool((diagram.outcomes == "CONVERGED").all())
     found: dict[str, Any] = {
-        "title": "Phase diagram of a lubricated rough line contact",
+        "title": f"Phase diagram of a lubricated rough {diagram.physics['geometry']} contact",
         "source": f"stribeck {version('stribeck')}",
         "outcome": diagram.outcome.value,
         "complete": int(complete),
@@ -191,7 +191,7 @@ def _attributes(diagram: Diagram) -> dict[str, Any]:
         "beta": diagram.beta,
     }
     if diagram.contact is not None:
-        names = [name for name in INPUTS if name not in AXES]
-        found |= {f"input_{name}": getattr(diagram.contact, name) for name in names}
-        found["input_units"] = ", ".join(f"{name} {unit_of(name)}" for name in names)
+        inputs = {name: value for name, value in diagram.contact.inputs() if name not in AXES}
+        found |= {f"input_{name}": value for name, value in inputs.items()}
+        found["input_units"] = ", ".join(f"{name} {unit_of(name, diagram.contact.INPUTS)}" for name in inputs)
     return found

@@ -17,7 +17,7 @@ from stribeck.contacts.friction import Definition, check_definition, coefficient
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.curves.regime import Regime, Transition
 from stribeck.curves.speed_range import automatic_speed_range
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups, with_law
@@ -134,14 +134,14 @@ def empty_diagram(
     missing = [name for name in ("load", "roughness") if given[name] is None]
     if missing:
         raise InputError(f"{' and '.join(missing)} missing; give numbers or ranges, or a LineContact or PointContact.")
-    counts = _points(points)
-    axes = {name: _axis(name, given[name], contact is not None, counts[name]) for name in ("load", "roughness")}
+    counts, table = _points(points), None if contact is None else contact.INPUTS
+    axes = {name: _axis(name, given[name], table, counts[name]) for name in ("load", "roughness")}
     physics = (as_groups(problem)[0] if problem is not None else _unit_groups(law)).physics
     corners = Diagram(contact, axes | {"speed": np.ones(1)}, boundary_friction, beta, definition, rtol, physics)
     if given["speed"] is None:
         axes["speed"] = _automatic_axis(corners, counts["speed"])
     else:
-        axes["speed"] = _axis("speed", given["speed"], contact is not None, counts["speed"])
+        axes["speed"] = _axis("speed", given["speed"], table, counts["speed"])
     return Diagram(contact, axes, boundary_friction, beta, definition, rtol, physics)
 
 
@@ -161,11 +161,11 @@ def _points(points: int | Mapping[str, int] | None) -> dict[str, int]:
     return POINTS | dict(wanted)
 
 
-def _axis(name: str, value: Any, si: bool, points: int) -> Array:
+def _axis(name: str, value: Any, table: InputTable | None, points: int) -> Array:
     """Return the values of one axis, ascending."""
     items = [value] if isinstance(value, str) or np.ndim(value) == 0 else list(value)
-    if si:
-        numbers = [to_si(item, QUANTITIES[name].dimension, name) for item in items]
+    if table is not None:
+        numbers = [to_si(item, table.quantities[name].dimension, name) for item in items]
     else:
         try:
             numbers = [float(item) for item in items]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import INPUT_TABLES, InputTable
 from stribeck.quantities.units import format_si
 from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
 
@@ -25,10 +25,11 @@ def ways_to(margins: RegimeMargins) -> Iterator[str]:
     str
         Such as ``"To reach hydrodynamic lubrication: speed x 5.53 (to 552.5 mm/s)."``
     """
+    table = INPUT_TABLES[margins.geometry]
     for regime in margins.targets:
         found = [(margin, margin.crossing_into(regime)) for margin in margins.margins]
-        ways = [f"{margin.name} {_step(margin.name, mark)}" for margin, mark in found if mark is not None]
-        barren = [_searched(margin) for margin, mark in found if mark is None]
+        ways = [f"{margin.name} {_step(margin.name, mark, table)}" for margin, mark in found if mark is not None]
+        barren = [_searched(margin, table) for margin, mark in found if mark is None]
         if not ways:
             yield f"To reach {regime} lubrication: not reachable by changing {', '.join(barren)}."
             continue
@@ -38,19 +39,19 @@ def ways_to(margins: RegimeMargins) -> Iterator[str]:
         yield "Only the product of speed and viscosity matters, so their factors are equal."
 
 
-def _step(name: str, mark: Crossing) -> str:
+def _step(name: str, mark: Crossing, table: InputTable) -> str:
     """Return how far an input is to be changed, as ``x 3.1 (0.31 m/s)``."""
     if mark.value == 0:
         return "to any value above zero"
-    value = format_si(mark.value, QUANTITIES[name].dimension, 4)
+    value = format_si(mark.value, table.quantities[name].dimension, 4)
     if math.isinf(mark.factor):
         return f"from zero to {value}"
     return f"x {mark.factor:.3g} (to {value})" if mark.factor >= 1 else f"/ {1 / mark.factor:.3g} (to {value})"
 
 
-def _searched(margin: Margin) -> str:
+def _searched(margin: Margin, table: InputTable) -> str:
     low, high = margin.searched
     if low == high:  # it cannot lead anywhere, and a note says why
         return margin.name
-    ends = (format_si(value, QUANTITIES[margin.name].dimension) for value in (low, high))
+    ends = (format_si(value, table.quantities[margin.name].dimension) for value in (low, high))
     return f"{margin.name} (range searched {' to '.join(ends)})"

@@ -40,7 +40,12 @@ __all__ = ["axis_in_si", "draw_gap", "footer_of", "law_text", "plot_profile"]
 
 
 def plot_profile(
-    solution: Solution | PointSolution, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+    solution: Solution | PointSolution,
+    path: PathLike | None = None,
+    *,
+    ax: Axes | None = None,
+    force: bool = False,
+    title: str = "",
 ) -> Figure:
     """Draw gap and pressures along the contact, of a ball on its plane too, in SI units where the solution has a contact.
 

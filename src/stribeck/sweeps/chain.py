@@ -62,9 +62,7 @@ class Chain:
     def row(self, i: int, ended: Ended) -> tuple[Array, str]:
         """Return the numbers that a sweep keeps of the i-th state, and what there is to say about it."""
         if ended.solution is None:
-            return failed_row(
-                self.contact(i), self.physics["law"], ERROR if ended.fault else ended.outcome.name, ended.message
-            )
+            return failed_row(self.contact(i), self.physics, ERROR if ended.fault else ended.outcome.name, ended.message)
         values, text = row_of(ended.solution, *self.coefficients(i))
         return values, text if ended.outcome.ok else f"{describe(Groups(*self.groups[i], **self.physics))}: {text}"
 

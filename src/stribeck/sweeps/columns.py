@@ -7,12 +7,13 @@ import math
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import AsperityLaw, WithArea
+from stribeck.contact_laws.law import WithArea
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS
-from stribeck.quantities.inputs import QUANTITIES, unit_of
+from stribeck.contacts.groups import Physics
+from stribeck.quantities.inputs import InputTable, unit_of
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import ABSOLUTE, AREA, FILMS, NAMES, OBSERVABLES
+from stribeck.quantities.outputs import AREA, OUTPUT_TABLES
 from stribeck.solver.base_solution import BaseSolution, si_films
 
 __all__ = ["OUTCOMES", "columns_of", "failed_row", "input_columns", "row_of"]
@@ -24,25 +25,26 @@ OUTCOMES = (*(outcome.name for outcome in Outcome), ERROR)
 """The outcomes; a row holds the place of its own in here."""
 
 
-def columns_of(si: bool, law: AsperityLaw | None = None) -> dict[str, tuple[str, str]]:
+def columns_of(si: bool, physics: Physics) -> dict[str, tuple[str, str]]:
     """Return unit and meaning of each number of a row, in their order.
 
     Parameters
     ----------
     si : bool
         Whether the states are contacts in SI units, so that films have lengths.
-    law : AsperityLaw or None
-        Contact law of the states; one that knows its spectrum has the real area of contact.
+    physics : Physics
+        Geometry of the states, and their contact law: one that knows its spectrum has the real area of contact.
 
     Returns
     -------
     dict of str to tuple
         By name; the last is the outcome, as a place in :data:`OUTCOMES`.
     """
-    found = dict(OBSERVABLES)
-    for name in NAMES:
-        if name in OBSERVABLES:
-            kind = "absolute" if name in ABSOLUTE else "relative"
+    table = OUTPUT_TABLES[physics["geometry"]]
+    found = dict(table.listed)
+    for name in table.names:
+        if name in table.listed:
+            kind = "absolute" if name in table.absolute else "relative"
             found[f"{name}_error"] = ("1", f"estimated {kind} error of {name}")
     found["friction_contact"] = ("1", "contribution of asperities to the friction coefficient")
     for definition in DEFINITIONS:
@@ -52,8 +54,8 @@ def columns_of(si: bool, law: AsperityLaw | None = None) -> dict[str, tuple[str,
         found[f"friction_{definition}_error"] = ("1", f"{label}: estimated absolute error")
     found["hersey_number"] = ("1", "Hersey number, viscosity times speed (sum of the surface speeds) over load")
     if si:
-        found |= FILMS
-    if isinstance(law, WithArea):
+        found |= table.films
+    if isinstance(physics["law"], WithArea):
         found |= AREA
     found["nodes"] = ("1", "unknown gaps in the discretisation")
     found["newton_steps"] = ("1", "steps of the Newton iteration")
@@ -61,21 +63,22 @@ def columns_of(si: bool, law: AsperityLaw | None = None) -> dict[str, tuple[str,
     return found
 
 
-def input_columns(names: tuple[str, ...]) -> dict[str, tuple[str, str]]:
+def input_columns(names: tuple[str, ...], table: InputTable) -> dict[str, tuple[str, str]]:
     """Return unit and meaning of the inputs and groups of a state."""
     found = {}
     for name in names:
         if name in ("speed_group", "load_group", "roughness_group"):
             found[name] = ("1", name.replace("_", " "))
         else:
-            found[name] = (unit_of(name), QUANTITIES[name].label)
+            found[name] = (unit_of(name, table), table.quantities[name].label)
     return found
 
 
 def row_of(solution: BaseSolution, boundary_friction: float, beta: float) -> tuple[Array, str]:
     """Return the numbers of a state, in the order of :func:`columns_of`, and what there is to say about it."""
-    values = [float(getattr(solution, name)) for name in OBSERVABLES]
-    values += [solution.errors[name] for name in NAMES if name in OBSERVABLES]
+    table = solution.outputs
+    values = [float(getattr(solution, name)) for name in table.listed]
+    values += [solution.errors[name] for name in table.names if name in table.listed]
     frictions = [solution.friction(boundary_friction, beta, definition) for definition in DEFINITIONS]
     values.append(frictions[0].contact)
     for friction in frictions:
@@ -89,8 +92,8 @@ def row_of(solution: BaseSolution, boundary_friction: float, beta: float) -> tup
     return np.array(values), "\n".join(said)
 
 
-def failed_row(contact: Contact | None, law: AsperityLaw | None, outcome: str, message: str) -> tuple[Array, str]:
+def failed_row(contact: Contact | None, physics: Physics, outcome: str, message: str) -> tuple[Array, str]:
     """Return the row of a state of which nothing is known but how its solve ended."""
-    values = np.full(len(columns_of(contact is not None, law)), math.nan)
+    values = np.full(len(columns_of(contact is not None, physics)), math.nan)
     values[-1] = OUTCOMES.index(outcome)
     return values, message

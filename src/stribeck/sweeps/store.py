@@ -23,6 +23,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.files.reading import read_bounded
 from stribeck.files.writing import MissingExtraError, PathLike, reason_of, sync_folder
+from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.units import InputError
 from stribeck.sweeps.columns import OUTCOMES, columns_of, input_columns
 from stribeck.sweeps.design import SweepDesign
@@ -101,7 +102,7 @@ def create_or_open(path: PathLike, design: SweepDesign) -> Path:
 
 def _make(zarr: Any, path: Path, design: SweepDesign) -> None:
     """Write everything but the states."""
-    n, columns = len(design), columns_of(design.si, design.contact_law)
+    n, columns = len(design), columns_of(design.si, design.physics)
     inputs = {
         **design.inputs,
         **{f"{name}_group": design.groups[:, k] for k, name in enumerate(("speed", "load", "roughness"))},
@@ -116,6 +117,7 @@ def _make(zarr: Any, path: Path, design: SweepDesign) -> None:
         "shape": list(design.shape),
         "varied": list(design.varied),
         "si": design.si,
+        "geometry": design.physics["geometry"],
         "rtol": design.rtol,
         "contact_law": design.law,
         "contact_law_parameters": {} if design.contact_law is None else design.contact_law.parameters,
@@ -124,7 +126,7 @@ def _make(zarr: Any, path: Path, design: SweepDesign) -> None:
     group = zarr.create_group(str(path), zarr_format=3, attributes=attributes)
     flat = {"name": "default", "separator": "."}
     plain = {"compressors": None, "filters": None}
-    described = input_columns(tuple(inputs))
+    described = input_columns(tuple(inputs), INPUT_TABLES[design.physics["geometry"]])
     array = group.create_array(
         "inputs", shape=(n, len(inputs)), chunks=(n, len(inputs)), dtype="<f8", attributes=_about(described), **plain
     )

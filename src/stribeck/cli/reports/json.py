@@ -15,8 +15,8 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
-from stribeck.quantities.inputs import INPUTS, unit_of
-from stribeck.quantities.outputs import GROUPS, OBSERVABLES
+from stribeck.quantities.inputs import unit_of
+from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
 from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
 from stribeck.solver.base_solution import BaseSolution, si_films
 
@@ -77,7 +77,7 @@ def solution_json(
         found["si"] = {
             **_inputs(solution.contact),
             **{name: value for name, (value, _, _) in films.items()},
-            "units": _units() | {name: unit for name, (_, unit, _) in films.items()},
+            "units": _units(solution.contact) | {name: unit for name, (_, unit, _) in films.items()},
         }
     return found
 
@@ -101,19 +101,20 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str], checks: C
     dict
         Ready for :func:`dump`.
     """
-    names = tuple(OBSERVABLES)
+    names = tuple(OUTPUT_TABLES[curve.groups.geometry].listed)
     return {
         **checks_json(checks),
         "title": title,
+        "geometry": curve.groups.geometry,
         "over": curve.over,
-        "unit": "1" if curve.contact is None else unit_of(curve.over),
+        "unit": "1" if curve.contact is None else unit_of(curve.over, curve.contact.INPUTS),
         "definition": curve.definition,
         **law_json(curve.law),
         "rtol": curve.rtol,
         "boundary_friction": curve.boundary_friction,
         "beta": curve.beta,
         "inputs": None if curve.contact is None else _inputs(curve.contact),
-        "units": None if curve.contact is None else _units(),
+        "units": None if curve.contact is None else _units(curve.contact),
         "minimum": None if curve.minimum is None else _landmark(curve.minimum),
         "transitions": [_landmark(mark) for mark in curve.transitions],
         "regimes": [{"regime": name, "from": low, "to": high} for name, low, high in curve.regime_ranges],
@@ -189,12 +190,12 @@ def regimes_json(
             {**_landmark(mark), "factor": mark.value / speed if speed > 0 else math.inf} for mark in curve.transitions
         ],
         "regimes": [{"regime": name, "from": low, "to": high} for name, low, high in curve.regime_ranges],
-        "margins": {margin.name: _margin(margin) for margin in margins.margins},
+        "margins": {margin.name: _margin(margin, solution.contact) for margin in margins.margins},
         "sensitivities": sensitivities,
         "moves_friction_most": strongest(sensitivities),
         **law_json(solution.groups.law),
         "inputs": _inputs(solution.contact),
-        "units": _units(),
+        "units": _units(solution.contact),
         "error_estimate": max(solution.error_estimate, curve.error_estimate),
         "outcome": curve.outcome.name,
         "message": curve.outcome.value,
@@ -225,12 +226,12 @@ def law_json(law: AsperityLaw | None) -> dict[str, Any]:
     return {"contact_law": law.name, "contact_law_parameters": law.parameters}
 
 
-def _margin(margin: Margin) -> dict[str, Any]:
+def _margin(margin: Margin, contact: Contact) -> dict[str, Any]:
     return {
         "less": None if margin.less is None else _crossing(margin.less),
         "more": None if margin.more is None else _crossing(margin.more),
         "searched": list(margin.searched),
-        "unit": unit_of(margin.name),
+        "unit": unit_of(margin.name, contact.INPUTS),
     }
 
 
@@ -243,8 +244,8 @@ def _landmark(mark: Landmark) -> dict[str, Any]:
 
 
 def _inputs(contact: Contact) -> dict[str, float]:
-    return {name: getattr(contact, name) for name in INPUTS}
+    return dict(contact.inputs())
 
 
-def _units() -> dict[str, str]:
-    return {name: unit_of(name) for name in INPUTS}
+def _units(contact: Contact) -> dict[str, str]:
+    return {name: unit_of(name, contact.INPUTS) for name, _ in contact.inputs()}

@@ -87,15 +87,19 @@ def print_regimes(
     table = table_of("input", "value", "sensitivity", "10 % increase gives", right=(1, 2, 3))
     for name in sorted(sensitivities, key=lambda name: -abs(sensitivities[name])):
         value, slope = getattr(contact, name), sensitivities[name]
-        text = format_si(value, QUANTITIES[name].dimension)
-        table.add_row(QUANTITIES[name].label, text, f"{slope:+.3f}", f"{100 * _change(1.1, slope):+.2g} % friction")
+        table.add_row(
+            contact.INPUTS.quantities[name].label,
+            format_si(value, contact.INPUTS.quantities[name].dimension),
+            f"{slope:+.3f}",
+            f"{100 * _change(1.1, slope):+.2g} % friction",
+        )
     print_table(console, table)
     most = strongest(sensitivities)
     if most is not None:
         slope = sensitivities[most]
         factor = 0.9 if slope > 0 else 1.1
         way, gain = "less" if slope > 0 else "more", f"{-100 * _change(factor, slope):.3g} %"
-        name = QUANTITIES[most].label
+        name = contact.INPUTS.quantities[most].label
         say(
             console,
             f"Friction is most sensitive to {name}: 10 % {way} lowers friction by {gain}, other inputs fixed.",

@@ -24,7 +24,7 @@ from stribeck.cli.reports.words import (
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
-from stribeck.quantities.outputs import ROWS
+from stribeck.quantities.units import format_si
 from stribeck.solver.base_solution import BaseSolution
 
 if TYPE_CHECKING:
@@ -75,19 +75,29 @@ def _solution_rows(
         yield f"friction coefficient ({definition})", digits(f.total, relative), "", error_text(relative)
         yield "  from asperities", part(f.contact, f.error), "", ""
         yield "  from the fluid", part(f.viscous, f.error), "", ""
-    for row in (row for row in ROWS if row.error == "absolute"):
+    rows = solution.outputs.rows
+    for row in (row for row in rows if row.error == "absolute"):
         yield row.label, part(getattr(solution, row.name), errors[row.name]), "", error_text(errors[row.name])
     scales = None if solution.contact is None else solution.contact.hertz
-    for row in (row for row in ROWS if row.scale == "gap"):
+    for row in (row for row in rows if row.scale == "gap"):
         value, error = getattr(solution, row.name), errors[row.name]
         si = "" if scales is None else length(value * scales.indentation, error)
         unit = " u_Hz" if math.isfinite(value) else ""
         yield row.label, f"{digits(value, error)}{unit}", si, error_text(error)
-    place, wrong = solution.minimum_position, solution.minimum_position_error
-    # To 1e-4 of the half-width: of a symmetric film only rounding remains, and a position in picometres says nothing.
-    place = round(place, 4) + 0.0
-    si = "" if scales is None else length(place * scales.half_width, 1e-4)
-    yield "position of minimum film", f"{place:.4g} a", si, f"{wrong:.0e} a"
+    for row in (row for row in rows if row.scale == "width" and not row.name.endswith("_error")):
+        place, wrong = getattr(solution, row.name), getattr(solution, f"{row.name}_error")
+        # To 1e-4 of the half-width: of a symmetric film only rounding remains, and a position in picometres says nothing.
+        place = round(place, 4) + 0.0
+        si = "" if scales is None else length(place * scales.half_width, 1e-4)
+        yield row.label, f"{place:.4g} a", si, f"{wrong:.0e} a"
+    for row in (row for row in rows if row.scale == "pressure"):
+        value, error = getattr(solution, row.name), errors[row.name]
+        si = "" if scales is None else format_si(value * scales.pressure, "pressure", 4)
+        yield row.label, f"{digits(value, error)} p_Hz", si, error_text(error)
+    if "minimum_angle" in solution.outputs.listed:
+        angle, wrong = math.degrees(solution.minimum_angle), math.degrees(solution.minimum_angle_error)
+        yield "angle of minimum film", f"{angle:.3g}°", "", f"{wrong:.0e}°"
+        yield "friction identity", "", "", error_text(solution.identity_error)
     yield "Lambda (minimum film over h_rms)", digits(solution.lambda_ratio, 1e-4), "", ""
     if not math.isnan(solution.central_area_fraction):
         area, error = solution.central_area_fraction, solution.central_area_fraction_error

@@ -16,7 +16,7 @@ from stribeck.contacts.friction import Definition, Friction
 from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
-from stribeck.quantities.inputs import INPUTS, QUANTITIES, ROWS
+from stribeck.quantities.inputs import ROWS
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import format_bound, format_si
 from stribeck.solver.base_solution import BaseSolution
@@ -65,7 +65,7 @@ def place(curve: StribeckCurve, value: float, digits: int = 3) -> str:
     """Return a value of what a curve runs over, with its unit."""
     if curve.contact is None:
         return f"{value:.{digits}g}"
-    return format_si(value, QUANTITIES[curve.over].dimension, digits)
+    return format_si(value, curve.contact.INPUTS.quantities[curve.over].dimension, digits)
 
 
 def digits(value: float, error: float) -> str:
@@ -113,8 +113,8 @@ def print_head(
         console.print(title, style="bold", markup=False, highlight=False)
     if contact is not None:
         shown = [
-            f"{QUANTITIES[name].label} {format_si(getattr(contact, name), QUANTITIES[name].dimension, 4)}"
-            for name in INPUTS
+            f"{contact.INPUTS.quantities[name].label} {format_si(value, contact.INPUTS.quantities[name].dimension, 4)}"
+            for name, value in contact.inputs()
             if name != over
         ]
         say(console, f"Contact: {', '.join(shown)}.")
