@@ -226,3 +226,43 @@ def test_a_ball_at_rest_has_the_friction_of_its_asperities():
     groups = Groups(0.0, 1e-3, 1e-5, geometry="point")
     values = PointObservables.of(rigid(groups), None)
     assert values.viscous_friction(0.05) == values.viscous_friction(0.05, "published") == 0
+
+
+def test_solve_takes_a_ball_in_si_and_keeps_its_tolerance(tmp_path):
+    contact = ball(beta=0.1)
+    s = sb.solve(contact, rtol=1e-4)
+    assert isinstance(s, sb.PointSolution)
+    assert s.outcome.ok
+    assert s.error_estimate <= 1e-4
+    assert s.identity_error < 1e-6
+    assert s.contact_load_share + s.fluid_load_share == pytest.approx(1, abs=1e-7)
+    assert s.friction().total > s.friction(0.0).total
+    pytest.importorskip("matplotlib")
+    for colours in ("film", "interference"):
+        assert s.plot(tmp_path / f"{colours}.png", colours=colours) is not None
+    with pytest.raises(sb.InputError, match="colours = 'rainbow'; it must be 'film' or 'interference'"):
+        s.plot(colours="rainbow")
+    with pytest.raises(sb.InputError, match="needs a film thickness in metres"):
+        solution_of(s.state, None).plot(colours="interference")
+
+
+@pytest.mark.quick
+def test_a_ball_refuses_models_that_it_is_not_solved_for():
+    from stribeck.contacts.model import Model
+    from stribeck.fluids.cavitation import Cavitation
+
+    other = next(each for each in Cavitation if each is not Cavitation.NONE)
+    groups = sb.Groups(1e-2, 1e-3, 1e-4, geometry="point", model=Model(cavitation=other))
+    with pytest.raises(sb.InputError, match="a ball is solved with a Newtonian fluid that does not cavitate"):
+        sb.solve(groups)
+    with pytest.raises(sb.InputError, match="fluid = .* is not an input of PointContact"):
+        sb.solve(ball(), fluid="oil")
+
+
+@pytest.mark.quick
+def test_interference_is_black_without_a_film_and_fades_far_apart():
+    from stribeck.solver.point.plot import interference
+
+    np.testing.assert_array_equal(interference(0.0), [0, 0, 0])
+    np.testing.assert_allclose(interference(1e-4), 0.5, atol=1e-6)
+    assert interference(540e-9 / (4 * 1.4))[1] > 0.9  # a quarter of the wave in the fluid: green is bright

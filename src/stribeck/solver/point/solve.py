@@ -11,6 +11,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import Groups, contact_law
+from stribeck.contacts.model import ARTICLE
 from stribeck.equations.point.dry import dry_contact, hertz_gap
 from stribeck.equations.point.iteration import Iterated
 from stribeck.equations.point.mesh_choice import fits, operators_of, resolution
@@ -107,6 +108,11 @@ def check(groups: Groups, rtol: float) -> None:
     """Refuse what is not one state of a ball, and tolerances out of range."""
     if not isinstance(groups, Groups) or groups.geometry != "point" or groups.shape != ():
         raise InputError(f"groups = {show(groups)}; it must be one state, Groups(speed, load, roughness, geometry='point').")
+    if groups.model != ARTICLE:
+        raise InputError(
+            "the groups have another fluid, cavitation, solid or motion; a ball is solved with a Newtonian fluid that does not"
+            " cavitate, on a half-space, and PointContact has slide_to_roll."
+        )
     low, high = RTOL_RANGE
     if isinstance(rtol, bool) or not isinstance(rtol, int | float) or not low <= rtol <= high:
         raise InputError(f"rtol = {show(rtol)}; for a ball it must be a number from {low:g} to {high:g}.")
