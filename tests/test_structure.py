@@ -31,7 +31,7 @@ EXAMPLE = PACKAGE.parents[1] / "examples" / "pdms_cylinder.toml"
 # physics, so that problems with known answers can test it.
 LAYERS = (
     ("__init__", "__main__", "cli", "evidence"),
-    ("explorer", "figures", "data_sheet"),
+    ("explorer", "figures", "data_sheet", "experiments"),
     ("fits", "sweeps", "regimes"),
     ("checks", "uncertainty"),
     ("curves", "batches"),

@@ -24,6 +24,8 @@ _HOMES = {
     "curves.stribeck_curve": ("stribeck_curve",),
     "data_sheet.new_case": ("new_case",),
     "data_sheet.report": ("write_report",),
+    "experiments.compare": ("Comparison", "compare"),
+    "experiments.next_runs": ("Plan", "next_runs"),
     "fits.fit": ("fit",),
     "fits.measurements": ("Measurements", "read_measurements"),
     "fits.result": ("Fit", "FitOutcome", "FittedInput"),

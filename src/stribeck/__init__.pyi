@@ -22,6 +22,8 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.data_sheet.new_case import new_case
 from stribeck.data_sheet.report import write_report
+from stribeck.experiments.compare import Comparison, compare
+from stribeck.experiments.next_runs import Plan, next_runs
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
@@ -45,6 +47,7 @@ __all__ = [
     "Explanation",
     "Field",
     "FiniteSurface",
+    "Comparison",
     "Fit",
     "FitOutcome",
     "FitSettings",
@@ -62,6 +65,7 @@ __all__ = [
     "Outcome",
     "PointContact",
     "PointSolution",
+    "Plan",
     "Profile",
     "Solution",
     "SolveError",
@@ -77,11 +81,13 @@ __all__ = [
     "atlas",
     "check",
     "explain",
+    "compare",
     "fit",
     "fluids",
     "load_case",
     "load_sweep",
     "new_case",
+    "next_runs",
     "open_sweep",
     "phase_diagram",
     "propagate",

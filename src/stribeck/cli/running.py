@@ -24,6 +24,7 @@ from stribeck.cli.exits import (
     silence,
     stdout_console,
 )
+from stribeck.cli.experiments import compare_command, next_command
 from stribeck.cli.sheets import new_command, report_command
 from stribeck.cli.solving import check_command, curve_command, figures_command, regimes_command, solve_command
 from stribeck.cli.studies import explore_command, fit_command, surface_command, sweep_command
@@ -135,6 +136,8 @@ def make_app() -> App:
         sweep_command,
         surface_command,
         fit_command,
+        next_command,
+        compare_command,
         report_command,
         explore_command,
     ):
@@ -163,7 +166,10 @@ def _line(problem: BaseException) -> str:
 
 
 def _command(tokens: Sequence[str]) -> str:
-    known = ("new", "report", "check", "solve", "curve", "regimes", "figures", "sweep", "surface", "fit", "explore")
+    known = (
+        *("new", "check", "solve", "curve", "regimes", "report", "fit", "next", "compare"),
+        *("figures", "sweep", "surface", "explore"),
+    )
     return " ".join(["stribeck", *(token for token in tokens[:1] if token in known)])
 
 

@@ -1,0 +1,121 @@
+"""Commands for experiments: what to measure next, and which contact law the data prefer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+import stribeck as sb
+from stribeck.cli.arguments import CaseFile, File, Flag, Number, as_whole, check_pictures
+from stribeck.cli.exits import stdout_console
+from stribeck.cli.progress import interruptible
+from stribeck.quantities.units import InputError
+
+if TYPE_CHECKING:
+    from stribeck.cases.case import Case
+
+DataFile = Annotated[Path | None, Parameter(name="DATA", show_default=False)]
+Values = Annotated[list[str] | None, Parameter(negative="", consume_multiple=True, show_default=False)]
+
+
+def next_command(
+    data: DataFile = None,
+    case: CaseFile = None,
+    /,
+    *,
+    count: Number = None,
+    speeds: Values = None,
+    loads: Values = None,
+    viscosities: Values = None,
+    plot: File = None,
+    json: Flag = False,
+    force: Flag = False,
+) -> int:
+    """Fit measured friction and tell what to measure next: the runs that shrink the intervals most for their cost.
+
+    Example: stribeck next examples/pdms_measured.csv examples/pdms_fit.toml --count 5 --plot next.png
+
+    Example: stribeck next measured.csv case.toml --loads "10 N/m" "100 N/m"
+
+    Parameters
+    ----------
+    data
+        Measured friction.
+    case
+        Case file (TOML) with the table [fit].
+    count
+        Number of runs; default 3.
+    speeds
+        Speeds that can be set; default from a third of the slowest to three times the fastest.
+    loads
+        Loads that can be set; default a third, once and three times that of the first curve.
+    viscosities
+        Viscosities at hand; default those of the curves.
+    plot
+        Draw the gain over the speed to this file (.png, .svg or .pdf).
+    json
+        Print JSON.
+    force
+        Replace an existing file.
+    """
+    data, loaded = _given("next", data, case)
+    number = 3 if count is None else as_whole("count", count)
+    pictures = check_pictures(plot, force)
+    with interruptible() as progress:
+        found = sb.fit(data, loaded, intervals=False, on_step=lambda what, n: progress(n, n + 1, what))
+        plan = sb.next_runs(
+            found, number, speeds=speeds, loads=loads, viscosities=viscosities, on_step=lambda n, m: progress(n, m, "states")
+        )
+    for picture in pictures:
+        plan.plot(picture, force=force)
+    if json:
+        from stribeck.cli.reports import json as report_json
+
+        print(report_json.dump(found.checks.to_dict() | plan.to_dict() | {"files": list(map(str, pictures))}))
+        return 0
+    _say(found.checks.first_line, str(plan), *(f"Written: {picture}" for picture in pictures))
+    return 0
+
+
+def compare_command(data: DataFile = None, case: CaseFile = None, /, *, json: Flag = False) -> int:
+    """Fit measured friction with several contact laws, and tell which the data prefer and by how much.
+
+    Example: stribeck compare examples/pdms_measured.csv examples/pdms_fit.toml
+
+    Parameters
+    ----------
+    data
+        Measured friction.
+    case
+        Case file (TOML) with the table [fit].
+    json
+        Print JSON.
+    """
+    data, loaded = _given("compare", data, case)
+    with interruptible() as progress:
+        found = sb.compare(data, loaded, on_step=lambda what, n: progress(n, n + 1, what))
+    if json:
+        from stribeck.cli.reports import json as report_json
+
+        print(report_json.dump(found.to_dict()))
+        return 0
+    _say(found.candidates[0].fit.checks.first_line, str(found))
+    return 0
+
+
+def _given(command: str, data: Path | None, case: Path | None) -> tuple[Path, Case]:
+    if data is None or case is None:
+        missing = "DATA" if data is None else "CASE"
+        example = f"stribeck {command} measured.csv case.toml"
+        raise InputError(f"{missing} is missing; give measured friction and a case file, as in: {example}.")
+    from stribeck.fits.case_file import load_fit_case
+
+    return data, load_fit_case(data, case)
+
+
+def _say(*texts: str) -> None:
+    console = stdout_console()
+    for text in filter(None, texts):
+        console.print(text, markup=False, highlight=False, soft_wrap=True)

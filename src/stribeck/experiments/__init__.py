@@ -1,0 +1,1 @@
+"""Experiments: what to measure next, and which contact law the data prefer."""

@@ -1,0 +1,216 @@
+r"""Which contact law measured friction prefers, and by how much.
+
+.. math:: \mathrm{AICc} = -2 \ln L + 2 k + \frac{2 k (k + 1)}{n - k - 1}, \qquad w \propto e^{-\mathrm{AICc}/2}
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from stribeck.cases.case import Case, load_case
+from stribeck.contact_laws.finite_surface import FiniteSurface, has_endless_tail
+from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
+from stribeck.contact_laws.law import AsperityLaw
+from stribeck.contacts.contact import Contact
+from stribeck.files.writing import PathLike
+from stribeck.fits.fit import fit
+from stribeck.fits.measurements import Measurements, read_measurements
+from stribeck.fits.result import Fit
+from stribeck.quantities.units import InputError, show
+from stribeck.solver.solve import SolveError
+
+__all__ = ["CAVEATS", "Candidate", "Comparison", "compare"]
+
+CAVEATS = (
+    "The weights say which of these laws is nearest to the data, not that it is right: look at the residuals of the best.",
+    "They hold if errors of rows are independent; a systematic error of the rig counts as evidence otherwise.",
+    "Laws differ most where asperities are few, near the minimum: without rows there the data cannot tell them apart.",
+)
+"""What to know before believing a comparison."""
+
+CLEAR = 10.0
+"""Difference of AICc from which a law is practically excluded."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One law, fitted.
+
+    Attributes
+    ----------
+    name : str
+        Name of the law.
+    fit : Fit
+        Its fit.
+    aicc : float
+        Corrected information criterion of Akaike.
+    difference : float
+        That above the least.
+    weight : float
+        Relative probability among the laws compared, 0 to 1.
+    """
+
+    name: str
+    fit: Fit
+    aicc: float
+    difference: float
+    weight: float
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Laws fitted to the same data, the preferred first.
+
+    Attributes
+    ----------
+    candidates : tuple of Candidate
+        The laws.
+    failed : dict of str to str
+        Laws that could not be fitted, and why.
+    """
+
+    candidates: tuple[Candidate, ...]
+    failed: dict[str, str]
+
+    @property
+    def sentence(self) -> str:
+        """What the data prefer, in a sentence."""
+        best, *others = self.candidates
+        if not others:
+            return f"Only {best.name} could be fitted."
+        if others[0].difference < 2:
+            near = [each.name for each in self.candidates if each.difference < 2]
+            return f"The data do not tell {' and '.join(near)} apart (differences of AICc below 2)."
+        out = [each.name for each in others if each.difference > CLEAR]
+        excluded = f"; practically excluded: {', '.join(out)}" if out else ""
+        return f"The data prefer {best.name}, by {others[0].difference:.1f} in AICc over {others[0].name}{excluded}."
+
+    def __str__(self) -> str:
+        """Return the table as text."""
+        lines = [f"{'law':<24}{'noise':<9}{'AICc':<10}{'difference':<12}weight"]
+        for each in self.candidates:
+            size = f"{100 * each.fit.noise:.2g} %" if each.fit.logarithmic and math.isfinite(each.fit.noise) else ""
+            lines.append(f"{each.name:<24}{size:<9}{each.aicc:<10.1f}{each.difference:<12.1f}{each.weight:.2g}")
+        failed = [f"{name}: {why}" for name, why in self.failed.items()]
+        return "\n".join([*lines, *failed, self.sentence, *CAVEATS])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the laws with their criteria and values, ready for JSON.
+
+        Returns
+        -------
+        dict
+            ``laws``, ``failed``, ``sentence`` and ``caveats``.
+        """
+        laws = [
+            {
+                "law": each.name,
+                "aicc": each.aicc,
+                "difference": each.difference,
+                "weight": each.weight,
+                "noise": each.fit.noise,
+                "values": {value.label: value.value for value in each.fit.inputs},
+            }
+            for each in self.candidates
+        ]
+        return {"laws": laws, "failed": self.failed, "sentence": self.sentence, "caveats": list(CAVEATS)}
+
+
+def compare(
+    data: PathLike | Measurements,
+    case: PathLike | Case | Contact,
+    *,
+    laws: Mapping[str, AsperityLaw | None] | None = None,
+    free: tuple[str, ...] | None = None,
+    on_step: Callable[[str, int], object] | None = None,
+) -> Comparison:
+    """Fit measured friction with several contact laws, and tell which it prefers and by how much.
+
+    Parameters
+    ----------
+    data : path-like or Measurements
+        Measured friction.
+    case : path-like, Case or Contact
+        What is known of the contact.
+    laws : mapping, optional
+        Laws by name; by default that of the case, its variant with the tail of a finite surface, and those of Greenwood and
+        Williamson and of Greenwood and Tripp (at alpha = 1: their separations are in heights).
+    free : sequence of str, optional
+        Inputs to fit; those of the case.  ``beta`` is freed with each law, as it has another meaning in each.
+    on_step : callable, optional
+        As in :func:`stribeck.fit`.
+
+    Returns
+    -------
+    Comparison
+        The laws, the preferred first.
+
+    Raises
+    ------
+    InputError
+        If the data or the case cannot be used, or no law be fitted.
+
+    Notes
+    -----
+    Source: Burnham and Anderson, Model Selection and Multimodel Inference (2002).
+    """
+    loaded = case if isinstance(case, Case | Contact) else load_case(case)
+    contact = loaded.contact if isinstance(loaded, Case) else loaded
+    settings = loaded.fit if isinstance(loaded, Case) else None
+    rows = data if isinstance(data, Measurements) else read_measurements(data, settings)
+    names = tuple(free or (settings.free if settings and settings.free else ("boundary_friction", "roughness")))
+    names = tuple(dict.fromkeys((*names, "beta")))
+    found: dict[str, Fit] = {}
+    failed: dict[str, str] = {}
+    for name, law in (laws if laws is not None else _laws(contact)).items():
+        own = isinstance(law, GreenwoodWilliamson | GreenwoodTripp)
+        changed = contact.replace(law=law, **({"alpha": 1.0} if own else {}))
+        problem: Any = changed
+        if isinstance(loaded, Case):
+            from dataclasses import replace
+
+            problem = replace(loaded, contact=changed)
+        try:
+            each = fit(rows, problem, free=names, intervals=False, on_step=on_step)
+        except (InputError, SolveError) as why:
+            failed[name] = str(why)
+            continue
+        if each.outcome.ok or each.outcome.name == "AT_BOUND":
+            found[name] = each
+        else:
+            failed[name] = each.outcome.value
+    if not found:
+        raise InputError(f"no contact law could be fitted: {show(failed)}")
+    criteria = {name: _aicc(each, len(names)) for name, each in found.items()}
+    least = min(criteria.values())
+    weights = {name: math.exp(-(value - least) / 2) for name, value in criteria.items()}
+    total = sum(weights.values())
+    order = sorted(found, key=lambda name: criteria[name])
+    return Comparison(
+        tuple(Candidate(n, found[n], criteria[n], criteria[n] - least, weights[n] / total) for n in order), failed
+    )
+
+
+def _laws(contact: Contact) -> dict[str, AsperityLaw | None]:
+    """Return the laws that are compared by default."""
+    own = "exponential" if contact.law is None else contact.law.name
+    laws: dict[str, AsperityLaw | None] = {own: contact.law}
+    if has_endless_tail(contact.law):
+        tail = FiniteSurface(contact.alpha, contact.law if own == "persson" else None)
+        laws[tail.name] = tail
+    return laws | {"greenwood-williamson": GreenwoodWilliamson(), "greenwood-tripp": GreenwoodTripp()}
+
+
+def _aicc(found: Fit, inputs: int) -> float:
+    """Return the corrected information criterion, the noise counting as fitted where it was."""
+    n = len(found.data)
+    if math.isnan(found.noise):
+        k = inputs
+        deviance = float(found.residuals @ found.residuals)
+    else:
+        k = inputs + 1
+        deviance = n * math.log(found.noise**2 * max(n - inputs, 1) / n)
+    return deviance + 2 * k + 2 * k * (k + 1) / max(n - k - 1, 1)

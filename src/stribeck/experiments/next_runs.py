@@ -1,0 +1,333 @@
+r"""What to measure next: the runs that shrink the intervals of a fit most, by D-optimality.
+
+.. math:: \Delta = \tfrac12 \ln \frac{\det(I + j j^\mathsf{T}/\sigma^2)}{\det I} = \tfrac12 \ln(1 + j^\mathsf{T} C j/\sigma^2)
+
+with the information I of the data so far, C its inverse, and j the exact derivatives of ln(friction) with respect to the
+logarithms of the fitted inputs at the state to be measured.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stribeck import atlas
+from stribeck._types import Array
+from stribeck.contacts.contact import Contact
+from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.fits.result import Fit
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.inputs import quantity
+from stribeck.quantities.units import InputError, format_si, show
+from stribeck.solver.solve import SolveError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["NextRun", "Plan", "next_runs"]
+
+SPEEDS, BEYOND = 17, 3.0
+"""Speeds that are tried, from the slowest measured over a factor to the fastest times it."""
+
+LOADS = (1 / 3, 1.0, 3.0)
+"""Loads that are tried, over that of the first curve."""
+
+COST = {"point": 1.0, "load": 2.0, "viscosity": 3.0}
+"""Cost of a run at another speed, and of another load or fluid."""
+
+IGNORANCE = math.log(10)
+"""Standard error of the logarithm of an input of which the data say nothing: a factor of ten."""
+
+RTOL = 1e-4
+MOST = 50
+
+
+@dataclass(frozen=True)
+class NextRun:
+    """One run worth measuring.
+
+    Attributes
+    ----------
+    curve : str
+        The curve whose contact it is, perhaps at another load or viscosity.
+    speed, load, viscosity : float
+        Where to measure, in SI units.
+    friction : float
+        Friction coefficient to expect [-].
+    gain : float
+        Growth of half the logarithm of the determinant of the information.
+    cost : float
+        Its cost.
+    errors : dict of str to float
+        Standard errors of the logarithms of the fitted inputs after this run and those before it.
+    """
+
+    curve: str
+    speed: float
+    load: float
+    viscosity: float
+    friction: float
+    gain: float
+    cost: float
+    errors: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Runs worth measuring, the best first.
+
+    Attributes
+    ----------
+    runs : tuple of NextRun
+        The runs.
+    before : dict of str to float
+        Standard errors of the logarithms of the fitted inputs as the data have them.
+    noise : float
+        Relative standard error of a run that was supposed.
+    scanned : tuple of NextRun
+        All runs that were tried, with the gain of each as the first.
+    load_dimension : str
+        Kind of the load, of a cylinder or a ball.
+    """
+
+    runs: tuple[NextRun, ...]
+    before: dict[str, float]
+    noise: float
+    scanned: tuple[NextRun, ...] = field(repr=False)
+    load_dimension: str = "load"
+
+    def __str__(self) -> str:
+        """Return the table as text."""
+        columns = (("run", 5), ("speed", 14), ("load", 14), ("viscosity", 14), ("friction", 11), ("gain", 8), ("cost", 7))
+        lines = ["".join(f"{name:<{width}}" for name, width in columns) + "standard errors after it"]
+        for i, each in enumerate(self.runs, 1):
+            after = ", ".join(f"{name} {100 * error:.2g} %" for name, error in each.errors.items())
+            place = f"{format_si(each.speed, 'speed'):<14}{format_si(each.load, self.load_dimension):<14}"
+            place += f"{format_si(each.viscosity, 'viscosity'):<14}"
+            lines.append(f"{i:<5}{place}{each.friction:<11.3g}{each.gain:<8.2g}{each.cost:<7.3g}{after}")
+        now = ", ".join(f"{name} {100 * error:.2g} %" for name, error in self.before.items())
+        return "\n".join([*lines, f"Standard errors now: {now}; a run is supposed to be good to {100 * self.noise:.2g} %."])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the runs and the errors before and after them, ready for JSON.
+
+        Returns
+        -------
+        dict
+            ``runs``, ``errors_before`` and ``noise``.
+        """
+        return {"runs": [asdict(each) for each in self.runs], "errors_before": self.before, "noise": self.noise}
+
+    def plot(self, path: Any = None, *, force: bool = False) -> Figure:
+        """Draw the gain of a first run over the speed, a line for each load and viscosity, the chosen runs marked.
+
+        Parameters
+        ----------
+        path : path-like, optional
+            Image to write as well.
+        force : bool
+            Whether an existing file is replaced.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure; needs the extra ``plot``.
+        """
+        from stribeck.files.pictures import CONTACT, FLUID, INK, MARK, add_legend, finish_figure, make_logarithmic, new_figure
+
+        figure, [axes] = new_figure((7.0, 4.4), [], columns=1, top=0.6, title="What to measure next")
+        colours = (INK, CONTACT, FLUID, "#009e73", "#e69f00")
+        keys = list(dict.fromkeys((each.load, each.viscosity) for each in self.scanned))
+        for i, (load, viscosity) in enumerate(keys):
+            mine = [each for each in self.scanned if (each.load, each.viscosity) == (load, viscosity)]
+            label = f"{format_si(load, self.load_dimension)}, {format_si(viscosity, 'viscosity').replace('*', '·')}"
+            axes.plot([e.speed for e in mine], [e.gain for e in mine], color=colours[i % 5], lw=1.8, label=label)
+        for i, each in enumerate(self.runs, 1):
+            axes.axvline(each.speed, color=MARK, lw=1, ls=(0, (4, 2)))
+            axes.annotate(str(i), (each.speed, 1.0), xycoords=("data", "axes fraction"), color=MARK, ha="center", va="bottom")
+        make_logarithmic(axes, "x", np.array([each.speed for each in self.scanned]))
+        axes.set_xlabel("speed $U$ (m/s)")
+        axes.set_ylabel("gain of information")
+        axes.set_ylim(bottom=0)
+        add_legend(figure, [axes], columns=2)
+        return finish_figure(figure, path, force)
+
+
+@one_blas_thread
+def next_runs(
+    fit: Fit,
+    count: int = 3,
+    *,
+    speeds: Sequence[Any] | None = None,
+    loads: Sequence[Any] | None = None,
+    viscosities: Sequence[Any] | None = None,
+    cost: Mapping[str, float] | None = None,
+    on_step: Callable[[int, int], object] | None = None,
+) -> Plan:
+    """Return the runs that would shrink the intervals of a fit most for their cost.
+
+    Parameters
+    ----------
+    fit : Fit
+        The fit to the data so far.
+    count : int
+        How many runs, 1 to 50; each is chosen as if those before it had been measured.
+    speeds, loads, viscosities : sequence, optional
+        What can be set, text with units or SI numbers; by default speeds from a third of the slowest to three times the
+        fastest, loads of a third to three times that of the first curve, and the viscosities of the curves.
+    cost : mapping, optional
+        Cost of a run (``"point"``), added cost of a load (``"load"``) or a fluid (``"viscosity"``) that no curve has; 1, 2
+        and 3 by default.
+    on_step : callable, optional
+        ``on_step(done, total)`` is called as the work goes on.
+
+    Returns
+    -------
+    Plan
+        The runs, and the standard errors to expect after each.
+
+    Raises
+    ------
+    InputError
+        If the fit did not converge, or an argument cannot be used.
+
+    Notes
+    -----
+    Derivatives are exact, at the fitted values: what is chosen is right as far as these are.  It shrinks the intervals within
+    the model, and does not test the model: a run where the model has never been tested does.
+    """
+    if not fit.converged:
+        raise InputError(f"the fit did not converge, so that no run can be advised. {fit.outcome.value}")
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST:
+        raise InputError(f"count = {show(count)}; it must be a whole number from 1 to {MOST}.")
+    prices = COST | dict(cost or {})
+    if set(prices) != set(COST) or min(prices.values()) < 0 or prices["point"] <= 0:
+        raise InputError(f"cost = {show(cost)}; it may hold {', '.join(COST)}, each zero or positive, point positive.")
+    noise = _noise(fit)
+    information = _information(fit)
+    places = _places(fit, speeds, loads, viscosities)
+    rows: list[tuple[str, Contact, Array, float, float]] = []
+    for i, (curve, contact) in enumerate(places):
+        if on_step is not None:
+            on_step(i + 1, len(places))
+        made = _row(fit, curve, contact)
+        if made is not None:
+            rows.append((curve, contact, *made, _price(fit, contact, prices)))
+    if not rows:
+        raise InputError("none of the states to be measured can be solved; give other speeds and loads.")
+    known = [(each.load, each.viscosity) for each in fit.contacts]
+    covariance = np.asarray(np.linalg.inv(information), dtype=np.float64)
+    before = _errors(fit, covariance)
+    scanned = tuple(_run(each, covariance, noise, before) for each in rows)
+    chosen = []
+    for _ in range(count):
+        gains = [_gain(j, covariance, noise) / price for _, _, j, _, price in rows]
+        best = rows[int(np.argmax(gains))]
+        gain = _gain(best[2], covariance, noise)
+        shift = covariance @ best[2]
+        covariance = covariance - np.outer(shift, shift) / (noise**2 + best[2] @ shift)
+        run = _run(best, covariance, noise, _errors(fit, covariance))
+        chosen.append(NextRun(**(asdict(run) | {"gain": gain})))
+        if (run.load, run.viscosity) not in known:  # the next run there needs no other load or fluid
+            known.append((run.load, run.viscosity))
+            rows = [
+                (c, k, j, f, prices["point"] if (k.load, k.viscosity) == (run.load, run.viscosity) else p)
+                for c, k, j, f, p in rows
+            ]
+    dimension = fit.contacts[0].INPUTS.quantities["load"].dimension
+    return Plan(tuple(chosen), before, noise, scanned, dimension)
+
+
+def _noise(fit: Fit) -> float:
+    """Return the relative standard error of a row."""
+    if fit.data.error is not None:
+        return float(np.median(fit.data.error / fit.data.friction))
+    if math.isfinite(fit.noise):
+        return fit.noise if fit.logarithmic else fit.noise / float(np.median(fit.friction))
+    return float(np.median(np.abs((fit.friction - fit.data.friction) / fit.data.friction))) or 0.01
+
+
+def _information(fit: Fit) -> Array:
+    """Return the information of the data and priors on the logarithms of the inputs."""
+    at = fit._minimum
+    priors, _ = at.objective.priors
+    found = at.jacobian.T @ at.jacobian + priors.T @ priors
+    return np.asarray(found + np.eye(len(fit.inputs)) / IGNORANCE**2)
+
+
+def _places(
+    fit: Fit, speeds: Sequence[Any] | None, loads: Sequence[Any] | None, viscosities: Sequence[Any] | None
+) -> list[tuple[str, Contact]]:
+    """Return the states that may be measured, each with the curve that it belongs to."""
+    table = fit.contacts[0].INPUTS
+    given = {
+        name: None if values is None else [quantity(name, value, table) for value in values]
+        for name, values in (("speed", speeds), ("load", loads), ("viscosity", viscosities))
+    }
+    low, high = _speed_range(fit)
+    tried = given["speed"]
+    if tried is None:
+        tried = np.geomspace(low / BEYOND, high * BEYOND, SPEEDS).tolist()
+    if any(not values for values in given.values() if values is not None) or min(tried) <= 0:
+        raise InputError("speeds, loads and viscosities must hold at least one value, and speeds be positive.")
+    states: dict[tuple[float, float], tuple[str, Contact]] = {}
+    for name, contact in zip(fit.data.curves, fit.contacts, strict=True):
+        first = contact is fit.contacts[0]
+        own_loads = given["load"] or ([contact.load * f for f in LOADS] if first else [contact.load])
+        for load in own_loads:
+            for viscosity in given["viscosity"] or [contact.viscosity]:
+                states.setdefault((load, viscosity), (name, contact.replace(load=load, viscosity=viscosity)))
+    return [(name, contact.replace(speed=speed)) for name, contact in states.values() for speed in tried]
+
+
+def _speed_range(fit: Fit) -> tuple[float, float]:
+    divisors = np.array(
+        [
+            {"speed": 1.0, "speed_viscosity": each.viscosity, "hersey_number": each.viscosity / each.load}[fit.data.abscissa]
+            for each in fit.contacts
+        ]
+    )
+    speeds = fit.data.values / divisors[fit.data.curve]
+    return float(speeds.min()), float(speeds.max())
+
+
+def _row(fit: Fit, curve: str, contact: Contact) -> tuple[Array, float] | None:
+    """Return the derivatives of ln(friction) with respect to the fitted inputs, and the friction; None if unsolvable."""
+    try:
+        if contact.groups.geometry == "line" and bool(atlas.covers(contact.groups)):
+            _, slopes = friction_sensitivities(contact, definition=fit.definition, method="atlas")
+            friction = float(atlas.friction(contact.groups, contact.boundary_friction, contact.beta, fit.definition))
+        else:
+            solution, slopes = friction_sensitivities(contact, rtol=RTOL, definition=fit.definition)
+            friction = solution.friction(definition=fit.definition).total
+    except (SolveError, InputError):
+        return None
+    row = [slopes[each.name] if each.curve in (None, curve) else 0.0 for each in fit.inputs]
+    return (np.array(row), friction) if np.isfinite(row).all() else None
+
+
+def _price(fit: Fit, contact: Contact, prices: Mapping[str, float]) -> float:
+    loads, fluids = ({getattr(each, name) for each in fit.contacts} for name in ("load", "viscosity"))
+    return (
+        prices["point"]
+        + prices["load"] * (contact.load not in loads)
+        + prices["viscosity"] * (contact.viscosity not in fluids)
+    )
+
+
+def _gain(j: Array, covariance: Array, noise: float) -> float:
+    return 0.5 * math.log1p(float(j @ covariance @ j) / noise**2)
+
+
+def _errors(fit: Fit, covariance: Array) -> dict[str, float]:
+    return {each.label: math.sqrt(max(0.0, float(v))) for each, v in zip(fit.inputs, np.diag(covariance), strict=True)}
+
+
+def _run(row: tuple[str, Contact, Array, float, float], covariance: Array, noise: float, errors: dict[str, float]) -> NextRun:
+    curve, contact, j, friction, price = row
+    gain = _gain(j, covariance, noise)
+    return NextRun(curve, contact.speed, contact.load, contact.viscosity, friction, gain, price, errors)

@@ -1,0 +1,114 @@
+"""What to measure next is what shrinks the intervals most for its cost; the law that made the data is the one preferred."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from command_line import EXAMPLES, call
+from fit_data import TRUE, exact, measured, noisy
+
+import stribeck as sb
+from stribeck.experiments.compare import CAVEATS, _aicc
+from stribeck.experiments.next_runs import _information, _row
+
+
+@pytest.fixture(scope="module")
+def found():
+    return sb.fit(noisy(11, rows=12), TRUE, free=["boundary_friction", "roughness"], intervals=False)
+
+
+def test_the_first_run_is_the_best_of_all_that_were_tried(found):
+    plan = sb.next_runs(found, 2)
+    information = _information(found)
+    start = np.linalg.slogdet(information)[1]
+
+    def gain(run):
+        j, _ = _row(found, "data", TRUE_AT(found, run))
+        return 0.5 * (np.linalg.slogdet(information + np.outer(j, j) / plan.noise**2)[1] - start)
+
+    best = max(plan.scanned, key=lambda run: run.gain / run.cost)
+    first = plan.runs[0]
+    assert (first.speed, first.load) == (best.speed, best.load)
+    assert first.gain == pytest.approx(gain(first), rel=1e-6)
+    assert first.gain == pytest.approx(best.gain)
+    errors = [plan.before, *(run.errors for run in plan.runs)]
+    for before, after in zip(errors, errors[1:], strict=False):
+        assert all(after[name] <= before[name] * (1 + 1e-9) for name in before)
+        assert math.prod(after.values()) < math.prod(before.values())
+    assert plan.noise == found.noise
+
+
+def TRUE_AT(fit, run):  # noqa: N802
+    """Return the fitted contact where a run is."""
+    return fit.contacts[0].replace(speed=run.speed, load=run.load, viscosity=run.viscosity)
+
+
+def test_dry_friction_is_measured_slowly_and_the_errors_come_true(found):
+    alone = sb.fit(noisy(11, rows=12), TRUE, free=["boundary_friction"], intervals=False)
+    plan = sb.next_runs(alone, 1, speeds=["0.05 mm/s", "0.2 m/s"], loads=[TRUE.load])
+    [run] = plan.runs
+    assert run.speed == pytest.approx(5e-5)
+    data = noisy(11, rows=12)
+    friction = np.append(data.friction, run.friction)
+    rows = measured(np.append(data.values, run.speed), friction, error=friction * alone.noise)
+    again = sb.fit(rows, TRUE, free=["boundary_friction"], intervals=False)
+    assert again["boundary_friction"].standard_error == pytest.approx(run.errors["boundary_friction"], rel=0.05)
+
+
+def test_another_load_costs_more(found):
+    dear = sb.next_runs(found, 1, cost={"load": 1e6})
+    assert dear.runs[0].load == pytest.approx(TRUE.load)
+    with pytest.raises(sb.InputError, match="cost = "):
+        sb.next_runs(found, 1, cost={"lode": 1})
+    with pytest.raises(sb.InputError, match="count = 0"):
+        sb.next_runs(found, 0)
+    with pytest.raises(sb.InputError, match="speeds be positive"):
+        sb.next_runs(found, 1, speeds=[0])
+
+
+def test_the_command_prints_a_table_and_draws(tmp_path, capsys):
+    picture = tmp_path / "next.png"
+    tokens = (
+        "next",
+        EXAMPLES / "pdms_measured.csv",
+        EXAMPLES / "pdms_fit.toml",
+        "--count",
+        "2",
+        "--speeds",
+        "1 mm/s",
+        "0.1 m/s",
+    )
+    answer = call(capsys, *tokens, "--plot", picture)
+    assert (answer.code, answer.err) == (0, "")
+    assert "standard errors after it" in answer.out and picture.stat().st_size > 5000
+    assert len(json.loads(call(capsys, *tokens, "--json").out)["runs"]) == 2
+    assert "CASE is missing" in call(capsys, "next", "measured.csv").err
+    assert "DATA is missing" in call(capsys, "compare").err
+
+
+@pytest.mark.slow
+def test_the_law_that_made_the_data_is_preferred():
+    gaussian = TRUE.replace(alpha=1.0, beta=0.03, law=sb.GreenwoodTripp())
+    speeds, friction = exact(gaussian, rows=14)
+    friction = friction * np.exp(0.01 * np.random.default_rng(5).standard_normal(len(speeds)))
+    case = TRUE.replace(beta=0.03)
+    found = sb.compare(
+        measured(speeds, friction),
+        case,
+        laws={"exponential": None, "greenwood-tripp": sb.GreenwoodTripp()},
+        free=("boundary_friction", "roughness"),
+    )
+    assert [each.name for each in found.candidates][0] == "greenwood-tripp"
+    assert "The data prefer greenwood-tripp" in found.sentence
+    assert found.candidates[0].weight + found.candidates[1].weight == pytest.approx(1)
+    text = str(found)
+    assert all(caveat in text for caveat in CAVEATS)
+    assert json.loads(json.dumps(found.to_dict()))["laws"][0]["difference"] == 0
+
+
+def test_the_criterion_is_that_of_akaike_for_small_samples(found):
+    n, k = len(found.data), 3
+    sigma = found.noise * math.sqrt((n - 2) / n)
+    expected = n * math.log(sigma**2) + 2 * k + 2 * k * (k + 1) / (n - k - 1)
+    assert _aicc(found, 2) == pytest.approx(expected)
