@@ -42,6 +42,14 @@ EDGE_PRESSURE = 0.2
 """Contact pressure at the edge, where its decay is taken from [p_Hz]."""
 
 
+UNRESOLVED = 2.6
+"""A panel of degree n is split where its last Legendre coefficients exceed this to the power -n; pressures with the square root
+of an edge fall with 4.4**-n on the panels that lead to it."""
+
+NARROWEST, MOST_SPLITS = 1e-3, 16
+"""Width of panels that are split no more [a], and the number of splits after which none is added."""
+
+
 class MeshTooLargeError(Exception):
     """A mesh would take more than :data:`MOST_BYTES`."""
 
@@ -60,12 +68,15 @@ class Resolution:
         The scale of the contact is 2**doublings Hertz radii.
     degree, modes : int
         Degree of the polynomials, and number of cosines.
+    splits : tuple of float
+        Radii at which panels are split besides [a].
     """
 
     halvings: int
     doublings: int
     degree: int
     modes: int
+    splits: tuple[float, ...] = ()
 
     @property
     def mesh(self) -> PolarMesh:
@@ -79,8 +90,10 @@ class Resolution:
         while outer[-1] + 1.4 * w < 2.0:
             outer.append(outer[-1] + w)
             w *= GROWTH
-        edges = np.concatenate([[0.0], inner[::-1], outer[1:], np.geomspace(2.0, REACH, FAR_PANELS + 1)])
-        return PolarMesh(edges * 2.0**self.doublings, edges.size - 1 - FAR_PANELS, self.degree, self.modes)
+        near, far = np.concatenate([[0.0], inner[::-1], outer[1:]]), np.geomspace(2.0, REACH, FAR_PANELS + 1)
+        scale = 2.0**self.doublings
+        near = np.unique(np.concatenate([near * scale, [r for r in self.splits if 0.0 < r < 2.0 * scale]]))
+        return PolarMesh(np.concatenate([near, far * scale]), near.size, self.degree, self.modes)
 
     def coarser(self) -> Resolution:
         """Return the resolution whose results tell the error of this one's: coarser in radius and in angle."""
@@ -129,6 +142,21 @@ def fits(found: Resolution, speed: float, law: ContactLaw) -> bool:
     width, scale = layout(speed, law)
     excess = math.log2(width) + found.halvings
     return -0.4 <= excess <= 2.1 and abs(math.log2(scale) - found.doublings) <= 0.8
+
+
+def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: Array) -> Resolution:
+    """Return a resolution with the panels halved on which nodal pressures, shape (..., rings), are far from resolved.
+
+    A law that saturates, or a contact nearly full in its middle, has an edge of its own within the contact.
+    """
+    fields = np.stack([fluid, fluid + contact]).reshape(-1, mesh.rings)
+    tail = np.abs(mesh.legendre(fields)[..., -2:]).max(axis=(0, 2))
+    near = mesh.edges[1:] <= 2.0 * 2.0**found.doublings * (1.0 + 1e-9)
+    poor = np.flatnonzero(near & (tail > UNRESOLVED**-mesh.degree) & (np.diff(mesh.edges) > NARROWEST))
+    if poor.size == 0 or len(found.splits) > MOST_SPLITS:
+        return found
+    middles = 0.5 * (mesh.edges[poor] + mesh.edges[poor + 1])
+    return replace(found, splits=tuple(sorted({*found.splits, *middles.tolist()})))
 
 
 def bytes_of(found: Resolution, band: int) -> int:

@@ -46,9 +46,9 @@ class Level:
         return 0.6 * self.iterated.steps
 
     @property
-    def central_contact_pressure(self) -> float:
-        """Contact pressure at the innermost ring [p_Hz]."""
-        return float(self.equations.law.pressure(self.unknowns.gap[:, 0]).mean())
+    def contact_pressure(self) -> Array:
+        """Contact pressure at the nodes [p_Hz]."""
+        return self.equations.law.pressure(self.unknowns.gap)
 
 
 def band_for(speed: float, law: ContactLaw) -> int:

@@ -13,8 +13,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of
-from stribeck.equations.point.observables import observables
+from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, split_where_poor
+from stribeck.equations.point.observables import identity_error, observables
 from stribeck.equations.point.system import Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
@@ -112,6 +112,9 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     scales = scales_of(values, fine.equations.speed)
     errors = {name: PART * abs(value - rough[name]) + fine.iterated.left * scales[name] for name, value in values.items()}
     # Interpolated minima of two meshes may agree by chance: what the series leave out bounds them from below.
+    balance = 0.3 * abs(identity_error(values, fine.equations.speed))
+    for name in ("J_balanced", "J_published", "J_pcx"):
+        errors[name] = max(errors[name], balance)
     unseen = UNSEEN_RADIAL * legendre_tail(fine)
     if fine.equations.speed > 0:
         unseen += UNSEEN * float(modal_amplitudes(fine)[-2:].max())
@@ -130,7 +133,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
 def first_resolution(level: Level, rtol: float, band: int) -> Resolution:
     """Return the finer of the two meshes to begin with."""
     film = float(level.unknowns.gap[:, 0].mean())
-    carried = min(1.0, level.central_contact_pressure)
+    carried = min(1.0, float(level.contact_pressure[:, 0].mean()))
     scale = min(1.0, film + 0.3 * carried)
     degree = 1 + math.ceil(math.log(0.25 / (rtol * scale)) / PANEL_RATE)
     modes = max(1.4 * modes_for(level, 0.7 * math.sqrt(rtol)), modes_for(level, 0.5 * MINIMUM_SLACK * rtol / UNSEEN), 8)
@@ -141,10 +144,18 @@ def first_resolution(level: Level, rtol: float, band: int) -> Resolution:
 def refine(speed: float, law: ContactLaw, guess: Level, rtol: float) -> Pair | Outcome:
     """Return a state on two meshes whose estimated error holds a tolerance, or the best that was found."""
     band = band_for(speed, law)
-    wanted = first_resolution(guess, rtol, band)
     tolerance = newton_tolerance(rtol)
     best: Pair | None = None
     try:
+        for _ in range(MOST_ROUNDS):
+            better = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
+            if better == guess.resolution:
+                break
+            following = solve_level(better, speed, law, guess.unknowns, guess.mesh, 1e-4)
+            if not following.outcome.ok:
+                break
+            guess = following
+        wanted = first_resolution(guess, rtol, band)
         for _ in range(MOST_ROUNDS):
             coarse = solve_level(wanted.coarser(), speed, law, guess.unknowns, guess.mesh, tolerance)
             if not coarse.outcome.ok:

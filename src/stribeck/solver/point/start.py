@@ -9,15 +9,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.point.dry import dry_contact
-from stribeck.equations.point.mesh_choice import MeshTooLargeError, film_scale, gaps_at, layout, operators_of, resolution
-from stribeck.equations.point.system import Operators, Unknowns
+from stribeck.equations.point.mesh_choice import (
+    MeshTooLargeError,
+    Resolution,
+    film_scale,
+    gaps_at,
+    layout,
+    operators_of,
+    resolution,
+    split_where_poor,
+)
+from stribeck.equations.point.system import Unknowns
 from stribeck.numerics.continuation import Steps, extrapolation_weights, march
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, extrapolated, solve_level
@@ -36,6 +45,9 @@ STEEPNESS = 4.0
 
 FAST, SLOW = 30.0, 1e-3
 """The speed at which the path from the rigid ball begins, and that of the path from the dry contact over the state's."""
+
+MOST_ROUNDS = 8
+"""Times that the panels of a first guess are split."""
 
 LONGEST_PATH = 60
 """States on a path after which it is given up."""
@@ -96,15 +108,24 @@ class WithCushion:
     roughness_derivative = load_derivative
 
 
-def first_guess(operators: Operators, speed: float, law: ContactLaw, lift: float = 1.0) -> Unknowns | None:
-    """Return the first guess, with a film ``lift`` times as thick as expected; None where the dry contact fails."""
-    mesh = operators.mesh
+def first_guess(found: Resolution, speed: float, law: ContactLaw, lift: float = 1.0) -> tuple[Resolution, Unknowns] | None:
+    """Return the first guess, with a film ``lift`` times as thick as expected, and the panels that it needs besides.
+
+    None where the dry contact fails.
+    """
     cushioned = WithCushion(law, lift * film_scale(speed))
-    dry = dry_contact(operators, cushioned, 1e-6)
-    if not dry.outcome.ok or not dry.gap.min() > 0:
-        return None
-    fluid = cushioned.cushion(dry.gap)
-    return Unknowns(np.tile(dry.gap, (mesh.modes, 1)), np.tile(fluid, (mesh.modes, 1)), dry.offset)
+    for _ in range(MOST_ROUNDS):
+        solved, operators = found, operators_of(found)
+        dry = dry_contact(operators, cushioned, 1e-6)
+        if not dry.outcome.ok or not dry.gap.min() > 0:
+            return None
+        fluid = cushioned.cushion(dry.gap)
+        better = split_where_poor(found, operators.mesh, fluid, law.pressure(dry.gap))
+        if better == found:
+            break
+        found = better
+    modes = found.modes
+    return solved, Unknowns(np.tile(dry.gap, (modes, 1)), np.tile(fluid, (modes, 1)), dry.offset)
 
 
 def first_state(speed: float, law: ContactLaw) -> Level | Outcome:
@@ -121,17 +142,12 @@ def first_state(speed: float, law: ContactLaw) -> Level | Outcome:
     return last
 
 
-def _attempt(speed: float, law: ContactLaw, guess: Unknowns, operators: Operators, max_steps: int = MAX_STEPS) -> Level:
-    found = resolution(speed, law, DEGREE, first_modes(speed, law))
-    return solve_level(found, speed, law, guess, operators.mesh, TOLERANCE, max_steps=max_steps)
-
-
 def _direct(speed: float, law: ContactLaw) -> Iterator[Level]:
-    operators = operators_of(resolution(speed, law, DEGREE, first_modes(speed, law)))
     for lift in (1.0, 1.5, 0.7):
-        guess = first_guess(operators, speed, law, lift)
+        guess = first_guess(resolution(speed, law, DEGREE, first_modes(speed, law)), speed, law, lift)
         if guess is not None:
-            yield _attempt(speed, law, guess, operators)
+            found, y = guess
+            yield solve_level(found, speed, law, y, operators_of(found).mesh, TOLERANCE, max_steps=MAX_STEPS)
 
 
 def _upward(speed: float, law: ContactLaw) -> Iterator[Level]:
@@ -156,13 +172,17 @@ def _path(begin: float, end: float, law: ContactLaw) -> Iterator[Level]:
         if count > LONGEST_PATH:
             return None
         speed = math.exp(s)
-        operators = operators_of(resolution(speed, law, DEGREE, first_modes(speed, law)))
+        here = resolution(speed, law, DEGREE, first_modes(speed, law))
         if history:
+            here = replace(here, splits=history[-1][1].resolution.splits)
             weights = extrapolation_weights([at for at, _ in history], s)
-            guess: Unknowns | None = extrapolated(weights, [level for _, level in history], operators.mesh)
+            guess = here, extrapolated(weights, [level for _, level in history], operators_of(here).mesh)
         else:
-            guess = first_guess(operators, speed, law)
-        return None if guess is None else _attempt(speed, law, guess, operators, 12)
+            first = first_guess(here, speed, law)
+            if first is None:
+                return None
+            guess = first
+        return solve_level(guess[0], speed, law, guess[1], operators_of(guess[0]).mesh, TOLERANCE, max_steps=12)
 
     found = march(correct, math.log(begin), math.log(end), Steps(0.5, 3.0, 0.02, order=2, aim=3.0))
     if found.outcome.ok:
