@@ -43,8 +43,8 @@ EDGE_PRESSURE = 0.2
 
 
 UNRESOLVED = 2.6
-"""A panel of degree n is split where its last Legendre coefficients exceed this to the power -n; pressures with the square root
-of an edge fall with 4.4**-n on the panels that lead to it."""
+"""A panel of degree n is split where its last Legendre coefficients exceed this to the power -n; pressures with the square
+root of an edge fall with 4.4**-n on the panels that lead to it."""
 
 NARROWEST, MOST_SPLITS = 1e-3, 16
 """Width of panels that are split no more [a], and the number of splits after which none is added."""

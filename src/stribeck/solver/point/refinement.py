@@ -151,10 +151,10 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float) -> Pair | O
             better = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
             if better == guess.resolution:
                 break
-            following = solve_level(better, speed, law, guess.unknowns, guess.mesh, 1e-4)
-            if not following.outcome.ok:
+            on_more = solve_level(better, speed, law, guess.unknowns, guess.mesh, 1e-4)
+            if not on_more.outcome.ok:
                 break
-            guess = following
+            guess = on_more
         wanted = first_resolution(guess, rtol, band)
         for _ in range(MOST_ROUNDS):
             coarse = solve_level(wanted.coarser(), speed, law, guess.unknowns, guess.mesh, tolerance)
