@@ -300,7 +300,9 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)[:, None]
     unknowns = states.correction(residual)
     if known is not None:
-        unknowns[0][:, at.pressure] += fine.lowered(fluid) - known
+        change = fine.lowered(fluid) - known
+        change[:, -coarse.order :] = 0.0  # through infinity both are integrals of what the gap tells, and may have a kink
+        unknowns[0][:, at.pressure] += change
     if not op.is_article:
         friction = np.zeros((len(DRAG), len(y)))
         if equations.is_sliding:
