@@ -10,6 +10,7 @@ import numpy as np
 from stribeck.contact_laws.law import AsperityLaw, has_constant_decay
 from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import ARTICLE, Model
 
 STATIC_LOAD = 0.01
 """Load at which heavier contacts at rest are solved: all gaps are positive there."""
@@ -43,6 +44,8 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
     """
     if groups.speed > 0:
         return groups, 0.0
+    if groups.model != ARTICLE:  # no fluid matters at rest, nor where its film would end
+        groups = replace(groups, model=Model(solid=groups.model.solid))
     shape = groups.law
     if shape is None or has_constant_decay(shape):
         if groups.load <= STATIC_LOAD:

@@ -18,12 +18,14 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
 from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
+from stribeck.solids.half_plane import HalfPlane
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.cold_start import first_path
@@ -167,6 +169,11 @@ def solve(
 def _line(groups: Groups, contact: Contact | None, rtol: float, on_failure: str) -> Solution:
     """Return the state of a line contact."""
     if groups.is_hertzian:
+        if not isinstance(groups.model.solid, HalfPlane):
+            raise InputError(
+                f"speed and roughness are zero on a {groups.model.solid.name}: the dry contact of smooth surfaces is known in "
+                "closed form on the half-plane alone; give a small speed or roughness."
+            )
         return hertz_solution(groups, contact, rtol)
     return finish(solved_point(groups, rtol), groups, contact, rtol, on_failure)
 
@@ -192,10 +199,34 @@ def solved_point(groups: Groups, rtol: float) -> RefinedState:
             base = groups if groups.speed > 0 else with_positive_gap(groups)[0]
         except InputError:  # its roughness leaves the range of groups
             raise SolveError(Outcome.PATH_LOST, None, f"{describe(groups)}: {Outcome.PATH_LOST.value}{far}") from None
-        path = first_path(base)
-        if not path.outcome.ok:
-            raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}{far}")
-        return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+        if base.model.cavitation is Cavitation.REFORM:
+            return _reforming(base, rtol)
+        return _refined(base, groups, rtol, far)
+
+
+def _refined(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedState:
+    """Return the refined state of ``groups`` from the cold start of ``base``; raise where no path leads there."""
+    path = first_path(base)
+    if not path.outcome.ok:
+        raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}{far}")
+    return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+
+
+def _reforming(groups: Groups, rtol: float) -> RefinedState:
+    """Return the state of a film that may form anew: the full film where its suction stays above that of the cavity.
+
+    A cavity at ambient pressure reaches to infinity.
+    """
+    model, far = groups.model, untested(groups)
+    if model.cavity_pressure == 0.0:
+        ending = replace(groups, model=replace(model, cavitation=Cavitation.EXIT))
+        return replace(_refined(ending, ending, rtol, far), groups=groups)
+    full = replace(groups, model=replace(model, cavitation=Cavitation.NONE, cavity_pressure=0.0))
+    point = _refined(full, full, rtol, far)
+    assert point.state is not None
+    if float(point.state.equations.pressures(point.state.y)[1].min()) >= model.cavity_pressure:
+        return replace(point, groups=groups)
+    return _refined(groups, groups, rtol, far)
 
 
 def with_law(problem: Groups | Contact, law: str | AsperityLaw | None) -> Groups | Contact:

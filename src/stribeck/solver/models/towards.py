@@ -60,6 +60,13 @@ HEIGHTS = (-400.0, 400.0)
 """Logarithms of its lowest and its largest height."""
 
 BLENDING = Steps(1.0, 1.0, 1e-3)
+CAVITIES = 4001
+"""Lengths of cavities that are looked at."""
+
+FIRST_SUCTION = 0.3
+"""Part of the largest suction that a film could begin anew with, with which the cavity begins."""
+
+DEEPENING = Steps(0.5, 1.0, 1e-3)
 SLOWING = Steps(0.7, 2.0, 1e-3)
 
 
@@ -211,6 +218,10 @@ def path_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> P
         The path from cold to groups with the model of the article.
     """
     model = groups.model
+    if model.cavitation is Cavitation.REFORM:
+        ending = replace(model, cavitation=Cavitation.EXIT, cavity_pressure=0.0)
+        path = path_to_model(replace(groups, model=ending), article)
+        return _reforming(groups, path) if path.outcome.ok else path
     path = article(replace(groups, model=ARTICLE))
     if not path.outcome.ok:
         return path
@@ -224,6 +235,31 @@ def path_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> P
     if model.film == Newtonian() and isinstance(model.solid, HalfPlane):
         return _extended(path, state)
     return _blended(groups, path, state)
+
+
+def _reforming(groups: Groups, ended: Path[State]) -> Path[State]:
+    """Return the path on which the pressure of the cavity falls from near zero to that of the groups.
+
+    A film that ends at ambient pressure tells where it would begin anew: where the suction of a film from there on is that
+    of the cavity.
+    """
+    state, wanted = ended.states[-1], -groups.model.cavity_pressure
+    distance = np.geomspace(1e-4, 1e4, CAVITIES) * math.sqrt(1.0 + float(state.gap.min()))
+    gap = np.exp(state.fields(distance)[0])
+    film, flux = state.equations.film, state.flux_gap
+    slopes = film.gradient(gap, np.zeros_like(gap) if film.uses_pressure else None, flux) * float(groups.speed)
+    cells = 0.5 * (slopes[1:] + slopes[:-1]) * np.diff(distance)
+    suction = np.append(np.cumsum(cells[::-1])[::-1], 0.0)
+    start = min(wanted, FIRST_SUCTION * float(suction.max()))
+    length = float(distance[np.flatnonzero(suction >= start)[-1]])
+
+    def correct(log_suction: float, history: Sequence[tuple[float, State]]) -> State | None:
+        pressure = -wanted if log_suction == math.log(wanted) else -math.exp(log_suction)
+        here = replace(groups, model=replace(groups.model, cavity_pressure=pressure))
+        guess = extrapolate(history, log_suction) if history else SeenFrom(state, state.exit, length, pressure)
+        return _settled(here, guess)
+
+    return march(correct, math.log(start), math.log(wanted), DEEPENING)
 
 
 def _extended(path: Path[State], state: State) -> Path[State]:
