@@ -40,6 +40,15 @@ END_GAIN = 5.0
 END_TAIL = 3.5e-4
 """Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels."""
 
+FINEST_OF_LAYER = 0.75
+"""Half-width of a panel in thicknesses of a layer above which its rule does not resolve what the layer does to pressures."""
+
+REACH_OF_LAYER = 24.0
+"""Distance in thicknesses beyond which a layer is not felt."""
+
+TAIL_OF_ERROR = 0.2
+"""Tolerance of a mesh that goes with an error of one."""
+
 SAME_FRAME = 1.5
 """Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made."""
 
@@ -240,6 +249,7 @@ def mesh_for(
     width = np.sqrt(1.0 + central_gap)
     scale = 2.0 ** round(float(np.log2(width).mean()))
     minimum_position = guess.minimum_position / to_guess
+    thickness = float(getattr(groups.model.solid, "thickness", math.inf))
 
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
@@ -265,9 +275,22 @@ def mesh_for(
         weight = max(0.1, tolerance / profile_tolerance)
         shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[..., None]
         shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
-        return np.concatenate([stretch * pressures.reshape(2, *nodal), shape[None], shear[None]])
+        fields = [stretch * pressures.reshape(2, *nodal), shape[None], shear[None]]
+        if thickness < math.inf and stretch[0, 0] == 1.0:
+            pressure = np.abs(np.stack([law.pressure(gap), fluid])).sum(axis=0)
+            felt = groups.speed * (np.abs(flat) + np.repeat(half_widths, x.shape[1])) / gap**3
+            wrong = (felt + np.abs(law.slope(gap, law.pressure(gap)))) * pressure
+            stiff = 1 / central_gap + 1 / np.where(law.decay_length > 0, law.decay_length, np.inf)
+            wrong = wrong + pressure * np.exp(-np.abs(flat - centre) / thickness) * stiff
+            wide = half_widths * np.where(half_widths > FINEST_OF_LAYER * thickness, wrong.reshape(x.shape).max(axis=1), 0.0)
+            missed = wide > (tolerance / TAIL_OF_ERROR) ** 2
+            fields.append(np.where(missed[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
+        return np.concatenate(fields)
 
     reach = (8 if order < LONG_REACH_ORDER else 16) * scale
+    if thickness < math.inf:  # beyond the panels in x a layer is felt only where it is pressed
+        carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_OF_ERROR / tolerance
+        reach = max(reach, min(REACH_OF_LAYER * thickness, carried))
     if not ends:
         return adapt(fields, scale, reach, order, tolerance, guess.mesh if isinstance(guess, State) else None)
     mesh = adapt(fields, scale, 2 * reach, order, tolerance)

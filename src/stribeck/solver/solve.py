@@ -44,6 +44,9 @@ RTOL_RANGE = (1e-11, 1e-2)
 PROFILE_TAIL = 10.0
 """Legendre tail left in the logarithm of the gap between the nodes of a single solution, in units of its tolerance."""
 
+COARSER = (1e-2, 1e-3, 1e-4, 1e-5)
+"""Tolerances on the way to one that cannot be reached at once."""
+
 MIN_ESTIMATE = 0.03
 """Part of the tolerance below which no error is stated, as estimates so small are not sure."""
 
@@ -209,7 +212,12 @@ def _refined(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedStat
     path = first_path(base)
     if not path.outcome.ok:
         raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}{far}")
-    return converge(path.states[-1], groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+    guess = path.states[-1]
+    point = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+    for coarse in COARSER if point.state is None else ():
+        if coarse > rtol and (found := converge(guess, groups, coarse).state) is not None:
+            guess = found
+    return point if guess is path.states[-1] else converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
 
 
 def _reforming(groups: Groups, rtol: float) -> RefinedState:

@@ -1,7 +1,8 @@
 r"""Cold start of models that are not the article's: from its state, one part of the model after the other.
 
-First the film ends: where the pressure of the full film falls to zero, or as that of a rigid parabola does.  Then fluid and
-solid change into their own, at once if Newton's iteration manages that, else along
+The solid is its own from the start, if the path of loads leads to the state with it.  First the film ends: where the pressure
+of the full film falls to zero, or as that of a rigid parabola does.  Then the fluid changes into its own, and the solid if it
+must, at once if Newton's iteration manages that, else along
 
 .. math::
 
@@ -222,17 +223,20 @@ def path_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> P
         ending = replace(model, cavitation=Cavitation.EXIT, cavity_pressure=0.0)
         path = path_to_model(replace(groups, model=ending), article)
         return _reforming(groups, path) if path.outcome.ok else path
-    path = article(replace(groups, model=ARTICLE))
+    solid = model.solid
+    path = article(replace(groups, model=Model(solid=solid)))
+    if not path.outcome.ok and not isinstance(solid, HalfPlane):
+        solid = ARTICLE.solid
+        path = article(replace(groups, model=ARTICLE))
     if not path.outcome.ok:
         return path
     state = path.states[-1]
     if model.cavitation is not Cavitation.NONE and groups.speed > 0:
-        ending = replace(groups, model=Model(cavitation=Cavitation.EXIT))
-        found = _ended(ending, path)
+        found = _ended(replace(groups, model=Model(cavitation=Cavitation.EXIT, solid=solid)), path)
         if found is None:
             return replace(path, outcome=Outcome.PATH_LOST)
         state = found
-    if model.film == Newtonian() and isinstance(model.solid, HalfPlane):
+    if model.film == Newtonian() and model.solid == solid:
         return _extended(path, state)
     return _blended(groups, path, state)
 

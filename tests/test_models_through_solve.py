@@ -1,0 +1,135 @@
+"""Fluids, layers and cavities through `solve`, against an independent solver and against each other's limits."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_film_exit import differences
+from test_fluid_states import film_of
+
+import stribeck as sb
+from stribeck.contacts.model import Model
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.newtonian import Newtonian
+from stribeck.fluids.viscosity import Barus
+from stribeck.solids.layer import Layer
+
+REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())
+BARUS = [(Newtonian(Barus(row["a_bar"])), row) for row in REFERENCE["b_d_e"] if row["case"] == "barus"]
+ROLLING = [(Newtonian(slide=row["s"]), row) for row in REFERENCE["b_d_e"] if row["case"] == "rolling-sliding"]
+THINNING = [(film_of(row), row) for row in REFERENCE["c_shear_thinning"] if row["case"] in ("carreau n=.5", "eyring")][::3]
+ROUGH = [(film_of(row), row) for row in REFERENCE["b_d_e"] if row["case"] == "patir-cheng phi_x"]
+REFORMING = {"exit_position": "xc", "reformation_position": "xr", "flux_gap": "m"}
+
+
+def groups_of(row, model):
+    return sb.Groups(row["speed"], row["load"], row["kappa"] * row["load"], model=model)
+
+
+@pytest.mark.parametrize(("film", "row"), BARUS + ROLLING + THINNING + ROUGH)
+def test_a_film_through_solve_is_that_of_an_independent_solver(film, row):
+    solution = sb.solve(groups_of(row, Model(film, Cavitation.EXIT)))
+    assert max(differences(solution, row).values()) < 1e-6
+    assert solution.error_estimate <= 1e-6
+
+
+@pytest.mark.parametrize("row", REFERENCE["f_layer_lubricated"], ids=lambda row: f"{row['d']:g}-{row['kappa']:g}")
+def test_a_film_on_a_layer_through_solve_is_that_of_an_independent_solver(row):
+    model = Model(cavitation=Cavitation.EXIT, solid=Layer(row["d"], row["nu"]))
+    assert max(differences(sb.solve(groups_of(row, model)), row).values()) < 1e-6
+
+
+@pytest.mark.parametrize("row", REFERENCE["f_layer_dry"], ids=lambda row: f"{row['d']:g}")
+def test_a_dry_contact_on_a_layer_is_that_of_an_independent_solver(row):
+    solution = sb.solve(groups_of(row, Model(solid=Layer(row["d"], row["nu"]))))
+    tolerance = max(1e-6, 20 * row["change"])
+    assert solution.central_gap == pytest.approx(row["h0"], rel=tolerance)
+    assert solution.flux_gap == pytest.approx(row["m"], rel=tolerance)
+    assert solution.pressure.max() == pytest.approx(row["pmax"], rel=3e-5)
+
+
+@pytest.mark.parametrize("row", REFERENCE["a_p_cav_negative_with_reformation"], ids=lambda row: f"{row['p_cav']:g}")
+def test_a_film_that_forms_anew_is_that_of_an_independent_solver(row):
+    solution = sb.solve(groups_of(row, Model(cavitation=Cavitation.REFORM, cavity_pressure=row["p_cav"])))
+    for name, column in REFORMING.items():
+        assert getattr(solution, name) == pytest.approx(row[column], rel=1e-8)
+    tolerance = max(1e-6, 2 * row["change"])  # near the full film the reference has its edge off the mesh
+    assert solution.minimum_gap == pytest.approx(row["hmin"], rel=tolerance)
+    assert solution.viscous_balanced == pytest.approx(row["mu_traction_1"], rel=tolerance)
+    assert solution.contact_load_share == pytest.approx(row["contact_share"], abs=1e-6)
+
+
+def test_a_cavity_closes_where_its_pressure_is_that_of_the_suction_of_the_full_film():
+    groups = sb.Groups(1e-3, 0.1, 0.0)
+    full = sb.solve(groups)
+    lowest = full.fluid_pressure.min()
+    lengths, gaps = [], []
+    for part in (0.6, 0.9):
+        ended = sb.solve(groups, cavitation="reform", cavity_pressure=part * lowest)
+        lengths.append(ended.reformation_position - ended.exit_position)
+        gaps.append(ended.minimum_gap / full.minimum_gap - 1)
+    assert 0 < lengths[1] < lengths[0] < 0.04
+    assert 0 < gaps[1] < gaps[0] < 0.04
+    closed = sb.solve(groups, cavitation="reform", cavity_pressure=1.01 * lowest)
+    assert np.isnan(closed.exit_position)
+    assert closed.minimum_gap == full.minimum_gap
+
+
+@pytest.mark.quick
+def test_the_cavity_of_a_film_that_forms_anew_is_at_its_pressure():
+    solution = sb.solve(sb.Groups(1e-2, 0.1, 1e-3), cavitation="reform", cavity_pressure=-0.05)
+    inside = np.linspace(solution.exit_position, solution.reformation_position, 7)[1:-1]
+    np.testing.assert_array_equal(solution.profile(inside).fluid_pressure, -0.05)
+    outside = solution.profile(solution.reformation_position + np.array([1e-7, 3.0])).fluid_pressure
+    assert outside[0] == pytest.approx(-0.05, abs=1e-5)
+    assert -0.05 < outside[1] < 0
+
+
+@pytest.mark.quick
+def test_the_two_walls_balance_the_pull_of_the_pressure():
+    groups = sb.Groups(1e-2, 0.1, 1e-3)
+    for cavitation, slide in (("exit", 2.0), ("exit", 0.0), ("reform", 0.6)):
+        solution = sb.solve(
+            groups, cavitation=cavitation, cavity_pressure=-0.02 * (cavitation == "reform"), slide_to_roll=slide
+        )
+        edges = np.linspace(-40, 40, 400_001)
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        moment = solution.profile(middle).pressure @ middle * (edges[1] - edges[0])
+        ends = solution.profile(edges[[0, -1]]).pressure
+        moment += (ends[1] - ends[0]) * edges[-1] ** 2  # beyond, pressures fall as the third power
+        friction = solution.friction(1.0, 1.0)
+        pull = -2 * np.sqrt(0.1) * moment / (np.pi / 2)
+        assert friction.lower - friction.upper == pytest.approx(pull, rel=1e-3, abs=1e-6)
+
+
+@pytest.mark.quick
+def test_asperities_drag_with_the_sliding_and_not_in_pure_rolling():
+    groups = sb.Groups(1e-5, 0.1, 1e-3)
+    parts = {slide: sb.solve(groups, slide_to_roll=slide).friction(0.5).contact for slide in (2.0, 0.5, 0.002, 0.0, -0.5)}
+    assert parts[2.0] == pytest.approx(parts[0.5], rel=1e-9)
+    assert parts[-0.5] == pytest.approx(-parts[0.5], rel=1e-9)
+    assert parts[0.0] == 0
+    assert 0 < parts[0.002] < parts[0.5]
+
+
+@pytest.mark.quick
+def test_rolling_does_not_change_the_film_of_a_newtonian_fluid():
+    groups = sb.Groups(1e-3, 0.1, 1e-3)
+    sliding, rolling = sb.solve(groups), sb.solve(groups, slide_to_roll=0.0)
+    assert rolling.central_gap == pytest.approx(sliding.central_gap, rel=1e-7)
+    assert rolling.viscous_balanced < 0.25 * sliding.viscous_balanced
+
+
+def test_a_cavity_at_ambient_pressure_reaches_to_infinity():
+    groups = sb.Groups(1e-3, 0.1, 0.0)
+    ended = sb.solve(groups, cavitation="exit")
+    reaching = sb.solve(groups, cavitation="reform", cavity_pressure=-1e-6)
+    assert reaching.exit_position == pytest.approx(ended.exit_position, abs=1e-5)
+    assert reaching.reformation_position > 10
+    assert sb.solve(groups, cavitation="reform").exit_position == ended.exit_position
+
+
+def test_the_dry_smooth_contact_on_a_layer_is_refused():
+    with pytest.raises(sb.InputError, match="closed form on the half-plane alone"):
+        sb.solve(sb.Groups(0.0, 0.1, 0.0), solid=sb.solids.Layer(3.0))
