@@ -178,20 +178,16 @@ def test_every_fact_is_used_and_every_row_says_what_it_misses():
     assert "<table>" in found._repr_html_()
 
 
-@pytest.mark.quick
-def test_what_a_later_fluid_or_solid_solves_counts_as_fine():
-    class Part:
-        name = "carreau"
-        uses_pressure = True
-        thickness = 1e-4
-
-    class Later:
-        def __init__(self, contact):
-            self.contact, self.fluid, self.solid, self.cavitation = contact, Part(), Part(), Part()
-
-        def __getattr__(self, name):
-            return getattr(self.contact, name)
-
-    found = checks_of(Subject(Later(TRUE.replace(modulus="5 GPa", load="60 kN/m"))), "contact")
-    assert found["Hertz pressure"].verdict == "fine" and "is solved (carreau)" in found["Hertz pressure"].sentence
-    assert found["layer a/thickness"].verdict == "fine"
+def test_what_fluid_cavitation_and_solid_solve_counts_as_fine():
+    hot = TRUE.replace(modulus="2 GPa", load="20 kN/m")
+    assert verdicts(hot, "contact")["Hertz pressure"] == "doubtful"
+    stiffens = hot.replace(fluid=sb.fluids.Barus("20 1/GPa"))
+    found = checks_of(Subject(stiffens), "contact")["Hertz pressure"]
+    assert found.verdict == "fine" and "is solved (newtonian + barus)" in found.sentence
+    assert Subject(stiffens).fact("pressure_viscosity") == pytest.approx(2e-8)
+    layered = TRUE.replace(solid=sb.solids.Layer("0.2 mm", 0.49))
+    assert checks_of(Subject(layered), "contact")["layer a/thickness"].sentence == "The layer is solved as one."
+    breaks = TRUE.replace(cavitation="exit", speed="1 m/s")
+    assert "Cavitation is solved (exit)." in checks_of(Subject(breaks), "state")["suction"].sentence
+    thins = TRUE.replace(fluid=sb.fluids.Carreau("1 ms", 0.7))
+    assert "Thinning is solved (carreau)" in checks_of(Subject(thins), "state")["shear rate"].sentence

@@ -41,6 +41,17 @@ def test_a_new_case_reads_without_its_comment_signs():
         sb.new_case("sphere")
 
 
+@pytest.mark.quick
+def test_the_optional_tables_of_a_new_case_are_read_once_uncommented(tmp_path):
+    text = sb.new_case()
+    i = text.index("# [cavitation]")
+    end = text.index("\n\n", i)
+    path = tmp_path / "parts.toml"
+    path.write_text(text[:i] + re.sub("^# ", "", text[i:end], flags=re.M) + text[end:])
+    contact = sb.load_case(path).contact
+    assert str(contact.cavitation) == "exit" and contact.solid.thickness > 0
+
+
 @pytest.fixture(scope="module")
 def content(tmp_path_factory):
     path = tmp_path_factory.mktemp("report") / "seal.html"

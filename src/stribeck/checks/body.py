@@ -33,7 +33,7 @@ def pressure(subject: Subject) -> Check:
     growth = coefficient * p
     limit = FINE_STIFFENING / coefficient if coefficient > 0 else math.inf
     modelled = subject.models("fluid")
-    uses_pressure = bool(getattr(getattr(subject.contact, "fluid", None), "uses_pressure", False))
+    uses_pressure = getattr(getattr(subject.contact, "fluid", None), "viscosity", None) is not None
     if uses_pressure:
         return Check(
             "Hertz pressure", p, math.inf, "fine", f"The growth of viscosity with pressure is solved ({modelled}).", "Pa"
@@ -103,7 +103,7 @@ def loss(subject: Subject) -> Check | None:
     contact = subject.contact
     frequency = contact.speed / contact.hertz.half_width
     verdict = verdict_of(tangent, FINE_LOSS, LOSS)
-    if subject.models("solid") and getattr(getattr(contact, "solid", None), "loss_tangent", None) is not None:
+    if subject.models("solid") and getattr(getattr(contact, "solid", None), "uses_speed", False):
         return Check("loss tangent", tangent, FINE_LOSS, "fine", "The loss of the solid is solved.")
     meaning = {
         "fine": "hysteresis is small.",

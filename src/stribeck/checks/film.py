@@ -63,7 +63,7 @@ def shear_rate(subject: Subject) -> Check:
     rate = contact.speed / film if film > 0 else math.inf
     given = subject.fact("thinning_rate")
     limit = USUAL_THINNING if given is None else given
-    if subject.models("fluid") and not getattr(getattr(contact, "fluid", None), "uses_pressure", False):
+    if getattr(getattr(contact, "fluid", None), "rheology", None) is not None:
         return Check("shear rate", rate, math.inf, "fine", f"Thinning is solved ({subject.models('fluid')}).", "1/s")
     outside = math.inf if given is None else THINNED * limit
     verdict = verdict_of(rate, limit, outside)

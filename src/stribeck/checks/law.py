@@ -7,7 +7,7 @@ import math
 from stribeck.checks.check import Check, Verdict, verdict_of
 from stribeck.checks.subject import Subject
 from stribeck.contact_laws.finite_surface import has_endless_tail
-from stribeck.contact_laws.law import is_exponential, largest_load
+from stribeck.contact_laws.law import is_exponential
 from stribeck.curves.regime import Transition
 from stribeck.quantities.units import format_si
 from stribeck.solver.notes import ADVICE, LAW_RANGE, law_notes, matters, minimum_note
@@ -31,7 +31,7 @@ def range_at_centre(subject: Subject) -> Check | None:
     notes = law_notes(state.groups, contact, state.observables)
     verdict: Verdict = "fine"
     if notes:
-        verdict = "doubtful" if ratio >= low and state.groups.load < largest_load(contact.law) else "outside"
+        verdict = "doubtful" if ratio >= low else "outside"
     limit = high if ratio > low else low
     if notes:
         sentence = " ".join(notes)

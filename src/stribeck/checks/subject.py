@@ -20,6 +20,9 @@ from stribeck.solver.solve import solve
 
 __all__ = ["Subject"]
 
+PLAIN = ("", "newtonian", "half-plane", "half-space", "none")
+"""Names of the parts of the article, of which nothing needs to be said."""
+
 POINTS, RTOL = 21, 1e-4
 """Of the curves on which the minimum and the transitions are looked for, which are then located exactly."""
 
@@ -92,8 +95,8 @@ class Subject:
     def models(self, part: str) -> str:
         """Return the name of the contact's fluid, solid or cavitation beyond the plain ones; empty if it has none."""
         found = getattr(self.contact, part, None)
-        name = str(getattr(found, "name", found) or "") if found is not None else ""
-        return "" if name.lower() in ("newtonian", "half-plane", "half_plane", "half-space", "half_space", "none") else name
+        name = str(found) if isinstance(found, str) else str(getattr(found, "name", "") or "")
+        return "" if name.lower() in PLAIN else name
 
     def film(self, gap: float) -> float:
         """Return a gap in m."""

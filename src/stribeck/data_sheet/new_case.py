@@ -13,6 +13,21 @@ from stribeck.quantities.units import DIMENSIONS, format_si
 
 __all__ = ["new_case"]
 
+PARTS = """
+# A fluid that is not Newtonian, a film that breaks, a thin layer: take away the # of a table and of what you know.
+# [fluid]
+# preset = "water"   # or glycerol-water, silicone-oil, pao-4, ...: gives the viscosity too, at temperature = "25 degC"
+# model = "carreau"   # or cross, eyring, power-law; with relaxation_time = "1 ms", exponent = 0.7
+# pressure_viscosity = "20 1/GPa"   # viscosity_law = "barus" or "roelands"
+# [cavitation]
+# model = "exit"   # the film ends at ambient pressure behind the contact; or "reform"
+# [motion]
+# slide_to_roll = 0.5   # 2 (u1 - u2)/(u1 + u2); 2 with one surface at rest
+# [solid]
+# layer_thickness = "2 mm"
+# poisson_ratio = 0.49
+"""
+
 OPTIONS = """
 [curve]
 # What varies: "speed", "load" or "roughness"; range = ["1 mm/s", "1 m/s"] if the automatic one does not fit.
@@ -74,6 +89,7 @@ def new_case(geometry: Geometry = "line") -> str:
         '# Contact law: "exponential" (alpha, beta above), or "persson" with a table [surface] in their place and in that of',
         '# roughness: h_rms = "1 um", hurst = 0.8, longest_wavelength = "150 um", shortest_wavelength = "1.5 um".',
         'law = "exponential"',
+        *([PARTS.rstrip()] if geometry == "line" else []),
         OPTIONS,
         "[check]",
         "# What no equation takes, but by which stribeck check judges; take away the # of what you know.",

@@ -49,7 +49,7 @@ ROWS = (
         "compliance",
         "20 1/GPa",
         "mineral oil 15 to 25, water below 1",
-        ("fluid.pressure_viscosity", "fluid.pressure_coefficient"),
+        ("fluid.viscosity.pressure_coefficient",),
     ),
     Fact("layer_thickness", "thickness of the soft layer", "length", "2 mm", "rubber of a seal", ("solid.thickness",)),
     Fact("loss_tangent", "loss tangent at the frequency U/a", "number", "0.1", "filled rubber", ("solid.loss_tangent",)),
@@ -58,7 +58,7 @@ ROWS = (
     Fact("molecular_size", "size of the fluid's molecules", "length", "1 nm", "oil; water 0.3 nm, polymer coils 10 to 100 nm"),
     Fact("thermal_conductivity", "thermal conductivity of the fluid", "conductivity", "0.15 W/m/K", "oil; water 0.6"),
     Fact("thermal_thinning", "relative change of viscosity per kelvin", "per kelvin", "0.04 1/K", "oil; water 0.02"),
-    Fact("density", "density of the fluid", "density", "870 kg/m^3", "oil; water 1000", ("fluid.density",)),
+    Fact("density", "density of the fluid", "density", "870 kg/m^3", "oil; water 1000"),
 )
 """The facts. A new one is a row here, and is used by a row of :data:`stribeck.checks.table.ROWS`."""
 
