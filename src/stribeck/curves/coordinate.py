@@ -13,7 +13,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.groups import Groups
+from stribeck.contacts.groups import Geometry, Groups
 from stribeck.equations.sensitivity import GROUPS
 from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.units import InputError, show, to_si
@@ -48,6 +48,11 @@ class Coordinate:
         """Return the groups at many values of what varies, as arrays."""
         groups = [self.groups_at(s) for s in np.log(values).tolist()]
         return Groups(*(np.array([float(getattr(g, name)) for g in groups]) for name in GROUPS), **groups[0].physics)
+
+    @property
+    def geometry(self) -> Geometry:
+        """A cylinder or a ball."""
+        return self.groups_at(0.0).geometry if isinstance(self.base, Contact) else self.base.geometry
 
     @property
     def direction(self) -> Array:

@@ -157,6 +157,11 @@ def stribeck_curve(
     check_inside(coordinate, values)
     if check_method(method) == "atlas":
         return AtlasCurve(over, values, coordinate.groups_along, contact, boundary_friction, beta, definition)
+    if coordinate.geometry in CURVES:
+        trace, _ = CURVES[coordinate.geometry]()
+        settings = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
+        found_curve: StribeckCurve = trace(coordinate, values, rtol, on_point, **settings)
+        return found_curve
     descending = values[::-1]
     done = 0
     targets = np.log(descending)
@@ -198,8 +203,19 @@ def stribeck_curve(
     )
 
 
+def _of_ball() -> tuple[Callable[..., StribeckCurve], Callable[..., tuple[float, float]]]:
+    from stribeck.curves.point_curve import point_curve, point_speeds
+
+    return point_curve, point_speeds
+
+
+CURVES = {"point": _of_ball}
+"""How curves are traced and where they begin and end, by geometry, beside the line."""
+
+
 def _automatic(coordinate: Coordinate, boundary_friction: float, beta: float, definition: Definition, points: int) -> Array:
     """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm."""
     groups = coordinate.groups_at(0.0)
-    low, high = automatic_speed_range(groups, boundary_friction, beta, definition)
+    ends = CURVES[coordinate.geometry]()[1] if coordinate.geometry in CURVES else automatic_speed_range
+    low, high = ends(groups, boundary_friction, beta, definition)
     return np.geomspace(low / float(groups.speed), high / float(groups.speed), points)

@@ -1,0 +1,68 @@
+"""States of a ball along one coordinate: each from the nearest one that is solved, from cold where there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from stribeck.contacts.groups import Groups
+from stribeck.solver.point.refinement import Pair
+from stribeck.solver.point.solve import solve_cold, solve_from
+from stribeck.solver.point.state import PointState
+
+__all__ = ["NeighbourSolver", "without_factors"]
+
+REACH = 3.5
+"""Distance of logarithms within which a neighbour is a start worth having."""
+
+
+def without_factors(state: PointState) -> PointState:
+    """Return a state that neighbours may still start from, without the factors of its matrices, which fill the memory."""
+    pair = state.work
+    if not isinstance(pair, Pair):
+        return state
+    levels = (replace(level, iterated=replace(level.iterated, preconditioner=None)) for level in (pair.coarse, pair.fine))
+    coarse, fine = levels
+    return replace(state, work=replace(pair, coarse=coarse, fine=fine))
+
+
+class NeighbourSolver:
+    """Solves the states of a coordinate in any order, and keeps them.
+
+    Parameters
+    ----------
+    groups_at : callable
+        ``groups_at(s)`` gives the groups at coordinate s.
+    rtol : float
+        Relative tolerance of each state.
+    """
+
+    def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
+        self.groups_at, self.rtol = groups_at, rtol
+        self.states: dict[float, PointState] = {}
+        self._last: tuple[float, PointState] | None = None
+
+    def __call__(self, s: float) -> PointState:
+        """Return the state at ``s``, with its outcome where it failed."""
+        if s in self.states:
+            return self.states[s]
+        groups = self.groups_at(s)
+        start = self._start(s)
+        state = solve_cold(groups, self.rtol) if start is None else solve_from(start, groups, self.rtol)
+        if not state.outcome.ok and start is not None:
+            cold = solve_cold(groups, self.rtol)
+            state = cold if cold.outcome.ok else state
+        if state.outcome.ok:
+            self._last = s, state
+            self.states[s] = without_factors(state)
+        return state
+
+    def _start(self, s: float) -> PointState | None:
+        """Return the nearest state that is solved, the last one with its factors; None where none is near."""
+        near = [(abs(c - s), state) for c, state in self.states.items() if abs(c - s) <= REACH]
+        if not near:
+            return None
+        distance, state = min(near, key=lambda pair: pair[0])
+        if self._last is not None and abs(self._last[0] - s) <= 1.01 * distance:
+            return self._last[1]
+        return state

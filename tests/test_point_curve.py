@@ -1,0 +1,95 @@
+"""The Stribeck curve of a ball: its states, minimum and transitions, and what it becomes in files and pictures."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.curves.regime import Transition
+from stribeck.quantities.outcome import Outcome
+from stribeck.solver.point.path import NeighbourSolver
+from stribeck.solver.point.solve import solve_cold
+
+LOAD, ROUGHNESS, RTOL = 1e-3, 1e-5, 1e-4
+MU0, BETA = 1.0, 0.05
+
+
+def groups(speed=1.0):
+    return sb.Groups(speed, LOAD, ROUGHNESS, geometry="point")
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return sb.stribeck_curve(groups(), speed=(1e-5, 1e-1), points=9, rtol=RTOL, boundary_friction=MU0, beta=BETA)
+
+
+def test_each_point_of_a_curve_is_the_state_solved_from_cold(curve):
+    assert curve.outcome is Outcome.CONVERGED
+    assert len(curve) == 9
+    assert curve.error_estimate <= RTOL
+    cold = sb.solve(groups(float(curve.values[4])), rtol=RTOL)
+    assert curve.observable("contact_load_share")[4] == pytest.approx(cold.contact_load_share, abs=2 * RTOL)
+    assert curve.friction[4] == pytest.approx(cold.friction(MU0, BETA).total, rel=2 * RTOL)
+
+
+def test_the_minimum_of_a_ball_lies_where_no_state_beside_it_has_less_friction(curve):
+    found = curve.minimum
+    assert found.value == pytest.approx(0.0038564, rel=2e-3)
+    assert found.friction < curve.friction.min()
+    beside = sb.stribeck_curve(groups(), speed=[0.98 * found.value, found.value, 1.02 * found.value], rtol=1e-5, beta=BETA)
+    slopes = np.diff(np.log(beside.friction)) / np.diff(np.log(beside.values))
+    assert slopes[0] < 0 < slopes[1]
+    assert abs(slopes[0] + slopes[1]) < 0.1 * (slopes[1] - slopes[0])
+
+
+def test_the_transitions_of_a_ball_are_where_their_names_say(curve):
+    marks = {mark.name: mark for mark in curve.transitions}
+    assert list(marks) == [*Transition][:2] + [Transition.HYDRODYNAMIC_START, Transition.MINIMUM]
+    assert marks[Transition.BOUNDARY_END].solution.fluid_load_share == pytest.approx(0.05, abs=1e-6)
+    assert marks[Transition.EQUAL_SHARES].solution.fluid_load_share == pytest.approx(0.5, abs=1e-6)
+    assert [name for name, _, _ in curve.regime_ranges] == ["boundary", "mixed", "hydrodynamic"]
+
+
+def test_a_curve_of_a_ball_becomes_files_and_a_picture(curve, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("matplotlib")
+    curve.to_netcdf(tmp_path / "curve.nc")
+    curve.to_csv(tmp_path / "curve.csv")
+    with xarray.open_dataset(tmp_path / "curve.nc") as found:
+        assert found.attrs["geometry"] == "point"
+        np.testing.assert_allclose(found["minimum_radius"], curve.observable("minimum_radius"))
+    assert curve.plot(tmp_path / "curve.png") is not None
+
+
+def test_a_neighbour_solver_keeps_its_states_without_their_factors():
+    solver = NeighbourSolver(lambda s: groups(float(np.exp(s))), 1e-3)
+    first = solver(np.log(1e-3))
+    assert solver(np.log(1e-3)) is solver.states[np.log(1e-3)]
+    assert first.work.fine.iterated.preconditioner is not None
+    assert solver.states[np.log(1e-3)].work.fine.iterated.preconditioner is None
+    assert solver(np.log(1.5e-3)).values["central_gap"] == pytest.approx(
+        solve_cold(groups(1.5e-3), 1e-3).values["central_gap"], rel=2e-3
+    )
+
+
+@pytest.mark.slow
+def test_the_curve_of_a_ball_agrees_with_an_independent_solver():
+    reference = json.loads((Path(__file__).parent / "data" / "point_curve.json").read_text())
+    speeds = [point["speed"] for point in reference["points"]]
+    start = sb.Groups(1.0, reference["load"], reference["roughness"], geometry="point")
+    found = sb.stribeck_curve(start, speed=speeds, rtol=1e-6)
+    for name in ("contact_load_share", "central_gap", "J_balanced"):
+        wanted = np.array([point["values"][name] for point in reference["points"]])
+        allowed = np.array([point["uncertainty"][name] for point in reference["points"]])
+        scale = 1.0 if name == "contact_load_share" else np.abs(wanted)
+        assert (np.abs(found.observable(name) - wanted) <= 2e-6 * scale + allowed).all(), name
+
+
+@pytest.mark.slow
+def test_a_curve_of_a_ball_chooses_its_speeds_from_plateau_to_branch():
+    found = sb.stribeck_curve(groups(), points=7, rtol=1e-3, boundary_friction=MU0, beta=BETA)
+    assert found.regimes[0] == "boundary"
+    assert found.regimes[-1] == "hydrodynamic"
+    assert found.observable("fluid_load_share")[0] < 1e-3
