@@ -27,7 +27,7 @@ import live_curve  # noqa: E402
 CONTENTS = {
     "index": ["readers", "guide", "gallery/index", "theory", "numerics", "api", "about"],
     "readers": ["for_engineers", "for_experimentalists", "for_theorists", "for_teachers", "for_developers", "when_not_to_use"],
-    "guide": ["cli", "data_sheet", "checks", "explorer", "surfaces", "fitting", "contact_laws", "sweep", "batch", "atlas"],
+    "guide": ["cli", "data_sheet", "checks", "explorer", "surfaces", "fluids", "fitting", "contact_laws", "sweep", "batch", "atlas"],
     "theory": ["symbols", "validity", "figures", "errata"],
     "numerics": ["convergence"],
     "about": ["citing", "references", "generated/changelog", "generated/contributing"],

@@ -133,3 +133,12 @@ def test_perssons_law_keeps_the_plateau_where_the_exponential_law_loses_it(resul
     assert curves["exponential"].friction[0] == pytest.approx(0.70, abs=0.005)
     assert curves["Persson"].friction[0] == pytest.approx(1.0, abs=0.005)
     assert curves["Persson"].solutions[0].minimum_gap > 0
+
+
+def test_each_change_of_the_fluid_moves_the_state_as_an_independent_solver_says(results):
+    _, curves = results("what_the_fluid_changes")
+    friction = {name: curve.friction[4] for name, curve in curves.items()}  # at speed 1e-3
+    assert friction["as in the article"] == pytest.approx(0.026443, rel=1e-3)
+    assert friction["free exit"] == pytest.approx(0.024284, rel=1e-3)
+    shares = curves["rough flow"].solutions[4].contact_load_share
+    assert shares == pytest.approx(0.00274843, rel=1e-3)
