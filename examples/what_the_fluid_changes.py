@@ -1,9 +1,9 @@
 """What the fluid, its cavity and the solid change
 ===============================================
 
-The same contact (load group 0.1, relative roughness 0.001) with one thing more each time: the film ends behind the contact, the
-fluid stiffens or thins, roughness hinders its flow, the rubber is a layer on a rigid base, both surfaces roll.  The laws are in
-docs/fluids.md, the plain model in theory.md.  Runs in half a minute.
+The same contact (load group 0.1, relative roughness 0.001) with one thing more each time: the film ends behind the contact,
+the fluid stiffens or thins, roughness hinders its flow, the rubber is a layer on a rigid base, both surfaces roll.  The laws
+are in docs/fluids.md, the plain model in theory.md.  Runs in half a minute.
 """
 
 import numpy as np
