@@ -57,12 +57,12 @@ RATIO_POINTS = (22, 19)
 
 def modules() -> list[str]:
     """Return the modules of formulas, in the order of the table."""
-    return list(dict.fromkeys(formula.name.partition(".")[0] for formula in FORMULAS))
+    return list(dict.fromkeys(formula.module for formula in FORMULAS))
 
 
 def of_module(module: str) -> list[Formula[Any]]:
     """Return the formulas of a module."""
-    return [formula for formula in FORMULAS if formula.name.partition(".")[0] == module]
+    return [formula for formula in FORMULAS if formula.module == module]
 
 
 def short(value: float) -> str:
@@ -216,7 +216,7 @@ def main(wanted: Sequence[str] = ()) -> None:
 
     maps: dict[str, xarray.Dataset] = {}
     for kind in ABOUT:
-        if judged := [each for each in FORMULAS if kind_of(each) == kind and each.name.partition(".")[0] in made]:
+        if judged := [each for each in FORMULAS if kind_of(each) == kind and each.module in made]:
             say(f"formulas about {ABOUT[kind]}")
             maps |= error_maps(judged)
     blocks = {"formulas": formula_table()} if "formulas" in made else {}

@@ -5,6 +5,7 @@
 
 from typing import Any
 
+from stribeck.asymptotics import point
 from stribeck.asymptotics.dry import hertz, rest
 from stribeck.asymptotics.formula import Formula, Limit, OutOfRangeWarning
 from stribeck.asymptotics.rough import boundary, load_sharing, mixed, perturbation, transitions, uniform
@@ -24,6 +25,7 @@ __all__ = [
     "load_sharing",
     "mixed",
     "perturbation",
+    "point",
     "rest",
     "small_deformation",
     "transitions",
@@ -80,5 +82,29 @@ FORMULAS: tuple[Formula[Any], ...] = (
     load_sharing.contact_load_share,
     uniform.viscous_friction,
     uniform.friction,
+    point.hertz.pressure,
+    point.hertz.gap,
+    point.hertz.offset,
+    point.rest.gap,
+    point.rest.central_gap,
+    point.rest.offset,
+    point.rest.edge_gap,
+    point.rest.edge_contact_pressure,
+    point.rest.central_gap_small_indentation,
+    point.rest.offset_small_indentation,
+    point.film.central_gap_slow,
+    point.film.gap_slow,
+    point.film.minimum_gap_on_axis,
+    point.film.minimum_gap,
+    point.rigid.minimum_gap,
+    point.rigid.fluid_pressure,
+    point.regressions.hamrock_dowson_soft,
+    point.regressions.de_vicente,
+    point.regressions.nijenbanning_venner_moes,
+    point.boundary.fluid_load_share,
+    point.boundary.contact_load_share,
+    point.boundary.viscous_friction,
+    point.boundary.friction,
 )
-"""All formulas, in the order in which a reader meets them: the smooth contact, the contact at rest, what lies between."""
+"""All formulas, in the order in which a reader meets them: of the cylinder the smooth contact, the contact at rest, what lies
+between; then those of the ball likewise."""

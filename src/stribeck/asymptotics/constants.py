@@ -4,8 +4,13 @@ All digits that stand here are right.  Source: the similarity problems of :mod:`
 :mod:`stribeck.asymptotics.smooth.edge_layer`.
 """
 
+import math
+
 FILM_CONSTANT = 0.445830450
 """Central film over u_Hz lambda**(3/5) as lambda -> 0, selected by the inlet; [BP] print 0.44."""
+
+BALL_FILM_CONSTANT = FILM_CONSTANT * (math.pi / 4) ** 0.2
+"""Central film of the ball over u_Hz lambda**(3/5) as lambda -> 0, 0.424803126: the line's inlet, on a half-space."""
 
 PRINTED_FILM_CONSTANT = 0.44
 """The same as [BP] print it, for the printed forms of formulas."""

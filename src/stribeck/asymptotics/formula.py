@@ -17,8 +17,9 @@ from typing import Any, Concatenate, Generic, Literal, ParamSpec
 import numpy as np
 
 from stribeck._types import Array, Flags
-from stribeck.asymptotics.constants import FILM_CONSTANT
+from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
+from stribeck.contacts.groups import Geometry
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, real_array, show
 
@@ -50,6 +51,12 @@ def _ratio(numerator: Value, denominator: Value) -> Value:
         return np.where(np.equal(denominator, 0), np.inf, np.divide(numerator, denominator))
 
 
+def _film_ratio(groups: Groups) -> Value:
+    """Return the smooth film of the geometry over the length of the contact law."""
+    constant = FILM_CONSTANT if groups.geometry == "line" else BALL_FILM_CONSTANT
+    return _ratio(constant * groups.speed**0.6, groups.relative_roughness)
+
+
 def _paper_fluid_share(groups: Groups) -> Value:
     """Return the part of the load on the fluid as [BP] estimate it, infinite from load 1 on."""
     with np.errstate(over="ignore", invalid="ignore"):
@@ -65,11 +72,12 @@ PARAMETERS: dict[str, Callable[[Groups], Value]] = {
     "1/relative_roughness": lambda g: _inverse(g.relative_roughness),
     "fluid_number": lambda g: _ratio(g.speed, np.square(g.relative_roughness)),
     "paper_fluid_share": _paper_fluid_share,
-    "film_ratio": lambda g: _ratio(FILM_CONSTANT * g.speed**0.6, g.relative_roughness),
+    "film_ratio": _film_ratio,
 }
 r"""Parameters in which ranges and errors are stated: the groups, kappa, the fluid number lambda/kappa**2 (lubrication pressure
 on the scale of the roughness over Hertz pressure), the fluid's load share at slow speed as [BP] estimate it,
-(lambda**2/kappa**4)/(2 (-ln F)**5), and the film ratio c lambda**(3/5)/kappa (smooth film over h_rms/alpha)."""
+(lambda**2/kappa**4)/(2 (-ln F)**5), and the film ratio c lambda**(3/5)/kappa (smooth film over h_rms/alpha, with the
+constant c of the geometry)."""
 
 COEFFICIENTS = "beta/mu0"
 """The parameter of a range that is not of the groups: coefficients enter the relative error of friction as this ratio."""
@@ -132,6 +140,8 @@ class Formula(Generic[Arguments]):
         For a field, ``interval(groups)`` returns the positions [a] between which it is judged.
     source : str
         Where it comes from.
+    geometry : {"line", "point"}
+        Whether it is about the cylinder or about the ball.
     """
 
     function: Callable[Concatenate[Groups, Arguments], Value]
@@ -145,11 +155,18 @@ class Formula(Generic[Arguments]):
     steps: tuple[float, ...]
     interval: Callable[[Groups], tuple[float, float]] | None
     source: str
+    geometry: Geometry = "line"
+
+    @property
+    def module(self) -> str:
+        """The module, as an attribute of ``stribeck.asymptotics``: ``hydrodynamic``, or ``point.film`` of the ball."""
+        module = self.function.__module__.rpartition(".")[2]
+        return module if self.geometry == "line" else f"point.{module}"
 
     @property
     def name(self) -> str:
         """Module and name, such as ``hydrodynamic.friction``."""
-        return f"{self.function.__module__.rpartition('.')[2]}.{self.function.__name__}"
+        return f"{self.module}.{self.function.__name__}"
 
     @property
     def range(self) -> str:
@@ -187,6 +204,7 @@ class Formula(Generic[Arguments]):
         """Return the value, and warn where it is outside the range or missing; refuse another law than the exponential one."""
         if not isinstance(groups, Groups):
             raise InputError(f"groups = {show(groups)}; give Groups(speed, load, roughness), or contact.groups.")
+        self.check_geometry(groups)
         self.check_law(groups)
         call = self._signature.bind(groups, *args, **kwargs)
         for name, value in call.arguments.items():
@@ -206,6 +224,26 @@ class Formula(Generic[Arguments]):
     @functools.cached_property
     def _signature(self) -> inspect.Signature:
         return inspect.signature(self.function)
+
+    def check_geometry(self, groups: Groups) -> None:
+        """Refuse groups of a cylinder where the formula is about the ball, and of a ball where it is about the cylinder.
+
+        Parameters
+        ----------
+        groups : Groups
+            States.
+
+        Raises
+        ------
+        InputError
+            If they are of the other geometry.
+        """
+        if groups.geometry != self.geometry:
+            bodies = {"line": "a cylinder", "point": "a ball"}
+            raise InputError(
+                f"{self.name} is about {bodies[self.geometry]}, and geometry = {groups.geometry!r} is "
+                f"{bodies[groups.geometry]}; stribeck.asymptotics.point holds the formulas of the ball."
+            )
 
     def check_law(self, groups: Groups) -> None:
         """Refuse a contact law for which the formula was not derived; smooth contacts have none.
@@ -255,11 +293,14 @@ def formula(
     steps: tuple[float, ...] = (),
     interval: Callable[[Groups], tuple[float, float]] | None = None,
     source: str,
+    geometry: Geometry = "line",
 ) -> Callable[[Callable[Concatenate[Groups, Arguments], Value]], Formula[Arguments]]:
     """Return the decorator that makes a function a :class:`Formula`; arguments as its attributes."""
 
     def decorate(function: Callable[Concatenate[Groups, Arguments], Value]) -> Formula[Arguments]:
-        made = Formula(function, predicts, plane, limits, worst, small, error_order, approach, steps, interval, source)
+        made = Formula(
+            function, predicts, plane, limits, worst, small, error_order, approach, steps, interval, source, geometry
+        )
         kept: dict[str, object] = {name: getattr(function, name) for name in functools.WRAPPER_ASSIGNMENTS}
         vars(made).update(kept, __wrapped__=function)
         return made

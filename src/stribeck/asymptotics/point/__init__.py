@@ -1,0 +1,8 @@
+"""Asymptotic laws of the ball, each with range and source, and the regressions of the trade beside them.
+
+All take groups of ``geometry="point"``, whose lengths are in Hertz radii a and gaps in u = a**2/R.
+"""
+
+from stribeck.asymptotics.point import boundary, cut_off, film, hertz, regressions, rest, rigid
+
+__all__ = ["boundary", "cut_off", "film", "hertz", "regressions", "rest", "rigid"]

@@ -1,0 +1,149 @@
+"""The dry contact of a smooth ball as the limit of all others: small speed and small relative roughness.
+
+Source: Hertz (1882); K. L. Johnson, Contact Mechanics (1985), Section 3.4.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.contacts.line import Groups
+
+OFFSET = -1.0
+"""Offset of the dry smooth contact [u_Hz]: the ball has come closer by the indentation."""
+
+
+def _rest(relative_roughness: float) -> Groups:
+    load = 1e-3
+    return Groups(0.0, load, load ** (2 / 3) * relative_roughness, geometry="point")
+
+
+def _contact_and_around(groups: Groups) -> tuple[float, float]:
+    return -2.0, 2.0
+
+
+@formula(
+    geometry="point",
+    predicts="pressure",
+    plane="mixed",
+    limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-3)),
+    worst=0.11,
+    small="relative_roughness",
+    error_order=1 / 3,
+    approach=_rest,
+    steps=(1e-2, 1e-3, 1e-4),
+    interval=_contact_and_around,
+    source="Hertz (1882)",
+)
+def pressure(groups: Groups, x: Value) -> Value:
+    r"""Return the Hertz pressure of the ball along its middle, contact and fluid together.
+
+    .. math:: p = (1 - x^2)^{1/2}
+
+    Parameters
+    ----------
+    groups : Groups
+        Any of the point geometry; the answer takes their shape, broadcast with ``x``.
+    x : float or array_like
+        Positions, or distances from the middle [a].
+
+    Returns
+    -------
+    float or ndarray
+        Pressure [p_Hz]; zero outside the contact.
+
+    Notes
+    -----
+    The error is that at the edge, where the true pressure goes as kappa**(1/3) or lambda**(1/5).
+
+    Source: Hertz (1882).
+    """
+    x = np.asarray(x, dtype=float)
+    return np.sqrt(np.maximum(0.0, (1 - x) * (1 + x))) + np.zeros(groups.shape)
+
+
+@formula(
+    geometry="point",
+    predicts="gap",
+    plane="mixed",
+    limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-3)),
+    worst=0.012,
+    small="relative_roughness",
+    error_order=1,
+    approach=_rest,
+    steps=(1e-2, 1e-3, 1e-4),
+    interval=_contact_and_around,
+    source="Johnson (1985), Section 3.4",
+)
+def gap(groups: Groups, x: Value) -> Value:
+    r"""Return the gap around the dry contact of a ball.
+
+    .. math:: h = \frac1\pi \left[(x^2 - 2) \arccos\frac1{|x|} + (x^2 - 1)^{1/2}\right] \text{ beyond } |x| = 1
+
+    Parameters
+    ----------
+    groups : Groups
+        Any of the point geometry; the answer takes their shape, broadcast with ``x``.
+    x : float or array_like
+        Positions, or distances from the middle [a].
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz]; zero in the contact.
+
+    Notes
+    -----
+    Judged against the largest gap within two radii; the error is of order kappa, with logarithms, or lambda**(3/5).
+
+    Source: Johnson (1985), Section 3.4.
+    """
+    return dry_gap(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
+
+
+def dry_gap(r: Array) -> Array:
+    """Return the gap around the dry contact at distances from the middle, zero inside."""
+    beyond = np.maximum(np.abs(r), 1.0)
+    root = np.sqrt((beyond - 1) * (beyond + 1))
+    # arctan of the root is arccos(1/r) without loss of digits near the edge.
+    return np.asarray((root * 1.0 + (beyond**2 - 2) * np.arctan(root)) / math.pi)
+
+
+@formula(
+    geometry="point",
+    predicts="offset",
+    plane="mixed",
+    limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-3)),
+    worst=0.0045,
+    small="relative_roughness",
+    error_order=1,
+    approach=_rest,
+    steps=(1e-2, 1e-3, 1e-4),
+    source="Hertz (1882)",
+)
+def offset(groups: Groups) -> Value:
+    r"""Return the offset of the dry contact of a ball.
+
+    .. math:: z_0 = -1
+
+    Parameters
+    ----------
+    groups : Groups
+        Any of the point geometry; the answer takes their shape.
+
+    Returns
+    -------
+    float or ndarray
+        Offset [u_Hz]: height of the apex over the undeformed surface.
+
+    Notes
+    -----
+    Unlike on the line there is no gauge: the surface far away stands still.
+
+    Source: Hertz (1882).
+    """
+    return np.full(groups.shape, OFFSET)[()]

@@ -1,0 +1,417 @@
+r"""The rough ball at rest, of large and of small indentation, and its edge.
+
+With the load fixed, all but a shift of the gap depends on kappa alone: :math:`p_c = F^{-1/3} e^{-h/\kappa}`.
+
+*Nearly smooth.*  Hertz's pressure asks for the gap :math:`-\kappa \ln[F^{1/3} (1-r^2)^{1/2}]`, which deflects the
+half-space in its turn.  By Abel's transform the pressure under it is :math:`\kappa p_1`,
+
+.. math::
+
+    p_1 = -\frac{1}{(1-r^2)^{1/2}} - \frac12 \int_r^1 \frac{g'(t) \, dt}{(t^2-r^2)^{1/2}}, \qquad
+    g(t) = -1 + \frac{t \arcsin t - \pi/2}{(1-t^2)^{1/2}}
+
+and a ring at the edge, of load :math:`\pi^2 \kappa/8` per length; :math:`p_1(0) = -\tfrac12 - G` with Catalan's constant G.
+
+*The edge* is that of the line (:mod:`stribeck.asymptotics.smooth.edge_layer`), as the contact is straight on the scale of the
+layer.  The half-space under a ring has the kernel :math:`-(4/\pi^2) \ln|r - r'|` where the line has
+:math:`-(1/\pi) \ln|x - y|`, so that :math:`\pi\kappa/4` stands where there is :math:`\kappa`.
+
+Source: ours; theory.md, section 11.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.smooth.edge_layer import layer
+from stribeck.contacts.line import Groups
+from stribeck.quantities.units import InputError, show
+
+CATALAN = 0.915965594177219
+"""Catalan's constant."""
+
+OFFSET_CONSTANT = 0.6532
+"""Coefficient of kappa**2 in the offset beside its logarithm, from states at kappa = 1e-2 and 1e-4; the logarithm is
+derived."""
+
+LARGE_INDENTATION = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-2))
+SMALL_INDENTATION = (Limit("load", 1e-7, 0.5), Limit("1/relative_roughness", 0, 0.2))
+
+RULE = np.polynomial.legendre.leggauss(40)
+"""Gauss rule of the correction of the pressure; good to rounding."""
+
+WIDTHS = 5.0
+"""Distance from the edge, in widths of its layer, to which the fields are judged."""
+
+
+def _smoother(relative_roughness: float) -> Groups:
+    load = 1e-3
+    return Groups(0.0, load, load ** (2 / 3) * relative_roughness, geometry="point")
+
+
+def _rougher(inverse: float) -> Groups:
+    # At a fixed pressure of the law over that in the middle the logarithm in the gap stays what it is.
+    load = (1e-3 / inverse) ** 3
+    return Groups(0.0, load, load ** (2 / 3) / inverse, geometry="point")
+
+
+def _contact(groups: Groups) -> tuple[float, float]:
+    return -0.9, 0.9
+
+
+def _edge(groups: Groups) -> tuple[float, float]:
+    width = float(WIDTHS * (math.pi * groups.relative_roughness / 4) ** (2 / 3))
+    return 1 - width, 1 + width
+
+
+@formula(
+    geometry="point",
+    predicts="gap",
+    plane="rest",
+    limits=LARGE_INDENTATION,
+    worst=0.05,
+    small="relative_roughness",
+    error_order=1,
+    approach=_smoother,
+    steps=(1e-2, 1e-3, 1e-4),
+    interval=_contact,
+    source="ours",
+)
+def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
+    r"""Return the gap in the contact of a rough ball at rest.
+
+    .. math::
+
+        h = -\kappa \ln\left[\bar F_N^{1/3} (1 - x^2)^{1/2}\right] \;
+        \left(- \frac{\kappa^2 p_1(x)}{(1 - x^2)^{1/2}}\right)
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast with ``x``.
+    x : float or array_like
+        Positions, or distances from the middle [a].
+    terms : int
+        1, or 2 for the term in brackets too.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz]; nan from the edge of the contact outwards, where this has no value.
+
+    Raises
+    ------
+    InputError
+        If ``terms`` is neither 1 nor 2.
+
+    Notes
+    -----
+    Judged up to 0.9 of the radius; the edge has a layer of width kappa**(2/3).
+
+    Source: ours, see the module.
+    """
+    x = np.asarray(x, dtype=float)
+    below = np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)
+    kappa = np.asarray(groups.relative_roughness)
+    leading: Array = -kappa * (np.log(groups.load) / 3 + 0.5 * np.log(below))
+    if _second(terms) == 0:
+        return leading
+    inside = np.where(np.abs(x) < 1, x, 0.0)
+    return np.asarray(leading - kappa**2 * pressure_correction(inside) / np.sqrt(below))
+
+
+@formula(
+    geometry="point",
+    predicts="central_gap",
+    plane="rest",
+    limits=LARGE_INDENTATION,
+    worst=0.062,
+    small="relative_roughness",
+    error_order=1,
+    approach=_smoother,
+    steps=(1e-2, 1e-3, 1e-4),
+    source="ours",
+)
+def central_gap(groups: Groups, terms: int = 1) -> Value:
+    r"""Return the gap in the middle of a rough ball at rest.
+
+    .. math:: h(0) = -\frac\kappa3 \ln \bar F_N \; \left(+ \left[\tfrac12 + G\right] \kappa^2\right), \quad G = 0.915966
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
+    terms : int
+        1, or 2 for the term in brackets too.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Raises
+    ------
+    InputError
+        If ``terms`` is neither 1 nor 2.
+
+    Notes
+    -----
+    With both terms the error is 0.0002 kappa at kappa = 0.01 and falls as kappa**3 and its logarithm.
+
+    Source: ours, see the module.
+    """
+    kappa = np.asarray(groups.relative_roughness)
+    leading: Array = -kappa * np.log(groups.load) / 3
+    found: Value = (leading + _second(terms) * (0.5 + CATALAN) * np.square(kappa))[()]
+    return found
+
+
+@formula(
+    geometry="point",
+    predicts="offset",
+    plane="rest",
+    limits=LARGE_INDENTATION,
+    worst=2e-4,
+    small="relative_roughness",
+    error_order=1.9,
+    approach=_smoother,
+    steps=(1e-2, 1e-3, 1e-4),
+    source="ours",
+)
+def offset(groups: Groups, terms: int = 1) -> Value:
+    r"""Return the offset of a rough ball at rest.
+
+    .. math::
+
+        z_0 = -1 + \kappa \left(1 - \tfrac13 \ln \bar F_N\right) \;
+        \left(+ \kappa^2 \left[0.6532 - \frac{\pi^2}{48} \ln \kappa\right]\right)
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
+    terms : int
+        1, or 2 for the term in brackets too.
+
+    Returns
+    -------
+    float or ndarray
+        Offset [u_Hz].
+
+    Raises
+    ------
+    InputError
+        If ``terms`` is neither 1 nor 2.
+
+    Notes
+    -----
+    The ring at the edge has an energy, :math:`\tfrac{\pi^3}{24} \kappa^2 \ln \kappa`, whose derivative with respect to
+    the load is the logarithm; the other number is measured.
+
+    Source: ours; theory.md, section 11.
+    """
+    kappa = np.asarray(groups.relative_roughness)
+    leading: Array = -1 + kappa * (1 - np.log(groups.load) / 3)
+    if _second(terms) == 0:
+        return leading[()]
+    logarithm = np.log(np.where(kappa > 0, kappa, 1.0))
+    return (leading + np.square(kappa) * (OFFSET_CONSTANT - math.pi**2 / 48 * logarithm))[()]
+
+
+@formula(
+    geometry="point",
+    predicts="gap",
+    plane="rest",
+    limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 1e-2)),
+    worst=0.05,
+    small="relative_roughness",
+    error_order=2 / 3,
+    approach=_smoother,
+    steps=(1e-2, 1e-3, 1e-4),
+    interval=_edge,
+    source="ours, with the edge of the line",
+)
+def edge_gap(groups: Groups, x: Value) -> Value:
+    r"""Return the gap at the edge of the contact of a rough ball at rest.
+
+    .. math::
+
+        h = \kappa \left[-\tfrac13 \ln F - \tfrac13 \ln\frac{\pi\kappa}{4} + H(\xi)\right], \qquad
+        \xi = \frac{|x| - 1 + \kappa}{(\pi\kappa/4)^{2/3}}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
+    x : float or ndarray
+        Positions near 1 or -1, or distances from the middle [a]; broadcast with the groups.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Notes
+    -----
+    H is the layer of the line, :func:`stribeck.asymptotics.smooth.edge_layer.layer`.  Judged within 5 widths of the edge.
+
+    Source: ours, see the module.
+    """
+    kappa = groups.relative_roughness
+    wide = np.multiply(math.pi / 4, kappa)
+    return kappa * (-(np.log(groups.load) + np.log(wide)) / 3 + layer().gap(_coordinate(kappa, x)))
+
+
+@formula(
+    geometry="point",
+    predicts="contact_pressure",
+    plane="rest",
+    limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 1e-2)),
+    worst=0.07,
+    small="relative_roughness",
+    error_order=2 / 3,
+    approach=_smoother,
+    steps=(1e-2, 1e-3, 1e-4),
+    interval=_edge,
+    source="ours, with the edge of the line",
+)
+def edge_contact_pressure(groups: Groups, x: Value) -> Value:
+    r"""Return the contact pressure at the edge of the contact of a rough ball at rest.
+
+    .. math:: p_c = \left(\frac{\pi\kappa}{4}\right)^{1/3} e^{-H(\xi)}, \qquad
+        \xi = \frac{|x| - 1 + \kappa}{(\pi\kappa/4)^{2/3}}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``relative_roughness`` [-]; arrays broadcast.
+    x : float or ndarray
+        Positions near 1 or -1, or distances from the middle [a]; broadcast with the groups.
+
+    Returns
+    -------
+    float or ndarray
+        Contact pressure [p_Hz].
+
+    Notes
+    -----
+    Judged within 5 widths of the edge.
+
+    Source: ours, see the module.
+    """
+    kappa = groups.relative_roughness
+    return np.power(math.pi / 4 * np.asarray(kappa), 1 / 3) * np.exp(-layer().gap(_coordinate(kappa, x)))
+
+
+@formula(
+    geometry="point",
+    predicts="central_gap",
+    plane="rest",
+    limits=SMALL_INDENTATION,
+    worst=0.01,
+    small="1/relative_roughness",
+    error_order=1.5,
+    approach=_rougher,
+    steps=(0.2, 0.1, 0.05),
+    source="ours",
+)
+def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
+    r"""Return the gap in the middle of a very rough ball at rest, which is hardly deflected.
+
+    .. math::
+
+        h(0) = \kappa \ln\left(3 \kappa \bar F_N^{-1/3}\right) \;
+        \left(+ \frac{4 - 2 \sqrt2}{3 (2 \pi \kappa)^{1/2}}\right)
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
+    terms : int
+        1, or 2 for the term in brackets too.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Raises
+    ------
+    InputError
+        If ``terms`` is neither 1 nor 2.
+
+    Notes
+    -----
+    The pressure is Gaussian, :math:`e^{-r^2/(2\kappa)}/(3\kappa)`, on the rigid ball; the second term is the deflection in the
+    middle less its mean over that pressure.
+
+    Source: ours, as for the line.
+    """
+    kappa = np.asarray(groups.relative_roughness)
+    leading: Array = kappa * np.log(3 * kappa * np.power(groups.load, -1 / 3))
+    return (leading + _second(terms) * (4 - 2 * math.sqrt(2)) / (3 * np.sqrt(2 * math.pi * kappa)))[()]
+
+
+@formula(
+    geometry="point",
+    predicts="offset",
+    plane="rest",
+    limits=SMALL_INDENTATION,
+    worst=0.01,
+    small="1/relative_roughness",
+    error_order=3,
+    approach=_rougher,
+    steps=(0.2, 0.1, 0.05),
+    source="ours",
+)
+def offset_small_indentation(groups: Groups) -> Value:
+    r"""Return the offset of a very rough ball at rest.
+
+    .. math:: z_0 = \kappa \ln\left(3 \kappa \bar F_N^{-1/3}\right) - \frac{2}{3 (\pi \kappa)^{1/2}}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
+
+    Returns
+    -------
+    float or ndarray
+        Offset [u_Hz].
+
+    Notes
+    -----
+    The gap of the rigid ball less the mean of its deflection over the pressure.
+
+    Source: ours, as for the line.
+    """
+    kappa = np.asarray(groups.relative_roughness)
+    return np.asarray(central_gap_small_indentation.function(groups) - 2 / (3 * np.sqrt(math.pi * kappa)))[()]
+
+
+def pressure_correction(r: Array) -> Array:
+    """Return p_1 at distances below one from the middle, the pressure under the gap of a rough contact over kappa."""
+    r = np.asarray(r, dtype=float)[..., None]
+    psi = math.pi / 4 * (RULE[0] + 1)
+    # cos(theta) on the path, by which the distance from the edge is exact.
+    away = np.sqrt((1 - r) * (1 + r)) * np.cos(psi)
+    phi = np.arcsin(away)
+    slope = (0.5 * np.sin(2 * phi) - phi + math.pi * np.sin(phi / 2) ** 2) / away**2
+    integral = (slope / np.sqrt((1 - away) * (1 + away))) @ (math.pi / 4 * RULE[1])
+    return np.asarray(-1 / np.sqrt((1 - r[..., 0]) * (1 + r[..., 0])) - 0.5 * integral)
+
+
+def _coordinate(kappa: Value, x: Value) -> Array:
+    """Return the distance from the edge in widths of its layer."""
+    return np.divide(np.abs(x) - 1 + kappa, np.power(math.pi / 4 * np.asarray(kappa), 2 / 3))
+
+
+def _second(terms: int) -> int:
+    """Return 1 where the second term is wanted, and 0 where not."""
+    if terms not in (1, 2):
+        raise InputError(f"terms = {show(terms)}; it must be 1 or 2.")
+    return int(terms) - 1

@@ -1,0 +1,124 @@
+r"""Fast: the smooth ball that is hardly deflected, carried by the lift that its deflection gives.
+
+Under the parabola :math:`h = h_0 + r^2/2` the pressure :math:`-(\lambda/5) x/h^2` is odd in x and carries nothing.  It
+deflects the half-space by :math:`w_1 \cos\theta`, and the flow over that carries
+
+.. math:: \int p_2 \, d^2r = -\frac\pi2 \int_0^\infty r^2 w_1 \frac{\lambda - 3 h^2 p_1'}{h^3} \, dr
+    = \frac{27 \pi^2}{6400 \sqrt2} \, \lambda^2 h_0^{-5/2} .
+
+With Hankel's transform, :math:`p_1(k) = -\tfrac25 \lambda h_0^{-1} k K_0(\sqrt2 k)` in units of :math:`h_0^{1/2}`, the
+integral is one over products of modified Bessel functions, which is known.
+
+Source: ours; the literature has the lift as :math:`0.416 \, \eta^2 V^2 R^{5/2} h_0^{-5/2}/E^*`, a quarter of ours, with
+V = 2 U in Reynolds' equation; theory.md, section 11.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.contacts.line import Groups
+
+LIFT = 27 * math.pi**2 / (6400 * math.sqrt(2))
+"""Load of the fluid over lambda**2 h_0**(-5/2)."""
+
+GAP = (3 * LIFT / (2 * math.pi)) ** 0.4
+"""h_0 over lambda**(4/5), 0.18162, at which that is 2 pi/3."""
+
+RANGE = (Limit("speed", 1e2),)
+
+
+def _fast(inverse_speed: float) -> Groups:
+    return Groups(1 / inverse_speed, 1e-3, 0.0, geometry="point")
+
+
+def _near(groups: Groups) -> tuple[float, float]:
+    width = float(3 * gap_of(groups) ** 0.5)
+    return -width, width
+
+
+def gap_of(groups: Groups) -> Value:
+    """Return the gap under the rigid ball."""
+    found: Value = GAP * np.power(groups.speed, 0.8)
+    return found
+
+
+@formula(
+    geometry="point",
+    predicts="minimum_gap",
+    plane="smooth",
+    limits=RANGE,
+    worst=0.002,
+    small="1/speed",
+    error_order=1.2,
+    approach=_fast,
+    steps=(1e-2, 1e-3),
+    source="ours",
+)
+def minimum_gap(groups: Groups) -> Value:
+    r"""Return the gap of a fast smooth ball.
+
+    .. math:: h_0 = \left(\frac{81 \pi}{12800 \sqrt2}\right)^{2/5} \lambda^{4/5} = 0.18162 \, \lambda^{4/5}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``speed`` [-]; arrays broadcast.
+
+    Returns
+    -------
+    float or ndarray
+        Gap [u_Hz].
+
+    Notes
+    -----
+    In other words :math:`F_N E^* h_0^{5/2} = \tfrac{243 \pi^3}{3200 \sqrt2} \, \eta^2 U^2 R^{5/2}`, with 1.6649.  The
+    gap in the middle is larger by the deflection under the load, 3.5 % at speed 100.
+
+    Source: ours, see the module.
+    """
+    return gap_of(groups)
+
+
+@formula(
+    geometry="point",
+    predicts="fluid_pressure",
+    plane="smooth",
+    limits=RANGE,
+    worst=0.1,
+    small="1/speed",
+    error_order=0.6,
+    approach=_fast,
+    steps=(1e-2, 1e-3),
+    interval=_near,
+    source="ours",
+)
+def fluid_pressure(groups: Groups, x: Value) -> Value:
+    r"""Return the fluid pressure of a fast smooth ball along its middle, to the order that carries no load.
+
+    .. math:: p_f = -\frac{\lambda x}{5 h^2}, \qquad h = h_0 + \frac{x^2}{2}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``speed`` [-]; arrays broadcast with ``x``.
+    x : float or array_like
+        Positions [a]; off the middle at x, y the same with :math:`h_0 + (x^2 + y^2)/2`.
+
+    Returns
+    -------
+    float or ndarray
+        Fluid pressure [p_Hz].
+
+    Notes
+    -----
+    Judged within three of its widths, :math:`h_0^{1/2}`.  The part even in x, which carries the load, is smaller by
+    :math:`\lambda/h_0^2`.
+
+    Source: ours, see the module; far away it is :math:`-\tfrac45 \lambda x/r^4`.
+    """
+    x = np.asarray(x, dtype=float)
+    return np.asarray(-groups.speed / 5 * x / np.square(gap_of(groups) + np.square(x) / 2))[()]
