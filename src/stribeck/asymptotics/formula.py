@@ -179,7 +179,7 @@ class Formula(Generic[Arguments]):
         return any(limit.parameter == COEFFICIENTS for limit in self.limits)
 
     def valid(self, groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0) -> Flags:
-        """Return where all limits hold.
+        """Return where all limits hold: nowhere for groups of the other geometry.
 
         Parameters
         ----------
@@ -195,7 +195,7 @@ class Formula(Generic[Arguments]):
         ndarray of bool
             Of the shape of the groups.
         """
-        found = np.ones(groups.shape, dtype=bool)
+        found = np.full(groups.shape, groups.geometry == self.geometry)
         for limit in self.limits:
             found = found & limit.holds(groups, _ratio(beta, boundary_friction))
         return found

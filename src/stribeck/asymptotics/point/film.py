@@ -178,7 +178,8 @@ def minimum_gap_on_axis(groups: Groups) -> Value:
     film = BALL_FILM_CONSTANT * np.power(groups.speed, 0.6)
     log_f = -0.5 * np.log1p(2 * LEAKAGE * np.power(groups.speed, 0.2))
     one, two = OUTLET_POWER
-    return MINIMUM_CONSTANT / FILM_CONSTANT * film * np.exp(log_f * (one + two * log_f))
+    found: Value = MINIMUM_CONSTANT / FILM_CONSTANT * film * np.exp(log_f * (one + two * log_f))
+    return found
 
 
 @formula(

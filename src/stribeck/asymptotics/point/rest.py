@@ -219,7 +219,8 @@ def offset(groups: Groups, terms: int = 1) -> Value:
     if _second(terms) == 0:
         return leading[()]
     logarithm = np.log(np.where(kappa > 0, kappa, 1.0))
-    return (leading + np.square(kappa) * (OFFSET_CONSTANT - math.pi**2 / 48 * logarithm))[()]
+    found: Value = (leading + np.square(kappa) * (OFFSET_CONSTANT - math.pi**2 / 48 * logarithm))[()]
+    return found
 
 
 @formula(
