@@ -20,8 +20,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, formula
-from stribeck.asymptotics.point.cut_off import LOGARITHM, Definition, cut_off
 from stribeck.asymptotics.point.slow_contact import of_load
+from stribeck.contacts.cut_off import LOGARITHM, Definition, cut_off
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, show
 
@@ -214,7 +214,7 @@ def viscous_friction(
     definition : {"balanced", "published"}
         The force on the flat; or with the moment in brackets, which the definition of the paper has.
     wetted_radius : float, optional
-        Where the liquid ends [a]; by default that of a whole sphere, :mod:`stribeck.asymptotics.point.cut_off`.
+        Where the liquid ends [a]; by default that of a whole sphere, :mod:`stribeck.contacts.cut_off`.
 
     Returns
     -------
