@@ -21,6 +21,7 @@ from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry
 from stribeck.contacts.line import Groups
+from stribeck.contacts.model import ARTICLE
 from stribeck.quantities.units import InputError, real_array, show
 
 Value = float | Array
@@ -179,7 +180,7 @@ class Formula(Generic[Arguments]):
         return any(limit.parameter == COEFFICIENTS for limit in self.limits)
 
     def valid(self, groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0) -> Flags:
-        """Return where all limits hold: nowhere for groups of the other geometry.
+        """Return where all limits hold: nowhere for groups of the other geometry or of another model.
 
         Parameters
         ----------
@@ -195,7 +196,7 @@ class Formula(Generic[Arguments]):
         ndarray of bool
             Of the shape of the groups.
         """
-        found = np.full(groups.shape, groups.geometry == self.geometry)
+        found = np.full(groups.shape, groups.geometry == self.geometry and groups.model == ARTICLE)
         for limit in self.limits:
             found = found & limit.holds(groups, _ratio(beta, boundary_friction))
         return found
@@ -226,7 +227,7 @@ class Formula(Generic[Arguments]):
         return inspect.signature(self.function)
 
     def check_geometry(self, groups: Groups) -> None:
-        """Refuse groups of a cylinder where the formula is about the ball, and of a ball where it is about the cylinder.
+        """Refuse groups of the other geometry, cylinder or ball, and of another fluid, cavitation, body or motion.
 
         Parameters
         ----------
@@ -236,13 +237,18 @@ class Formula(Generic[Arguments]):
         Raises
         ------
         InputError
-            If they are of the other geometry.
+            If they are of the other geometry, or their model is not that of the article.
         """
         if groups.geometry != self.geometry:
             bodies = {"line": "a cylinder", "point": "a ball"}
             raise InputError(
                 f"{self.name} is about {bodies[self.geometry]}, and geometry = {groups.geometry!r} is "
                 f"{bodies[groups.geometry]}; stribeck.asymptotics.point holds the formulas of the ball."
+            )
+        if groups.model != ARTICLE:
+            raise InputError(
+                f"{self.name} holds for a Newtonian fluid that does not cavitate, on a half-space, and these groups have "
+                "another model; use solve."
             )
 
     def check_law(self, groups: Groups) -> None:
