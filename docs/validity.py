@@ -37,7 +37,9 @@ FOLDER = Path(__file__).parent
 PAGE = FOLDER / "validity.md"
 IMAGES = FOLDER / "images"
 
-ABOUT = {"smooth": "smooth", "rest": "at rest", "mixed": "any state", "located": "a curve"}
+ABOUT = {"smooth": "smooth", "rest": "at rest", "mixed": "any state", "located": "a curve"} | {
+    kind: kind for kind in ("smooth ball", "ball at rest", "any ball")
+}
 """What a formula is about, in the words of the table."""
 
 SHARE_LOADS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 0.7)

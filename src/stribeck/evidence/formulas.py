@@ -19,12 +19,15 @@ from stribeck._types import Array, Flags
 from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.line import Groups
+from stribeck.contacts.scaling import SCALINGS
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Transition
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.evidence import ball
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError, show
+from stribeck.solver.point.state import PointState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, solve
 
@@ -110,10 +113,14 @@ LOCATED: dict[str, Callable[[Groups, dict[str, Any]], float]] = {
 
 
 def _measured(name: str, groups: Groups, **options: Any) -> float:
+    if groups.geometry == "point":
+        return ball.OBSERVED[name](ball.state(groups), options)
     return LOCATED[name](groups, options) if name in LOCATED else OF_STATE[name](_state(groups), options)
 
 
-MEASURED: dict[str, Callable[..., float]] = {name: partial(_measured, name) for name in (*OF_STATE, *LOCATED)}
+MEASURED: dict[str, Callable[..., float]] = {
+    name: partial(_measured, name) for name in dict.fromkeys((*OF_STATE, *LOCATED, *ball.OBSERVED))
+}
 """What the solver gives for each quantity that a formula predicts, as a function of the groups, for friction also of mu0, beta
 (1 by default) and definition (that of the paper)."""
 
@@ -122,6 +129,9 @@ AXES: dict[str, dict[str, tuple[float, ...]]] = {
     "rest": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-6, 3, 3)},
     "mixed": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 0, 3), "speed": (-12, 2, 3)},
     "located": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 0, 2)},
+    "smooth ball": {"speed": (-6, 3, 3)},
+    "ball at rest": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 2, 3)},
+    "any ball": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-4, -1, 2), "speed": (-9, 1, 2)},
 }
 """What the error depends on for each kind of formula, and where it is mapped: loads, or decades and points in each of them."""
 
@@ -174,19 +184,22 @@ def relative_error(formula: Formula[Any], groups: Groups, **options: Any) -> flo
     """
     state = judged_groups(formula, groups)
     if formula.predicts in FIELDS:
-        return _field_error(formula, groups, _state(state), options)
+        return _field_error(formula, groups, ball.state(state) if state.geometry == "point" else _state(state), options)
     found = float(formula.function(groups, **options))
     right = MEASURED[formula.predicts](state, **options)
     return (found - right) / right
 
 
-def _field_error(formula: Formula[Any], groups: Groups, state: Solution, options: dict[str, Any]) -> float:
+def _field_error(formula: Formula[Any], groups: Groups, state: Solution | PointState, options: dict[str, Any]) -> float:
     assert formula.interval is not None, f"{formula.name} is a field and has no interval"
     ends = formula.interval(groups)
     if not np.isfinite(ends).all():
         return math.nan
     x: Array = np.linspace(*ends, POSITIONS)
-    right = getattr(state.profile(x), formula.predicts)
+    if isinstance(state, PointState):
+        right = ball.along_the_middle(state, formula.predicts, x)
+    else:
+        right = getattr(state.profile(x), formula.predicts)
     found = formula.function(groups, x, **options)
     return float(np.abs(found - right).max() / np.abs(right).max())
 
@@ -202,8 +215,11 @@ def kind_of(formula: Formula[Any]) -> str:
     Returns
     -------
     str
-        Its plane, or ``"located"`` where it predicts what is located on a curve over the speed.
+        Its plane, or ``"located"`` where it predicts what is located on a curve over the speed; for the ball the same
+        in words.
     """
+    if formula.geometry == "point":
+        return {"smooth": "smooth ball", "rest": "ball at rest", "mixed": "any ball"}[formula.plane]
     return "located" if formula.predicts in LOCATED else formula.plane
 
 
@@ -317,6 +333,8 @@ def _maps(
     kappas = axes.get("relative_roughness", np.zeros(1))
     speeds = axes.get("speed", np.array([1.0 if kind == "located" else 0.0]))
     shape = len(loads), len(kappas), len(speeds)
+    geometry = formulas[0].geometry
+    exponent = SCALINGS[geometry].roughness_exponent
     fields = [formula for formula in formulas if formula.predicts in FIELDS]
     wanted = {formula.predicts for formula in formulas} - set(FIELDS)
     right = {name: np.full(shape, math.nan) for name in wanted}
@@ -324,10 +342,17 @@ def _maps(
     estimate = 0.0
     for i, load in enumerate(loads.tolist()):
         for j, kappa in enumerate(kappas.tolist()):
-            base = Groups(1.0, load, kappa * load)
+            base = Groups(1.0, load, kappa * load**exponent, geometry=geometry)
             for name in wanted & set(LOCATED):
                 right[name][i, j, 0] = LOCATED[name](base, options)
-            for k, found_in_row in _row(base, speeds) if kind != "located" else ():
+            for k, on_ball in _ball_row(base, speeds) if geometry == "point" else ():
+                estimate = max(estimate, on_ball.error_estimate)
+                for name in wanted:
+                    right[name][i, j, k] = ball.OBSERVED[name](on_ball, options)
+                for formula in fields:
+                    groups = replace(base, speed=float(speeds[k]))
+                    errors[formula.name][i, j, k] = _field_error(formula, groups, on_ball, options)
+            for k, found_in_row in _row(base, speeds) if kind != "located" and geometry == "line" else ():
                 small = "fluid_load_share" in wanted and 0 < found_in_row.fluid_load_share < SMALL_SHARE
                 state = _state(found_in_row.groups) if small else found_in_row
                 estimate = max(estimate, state.error_estimate)
@@ -336,7 +361,7 @@ def _maps(
                 for formula in fields:
                     groups = replace(base, speed=float(speeds[k]))
                     errors[formula.name][i, j, k] = _field_error(formula, groups, state, options)
-    groups = Groups(speeds, loads[:, None, None], kappas[:, None] * loads[:, None, None])
+    groups = Groups(speeds, loads[:, None, None], kappas[:, None] * loads[:, None, None] ** exponent, geometry=geometry)
     found = {}
     for formula in formulas:
         if formula not in fields:
@@ -370,6 +395,12 @@ def _row(base: Groups, speeds: Array) -> list[tuple[int, Solution]]:
         places = dict(zip(speeds.tolist(), range(len(speeds)), strict=True))
         found += [(places[value], state) for value, state in zip(curve.values.tolist(), curve.solutions, strict=True)]
     return found
+
+
+def _ball_row(base: Groups, speeds: Array) -> list[tuple[int, PointState]]:
+    """Return the states of a ball of one load and roughness over the speed, with their places in ``speeds``."""
+    found = ball.row([replace(base, speed=float(speed)) for speed in speeds])
+    return [(k, state) for k, state in enumerate(found) if state is not None]
 
 
 def _dataset(

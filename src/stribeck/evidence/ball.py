@@ -1,0 +1,78 @@
+"""The solver of the ball as the judge of its formulas: states, rows of them over the speed, and what is read off.
+
+Source: none; the counterpart of :mod:`stribeck.evidence.formulas` for the point geometry.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.cut_off import LOGARITHM, cut_off
+from stribeck.contacts.line import Groups
+from stribeck.solver.point.solve import solve_cold, solve_from
+from stribeck.solver.point.state import PointState
+
+RTOL = 1e-6
+"""Relative tolerance of the states that judge."""
+
+
+@lru_cache(maxsize=1024)
+def state(groups: Groups) -> PointState:
+    """Return the state of the ball, solved from cold."""
+    return _sound(solve_cold(groups, RTOL))
+
+
+def row(states: list[Groups]) -> list[PointState | None]:
+    """Return states of one load and roughness at ascending speeds, each from the one before; None where none was found."""
+    found: list[PointState | None] = []
+    before: PointState | None = None
+    for groups in states:
+        try:
+            before = state(groups) if before is None else _sound(solve_from(before, groups, RTOL))
+            found.append(before)
+        except RuntimeError:
+            found.append(None)
+    return found
+
+
+def _sound(found: PointState) -> PointState:
+    if not found.outcome.ok:
+        raise RuntimeError(f"{found.groups}: {found.outcome.value}")
+    return found
+
+
+def _viscous(found: PointState, options: dict[str, Any]) -> float:
+    """Return the viscous friction of a whole sphere, or up to the wetted radius in the options."""
+    beta, definition = options.get("beta", 1.0), options.get("definition", "balanced")
+    radius = cut_off(found.groups.slope(beta), options.get("wetted_radius"), definition)
+    J = found.values[f"J_{definition}"] + LOGARITHM * float(found.groups.speed) * math.log(float(radius))
+    return float(0.75 * beta * np.power(found.groups.load, 1 / 3) * J)
+
+
+def _friction(found: PointState, options: dict[str, Any]) -> float:
+    return float(options.get("boundary_friction", 1.0) * found.values["contact_load_share"] + _viscous(found, options))
+
+
+OBSERVED: dict[str, Callable[[PointState, dict[str, Any]], float]] = {
+    **{
+        name: lambda found, _, name=name: found.values[name]  # type: ignore[misc]
+        for name in ("central_gap", "minimum_gap", "minimum_gap_on_axis", "offset", "contact_load_share", "fluid_load_share")
+    },
+    "viscous_friction": _viscous,
+    "friction": _friction,
+}
+"""Quantities of one state of the ball, with the options of the formula."""
+
+
+def along_the_middle(found: PointState, field: str, x: Array) -> Array:
+    """Return a field at positions on the middle line, by the names of the line's profiles."""
+    fields = found.fields(x, np.zeros_like(x))
+    if field == "pressure":
+        return np.asarray(fields.contact_pressure + fields.fluid_pressure)
+    return np.asarray(getattr(fields, field))
