@@ -93,6 +93,7 @@ FORMULAS: tuple[Formula[Any], ...] = (
     point.rest.central_gap_small_indentation,
     point.rest.offset_small_indentation,
     point.film.central_gap_slow,
+    point.film.central_gap,
     point.film.gap_slow,
     point.film.minimum_gap_on_axis,
     point.film.minimum_gap,
@@ -105,6 +106,10 @@ FORMULAS: tuple[Formula[Any], ...] = (
     point.boundary.contact_load_share,
     point.boundary.viscous_friction,
     point.boundary.friction,
+    point.sharing.contact_load_share,
+    point.friction.viscous_friction_smooth,
+    point.friction.viscous_friction,
+    point.friction.friction,
 )
 """All formulas, in the order in which a reader meets them: of the cylinder the smooth contact, the contact at rest, what lies
 between; then those of the ball likewise."""

@@ -58,6 +58,14 @@ def _film_ratio(groups: Groups) -> Value:
     return _ratio(constant * groups.speed**0.6, groups.relative_roughness)
 
 
+def _slow_share(groups: Groups) -> Value:
+    """Return roughly the part of the load on slow fluid under a ball, infinite from load 1 on."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        number = _ratio(groups.speed, np.square(groups.relative_roughness))
+        A = np.maximum(-np.log(groups.load), 0) / 3
+        return _ratio(0.016 * np.square(number), (A * (1 + 0.73 * A)) ** 3)
+
+
 def _paper_fluid_share(groups: Groups) -> Value:
     """Return the part of the load on the fluid as [BP] estimate it, infinite from load 1 on."""
     with np.errstate(over="ignore", invalid="ignore"):
@@ -74,11 +82,12 @@ PARAMETERS: dict[str, Callable[[Groups], Value]] = {
     "fluid_number": lambda g: _ratio(g.speed, np.square(g.relative_roughness)),
     "paper_fluid_share": _paper_fluid_share,
     "film_ratio": _film_ratio,
+    "slow_share": _slow_share,
 }
 r"""Parameters in which ranges and errors are stated: the groups, kappa, the fluid number lambda/kappa**2 (lubrication pressure
 on the scale of the roughness over Hertz pressure), the fluid's load share at slow speed as [BP] estimate it,
 (lambda**2/kappa**4)/(2 (-ln F)**5), and the film ratio c lambda**(3/5)/kappa (smooth film over h_rms/alpha, with the
-constant c of the geometry)."""
+constant c of the geometry), and roughly the fluid's load share under a slow ball."""
 
 COEFFICIENTS = "beta/mu0"
 """The parameter of a range that is not of the groups: coefficients enter the relative error of friction as this ratio."""

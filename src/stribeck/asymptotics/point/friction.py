@@ -1,0 +1,215 @@
+r"""Friction of a ball at any speed, load and roughness in closed form, with the logarithm of section 11 of theory.md.
+
+.. math:: \mu = \mu_0 S + \tfrac34 \beta \bar F_N^{1/3} J, \qquad J = J_\mathrm{fp} + \tfrac{16}{15} \pi \lambda \ln X_c
+
+*Smooth.*  Slow, the horseshoe :math:`h = c \lambda^{3/5} (1-y^2)^{3/10}` is sheared, fast the rigid ball:
+
+.. math:: J_\mathrm{fp} \to \frac{\lambda^{2/5}}{3c} \int_{-1}^1 (1-y^2)^{1/5} dy = 1.4054 \, \lambda^{2/5}, \qquad
+    J_\mathrm{fp} \to -\pi\lambda \left[\tfrac{8}{15} \ln(2 h_0) + \tfrac25\right] .
+
+*Rough.*  Where asperities keep the gap open at a speed below that of the film as thick, the shear is less.
+
+Source: ours; theory.md, section 11.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.asymptotics.constants import BALL_FILM_CONSTANT
+from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.point.rigid import GAP
+from stribeck.asymptotics.point.sharing import BOX, film_speed_ratio, log_odds
+from stribeck.contacts.cut_off import LOGARITHM, cut_off
+from stribeck.contacts.line import Groups
+
+SLOW = math.sqrt(math.pi) * math.gamma(1.2) / math.gamma(1.7) / (3 * BALL_FILM_CONSTANT)
+"""Friction integral over lambda**(2/5) of the slow horseshoe, 1.4054."""
+
+SMOOTH = (1.14012, 4.59157, 1.21222, -0.65781, 0.84862, 1.04412, -0.027006)
+ROUGH = (0.55662, 0.017976, 0.30227, 0.013413, 0.0021505)
+"""Fitted coefficients of :func:`smooth_integral` and :func:`viscous_friction`."""
+
+
+def smooth_integral(speed: Value) -> Value:
+    r"""Return the finite part of the balanced friction integral of a smooth ball at any speed.
+
+    .. math::
+
+        J_\mathrm{fp} = 1.4054 \, \lambda^{2/5} \, \frac{1 + b_1 u + b_2 u^2}{1 + a_1 u + a_2 u^2 + a_3 u^3 + a_4 u^4}
+        - \frac{8\pi}{15} \lambda \ln\left(1 + q \lambda^{2/5} + 2 e^{3/4} \, 0.18162 \, \lambda^{4/5}\right), \quad u =
+        \lambda^{1/5}
+
+    Parameters
+    ----------
+    speed : float or array_like
+        Speed group [-].
+
+    Returns
+    -------
+    float or ndarray
+        J_fp [-]; within 7e-4 of J with the liquid up to 15 radii, at 49 speeds from 1e-6 to 1e4.
+    """
+    b1, b2, a1, a2, a3, a4, q = SMOOTH
+    lambda_ = np.asarray(speed)
+    u = lambda_**0.2
+    film = SLOW * u**2 * (1 + u * (b1 + u * b2)) / (1 + u * (a1 + u * (a2 + u * (a3 + u * a4))))
+    found: Value = film - LOGARITHM / 2 * lambda_ * np.log1p(q * u**2 + 2 * math.exp(0.75) * GAP * u**4)
+    return found
+
+
+@formula(
+    geometry="point",
+    predicts="viscous_friction",
+    plane="smooth",
+    limits=(),
+    worst=2e-3,
+    source="ours",
+)
+def viscous_friction_smooth(groups: Groups, beta: float = 1.0, wetted_radius: float | None = None) -> Value:
+    r"""Return the balanced friction of a smooth ball at any speed.
+
+    .. math:: \mu_f = \tfrac34 \beta \bar F_N^{1/3} \left[J_\mathrm{fp}(\lambda) + \tfrac{16}{15} \pi \lambda \ln X_c\right]
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``speed`` and ``load`` [-]; arrays broadcast.
+    beta : float
+        Coefficient of the contact law [-].
+    wetted_radius : float, optional
+        Where the liquid ends [a]; by default that of a whole sphere, :mod:`stribeck.contacts.cut_off`.
+
+    Returns
+    -------
+    float or ndarray
+        Friction coefficient [-].
+
+    Raises
+    ------
+    InputError
+        If the wetted radius lies in the contact.
+
+    Notes
+    -----
+    :func:`smooth_integral` has both limits and seven fitted coefficients.
+
+    Source: this module.
+    """
+    return _coefficient(groups, smooth_integral(groups.speed), beta, wetted_radius)[()]
+
+
+@formula(
+    geometry="point",
+    predicts="viscous_friction",
+    plane="mixed",
+    limits=(*BOX, Limit("film_ratio", 0.0, 12.0)),
+    worst=0.2,
+    source="ours",
+)
+def viscous_friction(groups: Groups, beta: float = 1.0, wetted_radius: float | None = None) -> Value:
+    r"""Return the part of the balanced friction of a ball from the fluid.
+
+    .. math::
+
+        J_\mathrm{fp} = J_\mathrm{smooth} \, r^{0.55662 + 0.017976 \sqrt\kappa \ln(1/r)}
+        \left[1 + (0.30227 + 0.013413 \ln \kappa + 0.0021505 \ln \bar F_N) \ln\frac1r\right], \quad
+        r = \min\left(1, \lambda/\lambda_f\right)
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+    beta : float
+        Coefficient of the contact law [-].
+    wetted_radius : float, optional
+        As in :func:`viscous_friction_smooth`.
+
+    Returns
+    -------
+    float or ndarray
+        Friction coefficient [-]; nan from load 1 on.
+
+    Raises
+    ------
+    InputError
+        If the wetted radius lies in the contact.
+
+    Notes
+    -----
+    The speed of the film is that of :mod:`stribeck.asymptotics.point.sharing`.  Relative to itself, the error is
+    largest where the viscous part is a small part of all friction; in the median it is 1.5 %.
+
+    Source: this module.
+    """
+    return _viscous(groups, log_odds(groups), beta, wetted_radius)[()]
+
+
+@formula(
+    geometry="point",
+    predicts="friction",
+    plane="mixed",
+    limits=(*BOX, Limit("beta/mu0", 0.1, 1.0)),
+    worst=0.1,
+    source="ours",
+)
+def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, wetted_radius: float | None = None) -> Value:
+    r"""Return the balanced friction coefficient of a ball.
+
+    .. math:: \mu = \mu_0 S + \mu_f
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+    boundary_friction : float
+        Friction coefficient of the dry contact [-].
+    beta : float
+        Coefficient of the contact law [-].
+    wetted_radius : float, optional
+        As in :func:`viscous_friction_smooth`.
+
+    Returns
+    -------
+    float or ndarray
+        Friction coefficient [-]; nan from load 1 on.
+
+    Raises
+    ------
+    InputError
+        If the wetted radius lies in the contact.
+
+    Notes
+    -----
+    Against the 571 solved states that it was fitted to the error is below 0.08 % in the median, 4.0 % on 99 of 100 and
+    8.2 % at worst for beta/mu0 = 0.1 to 1; at 0.01 15 % at worst and 6.6 % on 99 of 100, as the few asperities under
+    the sides of thick films count.
+
+    Source: this module and :mod:`stribeck.asymptotics.point.sharing`.
+    """
+    odds = log_odds(groups)
+    share = np.exp(-np.logaddexp(0.0, odds))
+    return (boundary_friction * share + _viscous(groups, odds, beta, wetted_radius))[()]
+
+
+def _viscous(groups: Groups, odds: Array, beta: float, wetted_radius: float | None) -> Array:
+    power, bend, one, by_roughness, by_load = ROUGH
+    lambda_, F, kappa = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
+    J = np.array(np.broadcast_to(smooth_integral(lambda_), odds.shape))
+    J[np.isnan(odds)] = np.nan
+    rough = np.isfinite(odds)
+    lambda_, F, kappa = lambda_[rough], F[rough], kappa[rough]
+    ratio = film_speed_ratio(Groups(lambda_, F, kappa * F ** (2 / 3), geometry="point"), odds[rough])
+    y = -np.log(ratio)
+    factor = 1 + (one + by_roughness * np.log(kappa) + by_load * np.log(F)) * y
+    J[rough] *= np.exp(-y * (power + bend * np.sqrt(kappa) * y)) * factor
+    return _coefficient(groups, J, beta, wetted_radius)
+
+
+def _coefficient(groups: Groups, J: Value, beta: float, wetted_radius: float | None) -> Array:
+    """Return the friction coefficient of the finite part of a balanced integral."""
+    radius = cut_off(groups.slope(beta), wetted_radius) if beta else np.ones(())
+    return np.asarray(0.75 * beta * np.power(groups.load, 1 / 3) * (J + LOGARITHM * np.multiply(groups.speed, np.log(radius))))

@@ -1,0 +1,188 @@
+r"""How asperities and fluid share the load under a ball at any speed, explicitly as the speed of a share, and the inverse.
+
+The two mechanisms are those of the line (:mod:`stribeck.asymptotics.rough.load_sharing`), with :math:`X = (1 - S)/S`,
+:math:`A = -\tfrac13 \ln \bar F_N + (\tfrac12 + G) \kappa`, the gap in the middle at rest over :math:`\kappa`, and
+:math:`G_X = A + \ln(1 + X)`.
+
+*Wedge.*  :math:`\lambda_w = \kappa^2 [X (1 + X)]^{1/2} g(G_X)`, which for :math:`X \ll 1` is the boundary regime with
+its edges.
+
+*Film.*  The film of a ball is a horseshoe, thinner at its sides, and asperities touch there first.  Under
+:math:`h = \kappa H (1 - y^2)^q` the share is
+
+.. math:: S = \tfrac32 \bar F_N^{-1/3} \, \frac2\pi \int_{-1}^1 (1-y^2)^{1/2} e^{-H (1-y^2)^q} \, dy ,
+
+which gives H; q is fitted, near the 3/10 of slow smooth films where many asperities touch, and less for thick films,
+whose sides are not as thin.
+
+Source: ours; theory.md, section 11.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.point.boundary import SHARE_EDGES, phi_of
+from stribeck.asymptotics.point.film import film_of
+from stribeck.asymptotics.point.rest import CATALAN
+from stribeck.contacts.line import Groups
+from stribeck.quantities.units import InputError, real_array, show
+
+BOX = (Limit("speed", 1e-9, 1e2), Limit("load", 1e-3, 0.7), Limit("relative_roughness", 3e-4, 1e-1))
+"""Range of the states that the coefficients were fitted to."""
+
+WEDGE = (17.3934, 3.1231, 1.44, -0.1293, -0.0146)
+SHAPE = (0.3229, 0.00265, -0.0572)
+PROFILE = (0.7215, -0.1963, 0.1719, 0.2288)
+SUM = (1.0553, -0.4377)
+"""Fitted coefficients of the wedge, of q, of the speed of the film, and of the sum of both."""
+
+NODES = 48
+TABLE = (math.log(1e-18), math.log(1e9), 6000)
+"""Gauss nodes across the film; ends and number of the logarithms of speeds at which the film is inverted."""
+
+STEPS = 70
+"""Most steps of the inversions; 10 are usual."""
+
+
+@formula(
+    geometry="point",
+    predicts="contact_load_share",
+    plane="mixed",
+    limits=(*BOX, Limit("film_ratio", 0.0, 6.0)),
+    worst=0.2,
+    source="ours",
+)
+def contact_load_share(groups: Groups) -> Value:
+    r"""Return the part of the load on the asperities of a ball.
+
+    .. math:: \lambda(S) = \left(\lambda_w^{-m} + \lambda_f^{-m}\right)^{-1/m}
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+
+    Returns
+    -------
+    float or ndarray
+        S [-]; 1 at rest, 0 without roughness, nan from load 1 on.
+
+    Notes
+    -----
+    The inverse of :func:`speed_of_share`, by bracketed steps in ln X.
+
+    Source: this module.
+    """
+    return np.exp(-np.logaddexp(0.0, log_odds(groups)))[()]
+
+
+def speed_of_share(groups: Groups, share: Value = 0.5) -> Value:
+    r"""Return the speed at which the fluid carries a given part of the load of a ball.
+
+    .. math:: \lambda = \left(\lambda_w^{-m} + \lambda_f^{-m}\right)^{-1/m}
+
+    Parameters
+    ----------
+    groups : Groups
+        Uses ``load`` and ``roughness`` [-]; arrays broadcast.
+    share : float or array_like
+        Part of the load on the fluid [-], between 0 and 1.
+
+    Returns
+    -------
+    float or ndarray
+        Speed group [-]; nan from load 1 on, and without roughness.
+
+    Raises
+    ------
+    InputError
+        If the share is not between 0 and 1.
+    """
+    wanted = real_array("share", share)
+    if not ((wanted > 0) & (wanted < 1)).all():
+        raise InputError(f"share = {show(share)}; a fraction of the load lies between 0 and 1, both excluded.")
+    odds, F, kappa = np.broadcast_arrays(np.log(wanted / (1 - wanted)), groups.load, groups.relative_roughness)
+    found = np.full(odds.shape, math.nan)
+    inside = (F < 1) & (kappa > 0)
+    found[inside] = np.exp(_log_speed(odds[inside], F[inside], kappa[inside])[0])
+    return found[()]
+
+
+def log_odds(groups: Groups) -> Array:
+    """Return ln X, fluid over contact share: -inf at rest, inf without roughness, nan from load 1 on."""
+    lambda_, F, kappa = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
+    found = np.where(F < 1, np.where(lambda_ > 0, math.inf, -math.inf), math.nan)
+    inside = (lambda_ > 0) & (kappa > 0) & (F < 1)
+    wanted, F, kappa = np.log(lambda_[inside]), F[inside], kappa[inside]
+    low, high = np.full(F.shape, -120.0), np.full(F.shape, 120.0)
+    for _ in range(STEPS):
+        middle = 0.5 * (low + high)
+        slower = _log_speed(middle, F, kappa)[0] < wanted
+        low, high = np.where(slower, middle, low), np.where(slower, high, middle)
+    found[inside] = 0.5 * (low + high)
+    return found
+
+
+def film_speed_ratio(groups: Groups, odds: Array) -> Array:
+    """Return the speed over that at which the smooth film alone would leave that share to the asperities, at most 1."""
+    F, kappa = np.asarray(groups.load), np.asarray(groups.relative_roughness)
+    return np.asarray(np.minimum(1.0, np.exp(np.log(groups.speed) - _log_speed(odds, F, kappa)[1])))
+
+
+def _log_speed(odds: Array, F: Array, kappa: Array) -> tuple[Array, Array]:
+    """Return the logarithms of the speed for ln X, and of that of the film alone."""
+    w1, w2, w3, w4, w5 = WEDGE
+    q0, q1, q2 = SHAPE
+    f0, f1, f2, f3 = PROFILE
+    s1, s2 = SUM
+    more, fluid = np.logaddexp(0.0, odds), 1 / (1 + np.exp(-odds))  # ln(1 + X), 1 - S
+    A_0 = -np.log(F) / 3
+    A = A_0 + (0.5 + CATALAN) * kappa
+    G = A + more
+    H = G + math.log(1.5)
+    edges = 1 + np.polynomial.polynomial.polyval(A_0, SHARE_EDGES) * kappa ** (2 / 3)
+    at_rest = -0.5 * np.log(phi_of(np.exp(-3 * A), "closed") * np.maximum(edges, 0.02)) - math.log(w1) - w2 * np.log(A)
+    wedge = 2 * np.log(kappa) + 0.5 * (odds + more) + math.log(w1) + w2 * np.log(G)
+    wedge = wedge + at_rest * np.exp(-(w3 + w4 * A_0 + w5 * np.sqrt(kappa)) * more)
+    log_y, log_H = np.log(kappa * H), np.log(H)
+    q = np.clip(q0 + q1 * log_y + q2 * log_H, 0.0, 0.3)
+    film = _speed_of_film(np.log(kappa * _horseshoe(H, q)))
+    film = film + (f0 + f1 * log_y + f2 * log_H) * (1 - fluid**f3)
+    m = s1 + s2 * H / (1 + H)
+    return np.asarray(-np.logaddexp(-m * wedge, -m * film) / m), np.asarray(film)
+
+
+def _horseshoe(H: Array, q: Array) -> Array:
+    """Return the film in the middle of a horseshoe of power q under which asperities carry what they do under H."""
+    x, weights = np.polynomial.legendre.leggauss(NODES)
+    cosine = np.cos(0.5 * math.pi * x)
+    shape = cosine ** (2 * q[..., None])
+    weights = weights * cosine**2  # of (2/pi) (1 - y**2)**(1/2) dy, y the sine; they add up to one
+    found = H
+    for _ in range(STEPS):
+        # In the logarithm the sum is nearly linear in the film.
+        parts = weights * np.exp(-found[..., None] * shape)
+        total = parts.sum(-1)
+        step = (np.log(total) + H) * total / (parts * shape).sum(-1)
+        found = found + step
+        if np.all(np.abs(step) < 1e-12 * (1 + np.abs(found))):
+            break
+    return found
+
+
+@cache
+def _film_table() -> tuple[Array, Array]:
+    speeds = np.linspace(*TABLE)
+    return np.asarray(np.log(film_of(np.exp(speeds)))), speeds
+
+
+def _speed_of_film(log_gap: Array) -> Array:
+    """Return the logarithm of the speed at which the smooth ball has a gap in the middle."""
+    gaps, speeds = _film_table()
+    return np.asarray(np.interp(log_gap, gaps, speeds))
