@@ -5,20 +5,20 @@ Source: none; the counterpart of :mod:`stribeck.evidence.formulas` for the point
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.cut_off import LOGARITHM, cut_off
 from stribeck.contacts.line import Groups
+from stribeck.solver.point.solution import PointObservables
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState
 
-RTOL = 1e-6
+RTOL = 1e-5
 """Relative tolerance of the states that judge."""
 
 
@@ -49,10 +49,8 @@ def _sound(found: PointState) -> PointState:
 
 def _viscous(found: PointState, options: dict[str, Any]) -> float:
     """Return the viscous friction of a whole sphere, or up to the wetted radius in the options."""
-    beta, definition = options.get("beta", 1.0), options.get("definition", "balanced")
-    radius = cut_off(found.groups.slope(beta), options.get("wetted_radius"), definition)
-    J = found.values[f"J_{definition}"] + LOGARITHM * float(found.groups.speed) * math.log(float(radius))
-    return float(0.75 * beta * np.power(found.groups.load, 1 / 3) * J)
+    observables = replace(PointObservables.of(found, None), _wetted_radius=options.get("wetted_radius"))
+    return observables.viscous_friction(options.get("beta", 1.0), options.get("definition", "balanced"))
 
 
 def _friction(found: PointState, options: dict[str, Any]) -> float:

@@ -35,8 +35,9 @@ ANGLES = (0.8, 0.6, 0.45, 0.35, 0.28, 0.22, 0.18, 0.14)
 """Bispherical coordinates arcosh(1 + gap) at which the constant is fitted: gaps 0.34 to 0.0098 of the radius."""
 
 
-def force(gap: float) -> float:
-    """Return the force over 6 pi eta R U on a sphere sliding at a gap [R] along a plane."""
+def force(gap: float, turning: bool = False) -> float:
+    """Return the force over 6 pi eta R U on a sphere at a gap [R] from a plane, sliding or turning, U the speed of its
+    surface."""
     alpha = math.acosh(1 + gap)
     c = math.sinh(alpha)
     count = int(TERMS / alpha)
@@ -47,13 +48,13 @@ def force(gap: float) -> float:
     rows: list[Array] = []
     right: list[Array] = []
 
-    def add(series: dict[str, Series], terms: dict[str, Factors], value: float) -> None:
+    def add(series: dict[str, Series], terms: dict[str, Factors], value: Array | float) -> None:
         row = np.zeros((count, 7 * count))
         for name, factors in terms.items():
             for factor, part in zip(factors, series[name], strict=False):
                 row[:, place[name]] += np.broadcast_to(factor, (count,))[:, None] * part
         rows.append(row)
-        right.append(np.full(count, value))
+        right.append(np.broadcast_to(value, (count,)))
 
     for xi in (0.0, alpha):
         G = math.cosh(xi) - mu
@@ -64,10 +65,11 @@ def force(gap: float) -> float:
             name: _series(P, xi, alpha, mu, sine, m, np.arange(m, m + count), name in "ACEG") for name, m in ORDERS.items()
         }
         half = rho / (2 * c)
-        add(series, {"D": (1.0,), "E": (1.0,), "B": (half,), "C": (half,)}, 2.0 if xi else 0.0)
+        across = np.zeros(count) if not xi else z - math.cosh(alpha) if turning else np.ones(count)
+        add(series, {"D": (1.0,), "E": (1.0,), "B": (half,), "C": (half,)}, 2 * across)
         add(series, {"F": (1.0,), "G": (1.0,), "B": (half,), "C": (half,)}, 0.0)
         if xi:
-            add(series, {"A": (1.0,), "B": (z / (2 * c),), "C": (z / (2 * c),)}, 0.0)
+            add(series, {"A": (1.0,), "B": (z / (2 * c),), "C": (z / (2 * c),)}, -rho if turning else 0.0)
         pressure = (3.0, rho * by_rho[0] + z * by_z[0], rho * by_rho[1] + z * by_z[1])
         plain, twice = (0.0, c * by_rho[0], c * by_rho[1]), (2 * c / rho, c * by_rho[0], c * by_rho[1])
         upward = (0.0, 2 * c * by_z[0], 2 * c * by_z[1])
@@ -84,8 +86,10 @@ def force(gap: float) -> float:
     return float(math.sqrt(2) / 6 * c * (E.sum() + (n_C * (n_C + 1) * C).sum()))
 
 
-def wall_constant() -> float:
+def wall_constant(turning: bool = False) -> float:
     r"""Return K of :math:`\tfrac{8}{15} \ln(1/\epsilon) + K + O(\epsilon \ln \epsilon)`, the force at small gaps.
+
+    For a turning sphere K' of :math:`\tfrac{2}{15} \ln(1/\epsilon) + K'`, against the motion of its lowest point.
 
     Notes
     -----
@@ -93,7 +97,8 @@ def wall_constant() -> float:
     by 1e-6 where gaps or terms are left out, and finds 0.1707 for the coefficient of e ln(1/e), 64/375.
     """
     gaps = np.cosh(ANGLES) - 1
-    rest = np.array([force(float(gap)) for gap in gaps]) + 8 / 15 * np.log(gaps)
+    sign, coefficient = (-1, 2 / 15) if turning else (1, 8 / 15)
+    rest = sign * np.array([force(float(gap), turning) for gap in gaps]) + coefficient * np.log(gaps)
     logs = np.log(gaps)
     terms = np.stack([np.ones_like(gaps), gaps * logs, gaps, gaps**2 * logs, gaps**2], axis=1)
     return float(np.linalg.lstsq(terms, rest, rcond=None)[0][0])

@@ -20,9 +20,11 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, formula
+from stribeck.asymptotics.point.logarithm import far_integral
 from stribeck.asymptotics.point.rest import CATALAN
 from stribeck.asymptotics.point.slow_contact import of_load
-from stribeck.contacts.cut_off import LOGARITHM, Definition, cut_off
+from stribeck.contacts.cut_off import POISEUILLE
+from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, show
 
@@ -96,11 +98,12 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
     return phi_of(values, form)[()]
 
 
-def edges(load: Value, kappa: Value, coefficients: tuple[float, float, float]) -> tuple[Value, Array]:
+def edges(load: Value, kappa: Value, coefficients: tuple[float, float, float]) -> tuple[Array, Array]:
     """Return the load whose contact at rest has the true gap in the middle, and what the edges make of an integral over it."""
     A = -np.log(load) / 3
     below = np.multiply(load, np.exp(-3 * (0.5 + CATALAN) * np.asarray(kappa)))
-    return below, 1 + np.polynomial.polynomial.polyval(A, coefficients) * np.power(kappa, 2 / 3)
+    factor: Array = 1 + np.polynomial.polynomial.polyval(A, coefficients) * np.power(kappa, 2 / 3)
+    return np.asarray(below, dtype=float), factor
 
 
 @formula(
@@ -242,12 +245,20 @@ def viscous_friction(
     Source: this module.
     """
     lambda_, F, kappa = groups.speed, groups.load, np.asarray(groups.relative_roughness)
-    radius = cut_off(groups.slope(beta), wetted_radius, definition) if beta else np.ones(())
+    definition = check_definition(definition)
+    if beta == 0:
+        return np.zeros(groups.shape)[()]
     below, factor = edges(F, kappa, SHEAR_EDGES)
-    J = lambda_ / kappa * factor * of_load(below, lambda contact: contact.shear) + LOGARITHM * lambda_ * np.log(radius)
+    J = lambda_ / kappa * factor * of_load(below, lambda contact: contact.shear)
+    J = J + lambda_ * far_integral(groups.slope(beta), wetted_radius)
     if definition == "published":
         below, factor = edges(F, kappa, MOMENT_EDGES)
-        J = J + 0.4 * np.pi * lambda_ - lambda_ / kappa**2 * factor * of_load(below, lambda contact: contact.moment)
+        # A disc of liquid ends with a pressure at its rim.
+        J = (
+            J
+            + (0.0 if wetted_radius is None else POISEUILLE) * lambda_
+            - lambda_ / kappa**2 * factor * of_load(below, lambda contact: contact.moment)
+        )
     return (0.75 * beta * np.power(F, 1 / 3) * J)[()]
 
 

@@ -21,9 +21,9 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT
 from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.point.logarithm import LOGARITHM, far_integral
 from stribeck.asymptotics.point.rigid import GAP
 from stribeck.asymptotics.point.sharing import BOX, film_speed_ratio, log_odds
-from stribeck.contacts.cut_off import LOGARITHM, cut_off
 from stribeck.contacts.line import Groups
 
 SLOW = math.sqrt(math.pi) * math.gamma(1.2) / math.gamma(1.7) / (3 * BALL_FILM_CONSTANT)
@@ -211,5 +211,7 @@ def _viscous(groups: Groups, odds: Array, beta: float, wetted_radius: float | No
 
 def _coefficient(groups: Groups, J: Value, beta: float, wetted_radius: float | None) -> Array:
     """Return the friction coefficient of the finite part of a balanced integral."""
-    radius = cut_off(groups.slope(beta), wetted_radius) if beta else np.ones(())
-    return np.asarray(0.75 * beta * np.power(groups.load, 1 / 3) * (J + LOGARITHM * np.multiply(groups.speed, np.log(radius))))
+    if beta == 0:
+        return np.zeros(np.shape(J))
+    J = J + np.multiply(groups.speed, far_integral(groups.slope(beta), wetted_radius))
+    return np.asarray(0.75 * beta * np.power(groups.load, 1 / 3) * J)

@@ -1,0 +1,50 @@
+"""The part of the friction integral of a ball that grows with the logarithm of the wetted radius, one surface at rest.
+
+Source: :mod:`stribeck.contacts.cut_off`.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.asymptotics.formula import Value
+from stribeck.contacts.cut_off import COUETTE, POISEUILLE, log_cut_offs
+from stribeck.quantities.units import InputError, real_array, show
+
+LOGARITHM = COUETTE + POISEUILLE
+"""Coefficient of lambda ln X, 16 pi/15."""
+
+
+def far_integral(slope: Value, wetted_radius: Value | None = None) -> Array:
+    r"""Return what the liquid around the contact adds to the finite part of the friction integral, over the speed group.
+
+    .. math:: \tfrac{16}{15} \pi \ln X
+
+    Parameters
+    ----------
+    slope : float or array_like
+        a/R [-].
+    wetted_radius : float or array_like, optional
+        Where the liquid ends, X [a]; by default that of a whole ball in liquid without bounds, 5.034 R/a.
+
+    Returns
+    -------
+    ndarray
+        The integral over lambda [-].
+
+    Raises
+    ------
+    InputError
+        If a wetted radius lies in the contact, at 1 or below.
+    """
+    if wetted_radius is None:
+        by_shear, by_pressure = log_cut_offs(1.0)
+        with np.errstate(divide="ignore"):
+            return np.asarray(COUETTE * by_shear + POISEUILLE * by_pressure - LOGARITHM * np.log(slope))
+    radius = real_array("wetted_radius", wetted_radius)
+    if not ((radius > 1) & (radius < math.inf)).all():
+        raise InputError(f"wetted_radius = {show(wetted_radius)}; in Hertz radii it must exceed 1, the edge of the contact.")
+    return np.asarray(LOGARITHM * np.log(radius))
