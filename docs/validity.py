@@ -225,7 +225,7 @@ def main(wanted: Sequence[str] = ()) -> None:
     for module in (each for each in modules() if each in made):
         say(f"picture of {module}")
         pairs = [(formula, maps[formula.name]) for formula in of_module(module)]
-        path = IMAGES / f"validity_{module}.png"
+        path = IMAGES / f"validity_{module.replace('.', '_')}.png"
         plot_error_maps(pairs, path, force=True, title=f"Errors of stribeck.asymptotics.{module}")
         blocks[module] = measured_table(module, maps)
     if "shares" in made:

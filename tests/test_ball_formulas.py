@@ -1,6 +1,8 @@
 """The formulas of the ball against solved states, themselves, and the problems that their constants come from."""
 
+import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,8 +12,11 @@ from scipy.special import k0, k1, kn
 
 import stribeck as sb
 from stribeck.asymptotics import FORMULAS, OutOfRangeWarning, constants, point
-from stribeck.asymptotics.point import boundary, film, hertz, regressions, rest, rigid, slow_contact
+from stribeck.asymptotics.point import boundary, film, friction, hertz, regressions, rest, rigid, sharing, slow_contact
+from stribeck.asymptotics.point.logarithm import far_integral
 from stribeck.asymptotics.smooth import film_layers
+from stribeck.evidence.formulas import relative_error
+from stribeck.solver.point.solve import solve_cold
 
 SMOOTH = {
     1e-6: (1.0481845747e-4, 2.0583163e-5, 7.8641938e-5),
@@ -25,8 +30,21 @@ AT_REST = {1e-4: (-0.9996697160, 2.302726719e-4), 1e-2: (-0.966814228, 2.3169272
 """Offset and central gap at load 1e-3, by the same."""
 
 
+SOLVED = json.loads((Path(__file__).parent / "data" / "ball_states.json").read_text())
+"""States of the solver that the fitted laws were made from; mixed: speed, load, kappa, contact share, central gap, J;
+smooth: speed, central gap, minimum, minimum on the middle line, J; slow: speed, load, kappa, fluid share, J, J_pcx."""
+
+
 def ball(speed, load=1e-3, kappa=0.0):
-    return sb.Groups(speed, load, kappa * load ** (2 / 3), geometry="point")
+    return sb.Groups(speed, load, kappa * np.asarray(load) ** (2 / 3), geometry="point")
+
+
+def columns(name):
+    return np.array(SOLVED[name]).T
+
+
+def viscous(groups, J, beta):
+    return 0.75 * beta * groups.load ** (1 / 3) * (J + groups.speed * far_integral(groups.slope(beta)))
 
 
 def order(steps, errors):
@@ -277,3 +295,120 @@ def test_a_slope_that_is_none_is_refused():
 
 def test_the_package_of_the_ball_is_reached_by_name():
     assert sb.asymptotics.point is point
+
+
+# --- the fitted laws, on the states of the solver ---
+
+
+def test_the_laws_of_the_smooth_ball_are_within_their_stated_errors_at_every_speed():
+    speed, central, minimum, _, J = columns("smooth")
+    groups = ball(speed)
+    assert np.abs(film.central_gap(groups) / central - 1).max() <= film.central_gap.worst
+    slow = film.minimum_gap.valid(groups)
+    assert slow.sum() > 10
+    assert np.abs(film.minimum_gap.function(groups) / minimum - 1)[slow].max() <= film.minimum_gap.worst
+    right = viscous(groups, J, 0.5)
+    assert np.abs(friction.viscous_friction_smooth(groups, 0.5) / right - 1).max() <= friction.viscous_friction_smooth.worst
+
+
+def test_the_laws_of_the_smooth_ball_have_their_limits():
+    fast, slow = ball(1e12), ball(1e-12)
+    assert math.isclose(float(film.central_gap(fast)), float(rigid.minimum_gap(fast)), rel_tol=1e-4)
+    assert math.isclose(float(film.central_gap(slow)), float(film.central_gap_slow(slow)), rel_tol=1e-4)
+    J = float(friction.smooth_integral(1e12))
+    h0 = float(rigid.minimum_gap(fast))
+    assert math.isclose(J, -math.pi * 1e12 * (8 / 15 * math.log(2 * h0) + 0.4), rel_tol=1e-4)
+    theta = np.linspace(0, math.pi / 2, 20001)
+    shear = 2 * np.trapezoid(np.cos(theta) ** 1.4, theta) / (3 * constants.BALL_FILM_CONSTANT)
+    assert math.isclose(friction.SLOW, shear, rel_tol=1e-7)
+    assert math.isclose(float(friction.smooth_integral(1e-15)) / 1e-15**0.4, shear, rel_tol=2e-3)
+
+
+def test_the_boundary_regime_with_its_edges_is_within_its_stated_error():
+    speed, load, kappa, share, J, pcx = columns("slow")
+    groups = ball(speed, load, kappa)
+    inside = boundary.fluid_load_share.valid(groups)
+    assert inside.sum() > 30
+    found = boundary.fluid_load_share.function(groups)
+    assert np.abs(found / share - 1)[inside].max() <= boundary.fluid_load_share.worst
+    found = boundary.viscous_friction.function(groups, 0.1)
+    assert np.abs(found / viscous(groups, J, 0.1) - 1)[inside].max() <= boundary.viscous_friction.worst
+    found = boundary.viscous_friction.function(groups, 0.1, "published")
+    right = viscous(groups, J - pcx, 0.1)
+    assert np.abs(found / right - 1)[inside].max() <= boundary.viscous_friction.worst
+
+
+def test_the_edges_widen_the_fluids_share_as_the_power_two_thirds():
+    speed, load, kappa, share, _, _ = columns("slow")
+    narrow = np.isclose(load, 1e-2) & (kappa < 2e-3)
+    found = boundary.fluid_load_share.function(ball(speed, load, kappa), with_edges=False)
+    assert abs(order(kappa[narrow], (1 - found / share)[narrow]) - 2 / 3) < 0.06
+
+
+def test_share_and_friction_at_any_speed_are_within_their_stated_errors():
+    speed, load, kappa, share, _, J = columns("mixed")
+    groups = ball(speed, load, kappa)
+    inside = sharing.contact_load_share.valid(groups)
+    assert inside.sum() > 20
+    found = sharing.contact_load_share.function(groups)
+    assert np.abs(found / share - 1)[inside].max() <= sharing.contact_load_share.worst
+    worst = []
+    for beta in (1.0, 0.3, 0.1):
+        right = share + viscous(groups, J, beta)
+        worst.append(np.abs(friction.friction.function(groups, 1.0, beta) / right - 1).max())
+    assert 0.03 < max(worst) <= friction.friction.worst
+    inside = friction.viscous_friction.valid(groups)
+    found = friction.viscous_friction.function(groups, 0.1)
+    assert np.abs(found / viscous(groups, J, 0.1) - 1)[inside].max() <= friction.viscous_friction.worst
+
+
+def test_share_and_speed_of_a_share_are_inverse():
+    groups = ball(1.0, 0.03, 3e-3)
+    for wanted in (0.05, 0.5, 0.99):
+        speed = float(sharing.speed_of_share(groups, wanted))
+        found = float(sharing.contact_load_share.function(ball(speed, 0.03, 3e-3)))
+        assert math.isclose(1 - found, wanted, rel_tol=1e-9)
+    assert np.isnan(sharing.speed_of_share(ball(1.0, 2.0, 1e-3)))
+    with pytest.raises(sb.InputError, match="share = 1; a fraction of the load"):
+        sharing.speed_of_share(groups, 1)
+
+
+@pytest.mark.quick
+def test_at_rest_and_without_roughness_the_uniform_law_of_friction_is_exact():
+    assert float(friction.friction.function(ball(0.0, 0.1, 1e-3), 0.6, 0.1)) == 0.6
+    smooth = ball(1e-3, 0.1)
+    assert float(friction.friction.function(smooth, 0.6, 0.1)) == float(friction.viscous_friction_smooth(smooth, 0.1))
+
+
+# --- judged by the solver ---
+
+QUICKLY = [each for each in FORMULAS if each.geometry == "point" and each.plane == "rest"]
+
+
+@pytest.mark.parametrize("formula", QUICKLY, ids=lambda formula: formula.name)
+def test_the_error_of_a_formula_at_rest_vanishes_with_the_stated_order_and_is_within_the_stated_one(formula):
+    errors = np.abs([relative_error(formula, formula.approach(step)) for step in formula.steps])
+    assert abs(order(formula.steps, errors) - formula.error_order) < 0.1
+    for step, error in zip(formula.steps, errors, strict=True):
+        if formula.valid(formula.approach(step)):
+            assert error <= 1.02 * formula.worst
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "formula",
+    [each for each in FORMULAS if each.geometry == "point" and each.approach and each not in QUICKLY],
+    ids=lambda formula: formula.name,
+)
+def test_the_error_of_another_formula_of_the_ball_vanishes_with_the_stated_order(formula):
+    errors = np.abs([relative_error(formula, formula.approach(step)) for step in formula.steps])
+    assert abs(order(formula.steps, errors) - formula.error_order) < 0.1
+
+
+def test_the_states_of_the_fitted_laws_are_those_of_the_solver_of_today():
+    speed, load, kappa, share, central, J = columns("mixed")
+    for i in range(3, len(speed), 12):
+        found = solve_cold(ball(float(speed[i]), float(load[i]), float(kappa[i])), 1e-3).values
+        assert abs(found["contact_load_share"] - share[i]) < 1e-3
+        assert math.isclose(found["central_gap"], central[i], rel_tol=2e-3)
+        assert math.isclose(found["J_balanced"], J[i], rel_tol=4e-3)

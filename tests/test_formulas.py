@@ -3,6 +3,7 @@
 import importlib
 import inspect
 import math
+import operator
 import pkgutil
 import warnings
 from dataclasses import replace
@@ -81,9 +82,12 @@ SCANNED = {
 """Largest relative error of 60 random states and of the corners of the range (12 random ones where each is a curve),
 rounded up; of formulas with a range in beta/mu0 that of the atlas over all of it, as in the table of validity.md."""
 
-NAMED = pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
+LINE = [formula for formula in FORMULAS if formula.geometry == "line"]
+EVERY = pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
+# Those of the ball are judged in test_ball_formulas.py.
+NAMED = pytest.mark.parametrize("formula", LINE, ids=lambda formula: formula.name)
 ORDERED = pytest.mark.parametrize(
-    "formula", [formula for formula in FORMULAS if formula.approach], ids=lambda formula: formula.name
+    "formula", [formula for formula in LINE if formula.approach], ids=lambda formula: formula.name
 )
 
 
@@ -148,11 +152,10 @@ def test_names_of_formulas_are_unique_and_lead_to_them():
     names = [formula.name for formula in FORMULAS]
     assert len(set(names)) == len(names)
     for formula in FORMULAS:
-        module, _, name = formula.name.partition(".")
-        assert getattr(getattr(asymptotics, module), name) is formula
+        assert operator.attrgetter(formula.name)(asymptotics) is formula
 
 
-@NAMED
+@EVERY
 def test_what_a_formula_says_of_itself_is_complete(formula):
     assert formula.source
     assert formula.predicts in MEASURED or formula.predicts in FIELDS
@@ -174,7 +177,7 @@ def test_a_formula_of_both_coefficients_states_for_which_of_them_its_error_holds
         assert formula.valid(states(formula)[0], boundary_friction=1.0, beta=0.05) and formula.valid(states(formula)[0])
 
 
-@NAMED
+@EVERY
 def test_the_docstring_of_a_formula_is_complete(formula):
     name = f"{formula.function.__module__}.{formula.function.__name__}"
     faults = {"GL08", "SS01", "SS03", "PR01", "PR02", "PR03", "PR04", "PR07", "RT01", "RT03", "YD01"}
@@ -222,7 +225,7 @@ def test_the_error_of_a_friction_law_over_its_range_in_the_coefficients_is_at_mo
 
 
 def test_the_scan_over_coefficients_knows_every_law_that_has_both():
-    assert {id(law) for law, _ in JUDGED.values()} == {id(law) for law in FORMULAS if law.needs_coefficients}
+    assert {id(law) for law, _ in JUDGED.values()} == {id(law) for law in LINE if law.needs_coefficients}
 
 
 @NAMED
@@ -233,7 +236,7 @@ def test_the_stated_error_of_a_formula_is_not_much_larger_than_what_a_dense_scan
 
 
 def test_the_scan_knows_the_formulas_of_the_table_and_no_other():
-    assert set(SCANNED) == {formula.name for formula in FORMULAS}
+    assert set(SCANNED) == {formula.name for formula in LINE}
 
 
 # --- the range ---
@@ -250,7 +253,7 @@ def test_a_formula_is_silent_in_its_range(formula):
         assert np.isfinite(formula(groups, *arguments(formula, groups)))
 
 
-@pytest.mark.parametrize("law", [law for law in FORMULAS if law.needs_coefficients], ids=lambda law: law.name)
+@pytest.mark.parametrize("law", [law for law in LINE if law.needs_coefficients], ids=lambda law: law.name)
 @pytest.mark.parametrize("given", [{"beta": 300.0}, {"boundary_friction": 1e-6}, {"boundary_friction": 0.0}])
 def test_a_friction_law_warns_of_coefficients_outside_its_range(law, given):
     groups = states(law)[0]

@@ -5,6 +5,7 @@ Source: none; the counterpart of :mod:`stribeck.evidence.formulas` for the point
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
@@ -21,6 +22,9 @@ from stribeck.solver.point.state import PointState
 RTOL = 1e-5
 """Relative tolerance of the states that judge."""
 
+SMALL_SHARE = 1e-5
+"""Share of the fluid below which it does not judge: the errors of shares are absolute."""
+
 
 @lru_cache(maxsize=1024)
 def state(groups: Groups) -> PointState:
@@ -29,7 +33,16 @@ def state(groups: Groups) -> PointState:
 
 
 def row(states: list[Groups]) -> list[PointState | None]:
-    """Return states of one load and roughness at ascending speeds, each from the one before; None where none was found."""
+    """Return states of one load and roughness at ascending speeds, each from its neighbour; None where none was found.
+
+    Smooth ones begin at the fastest, which is nearly rigid.
+    """
+    if not any(groups.roughness for groups in states):
+        return _along(states[::-1])[::-1]
+    return _along(states)
+
+
+def _along(states: list[Groups]) -> list[PointState | None]:
     found: list[PointState | None] = []
     before: PointState | None = None
     for groups in states:
@@ -47,6 +60,11 @@ def _sound(found: PointState) -> PointState:
     return found
 
 
+def _fluid_share(found: PointState, _: dict[str, Any]) -> float:
+    share = found.values["fluid_load_share"]
+    return share if share >= SMALL_SHARE or found.groups.speed == 0 else math.nan
+
+
 def _viscous(found: PointState, options: dict[str, Any]) -> float:
     """Return the viscous friction of a whole sphere, or up to the wetted radius in the options."""
     observables = replace(PointObservables.of(found, None), _wetted_radius=options.get("wetted_radius"))
@@ -60,8 +78,9 @@ def _friction(found: PointState, options: dict[str, Any]) -> float:
 OBSERVED: dict[str, Callable[[PointState, dict[str, Any]], float]] = {
     **{
         name: lambda found, _, name=name: found.values[name]  # type: ignore[misc]
-        for name in ("central_gap", "minimum_gap", "minimum_gap_on_axis", "offset", "contact_load_share", "fluid_load_share")
+        for name in ("central_gap", "minimum_gap", "minimum_gap_on_axis", "offset", "contact_load_share")
     },
+    "fluid_load_share": _fluid_share,
     "viscous_friction": _viscous,
     "friction": _friction,
 }

@@ -36,8 +36,7 @@ ANGLES = (0.8, 0.6, 0.45, 0.35, 0.28, 0.22, 0.18, 0.14)
 
 
 def force(gap: float, turning: bool = False) -> float:
-    """Return the force over 6 pi eta R U on a sphere at a gap [R] from a plane, sliding or turning, U the speed of its
-    surface."""
+    """Return the force over 6 pi eta R U on a sphere at a gap [R] from a plane, sliding or turning at U."""
     alpha = math.acosh(1 + gap)
     c = math.sinh(alpha)
     count = int(TERMS / alpha)

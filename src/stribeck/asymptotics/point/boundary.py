@@ -102,8 +102,8 @@ def edges(load: Value, kappa: Value, coefficients: tuple[float, float, float]) -
     """Return the load whose contact at rest has the true gap in the middle, and what the edges make of an integral over it."""
     A = -np.log(load) / 3
     below = np.multiply(load, np.exp(-3 * (0.5 + CATALAN) * np.asarray(kappa)))
-    factor: Array = 1 + np.polynomial.polynomial.polyval(A, coefficients) * np.power(kappa, 2 / 3)
-    return np.asarray(below, dtype=float), factor
+    factor = 1 + np.polynomial.polynomial.polyval(A, coefficients) * np.power(kappa, 2 / 3)
+    return np.asarray(below, dtype=float), np.asarray(factor, dtype=float)
 
 
 @formula(
