@@ -26,7 +26,15 @@ import live_curve  # noqa: E402
 
 CONTENTS = {
     "index": ["readers", "guide", "gallery/index", "theory", "numerics", "api", "about"],
-    "readers": ["for_engineers", "for_experimentalists", "for_theorists", "for_teachers", "for_developers", "when_not_to_use"],
+    "readers": [
+        "for_engineers",
+        "for_experimentalists",
+        "for_ball_on_disc",
+        "for_theorists",
+        "for_teachers",
+        "for_developers",
+        "when_not_to_use",
+    ],
     "guide": [
         "cli",
         "data_sheet",

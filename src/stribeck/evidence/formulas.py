@@ -129,7 +129,7 @@ AXES: dict[str, dict[str, tuple[float, ...]]] = {
     "rest": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-6, 3, 3)},
     "mixed": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 0, 3), "speed": (-12, 2, 3)},
     "located": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 0, 2)},
-    "smooth ball": {"speed": (-4, 3, 2)},
+    "smooth ball": {"speed": (-5, 4, 3)},
     "ball at rest": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 2, 2)},
     "any ball": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-3, -1, 1), "speed": (-8, 1, 1)},
 }

@@ -105,7 +105,7 @@ def de_vicente(groups: Groups, slope: float = 0.1) -> Value:
     Its exponents are nearly the exact ones, 3/5 and -2/15.  At a/R = 0.1 between 0.7 % below at speed 1e-6 and 10 %
     above at 0.5; it goes as :math:`(a/R)^{-0.02}`.
 
-    Source: J. de Vicente, J. R. Stokes and H. A. Spikes, Tribol. Int. 38 (2005) 515.
+    Source: J. de Vicente, J. R. Stokes and H. A. Spikes, Tribol. Lett. 20 (2005) 273.
     """
     ratio = _slope(slope)
     U, W = groups.speed * ratio**4 / (12 * math.pi), 2 / 3 * ratio**3
