@@ -109,6 +109,18 @@ def test_the_table_of_conversions_is_whole():
     assert not set(GIVEN) & set(QUANTITIES)
 
 
+@pytest.mark.quick
+def test_ra_is_the_height_of_a_surface_with_a_spectrum_too(tmp_path):
+    """Persson's law takes its height from [surface], where a data sheet's Ra has no place."""
+    path = tmp_path / "seal.toml"
+    surface = {"hurst": "0.8", "longest_wavelength": '"150 um"', "shortest_wavelength": '"1.5 um"'}
+    contact = {"roughness": None, "alpha": None, "beta": None, "ra": '"0.8 +- 0.1 um"', "law": '"persson"'}
+    path.write_text(case_text(contact, surface=surface))
+    case = sb.load_case(path)
+    assert case.contact.roughness == pytest.approx(0.8e-6 * math.sqrt(math.pi / 2), rel=1e-6)
+    assert case.contact.law.name == "persson" and case.errors["roughness"] > 0.1
+
+
 # --- values with an error ---
 
 

@@ -265,12 +265,16 @@ def _convert(table: dict[str, Any], problems: list[str], inputs: InputTable) -> 
     """Put inputs of the contact in the place of those that they follow from, and return their errors and what was done."""
     errors: dict[str, float] = {}
     said: tuple[str, ...] = ()
+    sheet = table["contact"] if isinstance(table.get("contact"), dict) else {}
     if isinstance(table.get("contact"), dict):
         given = read_given(table["contact"], inputs)
         problems += [f"[contact] {each}" for each in given.problems]
         table["contact"], errors, said = given.values, given.errors, given.said
     surface = table.get("surface")
-    if isinstance(surface, dict) and "h_rms" in surface:
+    from_sheet = any(name in ("ra", "rq") for name in sheet)
+    if from_sheet and isinstance(surface, dict) and not {"h_rms", "spectrum", "shape_only", "wavenumber"} & set(surface):
+        table["surface"] = surface | {"h_rms": table["contact"].pop("roughness")}
+    elif isinstance(surface, dict) and "h_rms" in surface:
         try:
             height, error = split_error("h_rms", surface["h_rms"], "length")
         except InputError as problem:
