@@ -79,7 +79,51 @@ def solve_in_order(
     KeyboardInterrupt
         If the user interrupted it.
     """
+    CHAINS[physics["geometry"]](states, physics, rtol, on_state, contact_of)
+
+
+def _cylinders(
+    states: Array,
+    physics: Physics,
+    rtol: float,
+    on_state: Callable[[int, Ended], object],
+    contact_of: Callable[[int], Contact | None],
+) -> None:
     _Chain(states, physics, rtol, on_state, contact_of).run()
+
+
+@one_blas_thread
+def _balls(
+    states: Array,
+    physics: Physics,
+    rtol: float,
+    on_state: Callable[[int, Ended], object],
+    contact_of: Callable[[int], Contact | None],
+) -> None:
+    """Solve balls, each from the one before it."""
+    from stribeck.solver.point.path import next_state
+    from stribeck.solver.point.solution import solution_of as ball_of
+
+    last = None
+    for i, row in enumerate(states.tolist()):
+        groups = Groups(*row, **physics)
+        try:
+            state = next_state(last, groups, rtol)
+        except MemoryError:
+            raise
+        except Exception as problem:  # a fault of the program must not cost the other states of a long run
+            message = f"{describe(groups)}: {type(problem).__name__}: {problem}"
+            on_state(i, Ended(Outcome.PATH_LOST, None, message, problem))
+            continue
+        if state.outcome.ok:
+            last = state
+            on_state(i, Ended(state.outcome, ball_of(state, contact_of(i))))  # type: ignore[arg-type]
+        else:
+            on_state(i, Ended(state.outcome, None, f"{describe(groups)}: {state.outcome.value}"))
+
+
+CHAINS = {"line": _cylinders, "point": _balls}
+"""How the states of a chain are solved, by geometry."""
 
 
 class _Chain:

@@ -21,7 +21,7 @@ from stribeck.equations.observables import Observables
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES, GROUPS, NAMES
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.solve import check_rtol
+from stribeck.solver.solve import check_rtol, only_line
 
 __all__ = ["solve_batch"]
 
@@ -74,6 +74,7 @@ def solve_batch(
         raise InputError(f"problem = {show(problem)}; it must be a contact or Groups(speed, load, roughness) of arrays.")
     check_rtol(rtol)
     groups, contacts, names = varied(problem, inputs, dims)
+    only_line(groups, "solve_batch")
     if isinstance(problem, Contact):
         kept = {name: other.of for other in problem.INPUTS.alternatives for name in other.inputs}
         given = tuple(dict.fromkeys(kept.get(name, name) for name in inputs))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Literal, overload
+from typing import Any, Literal, overload
 
 import numpy as np
 
@@ -84,6 +84,8 @@ def friction_sensitivities(
     if check_method(method) == "atlas":
         return None, _from_atlas(contact, definition)
     groups = contact.groups
+    if groups.geometry in SENSITIVITIES:
+        return SENSITIVITIES[groups.geometry](contact, rtol, definition)
     if groups.speed == 0:
         solution, slopes = solve(contact, rtol=rtol), np.zeros(3)
     else:
@@ -93,6 +95,16 @@ def friction_sensitivities(
         slopes = friction_slopes(point.state, contact.boundary_friction, contact.beta, definition)
     friction = solution.friction(definition=definition)
     return solution, _sensitivities(slopes, friction.contact, friction.viscous)
+
+
+def _of_ball(contact: Contact, rtol: float, definition: Definition) -> tuple[Any, dict[str, float]]:
+    from stribeck.curves.point_sensitivities import point_sensitivities
+
+    return point_sensitivities(contact, rtol, definition)
+
+
+SENSITIVITIES = {"point": _of_ball}
+"""How friction answers to the inputs, by geometry, beside the line."""
 
 
 def _from_atlas(contact: Contact, definition: Definition) -> dict[str, float]:

@@ -35,6 +35,7 @@ from stribeck.fits.result import Fit, FitOutcome, FittedInput, unit_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import si_text
 from stribeck.quantities.units import InputError, show
+from stribeck.solver.solve import only_line
 
 __all__ = ["fit"]
 
@@ -125,6 +126,7 @@ def fit(
     contact, settings, definition = problem.contact, problem.settings, problem.definition
     if not isinstance(data, Measurements):
         data = read_measurements(data, settings)
+    only_line(contact.groups, "fit")
     names = free_names(free) if free is not None else settings.free or DEFAULT_FREE
     if not names:
         raise InputError("free is empty; name at least one input to fit, such as boundary_friction.")

@@ -20,7 +20,7 @@ from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.solver.solve import as_groups, with_law
+from stribeck.solver.solve import as_groups, only_line, with_law
 
 __all__ = ["AXES", "FIELDS", "LINES", "MARKS", "REGIMES", "Diagram", "empty_diagram"]
 
@@ -137,6 +137,7 @@ def empty_diagram(
     counts, table = _points(points), None if contact is None else contact.INPUTS
     axes = {name: _axis(name, given[name], table, counts[name]) for name in ("load", "roughness")}
     physics = (as_groups(problem)[0] if problem is not None else _unit_groups(law)).physics
+    only_line(Groups(1.0, 1.0, 1.0, **physics), "phase_diagram")
     corners = Diagram(contact, axes | {"speed": np.ones(1)}, boundary_friction, beta, definition, rtol, physics)
     if given["speed"] is None:
         axes["speed"] = _automatic_axis(corners, counts["speed"])

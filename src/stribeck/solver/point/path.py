@@ -10,7 +10,7 @@ from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState
 
-__all__ = ["NeighbourSolver", "without_factors"]
+__all__ = ["NeighbourSolver", "next_state", "without_factors"]
 
 REACH = 3.5
 """Distance of logarithms within which a neighbour is a start worth having."""
@@ -24,6 +24,17 @@ def without_factors(state: PointState) -> PointState:
     levels = (replace(level, iterated=replace(level.iterated, preconditioner=None)) for level in (pair.coarse, pair.fine))
     coarse, fine = levels
     return replace(state, work=replace(pair, coarse=coarse, fine=fine))
+
+
+def next_state(start: PointState | None, groups: Groups, rtol: float) -> PointState:
+    """Return the state of ``groups`` from a neighbour, or from cold without one or where that is lost."""
+    if start is None:
+        return solve_cold(groups, rtol)
+    state = solve_from(start, groups, rtol)
+    if state.outcome.ok:
+        return state
+    cold = solve_cold(groups, rtol)
+    return cold if cold.outcome.ok else state
 
 
 class NeighbourSolver:
@@ -46,12 +57,7 @@ class NeighbourSolver:
         """Return the state at ``s``, with its outcome where it failed."""
         if s in self.states:
             return self.states[s]
-        groups = self.groups_at(s)
-        start = self._start(s)
-        state = solve_cold(groups, self.rtol) if start is None else solve_from(start, groups, self.rtol)
-        if not state.outcome.ok and start is not None:
-            cold = solve_cold(groups, self.rtol)
-            state = cold if cold.outcome.ok else state
+        state = next_state(self._start(s), self.groups_at(s), self.rtol)
         if state.outcome.ok:
             self._last = s, state
             self.states[s] = without_factors(state)

@@ -1,0 +1,102 @@
+"""Balls in sweeps, in sensitivities and regimes, in curves from the command line; and what is for cylinders alone."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.batches.chain import solve_in_order
+from stribeck.cli.running import main
+from stribeck.curves.sensitivities import friction_sensitivities
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+
+
+def ball(**changes):
+    kept = {"radius": 0.01, "modulus": 1e6, "viscosity": 0.1, "alpha": 2.0, "beta": 0.1, "boundary_friction": 0.8}
+    return sb.PointContact.from_groups(sb.Groups(1e-3, 1e-2, 2e-4, geometry="point"), **(kept | changes))
+
+
+def test_a_chain_of_balls_gives_the_states_that_are_solved_one_by_one():
+    states = np.array([[1e-3, 1e-2, 2e-4], [1.3e-3, 1e-2, 2e-4], [0.0, 1e-2, 2e-4]])
+    found = {}
+    solve_in_order(states, ball().groups.physics, 1e-4, lambda i, ended: found.__setitem__(i, ended))
+    assert [ended.outcome.ok for ended in found.values()] == [True, True, True]
+    alone = sb.solve(sb.Groups(*states[1], geometry="point"), rtol=1e-4)
+    assert found[1].solution.contact_load_share == pytest.approx(alone.contact_load_share, abs=2e-4)
+    assert found[2].solution.contact_load_share == pytest.approx(1, abs=1e-12)
+
+
+def test_a_sweep_keeps_balls_with_their_own_observables(tmp_path):
+    pytest.importorskip("zarr")
+    path = tmp_path / "sweep.toml"
+    path.write_text(
+        '[groups]\ngeometry = "point"\nload = 0.01\nroughness = 2e-4\nbeta = 0.1\n[vary]\nspeed = [1e-3, 2e-3]\n'
+        "[solver]\nrtol = 1e-3\n"
+    )
+    found = sb.sweep(path, tmp_path / "out.zarr").to_dataset()
+    assert set(found["outcome"].values.ravel()) == {"CONVERGED"}
+    alone = sb.solve(sb.Groups(2e-3, 0.01, 2e-4, geometry="point"), rtol=1e-3)
+    assert float(found["minimum_radius"].values.ravel()[1]) == pytest.approx(alone.minimum_radius, abs=1e-2)
+    assert float(found["friction_balanced"].values.ravel()[1]) == pytest.approx(alone.friction(beta=0.1).total, rel=3e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("edge", [None, "2 mm"])
+def test_sensitivities_of_a_ball_are_those_of_frictions_beside_it(edge):
+    contact = ball(slide_to_roll=0.6, wetted_radius=edge)
+    solution, found = friction_sensitivities(contact, rtol=1e-6)
+    assert set(found) == {name for name, _ in contact.inputs()}
+    for name in ("speed", "load", "beta", "radius", "slide_to_roll", *(["wetted_radius"] if edge else [])):
+        ends = [
+            sb.solve(contact.replace(**{name: getattr(contact, name) * math.exp(step)}), rtol=1e-6).friction().total
+            for step in (0.02, -0.02)
+        ]
+        assert found[name] == pytest.approx(math.log(ends[0] / ends[1]) / 0.04, abs=3e-3), name
+    assert solution.contact is contact
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("call", "what"),
+    [
+        (lambda: sb.solve_batch(ball().groups), "solve_batch"),
+        (lambda: sb.phase_diagram(ball()), "phase_diagram"),
+    ],
+)
+def test_what_is_for_cylinders_alone_refuses_a_ball_with_a_sentence(call, what):
+    with pytest.raises(sb.InputError, match=f"{what} is for cylinders, geometry 'line'; of balls there are solve"):
+        call()
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", ["pdms_ball", "tongue_model", "contact_lens", "rubber_ball"])
+def test_the_examples_are_balls_with_a_law_that_holds_at_their_load(name):
+    contact = sb.load_case(EXAMPLES / f"{name}.toml").contact
+    assert isinstance(contact, sb.PointContact)
+    assert contact.groups.load > 1
+    assert contact.law.name == "persson"
+    assert contact.slope < 0.35
+
+
+def test_the_command_solves_a_ball(capsys):
+    assert main(["solve", str(EXAMPLES / "rubber_ball.toml"), "--rtol", "1e-3", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["geometry"] == "point"
+    assert found["si"]["units"]["load"] == "N"
+    assert found["si"]["slide_to_roll"] == 1.0
+    assert "wetted_radius" not in found["si"]
+    assert found["si"]["central_film_thickness"] == pytest.approx(
+        found["central_gap"] * found["si"]["hertz_indentation"], rel=1e-12
+    )
+
+
+def test_the_command_prints_a_ball(capsys):
+    assert main(["solve", str(EXAMPLES / "rubber_ball.toml"), "--rtol", "1e-3"]) == 0
+    out = capsys.readouterr().out
+    assert "slide-to-roll ratio 1" in out
+    assert "distance of minimum film" in out
+    assert "central pressure" in out
