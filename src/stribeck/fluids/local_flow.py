@@ -45,17 +45,22 @@ MOST_STEPS = 80
 AT_REST = 1e-8
 """Smallest wall rate over that of the other wall."""
 
+SMALL_STEP = 0.01
+"""Step of the stress over the stress up to which it makes no difference which of the two is the unknown."""
+
 LARGEST_STEP = 4.0
 """Factor by which the larger wall rate may grow in a step; it may fall by as much."""
 
 
 class Profile(NamedTuple):
-    """The flow across the film at many nodes: rates x and stresses g at the walls a and b, and A, B, C."""
+    """The flow across the film at many nodes: rates x, stresses g and slopes dg/dx at the walls a and b, and A, B, C."""
 
     x_a: Array
     x_b: Array
     g_a: Array
     g_b: Array
+    slope_a: Array
+    slope_b: Array
     by_mean: Array
     mixed: Array
     by_slope: Array
@@ -82,7 +87,7 @@ def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | N
     size = np.maximum(np.abs(x_a), np.abs(x_b))
     # A wall at rest is singular in laws without a plateau.
     x_a, x_b = (np.where(np.abs(x) < AT_REST * size, AT_REST * size, x) for x in (x_a, x_b))
-    found = np.empty((7, len(r_0)))
+    found = np.empty((9, len(r_0)))
     left = np.arange(len(r_0))
     wanted = np.stack([r_0, r_1])
     here = _Walls.at(law, x_a, x_b, wanted)
@@ -90,7 +95,7 @@ def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | N
     for _ in range(MOST_STEPS):
         ahead = here.moved(law, part)
         change = np.maximum(np.abs(ahead[0] - here.x_a), np.abs(ahead[1] - here.x_b)) / here.size
-        done = (change < CLOSE) & (part == 1.0)
+        done = (np.maximum(change, here.stress_change) < CLOSE) & (part == 1.0)
         if done.any():
             found[:, left[done]] = here.ending(ahead, done)
             more = ~done
@@ -138,6 +143,12 @@ class _Walls(NamedTuple):
         defect = np.hypot(missing_0, 3 * missing_1)
         return cls(x_a, x_b, g_a, g_b, slope_a, slope_b, by_mean, mixed, by_slope, step_a, step_b, size, defect)
 
+    @property
+    def stress_change(self) -> Array:
+        """The step of the stresses over the larger of these."""
+        largest = np.maximum(np.abs(self.g_a), np.abs(self.g_b))
+        return np.asarray(np.maximum(np.abs(self.step_a), np.abs(self.step_b)) / largest)
+
     def of(self, chosen: Flags) -> _Walls:
         """Return the chosen nodes."""
         return _Walls(*(each[chosen] for each in self))
@@ -159,7 +170,8 @@ class _Walls(NamedTuple):
         """Return the fields of the profile after a last step."""
         x_a, x_b = ahead
         g_a, g_b = self.g_a + self.step_a, self.g_b + self.step_b
-        return np.stack([x_a, x_b, g_a, g_b, self.by_mean, self.mixed, self.by_slope])[:, done]
+        slopes = (self.slope_a, self.slope_b)
+        return np.stack([x_a, x_b, g_a, g_b, *slopes, self.by_mean, self.mixed, self.by_slope])[:, done]
 
 
 def _odd(law: RateLaw, rate: Array) -> tuple[Array, Array]:
@@ -172,7 +184,7 @@ def _moved(law: RateLaw, x: Array, g: Array, step: Array, slope: Array, other: A
     linear = x + step / slope
     bound = np.maximum(np.abs(x), np.abs(other))
     linear = np.clip(linear, -LARGEST_STEP * bound, LARGEST_STEP * bound)
-    minor = np.abs(x) < ALIKE * np.abs(other)
+    minor = (np.abs(x) < ALIKE * np.abs(other)) & (np.abs(step) > SMALL_STEP * np.abs(g))
     if minor.any():
         moved = g[minor] + step[minor]
         largest = law.stress(LARGEST_STEP * np.abs(other[minor]))[0]

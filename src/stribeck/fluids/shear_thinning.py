@@ -34,6 +34,10 @@ FAR = 4.0
 """Factor by which a film may change before the local solutions of the last one are no good start."""
 
 
+NEAR = 0.3
+"""Change of a wall rate over the larger one up to which first order is a good start."""
+
+
 class _Local(NamedTuple):
     """What the film is at nodes, and what it was made for."""
 
@@ -239,10 +243,17 @@ def _same(first: tuple[Array, Array | None, Numbers], second: tuple[Array, Array
 
 def _scaled(last: _Local, r_0: Array, r_1: Array) -> tuple[Array, Array]:
     """Return wall rates to start from: those of the last film, to first order, or the Newtonian ones where that is far."""
-    size, before = np.abs(r_0) + 6 * np.abs(r_1), np.abs(last.r_0) + 6 * np.abs(last.r_1)
-    ratio = size / before
-    near = (ratio < FAR) & (ratio > 1 / FAR)
-    return (
-        np.where(near, last.flow.x_a * ratio, r_0 - 6 * r_1).ravel(),
-        np.where(near, last.flow.x_b * ratio, r_0 + 6 * r_1).ravel(),
-    )
+    flow = last.flow
+    mean, slope = flow.change(r_0 - last.r_0, r_1 - last.r_1)
+    size = np.maximum(np.abs(flow.x_a), np.abs(flow.x_b))
+    before, now = np.abs(last.r_0) + 6 * np.abs(last.r_1), np.abs(r_0) + 6 * np.abs(r_1)
+    found = []
+    for sign, x, of_rate, newtonian in (
+        (-1.0, flow.x_a, flow.slope_a, r_0 - 6 * r_1),
+        (1.0, flow.x_b, flow.slope_b, r_0 + 6 * r_1),
+    ):
+        step = (mean + 0.5 * sign * slope) / of_rate
+        ratio = now / before
+        far = np.where((ratio < FAR) & (ratio > 1 / FAR), x * ratio, newtonian)
+        found.append(np.where(np.abs(step) < NEAR * size, x + step, far).ravel())
+    return found[0], found[1]
