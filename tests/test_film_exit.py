@@ -1,6 +1,7 @@
 """Films that end: states through `solve` against an independent solver, and what follows from their equations."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import gradients, observables
+from stribeck.equations.sensitivity import log_derivatives
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import ALL_NAMES as NAMES
@@ -121,3 +123,27 @@ def test_random_cold_starts_of_films_that_end_are_solved_and_their_errors_covere
         missed += np.nanmax(ratio) > 1
         assert np.nanmax(ratio) < 30, groups
     assert missed <= 0.05 * states
+
+
+@pytest.mark.parametrize(
+    "keywords", [{"cavitation": "exit"}, {"fluid": sb.fluids.Barus(1.0)}, {"fluid": sb.fluids.Carreau(0.02, 0.5)}]
+)
+def test_derivatives_with_respect_to_the_groups_are_those_of_neighbouring_states(keywords):
+    groups = sb.Groups(1e-4, 0.1, 1e-4)
+    model = sb.solve(groups, **keywords).groups.model
+    found = log_derivatives(solved_point(replace(groups, model=model), 1e-8).state)
+    for column, name in enumerate(("speed", "load", "roughness")):
+        pair = [
+            sb.solve(replace(groups, model=model, **{name: getattr(groups, name) * factor}), rtol=1e-9, on_failure="return")
+            for factor in (1.01, 1 / 1.01)
+        ]
+        for observable, slopes in found.items():
+            slope = np.diff([getattr(s, observable) for s in pair[::-1]])[0] / (2 * np.log(1.01))
+            assert slopes[column] == pytest.approx(slope, rel=2e-3, abs=1e-6)
+
+
+def test_the_minimum_of_friction_of_a_film_that_ends_is_that_of_an_independent_solver():
+    curve = sb.stribeck_curve(sb.Groups(1e-3, 0.1, 1e-4), speed=np.geomspace(3e-4, 3e-3, 5), cavitation="exit")
+    speed, friction = REFERENCE["friction_minimum"]["0.1,0.001"]["free_exit"]
+    assert curve.minimum.friction == pytest.approx(friction, rel=1e-6)
+    assert curve.minimum.value == pytest.approx(speed, rel=1e-3)  # the minimum is flat

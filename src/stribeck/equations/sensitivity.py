@@ -7,10 +7,14 @@ for each group G, with the factors of Newton's Jacobian made anew at the state.
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.line import LOAD
+from stribeck.contacts.groups import contact_law
+from stribeck.equations.line import LOAD, Equations
 from stribeck.equations.observables import friction_integrals, friction_scale, observables
 from stribeck.equations.state import State
 
@@ -39,6 +43,8 @@ def log_derivatives(state: State) -> dict[str, Array]:
     -----
     Relative error about 1e-8 beyond that of the state (``test_sensitivity.py``).
     """
+    if not state.equations.operators.is_article:
+        return _of_any_film(state)
     equations, y = state.equations, state.y
     mesh, law, load = state.mesh, equations.law, float(state.groups.load)
     at = equations.layout
@@ -65,6 +71,30 @@ def log_derivatives(state: State) -> dict[str, Array]:
         behind = friction_integrals(mesh, h - size * dh, h_star - size * dm)
         frictions[:, column] = scale * (ahead - behind) / (2 * size) + direct[name] * viscous
     return {"contact_load_share": share} | dict(zip(FRICTIONS, frictions, strict=True))
+
+
+def _of_any_film(state: State) -> dict[str, Array]:
+    """Return the same for a film that is not that of the article, by differences along the change of the whole state."""
+    equations, y, groups = state.equations, state.y, state.groups
+    inverse, units = equations.inverse(y), equations.units(y)
+    names = ("contact_load_share", *FRICTIONS)
+    found = np.empty((len(names), len(GROUPS)))
+    for column, name in enumerate(GROUPS):
+        if float(getattr(groups, name)) == 0.0:
+            found[:, column] = 0.0
+            continue
+        dy = units * inverse(equations.parameter_derivative(y, name))
+        size = STEP / max(1.0, float(np.abs(dy / units).max()))
+        values = []
+        for sign in (1.0, -1.0):
+            factor = math.exp(sign * size)
+            # The relative roughness is the ratio of roughness and load: each group is changed with the others held.
+            here = replace(groups, **{name: float(getattr(groups, name)) * factor})  # type: ignore[arg-type]
+            beside = Equations(equations.operators, float(here.speed), contact_law(here), equations.flux_scale)
+            observed = observables(beside, y + sign * size * dy, float(here.load))
+            values.append([getattr(observed, each) for each in names])
+        found[:, column] = (np.array(values[0]) - np.array(values[1])) / (2 * size)
+    return dict(zip(names, found, strict=True))
 
 
 def friction_slopes(state: State, boundary_friction: float, beta: float, definition: str) -> Array:

@@ -313,6 +313,10 @@ def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> So
     notes = [*shape_notes(contact), *law_notes(point.groups, contact, values)]
     if contact is not None and point.groups.speed > 0:
         notes += cavitation_notes(contact, state.equations.pressures(state.y)[1])
+    if not state.equations.operators.is_article and point.groups.speed > 0:
+        film, fluid = state.equations.film, state.equations.pressures(state.y)[1]
+        said = film.notes(state.gap, fluid if film.uses_pressure else None, state.flux_gap)
+        notes += [f"The fluid leaves the range of its laws: {each.rstrip('.')}." for each in said]
     if math.isnan(values.flux_gap):
         notes.append("The gap is negative, so no fluid passes and there is no flux gap.")
     if estimate.floor > 0.1 * rtol:
