@@ -19,7 +19,7 @@ from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solver.solve import as_groups
 
-__all__ = ["Coordinate", "Over", "check_inside", "read_problem"]
+__all__ = ["Coordinate", "Over", "check_inside", "given_values", "read_problem"]
 
 Over = Literal["speed", "load", "roughness"]
 
@@ -53,6 +53,11 @@ class Coordinate:
     def geometry(self) -> Geometry:
         """A cylinder or a ball."""
         return self.groups_at(0.0).geometry if isinstance(self.base, Contact) else self.base.geometry
+
+    def is_uniform(self, values: Array) -> bool:
+        """Return whether the model is the same at all values: in Hertz units it may vary with the load."""
+        ends = [self.groups_at(math.log(value)).model for value in (values[0], values[-1])]
+        return ends[0] == ends[1]
 
     @property
     def direction(self) -> Array:
@@ -114,6 +119,23 @@ def _ends(over: Over, value: Any, table: InputTable | None) -> Array:
             f"{over} = {show(value)}; a range is two or more finite positive increasing numbers, such as (1e-9, 10)."
         )
     return found
+
+
+def given_values(over: Over, value: Any, contact: Contact | None) -> Array:
+    """Return values of what a curve runs over, a number or an array of them, as positive numbers."""
+    many = _dimensions(over, value) > 0
+    items = list(value) if many else [value]
+    if contact is not None:
+        dimension = contact.INPUTS.quantities[over].dimension
+        found = np.array([to_si(item, dimension, over) for item in items])
+    else:
+        try:
+            found = np.array([float(item) for item in items])
+        except (TypeError, ValueError):
+            raise InputError(f"{over} = {show(value)}; groups are plain numbers.") from None
+    if not (np.isfinite(found) & (found > 0)).all():
+        raise InputError(f"{over} = {show(value)} must be finite and positive.")
+    return found if many else found[0]
 
 
 def check_inside(coordinate: Coordinate, values: Array) -> None:

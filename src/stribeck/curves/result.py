@@ -17,22 +17,30 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, FrictionArray, check_definition, coefficients
 from stribeck.contacts.groups import Groups
-from stribeck.curves.coordinate import Coordinate, Over
+from stribeck.curves.coordinate import Coordinate, Over, given_values
+from stribeck.curves.function import CurveValues
 from stribeck.curves.landmarks import Landmark, locate
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.equations.sensitivity import GROUPS, friction_slopes
+from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
-from stribeck.quantities.units import InputError, format_si
+from stribeck.quantities.units import InputError, format_si, show
 from stribeck.solver.base_solution import si_films
 from stribeck.solver.notes import HARD, minimum_note
 from stribeck.solver.refinement import RefinedState
+from stribeck.solver.series.line_path import LineProblem
+from stribeck.solver.series.path import SolvedPath, follow
 from stribeck.solver.solution import Solution
+from stribeck.solver.solve import SolveError, describe, finish
 
 if TYPE_CHECKING:
     import xarray
 
 __all__ = ["StribeckCurve"]
+
+SLACK = 1e-12
+"""Rounding of the ends of a curve."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -103,6 +111,92 @@ class StribeckCurve(Shown, ByValue):
             Its values, in the order of :attr:`values`.
         """
         return np.array([getattr(s, name) for s in self.solutions])
+
+    def at(self, value: Any) -> CurveValues:
+        """Return all observables and the friction anywhere on the curve, with their errors.
+
+        Parameters
+        ----------
+        value : float, str or array_like
+            What the curve runs over, inside its range: groups [-], or SI numbers or text with units where the curve has a
+            contact.
+
+        Returns
+        -------
+        CurveValues
+            Numbers for one value, arrays for many.
+
+        Raises
+        ------
+        InputError
+            If a value is outside of the curve.
+        SolveError
+            If no states can be solved along the curve.
+
+        Notes
+        -----
+        On first use about a dozen states along the curve are solved and expanded into Taylor series; from then on a value takes
+        a fraction of a millisecond.  Between the states observables are polynomials in the logarithm of ``value``, whose
+        difference from ones of lower order is part of the error (``test_curve_function.py``).
+        """
+        values = given_values(self.over, value, self.contact)
+        low, high = (float(end) for end in np.exp(self._function.coordinates[[0, -1]]))
+        if not ((values >= low * (1 - SLACK)) & (values <= high * (1 + SLACK))).all():
+            raise InputError(
+                f"{self.over} = {show(value)} is outside of the curve, which runs from {self._where(low)} to "
+                f"{self._where(high).removeprefix(self.over + ' ')}; ask for a curve that holds it."
+            )
+        found, errors = self._function.at(np.log(np.atleast_1d(values)))
+        return CurveValues.of(values, found, errors, self.boundary_friction, self.beta, self.definition, self.rtol)
+
+    def solve_at(self, value: Any) -> Solution:
+        """Return the solution anywhere on the curve, with its fields: solved from the states beside it.
+
+        Parameters
+        ----------
+        value : float or str
+            As for :meth:`at`, one.
+
+        Returns
+        -------
+        Solution
+            With its own error estimate.
+
+        Raises
+        ------
+        InputError
+            If the value is outside of the curve, or more than one.
+        SolveError
+            If the state does not reach the tolerance.
+        """
+        found = self.at(value)
+        if np.ndim(found.value):
+            raise InputError(f"{self.over} = {show(value)}; give one value, a solution is that of one state.")
+        s = math.log(found.value)
+        interval = self._function.intervals[int(self._function.interval_of(np.array([s]))[0])]
+        problem = interval.problem
+        assert isinstance(problem, LineProblem)
+        return finish(
+            problem.point_at(interval.left, interval.right, s), self._path.groups_at(s), self._path.contact_at(s), self.rtol
+        )
+
+    @cached_property
+    def _function(self) -> SolvedPath:
+        return one_blas_thread(self._followed)()
+
+    def _followed(self) -> SolvedPath:
+        """Return the path of expanded states from end to end of the points."""
+        if self._path.geometry != "line":
+            raise InputError("curves of balls are known at their points only; give these as an array.")
+        ends = np.log(self.values[[0, -1]])
+        direction = tuple(self._path.direction.tolist())
+        problem = LineProblem(self._path.groups_at, direction, self.rtol, self._path.is_uniform(self.values))
+        path = follow(problem, float(ends[1]), float(ends[0]), self.rtol)
+        if path.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        if len(path.expansions) < 2:
+            raise SolveError(path.outcome, None, f"{describe(self._path.groups_at(float(ends[1])))}: {path.outcome.value}")
+        return path
 
     @cached_property
     def _friction(self) -> Array:

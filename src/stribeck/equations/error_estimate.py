@@ -371,10 +371,15 @@ def interpolation_errors(states: StackedStates, minimum_positions: Array, centra
     return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
 
 
-def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float, centre: float = 0.0) -> bool:
-    """Return whether central and minimum gap are interpolated to ``rtol``: a reused mesh loses them first."""
+def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float, centre: float = 0.0, spread: float = 0.0) -> bool:
+    """Return whether central and minimum gap are interpolated to ``rtol``, up to ``spread`` from the place of the minimum.
+
+    A reused mesh loses them first.
+    """
     central = int(np.searchsorted(mesh.edges, 0.0)) if centre == 0.0 else int(mesh.locate(np.array([centre]))[0][0])
-    panels = [central, int(np.argmin(gap)) // mesh.order]
+    lowest = mesh.nodes[int(np.argmin(gap))]
+    near = np.abs(mesh.centres[:-1] - lowest) <= mesh.half_widths[:-1] + spread
+    panels = [central, *np.flatnonzero(near)]
     return bool((_between_nodes(mesh, gap.reshape(mesh.panels, -1)[panels], panels) <= rtol).all())
 
 

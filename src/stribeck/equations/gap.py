@@ -9,8 +9,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import legendre
 
-from stribeck._types import Array
-from stribeck.numerics.panels import Mesh, reference
+from stribeck._types import Array, Indices
+from stribeck.numerics.panels import Mesh, interpolation_error, reference
 
 NEWTON_STEPS = 3
 LARGEST_STEP = 0.2
@@ -82,6 +82,49 @@ def _minimum_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
         s = min(1.0, max(-1.0, s + step))
     x = c + d * s
     return x, math.exp(_jet(polynomial, s - start)[0]) * (mesh.scale**2 + x * x)
+
+
+def minimum_gaps(mesh: Mesh, log_gap: Array) -> tuple[Array, Array, Array, Indices]:
+    """Return the minimum gap of many states, the logarithms of their gaps in rows.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The discretisation.
+    log_gap : ndarray, shape (rows, nodes)
+        Logarithm of the gap at the nodes.
+
+    Returns
+    -------
+    tuple of ndarray, shape (rows,)
+        Position, gap, the relative error of its interpolation, and the panel it is on.
+    """
+    order, rule = mesh.order, reference(mesh.order)
+    shape = log_gap - np.log(mesh.far)
+    node = np.argmin(log_gap[:, :-order], axis=1)
+    panel, inside = np.divmod(node, order)
+    beside = panel - (inside == 0) + (inside == order - 1)
+    rows = np.arange(len(log_gap))
+    first, second = rule.derivative @ rule.to_legendre, rule.derivative @ rule.derivative @ rule.to_legendre
+    found = []
+    for k, start in ((panel, rule.nodes[inside]), (beside, np.where(inside == 0, 1.0, -1.0))):
+        k = np.clip(k, 0, mesh.panels - 2)
+        own = shape.reshape(len(rows), mesh.panels, order)[rows, k]
+        slopes, bends, values = own @ first.T, own @ second.T, own @ rule.to_legendre.T
+        c, d, s = mesh.centres[k], mesh.half_widths[k], start
+        for _ in range(NEWTON_STEPS):
+            basis, x = legendre.legvander(s, order - 1), c + d * s
+            far = mesh.scale**2 + x * x
+            slope = (basis * slopes).sum(axis=1) + 2 * d * x / far
+            bend = (basis * bends).sum(axis=1) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
+            step = -slope / np.maximum(np.maximum(bend, np.abs(slope) / LARGEST_STEP), 1e-300)
+            s = np.clip(s + step, -1.0, 1.0)
+        x = c + d * s
+        value = (legendre.legvander(s, order - 1) * values).sum(axis=1) + np.log(mesh.scale**2 + x * x)
+        found.append((value, x, k, 2 * interpolation_error(own)))
+    lower = found[1][0] < found[0][0]
+    value, x, k, missed = (np.where(lower, b, a) for a, b in zip(*found, strict=True))
+    return x, np.exp(value), missed, k
 
 
 @lru_cache(maxsize=32)

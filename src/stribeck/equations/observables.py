@@ -84,20 +84,32 @@ def observables(equations: Equations, y: Array, load: float) -> Observables:
 def observables_of_stacked(equations: Equations, y: Array, load: Numbers) -> list[Observables]:
     """Return the observables of many states, the unknowns ``y`` of each in a row and their load groups in a column."""
     op, mesh, at = equations.operators, equations.operators.mesh, equations.layout
+    positions, lowest = np.array([minimum_gap(mesh, row) for row in y[:, at.gap]]).T
+    if not op.is_article:
+        contact = equations.law.pressure(y[:, at.gap]) @ mesh.weights / LOAD
+        numbers = (y[:, at.flux_gap.start], y[:, at.offset.start])
+        return _of_any_film(equations, y, load, np.stack([contact, lowest, positions, *numbers]))
+    values = smooth_observables(equations, y, load)
+    values[ROW["minimum_gap"]] = lowest
+    return [Observables(*row) for row in np.insert(values, ROW["minimum_gap"] + 1, positions, axis=0).T.tolist()]
+
+
+def smooth_observables(equations: Equations, y: Array, load: Numbers) -> Array:
+    """Return the observables of films of the article by :data:`ROW`, shape (n, rows), zero for the minimum of the gap.
+
+    The unknowns may be complex.
+    """
+    op, mesh, at = equations.operators, equations.operators.mesh, equations.layout
     h, h_star = y[:, at.gap], y[:, at.flux_gap]
     contact = equations.law.pressure(h) @ mesh.weights / LOAD
-    positions, lowest = np.array([minimum_gap(mesh, row) for row in h]).T
-    numbers = (y[:, at.flux_gap.start], y[:, at.offset.start])
-    if not op.is_article:
-        return _of_any_film(equations, y, load, np.stack([contact, lowest, positions, *numbers]))
-    fluid, friction = np.zeros(len(y)), np.zeros((3, len(y)))
+    fluid, friction = np.zeros(len(y), y.dtype), np.zeros((3, len(y)), y.dtype)
     if equations.is_sliding:
         fluid = (equations.speed * reynolds.gradient(h, h_star)) @ op.load_of_gradient / LOAD
         scale, far = np.ravel(friction_scale(load, equations.speed)), op.model.solid.far_gap
         friction[:2] = scale * friction_integrals(mesh, h, h_star, far=far)
         friction[2] = scale * upper_integral(mesh, h, h_star, far)
-    values = np.stack([contact, fluid, central_gap(mesh, h), lowest, positions, *numbers, *friction])
-    return [Observables(*row) for row in values.T.tolist()]
+    numbers = (y[:, at.flux_gap.start], y[:, at.offset.start])
+    return np.stack([contact, fluid, central_gap(mesh, h), np.zeros(len(y), y.dtype), *numbers, *friction])
 
 
 def _of_any_film(equations: Equations, y: Array, load: Numbers, known: Array) -> list[Observables]:

@@ -210,6 +210,7 @@ def mesh_for(
     gap_tolerance: float = 1e-2,
     profile_tolerance: float = np.inf,
     halvings: int = 0,
+    spread: float = 0.0,
 ) -> Mesh:
     """Return the coarsest mesh that resolves a guess; where a film begins anew its panels halve towards that place.
 
@@ -233,6 +234,8 @@ def mesh_for(
         That of the logarithm of the gap on the panels where the central and the minimum gap are read off.
     halvings : int
         How often the panels beside the ends of a film are halved, beyond what the tolerance asks for.
+    spread : float
+        Distance from the minimum of the gap up to which it may be read off.
 
     Raises
     ------
@@ -270,7 +273,7 @@ def mesh_for(
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
         at_centre = np.abs(centres - centre) <= (1 + ROUNDING) * half_widths
-        read_off = at_centre | (np.abs(centres - minimum_position) <= half_widths)
+        read_off = at_centre | (np.abs(centres - minimum_position) <= half_widths + spread)
         read_off &= stretch[:, 0] == 1.0
         weight = max(0.1, tolerance / profile_tolerance)
         shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[..., None]

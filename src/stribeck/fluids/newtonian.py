@@ -25,7 +25,7 @@ ONE, ZERO = np.ones(()), np.zeros(())
 
 def gradient(gap: Array, flux_gap: Numbers) -> Array:
     """Return ``(h - h*)/h**3``: the pressure gradient over lambda [u_Hz**-2]."""
-    return np.asarray((gap - flux_gap) / gap**3)
+    return np.asarray((gap - flux_gap) / (gap * gap * gap))
 
 
 def gap_derivative(gap: Array, flux_gap: Numbers) -> Array:

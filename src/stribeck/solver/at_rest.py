@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw, has_constant_decay
 from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import Groups
@@ -61,3 +62,22 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
     if shift == 0.0:
         return groups, 0.0
     return replace(groups, law=ShiftedLaw(shape, shift)), -shift * float(groups.relative_roughness)
+
+
+def shift_along(
+    groups: Groups, base: Groups, direction: tuple[float, float, float], places: Array
+) -> tuple[tuple[float, float, float], Array]:
+    """Return the direction in which the groups that are solved for move, and what their gap lacks at ``places`` of the path.
+
+    ``base`` are those of ``groups`` by :func:`with_positive_gap`; load and shift of the law are held along the path.
+    """
+    _, by_load, by_roughness = direction
+    exponents = groups.scaling
+    rate = by_roughness - exponents.roughness_exponent * by_load
+    kappa = float(base.relative_roughness) * np.exp(rate * places)
+    if base.load != groups.load:
+        heavier = math.log(float(groups.load / base.load)) + by_load * places
+        return (0.0, 0.0, rate), np.asarray(-exponents.pressure_exponent * kappa * heavier)
+    if isinstance(base.law, ShiftedLaw) and not isinstance(groups.law, ShiftedLaw):
+        return direction, np.asarray(-base.law.shift * kappa)
+    return direction, np.zeros_like(places)

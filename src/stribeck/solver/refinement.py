@@ -70,11 +70,13 @@ def converge(
     rtol: float,
     tolerances: tuple[float, float] | None = None,
     profile_tolerance: float = math.inf,
+    spread: float = 0.0,
 ) -> RefinedState:
     """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
 
     ``tolerances`` are the Legendre tails to start with, see :func:`stribeck.equations.state.mesh_for`.
-    ``profile_tolerance`` is the tail of the gap between the nodes, which no observable needs small.
+    ``profile_tolerance`` is the tail of the gap between the nodes, which no observable needs small; ``spread`` is
+    how far from its minimum the gap is resolved as there.
     """
     base, _ = with_positive_gap(groups)
     law = contact_law(base)
@@ -85,7 +87,7 @@ def converge(
     outcome = Outcome.REFINEMENT_LIMIT
     for _ in range(MAX_REFINEMENTS):
         try:
-            mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail, profile_tolerance, halvings)
+            mesh = mesh_for(guess, base, law, order_for(rtol), tail, gap_tail, profile_tolerance, halvings, spread)
         except MeshTooLargeError:
             profile_tolerance *= 10.0
             tail *= 3.0 if profile_tolerance > 10 * tail else 1.0

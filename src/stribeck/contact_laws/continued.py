@@ -1,0 +1,73 @@
+"""Contact laws in the complex plane near the separations of a state, where series of it are sampled.
+
+Laws are known as functions of real numbers, by tables and splines too.  Around each separation such a law is the polynomial
+through its values nearby, which is analytic whatever the law is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from stribeck._types import Array
+from stribeck.contact_laws.law import AsperityLaw
+
+DEGREE = 10
+"""Degree of the polynomials."""
+
+LOG_REACH = 0.5
+"""Half-width in ln(s) of the values that they go through, for laws of positive separations."""
+
+REACH, SMALLEST_REACH = 0.35, 0.3
+"""Half-width of other laws: part of the separation, and the smallest."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContinuedLaw:
+    """The shape of a contact law near separations, one a column.
+
+    Attributes
+    ----------
+    name : str
+        Name of the shape.
+    logarithmic : bool
+        Whether polynomials are in the logarithm of the separation.
+    centre, reach : ndarray, shape (n,)
+        Where they are centred, and their unit.
+    coefficients : ndarray, shape (DEGREE + 1, n)
+        Of ln(Phi), ascending.
+    """
+
+    name: str
+    logarithmic: bool
+    centre: Array
+    reach: Array
+    coefficients: Array
+
+    @classmethod
+    def of(cls, shape: AsperityLaw, separation: Array) -> ContinuedLaw:
+        """Return the continuation of a law near separations, shape (n,)."""
+        logarithmic = shape.lowest == 0.0
+        centre = np.log(separation) if logarithmic else separation
+        reach = np.full_like(centre, LOG_REACH) if logarithmic else np.maximum(SMALLEST_REACH, REACH * np.abs(centre))
+        points = centre + reach * chebyshev.chebpts1(DEGREE + 1)[:, None]
+        values = shape.log_pressure(np.exp(points) if logarithmic else points)
+        return cls(shape.name, logarithmic, centre, reach, _to_powers() @ values)
+
+    def log_pressure(self, separation: Array) -> Array:
+        """Return ln(Phi) at complex separations, shape (..., n)."""
+        z = ((np.log(separation) if self.logarithmic else separation) - self.centre) / self.reach
+        found: Array = self.coefficients[-1] + np.zeros_like(z)
+        for coefficients in self.coefficients[-2::-1]:
+            found *= z
+            found += coefficients
+        return found
+
+
+@lru_cache(maxsize=1)
+def _to_powers() -> Array:
+    """Matrix from values at Chebyshev points to the coefficients of the polynomial through them."""
+    return np.asarray(np.linalg.inv(np.vander(chebyshev.chebpts1(DEGREE + 1), increasing=True)))

@@ -1,0 +1,75 @@
+r"""Two-point Hermite interpolation: the polynomial that has the Taylor coefficients of both ends of an interval.
+
+.. math::
+
+    H(t) = \sum_{j=0}^{K} \left[ a_j \, d^j \, B_j(\tau) + (-1)^j b_j \, d^j \, B_j(1 - \tau) \right],
+    \qquad B_j(\tau) = \tau^j (1 - \tau)^{K+1} \sum_{i=0}^{K-j} \binom{K+i}{i} \tau^i
+
+for an interval of length d, :math:`\tau` running from 0 to 1 on it.  No linear system is solved: that of the monomials loses
+all digits from K = 10 on.  Source: [Davis 1975] Interpolation and Approximation, section 2.5.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from stribeck._types import Array
+
+__all__ = ["hermite", "hermite_weights"]
+
+
+@lru_cache(maxsize=64)
+def _sums(order: int) -> Array:
+    """Coefficients of the sums in B_j, row j: those of ``tau**j`` times the sum, in ascending powers of tau."""
+    found = np.zeros((order + 1, order + 1))
+    for j in range(order + 1):
+        found[j, j:] = [math.comb(order + i, i) for i in range(order + 1 - j)]
+    return found
+
+
+def hermite_weights(order: int, tau: Array) -> tuple[Array, Array]:
+    """Return what the coefficients of both ends are multiplied by, on an interval of length one.
+
+    Parameters
+    ----------
+    order : int
+        K, the highest order that both ends have, at least 0.
+    tau : ndarray, shape (n,)
+        Places, 0 to 1.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n, K + 1)
+        For the coefficients of the left and of the right end.
+    """
+    powers = np.arange(order + 1)
+    sums = _sums(order).T
+    left = (tau[:, None] ** powers @ sums) * (1 - tau[:, None]) ** (order + 1)
+    right = ((1 - tau[:, None]) ** powers @ sums) * tau[:, None] ** (order + 1)
+    return left, right * (-1.0) ** powers
+
+
+def hermite(left: Array, right: Array, length: float, tau: Array) -> Array:
+    """Return the interpolating polynomial at places of an interval.
+
+    Parameters
+    ----------
+    left, right : ndarray, shape (K + 1, ...)
+        Taylor coefficients at both ends.
+    length : float
+        Of the interval.
+    tau : ndarray, shape (n,)
+        Places, 0 to 1.
+
+    Returns
+    -------
+    ndarray, shape (n, ...)
+        Its values.
+    """
+    order = len(left) - 1
+    of_left, of_right = hermite_weights(order, tau)
+    scale = length ** np.arange(order + 1)
+    return np.asarray(np.tensordot(of_left * scale, left, 1) + np.tensordot(of_right * scale, right, 1))

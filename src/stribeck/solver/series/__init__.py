@@ -1,0 +1,1 @@
+"""Curves as functions: states expanded into Taylor series, and interpolation between them."""

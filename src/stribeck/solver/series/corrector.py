@@ -1,0 +1,111 @@
+"""Correcting a prediction: on the mesh of the state before for as long as it resolves, refined where it does not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from stribeck.contacts.groups import contact_law
+from stribeck.contacts.line import Groups
+from stribeck.equations.error_estimate import FineOperators, gap_is_resolved
+from stribeck.equations.guess import Guess
+from stribeck.equations.line import Operators
+from stribeck.equations.prediction import extrapolate
+from stribeck.equations.state import State, mesh_for, solve_state
+from stribeck.numerics.newton import Inverse
+from stribeck.numerics.panels import MeshTooLargeError
+from stribeck.quantities.outcome import Outcome
+from stribeck.solver.at_rest import with_positive_gap
+from stribeck.solver.cold_start import first_path
+from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, order_for, verify
+
+MOST_STEPS = 16
+"""Newton and chord steps after which the present mesh is given up."""
+
+CHECK_EVERY = 25
+"""States between two looks at whether a coarser mesh would do."""
+
+WORTH_COARSENING = 0.85
+"""Ratio of sizes from which the coarser mesh is taken."""
+
+RELAX = 3.0
+"""Factor by which mesh tolerances that once had to be lowered are raised again."""
+
+
+class Corrector:
+    """Solve states one after another: ``groups_at(s)`` gives the groups at coordinate s.
+
+    It keeps the operators of the present mesh, whose making costs as much as several states.
+    """
+
+    def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
+        self.groups_at = groups_at
+        self.rtol = rtol
+        self.operators: Operators | None = None
+        self.fine: FineOperators | None = None
+        self.inverse: Inverse | None = None
+        self.since_check = 0
+        self.tolerances = mesh_tolerances_for(rtol)
+
+    def __call__(self, s: float, history: Sequence[tuple[float, RefinedState]]) -> RefinedState | None:
+        """Return the state at ``s`` predicted from ``history``; from cold where that is empty."""
+        groups = self.groups_at(s)
+        if not history:
+            return self.cold(groups)
+        return self.solve(extrapolate([(c, p.state) for c, p in history if p.state is not None], s), groups)
+
+    def cold(self, groups: Groups) -> RefinedState | None:
+        """Return the state of ``groups`` from cold, None where no path leads there."""
+        path = first_path(with_positive_gap(groups)[0])
+        if path.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        return self._adopt(converge(path.states[-1], groups, self.rtol)) if path.outcome.ok else None
+
+    def solve(self, guess: Guess, groups: Groups, spread: float = 0.0) -> RefinedState:
+        """Return the state of ``groups`` from a guess; ``spread`` as for :func:`stribeck.equations.state.mesh_for`."""
+        base = with_positive_gap(groups)[0]
+        if self.operators is not None and self.fine is not None and self.operators.model == base.model:
+            state = solve_state(base, self.operators, guess, newton_tolerance(self.rtol), MOST_STEPS, self.inverse)
+            if state.outcome.ok:
+                if gap_is_resolved(state.mesh, state.gap, self.rtol, spread):
+                    point = verify(state, groups, self.fine, self.rtol)
+                    if point.outcome.ok:
+                        self._look_for_coarser(state)
+                        return self._kept(point)
+                guess = state
+        return self._adopt(converge(guess, groups, self.rtol, self.tolerances, spread=spread))
+
+    def _kept(self, point: RefinedState) -> RefinedState:
+        """Return the state with its inverse kept here, for the next one, instead of there."""
+        if point.state is None:
+            return point
+        same_mesh = self.operators is not None and point.state.mesh is self.operators.mesh
+        self.inverse = point.state.root.inverse if same_mesh else None
+        return replace(point, state=point.state.without_inverse())
+
+    def _look_for_coarser(self, state: State) -> None:
+        """From time to time, take the mesh that wider tolerances make if it is clearly smaller than the present one."""
+        self.since_check += 1
+        if self.since_check < CHECK_EVERY:
+            return
+        self.since_check = 0
+        self._relax()
+        try:
+            mesh = mesh_for(state, state.groups, contact_law(state.groups), order_for(self.rtol), *self.tolerances)
+        except MeshTooLargeError:
+            return
+        if mesh.size < WORTH_COARSENING * state.mesh.size:
+            self.operators, self.fine, self.inverse = Operators(mesh, state.groups.model), FineOperators(mesh), None
+
+    def _relax(self) -> None:
+        """Widen the tolerances, up to those that a first mesh has."""
+        tail, gap_tail = mesh_tolerances_for(self.rtol)
+        self.tolerances = min(tail, RELAX * self.tolerances[0]), min(gap_tail, RELAX * self.tolerances[1])
+
+    def _adopt(self, point: RefinedState) -> RefinedState:
+        if point.state is not None and point.outcome.ok:
+            self.operators, self.fine = point.state.equations.operators, point.fine
+            self.tolerances = point.tolerances or self.tolerances
+            self._relax()
+            self.since_check = 0
+        return self._kept(point)

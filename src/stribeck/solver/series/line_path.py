@@ -1,0 +1,313 @@
+"""States of the line along a path: solved from a prediction, verified, and expanded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.contact_laws.law import is_exponential
+from stribeck.contacts.groups import Groups, contact_law
+from stribeck.equations.error_estimate import GAP_FLOOR, GAPS, FineOperators
+from stribeck.equations.gap import minimum_gaps
+from stribeck.equations.line import Equations, Operators
+from stribeck.equations.observables import ROW, observables
+from stribeck.equations.state import State, solve_state
+from stribeck.numerics.hermite import hermite_weights
+from stribeck.numerics.newton import Inverse, Root
+from stribeck.numerics.panels import Mesh
+from stribeck.numerics.series import Samples, circle, interval, radius
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
+from stribeck.solver.at_rest import shift_along, with_positive_gap
+from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
+from stribeck.solver.series.corrector import Corrector
+from stribeck.solver.series.expansion import Around, Direction, around, expand, from_logs
+from stribeck.solver.series.path import KNOT_PART, Expansion
+
+ORDER, ORDER_OF_ANY_FILM = 10, 6
+"""Highest orders of series: of the article, and of films of which the whole residual is sampled."""
+
+REACH, NEAREST, FARTHEST = 0.2, 0.1, 0.27
+"""Distance at which the equations are evaluated for the series, over the radius of convergence, and what it may be."""
+
+INTERVAL = 2.25
+"""Half of the interval on which functions are evaluated that are not analytic, over that distance."""
+
+SHORTEST_REACH = 0.02
+"""Shortest such distance: the shorter it is, the more rounding counts."""
+
+MOST_TRIALS = 4
+"""Expansions of a state after which the distance is left as it is."""
+
+ALIASED = 3e-3
+"""Largest aliasing of the pressures, in units of the tolerance."""
+
+SPREAD = 1.6
+"""Part of the way of the minimum gap from the state before on which a mesh also resolves the gap."""
+
+OFFSET_FLOOR = 5e-3
+"""The error of the offset is relative to it where it exceeds this: between states it is that of states where it is larger."""
+
+DENOMINATOR, SMALLEST_DENOMINATOR = 3, 0.05
+"""Degree of the denominator of a prediction, and its value below which the prediction has a pole nearby."""
+
+POSITION = len(ALL_NAMES)
+"""Column of the position of the minimum gap, after those of the observables."""
+
+READ = [ROW["minimum_gap"], POSITION]
+SMOOTH = [ROW[name] for name in NAMES if name != "minimum_gap"]
+SHARES = [ROW[name] for name in ABSOLUTE]
+UNLIMITED = [POSITION, ROW["exit_position"], ROW["reformation_position"]]
+
+
+ANY_MESH = Mesh(np.array([-1.0, 0.0, 1.0]), 2)
+
+
+class LinePoint(NamedTuple):
+    """A solved state, the coefficients of its unknowns, and what its mesh has."""
+
+    refined: RefinedState
+    state: State
+    unknowns: Array
+    inverse: Inverse
+    fine: FineOperators
+
+
+class LineProblem:
+    """The states of the line: ``groups_at(s)`` gives the groups at coordinate s, ``direction`` their derivatives."""
+
+    def __init__(self, groups_at: Callable[[float], Groups], direction: Direction, rtol: float, uniform: bool = True) -> None:
+        self.groups_at, self.direction, self.rtol, self.uniform = groups_at, direction, KNOT_PART * rtol, uniform
+        start = groups_at(0.0)
+        self.moves = bool(start.speed > 0)
+        self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
+        self.exact = self.analytic and is_exponential(start.law)
+        self.order = ORDER if self.analytic else ORDER_OF_ANY_FILM
+        self.count = 7 if rtol >= 1e-7 else 9
+        self.corrector = Corrector(groups_at, self.rtol)
+        self.failure: RefinedState | None = None
+        self.floor = 0.0
+
+    @property
+    def held(self) -> Flags:
+        """All but positions, which have errors of their own."""
+        return ~np.isin(np.arange(POSITION + 1), UNLIMITED)
+
+    @property
+    def signed(self) -> Flags:
+        """The offset and what is a position; at rest the gaps too."""
+        return np.isin(np.arange(POSITION + 1), [ROW["offset"], *UNLIMITED, *([] if self.moves else GAPS)])
+
+    def scales(self, values: Array, s: Array) -> Array:
+        """Return what errors of observables are relative to: themselves but for the shares, and what crosses zero."""
+        found = np.abs(values)
+        found[:, SHARES] = 1.0
+        found[:, [column for column in UNLIMITED if column < found.shape[1]]] = 1.0
+        found[:, ROW["offset"]] = np.maximum(found[:, ROW["offset"]], OFFSET_FLOOR)
+        if not self.moves:
+            kappa = np.array([float(self.groups_at(c).relative_roughness) for c in s.tolist()])
+            found[:, GAPS] = np.maximum(found[:, GAPS], GAP_FLOOR * kappa[:, None])
+        found[found == 0] = 1.0
+        return found
+
+    def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
+        """Return the expanded state at ``s``, see :class:`stribeck.solver.series.path.Problem`."""
+        groups = self.groups_at(s)
+        if near:
+            guess = self._guess(s, groups, near)
+            if not np.isfinite(np.log(guess.y[guess.equations.layout.gap])).all():
+                return Outcome.NOT_FINITE
+            spread = max(abs(guess.minimum_position - one.point.state.minimum_position) for one in near)
+            refined: RefinedState | None = self.corrector.solve(guess, groups, SPREAD * spread)
+        else:
+            refined = self.corrector.cold(groups)
+        if refined is None:
+            return Outcome.PATH_LOST
+        if refined.state is None or not refined.outcome.ok:
+            self.failure = refined
+            return refined.outcome
+        return self._expanded(s, refined, min((one.radius for one in near), default=2.0))
+
+    def _expanded(self, s: float, refined: RefinedState, near: float) -> Expansion:
+        state, values, estimate = refined.state, refined.values, refined.estimate
+        assert state is not None and values is not None and estimate is not None and refined.fine is not None
+        reach = max(SHORTEST_REACH, REACH * near)
+        for trial in range(MOST_TRIALS):
+            samples = circle(reach, self.count) if self.analytic else interval(INTERVAL * reach)
+            with np.errstate(all="ignore"):  # what is not finite is cut off below
+                found = expand(state.equations, state.y, self._around(s, state, samples), samples, self.order)
+            of_values = found.observables[:, SMOOTH] / self.scales(found.observables[:1], np.array([s]))[:, SMOOTH]
+            known = min(radius(found.unknowns[:, : state.mesh.size], reach), radius(of_values, reach))
+            if found.aliased > ALIASED * self.rtol:  # a law changes much faster than the gap
+                reach = max(SHORTEST_REACH, min(0.5 * reach, REACH * known))
+            elif reach > FARTHEST * known or (trial == 0 and reach < NEAREST * known):
+                reach = max(SHORTEST_REACH, REACH * known)
+            else:
+                break
+        nothing = np.full((self.order + 1, 1), np.nan)
+        series, logs = np.hstack([found.observables, nothing]), np.hstack([found.logs, nothing])
+        series[0] = *values.array(in_article=False), values.minimum_position
+        positive = np.isfinite(logs[0]) & (series[0] > 0)
+        logs[0, positive] = np.log(series[0, positive])
+        errors = np.full(POSITION + 1, np.nan)
+        errors[: len(estimate.relative)], errors[POSITION] = estimate.relative, estimate.minimum_position
+        if state.equations.operators.is_article:
+            errors[ROW["viscous_upper"]] = errors[ROW["viscous_balanced"]]
+        unknowns = found.unknowns
+        finite = np.isfinite(unknowns).all(axis=1)
+        if not finite.all():  # a law too steep for so wide a neighbourhood: fewer orders
+            order = max(1, int(np.argmin(finite)) - 1)
+            unknowns, series, logs = (part[: order + 1] for part in (unknowns, series, logs))
+        state = replace(state, y=found.y, root=replace(state.root, x=found.y, inverse=None))
+        point = LinePoint(replace(refined, state=state), state, unknowns, found.inverse, refined.fine)
+        self.floor = max(self.floor, estimate.floor)
+        return Expansion(s, point, series, logs, errors, known)
+
+    def _around(self, s: float, state: State, samples: Samples) -> Around:
+        """Return the equations around a place."""
+        groups = self.groups_at(s)
+        direction, shifts = shift_along(groups, state.groups, self.direction, samples.places)
+        models = [] if self.uniform else [self.groups_at(s + t).model for t in samples.places.tolist()]
+        return around(state.equations, state.gap, state.groups, direction, samples, shifts, models)
+
+    def _guess(self, s: float, groups: Groups, near: Sequence[Expansion]) -> State:
+        base = with_positive_gap(groups)[0]
+        last: LinePoint = near[-1].point
+        if len(near) == 1:
+            w = _extrapolated(last.unknowns, s - near[0].coordinate)
+            mesh_of = last
+        else:
+            left, right = near
+            part = (s - left.coordinate) / (right.coordinate - left.coordinate)
+            mesh_of = left.point if part < 0.5 else right.point
+            w = between(left, right, mesh_of, np.array([part]))[0]
+        return self.state(base, mesh_of, w)
+
+    def state_at(self, left: Expansion, right: Expansion, s: float) -> State:
+        """Return the state between two expansions, corrected on the mesh of the nearer one."""
+        guess = self._guess(s, self.groups_at(s), [left, right])
+        kept = next(end.point.inverse for end in (left, right) if end.point.state.mesh is guess.mesh)
+        return solve_state(guess.groups, guess.equations.operators, guess, newton_tolerance(self.rtol), kept=kept)
+
+    def point_at(self, left: Expansion, right: Expansion, s: float) -> RefinedState:
+        """Return the same, verified, and refined where its mesh is too coarse."""
+        state, groups = self.state_at(left, right, s), self.groups_at(s)
+        fine = next((end.point.fine for end in (left, right) if end.point.fine.coarse is state.mesh), None)
+        if state.outcome.ok and fine is not None:
+            point = verify(state, groups, fine, self.rtol)
+            if point.outcome.ok:
+                return point
+        return converge(state, groups, self.rtol)
+
+    def state(self, groups: Groups, of: LinePoint, w: Array) -> State:
+        """Return the state with unknowns ``w``, those of gaps as logarithms, on the mesh of a point."""
+        operators = of.state.equations.operators
+        y = from_logs(of.state.equations, w)
+        if operators.model != groups.model:
+            operators = Operators(operators.mesh, groups.model)
+        scale = float(y[operators.layout.flux_gap.start]) ** 2
+        equations = Equations(operators, float(groups.speed), contact_law(groups), scale)
+        return State(groups, equations, y, Root(y, Outcome.CONVERGED, 0, 0, 0.0, 0.0, 0.0, None), 0.0)
+
+    def missed(self, left: Expansion, right: Expansion, values: Array) -> Array:
+        """Return by how much a state corrected in the middle contradicts ``values``, where laws are not analytic."""
+        found = np.zeros(POSITION + 1)
+        if self.exact:
+            return found
+        s = 0.5 * (left.coordinate + right.coordinate)
+        guess = self._guess(s, self.groups_at(s), [left, right])
+        equations, y, load = guess.equations, guess.y, float(guess.groups.load)
+        inverse = next(end.point.inverse for end in (right, left) if end.point.state.mesh is guess.mesh)
+        change = equations.units(y) * inverse(equations.residual(y))
+        if not self.moves:
+            return found
+        corrected = observables(equations, y + change, load).array(in_article=False)
+        wrong = np.abs(corrected - values[:POSITION]) / self.scales(values[None], np.array([s]))[0, :POSITION]
+        wrong[READ[0]] = 0.0
+        found[:POSITION] = np.nan_to_num(np.maximum(wrong - np.maximum(left.errors, right.errors)[:POSITION], 0.0))
+        return found
+
+    def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
+        """Return the minimum gap and its position, each on the mesh of that end whose panel there resolves it better."""
+        if not self.moves:
+            return np.empty((len(parts), 0)), np.empty((len(parts), 0)), []
+        ends = (left, right)
+        of_left, of_right = hermite_weights(min(left.order, right.order), parts)
+        found, errors = [], []
+        for of in ends[:1] if left.point.state.mesh is right.point.state.mesh else ends:
+            mesh = of.point.state.mesh
+            unknowns = between(left, right, of.point, parts)
+            rows = unknowns[:, : mesh.size]
+            lower = between(left, right, of.point, parts, 1)[:, : mesh.size]
+            position, lowest, missed, panel = minimum_gaps(mesh, rows)
+            at = of.point.state.equations.layout
+            for block in (at.dilation, at.exit):  # of a frame that moves with the end of the film
+                if block.stop > block.start:
+                    position = (
+                        position * unknowns[:, block.start] if block is at.dilation else position + unknowns[:, block.start]
+                    )
+            nodes = panel[:, None] * mesh.order + np.arange(mesh.order)
+            differ = np.abs(np.take_along_axis(rows - lower, nodes, axis=1)).max(axis=1)
+            found.append(np.stack([lowest, position]))
+            errors.append(np.stack([missed, differ]))
+        if len(found) == 1:
+            values, error = found[0], errors[0].sum(axis=0)
+        else:
+            # What comes from the other mesh was interpolated there.
+            unresolved = [errors[0][0] + of_right[:, 0] * errors[1][0], errors[1][0] + of_left[:, 0] * errors[0][0]]
+            better = unresolved[1] < unresolved[0]
+            values = np.asarray(np.where(better, found[1], found[0]))
+            error = np.where(better, unresolved[1] + errors[1][1], unresolved[0] + errors[0][1])
+        at_ends = np.maximum(left.errors[READ], right.errors[READ])
+        return values.T, np.stack([np.maximum(at_ends[0], error), np.full(len(parts), at_ends[1])], axis=1), READ
+
+
+def between(left: Expansion, right: Expansion, of: LinePoint, parts: Array, lower: int = 0) -> Array:
+    """Return the unknowns between two expansions on the mesh of one of them, gaps as logarithms."""
+    order = min(left.order, right.order) - lower
+    length = right.coordinate - left.coordinate
+    scale = length ** np.arange(order + 1.0)[:, None]
+    a, b = (on_mesh(end.point, of)[: order + 1] * scale for end in (left, right))
+    of_left, of_right = hermite_weights(order, parts)
+    return np.asarray(of_left @ a + of_right @ b)
+
+
+def on_mesh(point: LinePoint, of: LinePoint) -> Array:
+    """Return the coefficients of the unknowns of a point on the mesh of another."""
+    mesh, other = point.state.mesh, of.state.mesh
+    if mesh is other:
+        return point.unknowns
+    at, there = point.state.equations.layout, of.state.equations.layout
+    found = np.empty((len(point.unknowns), there.size))
+    stretch = 1.0 if mesh.restart == other.restart else mesh.restart / other.restart
+    found[:, there.numbers] = point.unknowns[:, at.numbers]
+    gap = point.unknowns[:, at.gap].copy()
+    gap[0] -= np.log(mesh.far)
+    nodes = stretch * other.nodes
+    found[:, there.gap] = mesh.interpolate(gap, nodes)
+    found[0, there.gap] += np.log(mesh.scale**2 + nodes**2)
+    found[:, there.dilation] *= stretch
+    if there.pressure.stop > there.pressure.start:
+        found[:, there.pressure] = mesh.interpolate(point.unknowns[:, at.pressure], nodes)
+    return found
+
+
+def _extrapolated(series: Array, t: float) -> Array:
+    """Return a series beyond, by the rational function whose denominator makes the highest coefficients vanish."""
+    order = len(series) - 1
+    taylor: Array = t ** np.arange(order + 1.0) @ series
+    if order < 2 * DENOMINATOR + 1:
+        return taylor
+    scaled = series * (t ** np.arange(order + 1.0))[:, None]
+    high = np.stack([scaled[order - DENOMINATOR + 1 - j : order + 1 - j].ravel() for j in range(DENOMINATOR + 1)])
+    gram = high @ high.T
+    q = np.append(1.0, np.linalg.solve(gram[1:, 1:] + (1e-14 * np.trace(gram) + 1e-200) * np.eye(DENOMINATOR), -gram[1:, 0]))
+    below = q.sum()
+    if abs(below) < SMALLEST_DENOMINATOR:
+        return taylor
+    above = sum(q[j] * scaled[: order - DENOMINATOR + 1 - j].sum(axis=0) for j in range(DENOMINATOR + 1))
+    return np.asarray(above / below)

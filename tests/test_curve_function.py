@@ -1,0 +1,133 @@
+"""A curve as a function: within its stated errors anywhere, whatever points it was sampled at."""
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.quantities.outputs import NAMES
+
+SEED = 61_441
+CONTACT = sb.LineContact(
+    radius="10 mm",
+    modulus="2.7 MPa",
+    load="30 N/m",
+    viscosity="50 mPa*s",
+    speed="1 mm/s",
+    roughness="1 um",
+    alpha=2.0,
+    beta=0.06,
+    boundary_friction=0.7,
+)
+
+
+def worst(curve, value, groups, rtol=1e-9):
+    """Return the largest error of a curve at a value, over what it states and what a cold solve leaves."""
+    here, exact = curve.at(value), sb.solve(groups, rtol=rtol)
+    ratios = []
+    for name in NAMES:
+        true = getattr(exact.observables, name)
+        scale = 1.0 if name.endswith("share") else max(abs(true), 5e-3 if name == "offset" else 0.0)
+        ratios.append(abs(here.values[name] - true) / scale / (here.errors[name] + rtol))
+    return max(ratios)
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return sb.stribeck_curve(CONTACT, points=5)
+
+
+@pytest.mark.parametrize(("load", "roughness"), [(0.1, 1e-4), (2.0, 0.05), (1e-4, 0.0)])
+def test_a_curve_is_within_its_stated_errors_between_the_solved_states(load, roughness):
+    curve = sb.stribeck_curve(load=load, roughness=roughness, speed=(1e-6, 1e-1), points=2)
+    rng = np.random.default_rng(SEED)
+    assert curve.outcome.ok
+    ratios = [worst(curve, v, sb.Groups(v, load, roughness)) for v in np.exp(rng.uniform(*np.log([1e-6, 1e-1]), 6)).tolist()]
+    assert max(ratios) < 2 and np.median(ratios) < 1
+
+
+@pytest.mark.parametrize(("over", "ends"), [("load", (0.01, 0.8)), ("roughness", (1e-5, 1e-2))])
+def test_it_is_a_function_of_load_and_roughness_too(over, ends):
+    fixed = {"speed": 1e-3, "load": 0.1, "roughness": 1e-3} | {over: ends}
+    curve = sb.stribeck_curve(**fixed, points=2)
+    for value in np.exp(np.random.default_rng(SEED).uniform(*np.log(ends), 3)).tolist():
+        assert worst(curve, value, sb.Groups(**(fixed | {over: value}))) < 2
+
+
+@pytest.mark.parametrize("over", ["load", "roughness"])
+def test_contacts_at_rest_are_functions_as_well(over):
+    ends = {"load": (1e-3, 0.9), "roughness": (1e-5, 1e-2)}[over]
+    fixed = {"speed": 0.0, "load": 0.1, "roughness": 1e-3} | {over: ends}
+    curve = sb.stribeck_curve(**fixed, points=2)
+    for value in (0.3, 0.05, 4e-3) if over == "load" else (3e-4, 4e-3):
+        exact = sb.solve(sb.Groups(**(fixed | {over: value})), rtol=1e-9)
+        here = curve.at(value)
+        kappa = exact.groups.relative_roughness
+        assert here.central_gap == pytest.approx(exact.central_gap, rel=2e-6, abs=2e-9 * kappa)
+        assert here.offset == pytest.approx(exact.offset, rel=2e-6, abs=2e-9)
+        assert here.flux_gap == pytest.approx(exact.flux_gap, rel=2e-6, nan_ok=True)
+
+
+@pytest.mark.quick
+def test_numbers_give_numbers_and_arrays_arrays(curve):
+    one, many = curve.at("5 mm/s"), curve.at([0.005, "8 mm/s"])
+    assert isinstance(one.friction, float) and isinstance(one.central_gap, float) and one.value == 0.005
+    assert many.friction.shape == many.errors["central_gap"].shape == (2,)
+    assert many.friction[0] == pytest.approx(one.friction, rel=1e-13)
+    assert one.friction == one.friction_contact + one.friction_viscous
+    assert set(dir(one)) >= {"flux_gap", "friction_error"}
+    with pytest.raises(AttributeError, match="no attribute 'film'"):
+        _ = one.film
+
+
+@pytest.mark.quick
+def test_the_points_of_a_curve_lie_on_it(curve):
+    here = curve.at(curve.values)
+    assert (np.abs(here.friction - curve.friction) <= here.friction_error + curve.friction_error).all()
+
+
+@pytest.mark.quick
+def test_the_function_does_not_depend_on_the_points():
+    curves = [sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1), points=n) for n in (2, 31)]
+    assert [len(curve._function.expansions) for curve in curves] == [len(curves[0]._function.expansions)] * 2
+    assert curves[0].at(0.05).friction == pytest.approx(curves[1].at(0.05).friction, rel=1e-7)
+
+
+def test_fields_are_solved_where_they_are_asked_for(curve):
+    solution = curve.solve_at("7 mm/s")
+    alone = sb.solve(CONTACT.replace(speed=0.007), rtol=1e-9)
+    assert solution.error_estimate <= curve.rtol
+    x = np.linspace(-2, 2, 41)
+    for name in ("gap", "fluid_pressure", "contact_pressure"):
+        found, exact = (getattr(s.profile(x), name) for s in (solution, alone))
+        np.testing.assert_allclose(found, exact, atol=1e-3 * np.abs(exact[10:31]).max())
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (10.0, "speed = 10.0 is outside of the curve, which runs from speed .* ask for a curve that holds it"),
+        ([0.005, 1e-12], "is outside of the curve"),
+        (-1.0, "speed = -1.0 must be finite and positive"),
+        ("5 mm", "speed = '5 mm' is a length"),
+        ("fast", "speed = 'fast'"),
+    ],
+)
+def test_values_that_the_curve_does_not_hold_are_refused(curve, value, words):
+    with pytest.raises(sb.InputError, match=words):
+        curve.at(value)
+
+
+@pytest.mark.quick
+def test_a_solution_is_that_of_one_value(curve):
+    with pytest.raises(sb.InputError, match="give one value"):
+        curve.solve_at([0.005, 0.006])
+
+
+@pytest.mark.parametrize("parts", [{"cavitation": "exit"}, {"slide_to_roll": 0.5}])
+def test_other_films_are_functions_with_fewer_orders(parts):
+    curve = sb.stribeck_curve(CONTACT, speed=("5 mm/s", "30 mm/s"), points=2, **parts)
+    alone = sb.solve(CONTACT.replace(speed=0.012), rtol=1e-8, **parts)
+    here = curve.at("12 mm/s")
+    for name in ("central_gap", "minimum_gap", "flux_gap", "viscous_balanced"):
+        assert here.values[name] == pytest.approx(getattr(alone, name), rel=2e-6)

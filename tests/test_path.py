@@ -1,0 +1,145 @@
+"""Following a path of expanded states: of functions that are known, so that nothing depends on a contact."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from stribeck.numerics.series import circle, radius
+from stribeck.quantities.outcome import Outcome
+from stribeck.solver.series.path import Expansion, Interval, follow
+
+pytestmark = pytest.mark.quick
+
+ORDER = 10
+
+ROUNDING = 1e-10
+"""What the samples of the coefficients leave, relative to the scales."""
+
+
+def values(s):
+    """A share that falls from one to nothing, what crosses zero, and a power with a bend."""
+    return np.stack([1 / (1 + np.exp(2 * s)), np.exp(0.2 * s) - 1, np.exp(0.5 * s) * np.sqrt(1 + (s + 3) ** 2)], axis=-1)
+
+
+@dataclass
+class Known:
+    """The problem whose states are those functions."""
+
+    error: float = 0.0
+    order: int = ORDER
+    longest: float = math.inf
+    fails_below: float = -math.inf
+    solved: list = field(default_factory=list)
+    held: np.ndarray = field(default_factory=lambda: np.ones(3, bool))
+
+    def solve(self, s, near):
+        if s < self.fails_below or (near and max(abs(s - one.coordinate) for one in near) > self.longest):
+            return Outcome.STEP_LIMIT
+        self.solved.append(s)
+        samples = circle(0.15, 12)
+        around = values(s + samples.places)
+        series, logs = samples.taylor(around, self.order), np.full((self.order + 1, 3), np.nan)
+        logs[:, [0, 2]] = samples.taylor(np.log(around[:, [0, 2]]), self.order)
+        return Expansion(s, None, series, logs, np.full(3, self.error), radius(series, 0.15))
+
+    @property
+    def signed(self):
+        return np.array([False, True, False])
+
+    def scales(self, found, s):
+        scale = np.abs(found)
+        scale[:, 0] = 1.0
+        scale[:, 1] = np.maximum(scale[:, 1], 1e-3)
+        return scale
+
+    def missed(self, left, right, values):
+        return np.zeros(3)
+
+    def read(self, left, right, parts):
+        return np.empty((len(parts), 0)), np.empty((len(parts), 0)), []
+
+
+def wrong(path, s):
+    found, errors = path.at(s)
+    return np.abs(found - values(s)) / path.problem.scales(values(s), s), errors
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
+def test_everything_between_the_solved_states_is_within_its_stated_error(rtol):
+    path = follow(Known(), 3.0, -9.0, rtol)
+    assert path.outcome.ok and (path.coordinates[0], path.coordinates[-1]) == (-9.0, 3.0)
+    assert len(path.expansions) < 25
+    found, errors = wrong(path, np.linspace(-9, 3, 2001))
+    assert errors.max() <= rtol
+    assert (found <= errors + max(ROUNDING, 1e-3 * rtol)).all()
+
+
+def test_a_smaller_tolerance_takes_more_states():
+    counts = [len(follow(Known(), 3.0, -9.0, rtol).expansions) for rtol in (1e-3, 1e-6, 1e-9)]
+    assert counts == sorted(set(counts))
+
+
+def test_fewer_derivatives_take_more_states_and_hold_the_same_tolerance():
+    path = follow(Known(order=3), 1.0, -1.0, 1e-5)
+    assert len(path.expansions) > len(follow(Known(), 1.0, -1.0, 1e-5).expansions)
+    found, errors = wrong(path, np.linspace(-1, 1, 301))
+    assert errors.max() <= 1e-5 and (found <= errors + ROUNDING).all()
+
+
+def test_the_stated_error_holds_that_of_the_solved_states():
+    path = follow(Known(error=3e-7), 3.0, -9.0, 1e-6)
+    _, errors = wrong(path, np.linspace(-9, 3, 301))
+    assert errors[:, [0, 2]].min() >= 3e-7 and errors.max() <= 1e-6 + 3e-7 * 1e3  # what crosses zero keeps absolute errors
+    assert errors[:, [0, 2]].max() <= 1e-6
+
+
+def test_a_share_far_below_one_keeps_its_digits():
+    path = follow(Known(), 30.0, -9.0, 1e-6)
+    s = np.linspace(20, 30, 101)
+    np.testing.assert_allclose(path.at(s)[0][:, 0], values(s)[:, 0], rtol=1e-4)
+
+
+def test_steps_that_fail_are_taken_shorter():
+    path = follow(Known(longest=0.5), 3.0, -3.0, 1e-6)
+    assert path.outcome.ok
+    assert np.diff(path.coordinates).max() <= 0.5
+
+
+def test_a_lost_path_reaches_as_far_as_it_was_solved():
+    path = follow(Known(fails_below=-2.0), 3.0, -9.0, 1e-6)
+    assert path.outcome is Outcome.STEP_LIMIT
+    assert -2.0 <= path.coordinates[0] < -1.99
+    assert follow(Known(fails_below=5.0), 3.0, -9.0, 1e-6).expansions == ()
+
+
+def test_an_interrupted_path_keeps_what_was_reported():
+    seen = []
+
+    def report(low, high):
+        seen.append((low, high))
+        if len(seen) == 3:
+            raise KeyboardInterrupt
+
+    path = follow(Known(), 3.0, -9.0, 1e-6, report)
+    assert path.outcome is Outcome.INTERRUPTED
+    assert path.coordinates[0] == seen[-1][0]
+    assert [high for _, high in seen[1:]] == [low for low, _ in seen[:-1]]
+
+
+def test_values_along_a_path_have_derivatives_by_a_step_into_the_complex_plane():
+    path = follow(Known(), 3.0, -9.0, 1e-9)
+    s = np.linspace(-8, 2, 41)
+    slope = path.smooth(s + 1e-20j)[:, 1].imag / 1e-20
+    np.testing.assert_allclose(slope, 0.2 * np.exp(0.2 * s), rtol=1e-6)
+
+
+def test_an_interval_says_what_its_problem_finds_wrong_in_the_middle():
+    class Doubted(Known):
+        def missed(self, left, right, values):
+            return np.array([0.0, 0.0, 1e-5])
+
+    problem = Doubted()
+    ends = [problem.solve(s, []) for s in (0.0, 0.5)]
+    assert (Interval(problem, *ends).at(np.array([0.2]))[1][:, 2] >= 1e-5).all()

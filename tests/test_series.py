@@ -1,0 +1,100 @@
+"""Taylor series from values alone, and the interpolation between two of them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from stribeck.numerics.hermite import hermite, hermite_weights
+from stribeck.numerics.series import circle, implicit_series, interval, radius
+
+pytestmark = pytest.mark.quick
+
+SINGULAR = 1.3
+"""Radius of convergence of the function below."""
+
+
+def function(t):
+    return np.exp(0.7 * t) / (1 + (t / SINGULAR) ** 2)
+
+
+def coefficients(order):
+    exponential = np.array([0.7**k / math.factorial(k) for k in range(order + 1)])
+    quotient = np.array([0.0 if k % 2 else (-1) ** (k // 2) * SINGULAR**-k for k in range(order + 1)])
+    return np.convolve(exponential, quotient)[: order + 1]
+
+
+def test_coefficients_come_from_values_on_a_circle():
+    order, reach = 12, 0.25 * SINGULAR
+    samples = circle(reach, 12)
+    found = samples.taylor(function(samples.places), order)
+    # What is left is the coefficient 24 orders above, and rounding.
+    allowed = 2 * (reach / SINGULAR) ** 24 * SINGULAR ** -np.arange(order + 1.0) + 1e-14 * reach ** -np.arange(order + 1.0)
+    assert (np.abs(found - coefficients(order)) <= allowed).all()
+
+
+def test_coefficients_come_from_real_values_with_fewer_digits():
+    samples = interval(0.4 * SINGULAR)
+    found = samples.taylor(function(samples.places), 8)
+    np.testing.assert_allclose(found * SINGULAR ** np.arange(9), coefficients(8) * SINGULAR ** np.arange(9), atol=2e-5)
+    np.testing.assert_allclose(found[:3], coefficients(2), rtol=1e-10)
+
+
+def test_a_polynomial_is_its_own_series():
+    exact = np.array([3.0, -1.0, 0.5, 2.0])
+    for samples in (circle(0.3, 5), interval(0.3)):
+        values = np.polynomial.polynomial.polyval(samples.places, exact)
+        np.testing.assert_allclose(samples.taylor(values, 3), exact, rtol=1e-9)
+
+
+@pytest.mark.parametrize("samples", [circle(0.2, 12), interval(0.35)])
+def test_the_series_of_a_solution_is_that_of_its_closed_form(samples):
+    """``x**2 = 1 + t`` and ``exp(y) = x``: a power with a binomial series and half of a logarithm."""
+    order = 8
+    binomial = np.cumprod([1.0, *((0.5 - k) / (k + 1) for k in range(order))])
+    logarithm = np.array([0.0, *(-0.5 * (-1) ** k / k for k in range(1, order + 1))])
+    jacobian = np.array([[2.0, 0.0], [-1.0, 1.0]])
+    powers = samples.powers(order)
+
+    def local(k, w):
+        x, y = (powers[:, :k] @ w[:k]).T
+        return np.stack([x**2, np.exp(y) - x], axis=1)
+
+    def residual(k, w, v):
+        return v - np.array([float(k == 1), 0.0])
+
+    found = implicit_series(np.array([1.0, 0.0]), samples, local, residual, lambda r: -np.linalg.solve(jacobian, r), order)
+    exact = np.stack([binomial, logarithm], axis=1)
+    np.testing.assert_allclose(found, exact, atol=1e-10 if np.iscomplexobj(samples.places) else 1e-4)
+
+
+def test_the_radius_is_that_of_convergence_and_rounding_is_no_singularity():
+    assert radius(coefficients(12)[:, None], 0.3) == pytest.approx(SINGULAR, rel=0.15)
+    noise = 1e-13 * np.random.default_rng(3).normal(size=(13, 5)) * 0.3 ** -np.arange(13.0)[:, None]
+    entire = np.array([0.1**k / math.factorial(k) for k in range(13)])[:, None] + noise
+    assert radius(entire, 0.3) > 2
+
+
+@pytest.mark.parametrize("order", [0, 1, 3, 8, 12])
+def test_a_polynomial_of_the_degree_is_interpolated_exactly(order):
+    rng = np.random.default_rng(order)
+    polynomial = np.polynomial.Polynomial(rng.normal(size=2 * order + 2))
+    length, tau = 1.7, np.linspace(0, 1, 9)
+
+    def taylor(t):
+        return np.array([polynomial.deriv(k)(t) / math.factorial(k) if k else polynomial(t) for k in range(order + 1)])
+
+    found = hermite(taylor(0.2), taylor(0.2 + length), length, tau)
+    np.testing.assert_allclose(found, polynomial(0.2 + length * tau), rtol=1e-10, atol=1e-10 * np.abs(found).max())
+
+
+def test_both_ends_keep_their_coefficients():
+    of_left, of_right = hermite_weights(5, np.array([0.0, 1.0]))
+    np.testing.assert_array_equal(of_left, [[1, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]])
+    np.testing.assert_array_equal(np.abs(of_right), [[0, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0]])
+
+
+def test_twelve_orders_interpolate_to_rounding():
+    a, b = (np.array([math.exp(t) / math.factorial(k) for k in range(13)]) for t in (0.0, 2.0))
+    tau = np.linspace(0, 1, 101)
+    np.testing.assert_allclose(hermite(a, b, 2.0, tau), np.exp(2 * tau), rtol=1e-14)
