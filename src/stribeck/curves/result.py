@@ -135,7 +135,7 @@ class StribeckCurve(Shown, ByValue):
 
         Notes
         -----
-        On first use about a dozen states along the curve are solved and expanded into Taylor series; from then on a value takes
+        On first use about a dozen states are solved and expanded into Taylor series; from then on a value takes
         a fraction of a millisecond.  Between the states observables are polynomials in the logarithm of ``value``, whose
         difference from ones of lower order is part of the error (``test_curve_function.py``).
         """

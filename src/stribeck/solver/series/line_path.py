@@ -87,7 +87,7 @@ class LineProblem:
         self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
         self.exact = self.analytic and is_exponential(start.law)
         self.order = ORDER if self.analytic else ORDER_OF_ANY_FILM
-        self.count = 7 if rtol >= 1e-7 else 9
+        self.count = 9 if rtol >= 1e-7 else 11
         self.corrector = Corrector(groups_at, self.rtol)
         self.failure: RefinedState | None = None
         self.floor = 0.0
