@@ -234,6 +234,13 @@ def test_the_table_is_small_and_says_where_it_comes_from():
     assert about["same_solver"] is (about["solver_hash"] == atlas_table.solver_hash())
 
 
+def test_the_hash_of_the_solver_holds_all_modules_that_make_numbers():
+    found = set(atlas_table.solver_sources())
+    assert {"equations.guess", "equations.unknowns", "solver.at_rest", "numerics.newton", "solids.half_plane"} <= found
+    assert {"contact_laws.exponential", "fluids.newtonian", "contacts.groups", "equations.error_estimate"} <= found
+    assert not any(name.startswith(("quantities", "asymptotics", "curves", "files")) for name in found)
+
+
 def test_blocks_meet_within_the_stated_error():
     rng = np.random.default_rng(66260)
     load, speed = np.exp(rng.uniform(np.log(1e-6), -0.02, 300)), np.exp(rng.uniform(np.log(1e-9), np.log(1e3), 300))

@@ -209,7 +209,10 @@ def test_a_small_step_is_admissible_whole(case):
 def test_the_size_of_a_step_is_its_largest_relative_change_of_a_gap():
     y = np.array([1.0, 1e-6, 2.0, -0.6, 0.5])
     article = SimpleNamespace(is_article=True)
-    layout = SimpleNamespace(layout=Layout(5, slice(0, 3), slice(3, 5), slice(3, 4), slice(4, 5)), operators=article)
+    layout = SimpleNamespace(
+        layout=Layout(5, slice(0, 3), slice(3, 5), slice(3, 4), slice(4, 5), slice(3, 3), slice(5, 5), slice(5, 5)),
+        operators=article,
+    )
     assert Equations.size(layout, y, np.array([0.1, 0.0, 0.0, 50.0, 0.01])) == pytest.approx(0.1)
     assert Equations.size(layout, y, np.array([0.1, -3e-7, 0.0, 0.0, 0.0])) == pytest.approx(0.3)
     assert Equations.size(layout, y, np.array([0.0, 0.0, 0.0, 0.0, -0.4])) == pytest.approx(0.8)

@@ -86,7 +86,7 @@ def test_smoother_and_heavier_contacts_have_less_friction_at_slower_speed(curves
         rows = [case(curves, load, roughness) for roughness in (1e-5, 1e-4, 1e-3)]
         assert (np.diff(curves.minimum_friction.values[rows]) > 0).all()
         assert (np.diff(curves.minimum_hersey.values[rows]) > 0).all()
-        assert (np.diff(curves.minimum_lambda_ratio.values[rows]) < 0).all()
+        assert (np.diff(curves.separation_at_minimum.values[rows]) < 0).all()
     for roughness in (1e-5, 1e-4, 1e-3):
         heavy, light = (case(curves, load, roughness) for load in (0.1, 0.01))
         assert curves.minimum_friction.values[heavy] < 0.6 * curves.minimum_friction.values[light]
@@ -109,10 +109,10 @@ def test_the_reported_ranges_are_those_that_the_paper_quotes_and_ours_lies_in_th
             "Dong 2023": (16.0, 2736.0),
         }
         assert float(data.textbook) == 3.0
-    found = curves.minimum_lambda_ratio.values[np.isfinite(curves.minimum_lambda_ratio.values)]
+    found = curves.separation_at_minimum.values[np.isfinite(curves.separation_at_minimum.values)]
     assert 0.7 < found.min() and found.max() < 11.0
-    law = curves.predicted_lambda_ratio.sel(predicted_load=0.1).interp(predicted_roughness=1e-4)
-    assert abs(float(law) / curves.minimum_lambda_ratio.values[case(curves, 0.1, 1e-4)] - 1) < 0.01
+    law = curves.predicted_separation.sel(predicted_load=0.1).interp(predicted_roughness=1e-4)
+    assert abs(float(law) / curves.separation_at_minimum.values[case(curves, 0.1, 1e-4)] - 1) < 0.01
 
 
 @pytest.mark.parametrize(("name", "letter"), [("7", "c"), ("9", "d")])
@@ -175,19 +175,19 @@ def test_the_friction_of_the_paper_fits_near_the_minimum_of_smooth_contacts_and_
 
 
 def test_lambda_grows_as_roughness_falls_and_no_constant_will_do(mixed):
-    assert (np.diff(mixed.lambda_ratio.values, axis=1) < 0).all()
-    assert mixed.lambda_ratio.values.min() < 3.1 and mixed.lambda_ratio.values.max() > 13.3
-    per_decade = np.diff(mixed.lambda_ratio.values[:, ::2], axis=1)[:, 0]
+    assert (np.diff(mixed.separation.values, axis=1) < 0).all()
+    assert mixed.separation.values.min() < 3.1 and mixed.separation.values.max() > 13.3
+    per_decade = np.diff(mixed.separation.values[:, ::2], axis=1)[:, 0]
     # -ln k grows by 2/3 ln 10 in each decade of roughness.
     np.testing.assert_allclose(per_decade, -2 / 3 * math.log(10), atol=0.08)
 
 
 def test_lamberts_w_and_its_expansion_give_lambda_of_smooth_contacts(mixed):
     for form, smooth, rough in (("exact", 0.005, 0.025), ("expansion", 0.008, 0.015)):
-        off = np.abs(mixed[f"lambda_{form}"].values / mixed.lambda_ratio.values - 1)
+        off = np.abs(mixed[f"lambda_{form}"].values / mixed.separation.values - 1)
         assert off[:, 0].max() < smooth and off[:, 4].max() < rough
         assert off[0, -1] > 0.4
-    assert np.abs(mixed.lambda_uniform.values / mixed.lambda_ratio.values - 1)[:, :-1].max() < 0.02
+    assert np.abs(mixed.lambda_uniform.values / mixed.separation.values - 1)[:, :-1].max() < 0.02
 
 
 def test_minimum_friction_needs_the_other_sign_of_the_power(mixed):

@@ -195,7 +195,7 @@ def test_formulas_stand_beside_the_solved_transitions(diagram):
             printed = transitions.speed_at_minimum.function(groups, MU0, BETA, printed=True)
             assert float(row["printed_speed_at_minimum"]) == pytest.approx(float(printed), rel=1e-12)
             assert float(row["printed_speed_at_minimum"]) != pytest.approx(float(row["formula_speed_at_minimum"]), rel=1e-3)
-        found = float(diagram["formula_merging_roughness"][i])
+        found = float(diagram["formula_roughness_without_minimum"][i])
         assert found == pytest.approx(float(transitions.roughness_without_minimum(load, MU0, BETA)), rel=1e-12)
     assert (diagram.formula_velocity_weakening == np.isfinite(diagram.formula_speed_at_minimum)).all()
 

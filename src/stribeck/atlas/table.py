@@ -7,6 +7,7 @@ and roughness of many states are one matrix, and the sum over them one matrix pr
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import json
 import math
@@ -41,29 +42,11 @@ segments end at, twice the logarithm of the speed is taken off the first."""
 
 FILE = "atlas.npz"
 
-SOLVER = (
-    "contact_laws/exponential",
-    "contacts/groups",
-    "equations/error_estimate",
-    "equations/gap",
-    "equations/line",
-    "equations/observables",
-    "equations/prediction",
-    "equations/state",
-    "fluids/newtonian",
-    "numerics/continuation",
-    "numerics/newton",
-    "numerics/panels",
-    "numerics/running_integral",
-    "solids/half_plane",
-    "solver/cold_start",
-    "solver/corrector",
-    "solver/infill",
-    "solver/judgement",
-    "solver/path",
-    "solver/refinement",
-)
-"""The modules whose hash says which solver made a table."""
+SOLVER = ("solver.cold_start", "solver.corrector", "solver.refinement", "solver.at_rest")
+"""Modules that make the states of a table; their hash, with that of all modules that they import, says which solver made it."""
+
+NUMBERS = {"contact_laws", "contacts", "equations", "fluids", "numerics", "solids", "solver"}
+"""Packages that have a part in the numbers; the others have words."""
 
 STEP = 2.0**-25
 """Unit of the coefficients in the file, which holds whole numbers."""
@@ -311,12 +294,34 @@ def unpack(data: Any) -> Table:
     return Table(tuple(data["breaks"]), tuple(blocks), data["film"], json.loads(str(data["about"])))
 
 
+def solver_sources() -> list[str]:
+    """Return the modules of the solver: :data:`SOLVER` and all that these import, at once or on first use, sorted."""
+    found: set[str] = set()
+    waiting = list(SOLVER)
+    while waiting:
+        name = waiting.pop()
+        if name in found:
+            continue
+        found.add(name)
+        for node in ast.walk(ast.parse(_source(name))):
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("stribeck."):
+                module = node.module.removeprefix("stribeck.")
+                inner = [f"{module}.{alias.name}" for alias in node.names]
+                waiting += [each for each in (module, *inner) if each.split(".")[0] in NUMBERS and _source(each)]
+    return sorted(found)
+
+
+def _source(name: str) -> str:
+    """Return the source of a module of the package, nothing if there is none of this name."""
+    place = Path(__file__).parents[1].joinpath(*name.split("."))
+    return next((path.read_text("utf-8") for path in (place.with_suffix(".py"), place / "__init__.py") if path.exists()), "")
+
+
 def solver_hash() -> str:
     """Return the SHA-256 of the sources of the solver."""
     found = hashlib.sha256()
-    package = Path(__file__).parents[1]
-    for name in SOLVER:
-        found.update((package / f"{name}.py").read_text(encoding="utf-8").encode())
+    for name in solver_sources():
+        found.update(_source(name).encode())
     return found.hexdigest()
 
 

@@ -18,16 +18,8 @@ __all__ = ["FREE", "FitSettings", "Prior", "check_fit_table", "free_names"]
 
 Noise = Literal["relative", "absolute"]
 
-USUAL = ("boundary_friction", "roughness", "beta", "alpha", "modulus", "viscosity", "load", "radius")
-"""Inputs from what a fit is mostly after to what is mostly known: the order in which results name them."""
-
-FREE = tuple(
-    sorted(
-        (row.name for row in ROWS if not row.derived and row.name != "speed"),
-        key=lambda name: USUAL.index(name) if name in USUAL else len(USUAL),
-    )
-)
-"""Inputs that may be fitted, in that order; all of them enter friction through groups, boundary friction and beta."""
+FREE = tuple(row.name for row in sorted(ROWS, key=lambda row: row.known) if not row.derived and row.name != "speed")
+"""Inputs that may be fitted, from what a fit is mostly after to what is mostly known; all of them enter friction through groups, boundary friction and beta."""
 
 DEFAULT_FREE = ("boundary_friction", "roughness")
 

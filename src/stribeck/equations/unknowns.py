@@ -10,9 +10,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-NOWHERE = slice(0, 0)
-"""Where an unknown lies that a model does not have."""
-
 
 class Layout(NamedTuple):
     """Where each unknown lies; ``y[..., layout.offset]`` keeps the axis of a number, so that it is a column of stacked states.
@@ -27,7 +24,7 @@ class Layout(NamedTuple):
         All numbers.
     offset, flux_gap, exit, dilation : slice
         Numbers: the height of the undeformed cylinder, the flux gap, the exit of a film that ends, and the length of the
-        cavity behind it in units of that on the mesh.
+        cavity behind it in units of that on the mesh.  Empty where a model does not have them.
     """
 
     size: int
@@ -35,6 +32,6 @@ class Layout(NamedTuple):
     numbers: slice
     offset: slice
     flux_gap: slice
-    pressure: slice = NOWHERE
-    exit: slice = NOWHERE
-    dilation: slice = NOWHERE
+    pressure: slice
+    exit: slice
+    dilation: slice

@@ -83,6 +83,8 @@ class Input:
         Whether a contact does without it.
     default : float or None
         What it then has, None if nothing.
+    known : int
+        Rank from what a fit is mostly after to what is mostly known: the order in which fits name their inputs.
     """
 
     name: str
@@ -102,6 +104,7 @@ class Input:
     derived: bool = False
     optional: bool = False
     default: float | None = None
+    known: int = 9
 
 
 _PDMS = "as in examples/pdms_cylinder.toml"
@@ -118,6 +121,7 @@ ROWS = (
         usual=(1e-4, 1.0),
         units=("mm", "cm", "m"),
         letters=("R",),
+        known=7,
     ),
     Input(
         name="modulus",
@@ -131,6 +135,7 @@ ROWS = (
         units=("kPa", "MPa", "GPa"),
         letters=("E_star",),
         headers=("e star",),
+        known=4,
     ),
     Input(
         name="load",
@@ -144,6 +149,7 @@ ROWS = (
         units=("N/m", "kN/m", "N/mm"),
         letters=("F_N",),
         headers=("f n",),
+        known=6,
     ),
     Input(
         name="viscosity",
@@ -157,6 +163,7 @@ ROWS = (
         units=("mPa*s", "Pa*s", "cP"),
         letters=("eta",),
         headers=("eta",),
+        known=5,
     ),
     Input(
         name="speed",
@@ -184,6 +191,7 @@ ROWS = (
         letters=("h_rms",),
         headers=("h rms",),
         zero=True,
+        known=1,
     ),
     Input(
         name="alpha",
@@ -195,6 +203,7 @@ ROWS = (
         exponents=(0, 0, -1),
         usual=(0.5, 5.0),
         follows_surface=True,
+        known=3,
     ),
     Input(
         name="beta",
@@ -206,6 +215,7 @@ ROWS = (
         exponents=(0, -2, -2),
         usual=(1e-3, 2.0),
         follows_surface=True,
+        known=2,
     ),
     Input(
         name="boundary_friction",
@@ -217,6 +227,7 @@ ROWS = (
         usual=(0.01, 2.0),
         letters=("mu0", "mu_0"),
         zero=True,
+        known=0,
     ),
     Input(
         name="youngs_modulus",

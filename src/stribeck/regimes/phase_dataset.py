@@ -43,7 +43,7 @@ LABELS = {
     "printed_speed_boundary_to_mixed": "the same as [BP] print it",
     "printed_speed_at_minimum": "the speed of the minimum as [BP] print it",
     "roughness_without_minimum": "roughness at which the minimum of friction disappears, on solved states",
-    "formula_merging_roughness": "the same by the law of mixed friction",
+    "formula_roughness_without_minimum": "the same by the law of mixed friction",
 }
 """Long names of the numbers."""
 
@@ -88,7 +88,7 @@ def diagram_dataset(diagram: Diagram) -> xarray.Dataset:
         diagram.messages,
         {"units": "1", "long_name": "why results of the row are missing, if they are"},
     )
-    merging = {"formula_merging_roughness": _formula_merging(diagram)}
+    merging = {"formula_roughness_without_minimum": _formula_merging(diagram)}
     if diagram.merging is not None:
         merging["roughness_without_minimum"] = diagram.merging
     for name, values in merging.items():

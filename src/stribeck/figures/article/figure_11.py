@@ -27,7 +27,7 @@ RTOL = 1e-6
 SMOOTHEST = 1e-3
 """Roughness group up to which the lines are far enough apart to be compared with formulas."""
 
-MERGING = ("roughness_without_minimum", "formula_merging_roughness")
+MERGING = ("roughness_without_minimum", "formula_roughness_without_minimum")
 
 
 def _compute(report: Report) -> xarray.Dataset:

@@ -53,7 +53,7 @@ def _compute(report: Report) -> xarray.Dataset:
         "minimum_hersey": [m.solution.hersey_number if m else math.nan for m in minima],
         "minimum_friction": [m.friction if m else math.nan for m in minima],
         "minimum_law": [float(hydrodynamic.friction.function(m.solution.groups)) if m else math.nan for m in minima],
-        "minimum_lambda_ratio": [m.solution.central_separation if m else math.nan for m in minima],
+        "separation_at_minimum": [m.solution.central_separation if m else math.nan for m in minima],
     }
     spread = _spread(hersey, friction, fluid_film)
     slopes = np.gradient(np.log(friction[0]), np.log(hersey[0]))
@@ -65,7 +65,7 @@ def _compute(report: Report) -> xarray.Dataset:
         f"times; over mu_f,th they lie from {100 * np.nanmin(off):.1f} to {100 * np.nanmax(off):+.1f} % of the line y = x, "
         f"the error of mu_f,th itself (over our uniform law within {100 * np.nanmax(np.abs(ours)):.2f} %). The slope grows "
         f"from {np.nanmin(slopes):.2f} to {np.nanmax(slopes):.2f}. Lambda at the minimum falls from "
-        f"{np.nanmax(lowest['minimum_lambda_ratio']):.1f} to {np.nanmin(lowest['minimum_lambda_ratio']):.1f} with roughness; "
+        f"{np.nanmax(lowest['separation_at_minimum']):.1f} to {np.nanmin(lowest['separation_at_minimum']):.1f} with roughness; "
         f"load {CASES[-1][0]} with roughness {CASES[-1][1]} has no minimum below its plateau. The paper names only load 0.1 "
         "with roughness 1e-4 and prints no table of the others."
     )
@@ -79,7 +79,7 @@ def _compute(report: Report) -> xarray.Dataset:
         "uniform_distance": column(grid, ours, "the same over uniform_friction"),
         "hersey_spread": column((), spread, "largest ratio of hydrodynamic frictions at one Hersey number"),
         "slope": column("speed", slopes, "d ln friction / d ln Hersey number of the first case, where hydrodynamic"),
-        "predicted_lambda_ratio": column(("predicted_load", "predicted_roughness"), predicted, "Lambda at the minimum, law"),
+        "predicted_separation": column(("predicted_load", "predicted_roughness"), predicted, "Lambda at the minimum, law"),
     }
     variables |= {name: column("case", values, f"{name.replace('_', ' ')} of friction") for name, values in lowest.items()}
     coords = case_coords() | {
@@ -130,11 +130,11 @@ def _draw_curves(axes: Axes, data: xarray.Dataset, x: str, minimum: str, labels:
 
 def _draw_ratios(axes: Axes, data: xarray.Dataset) -> None:
     for load, ratios, dashes in zip(
-        data.predicted_load.values, data.predicted_lambda_ratio.values, (style.DASHED, style.DOTTED), strict=True
+        data.predicted_load.values, data.predicted_separation.values, (style.DASHED, style.DOTTED), strict=True
     ):
         axes.loglog(data.predicted_roughness, ratios, color=style.INK, ls=dashes, lw=1.4, label=f"formula, load {load:g}")
     for i, look, _ in drawn_cases(data):
-        axes.plot(data["roughness"][i], data.minimum_lambda_ratio[i], **look | {"ms": 7})
+        axes.plot(data["roughness"][i], data.separation_at_minimum[i], **look | {"ms": 7})
     draw_reports(axes, data, 0.66)
     axes.set(xlabel=r"roughness $\bar h_\mathrm{rms}$", ylabel=r"$\Lambda$ at the minimum of friction", ylim=(0.3, 3e5))
     axes.set_xlim(1e-8, 10 ** (-8 + 6 / 0.66))

@@ -80,7 +80,7 @@ def _compute(report: Report) -> xarray.Dataset:
         "uniform_error": column(grid, errors["uniform_error"], "relative error of law_uniform against the solver"),
         "film_ratio": column(grid, film, "film ratio c lambda^(3/5)/kappa"),
         "speed_at_minimum": column(map_, speeds, "speed group of minimum friction, solved"),
-        "lambda_ratio": column(map_, ratio, "central gap over h_rms/alpha at the minimum of friction, solved"),
+        "separation": column(map_, ratio, "central gap over h_rms/alpha at the minimum of friction, solved"),
         "film_ratio_at_minimum": column(
             map_, film_ratio, "c lambda^(3/5)/kappa at the minimum of friction, solved: the paper's Lambda"
         ),

@@ -61,7 +61,7 @@ def draw(data: xarray.Dataset) -> Figure:
 def _draw_lambda(axes: Axes, data: xarray.Dataset) -> None:
     for i, (load, colour) in enumerate(zip(data.minimum_load.values, LOAD_COLOURS, strict=True)):
         x = data.minimum_roughness[i]
-        axes.semilogx(x, data.lambda_ratio[i], "o", color=colour, ms=5, label=f"solved, load {load:g}")
+        axes.semilogx(x, data.separation[i], "o", color=colour, ms=5, label=f"solved, load {load:g}")
         axes.plot(x, data.film_ratio_at_minimum[i], "o", color=colour, mfc="white", ms=5)
         for form, (label, dashes) in FORMS.items():
             axes.plot(x, data[f"lambda_{form}"][i], color=colour, ls=dashes, lw=1.2, label=label if i else None)
@@ -89,7 +89,7 @@ def _draw_friction(axes: Axes, ratios: Axes, data: xarray.Dataset) -> None:
 
 def _draw_reported(axes: Axes, data: xarray.Dataset) -> None:
     axes.loglog(data.k, data.lambda_of_number, color=style.INK, lw=1.6, label=r"$\Lambda^{1/3} e^{-\Lambda} = k$")
-    solved = zip(data.minimum_load.values, LOAD_COLOURS, data.number.values, data.lambda_ratio.values, strict=True)
+    solved = zip(data.minimum_load.values, LOAD_COLOURS, data.number.values, data.separation.values, strict=True)
     for load, colour, numbers, ratios in solved:
         axes.plot(numbers, ratios, "o", color=colour, ms=4, label=f"solved, load {load:g}")
     draw_reports(axes, data, 0.66)
