@@ -409,3 +409,41 @@ def test_it_is_served_on_this_machine_only(address):
     assert outside != "127.0.0.1"
     with pytest.raises(OSError):
         socket.create_connection((outside, port), timeout=3).close()
+
+
+def test_changes_are_undone_and_redone(open_page):
+    page = open_page()
+    first = contact_of(page)
+    assert page.get_by_role("button", name="Undo").is_disabled()
+    second = at_rest(page, lambda: (slider(page, "speed").focus(), page.keyboard.press("ArrowRight")))
+    third = at_rest(page, lambda: (field(page, "load").fill("40"), field(page, "load").press("Enter")))
+    assert at_rest(page, lambda: page.keyboard.press("Control+z")) == second  # the focus is still in the field
+    assert at_rest(page, lambda: page.get_by_role("button", name="Undo").click()) == first
+    assert page.get_by_role("button", name="Undo").is_disabled()
+    assert at_rest(page, lambda: page.keyboard.press("Control+Shift+z")) == second
+    assert at_rest(page, lambda: page.keyboard.press("Control+y")) == third
+    check_numbers(page, third)
+    field(page, "radius").fill("12")
+    field(page, "radius").press("Control+z")  # letters that are being typed are undone in the field
+    assert contact_of(page) == third and field(page, "load").input_value() == "40"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_core_finds_no_fault(open_page, scheme):
+    from axe_playwright_python.sync_playwright import Axe
+
+    page = open_page(color_scheme=scheme)
+    settled(page)
+    found = Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"]
+    assert [(each["id"], [node["html"][:200] for node in each["nodes"]]) for each in found] == []
+
+
+def test_nothing_jumps_while_values_change(open_page):
+    page = open_page()
+    settled(page)
+    boxes = """() => [...document.querySelectorAll('.chart, .knob')].map(e => {
+        const box = e.getBoundingClientRect(); return [box.x, box.y, box.width, box.height].map(Math.round); })"""
+    before = page.evaluate(boxes)
+    for name, text in (("load", "4"), ("viscosity", "1234"), ("roughness", "0"), ("roughness", "0.123")):
+        at_rest(page, lambda name=name, text=text: (field(page, name).fill(text), field(page, name).press("Enter")))
+        assert page.evaluate(boxes) == before, (name, text)

@@ -21,6 +21,7 @@ from stribeck.explorer.answer import Answerer, asymptotic_fields, round_down, ro
 from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
+from stribeck.explorer.history import History
 from stribeck.explorer.measured import read_measured
 
 START = server.example()
@@ -664,3 +665,21 @@ def test_advice_on_a_tolerance_that_the_page_does_not_offer_is_left_out():
     for outcome in sb.Outcome:
         assert "rtol" not in without_rtol(outcome.value)
     assert without_rtol("Refining came to its end; ask for a larger rtol.") == "Refining came to its end."
+
+
+def test_history_goes_back_and_forth_and_forgets_what_was_undone_before_a_change():
+    states = [server.example()]
+    for speed in (2e-3, 3e-3, 4e-3):
+        states.append(replace(states[0], contact=states[0].contact.replace(speed=speed)))
+    past = History(states[0])
+    assert past.ways == {"undo": False, "redo": False} and past.step(-1, states[0]) is None
+    past.rest(states[1])
+    past.rest(states[1])
+    assert past.step(-1, states[2]) == states[1]  # what has not come to rest is a step too
+    assert past.step(-1, states[1]) == states[0] and past.ways == {"undo": False, "redo": True}
+    assert past.step(1, states[0]) == states[1]
+    past.rest(states[3])
+    assert past.step(1, states[3]) is None and past.step(-1, states[3]) == states[1]
+    for k in range(300):
+        past.rest(states[k % 2])
+    assert len(past.states) == 100

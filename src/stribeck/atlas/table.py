@@ -43,7 +43,7 @@ segments end at, twice the logarithm of the speed is taken off the first."""
 FILE = "atlas.npz"
 
 SOLVER = ("solver.cold_start", "solver.corrector", "solver.refinement", "solver.at_rest")
-"""Modules that make the states of a table; their hash, with that of all modules that they import, says which solver made it."""
+"""Modules that make the states of a table; the hash of these and of all that they import says which solver made it."""
 
 NUMBERS = {"contact_laws", "contacts", "equations", "fluids", "numerics", "solids", "solver"}
 """Packages that have a part in the numbers; the others have words."""

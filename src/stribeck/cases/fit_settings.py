@@ -19,7 +19,8 @@ __all__ = ["FREE", "FitSettings", "Prior", "check_fit_table", "free_names"]
 Noise = Literal["relative", "absolute"]
 
 FREE = tuple(row.name for row in sorted(ROWS, key=lambda row: row.known) if not row.derived and row.name != "speed")
-"""Inputs that may be fitted, from what a fit is mostly after to what is mostly known; all of them enter friction through groups, boundary friction and beta."""
+"""Inputs that may be fitted, from what a fit is mostly after to what is mostly known; all of them enter friction through
+groups, boundary friction and beta."""
 
 DEFAULT_FREE = ("boundary_friction", "roughness")
 

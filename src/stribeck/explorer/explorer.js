@@ -46,3 +46,13 @@ window.explorerCopy = () => {
   const write = navigator.clipboard ? navigator.clipboard.writeText(location.href) : Promise.reject();
   write.then(() => say("Address copied"), () => say("The address bar holds the link"));
 };
+
+// Ctrl-Z also while a slider or a field that holds no new text has the focus; a field that is edited undoes its own letters.
+document.addEventListener("keydown", (event) => {
+  if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+  const key = event.key.toLowerCase();
+  const way = key === "y" || (key === "z" && event.shiftKey) ? "redo" : key === "z" ? "undo" : "";
+  if (!way) return;
+  event.preventDefault();
+  document.querySelector(`.history-${way}`)?.click();
+});

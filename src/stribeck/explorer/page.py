@@ -132,6 +132,10 @@ class Page:
                     for label, kind in files.KINDS.items():
                         send = f"() => explorerDownload({self.client_name}, {dumps(kind)})"
                         ui.menu_item(label).on("click", js_handler=send)
+            self.history = {
+                "undo": button("", "undo", "Undo (Ctrl-Z)").props("aria-label=Undo").classes("history-undo"),
+                "redo": button("", "redo", "Redo (Ctrl-Shift-Z)").props("aria-label=Redo").classes("history-redo"),
+            }
             self.pin_button = button("Pin", "push_pin", "Keep this curve to compare (p)")
             button("Link", "link", "Copy the address of this state (l)").on("click", js_handler="() => explorerCopy()")
             self.theme_button = button("", "contrast", "Light or dark (t)").props("aria-label='Light or dark'")
@@ -182,6 +186,11 @@ class Page:
     def copy_address(self) -> None:
         """Put the address into the clipboard."""
         self.client.run_javascript("explorerCopy()")
+
+    def show_ways(self, ways: dict[str, bool]) -> None:
+        """Enable what can be undone and redone."""
+        for name, there in ways.items():
+            self.history[name].set_enabled(there)
 
     def show_choices(self, now: Inputs) -> None:
         """Show the definition of friction, and what the curve is drawn over."""

@@ -7,7 +7,8 @@ export default {
       <label class="name" :for="'field-' + name">{{ label }}<i v-html="symbol"></i></label>
       <input class="field" type="text" :id="'field-' + name" :name="name" v-model="text" autocomplete="off" spellcheck="false"
         :aria-invalid="sentence ? 'true' : 'false'" :aria-describedby="'sentence-' + name"
-        @keydown.enter="commit" @keydown.esc="restore" @blur="commit">
+        @keydown.enter="commit" @keydown.esc="restore" @blur="commit"
+        @keydown.ctrl="text === given || $event.stopPropagation()">
       <select v-if="units.length" class="unit" :aria-label="'Unit of ' + label" :value="unit"
         @change="$emit('unit', $event.target.value)">
         <option v-for="each in units" :key="each" :value="each">{{ each.replace('*', '·') }}</option>

@@ -24,6 +24,7 @@ from stribeck.explorer.answer import Answer, Answerer
 from stribeck.explorer.charts.palette import LIGHT
 from stribeck.explorer.curves import Curve
 from stribeck.explorer.downloads import View
+from stribeck.explorer.history import History
 from stribeck.explorer.inputs import Inputs
 from stribeck.explorer.measured import Measured
 from stribeck.explorer.page import Page
@@ -148,6 +149,8 @@ class Tab:
         self.connect()
         self.page.draw_all(self.inputs, self.seen())
         self.problems = opened.problems
+        self.history = History(self.inputs)
+        self.page.show_ways(self.history.ways)
 
     def connect(self) -> None:
         """Let the elements of the page call what the user means by them."""
@@ -161,6 +164,8 @@ class Tab:
         page.client.on_delete(self.close)
         page.pin_button.on("click", self.pin)
         page.theme_button.on("click", self.toggle_theme)
+        for name, way in (("undo", -1), ("redo", 1)):
+            page.history[name].on("click", lambda way=way: self.step(way))
         page.keyboard.on_key(self.on_key)
 
     # --- what the user does ---
@@ -198,6 +203,15 @@ class Tab:
         self.inputs = changed
         self.page.show_choices(changed)
         self.ask()
+
+    def step(self, way: int) -> None:
+        """Undo or redo."""
+        found = self.history.step(way, self.inputs)
+        if found is not None:
+            if (found.title, found.law) != (self.inputs.title, self.inputs.law):
+                self.page.show_title(found)
+            self.change(found)
+        self.page.show_ways(self.history.ways)
 
     def on_key(self, event: events.KeyEventArguments) -> None:
         """Do what a letter stands for, outside fields."""
@@ -337,6 +351,8 @@ class Tab:
         now = self.inputs
         with self.page.client:
             self.page.show_address(f"?{url.encode(now, self.pins)}")
+            self.history.rest(now)
+            self.page.show_ways(self.history.ways)
             if await self.run(SLOW, self.model.settle, now) and self.inputs is now:
                 self.ask()
                 return

@@ -65,7 +65,8 @@ def _compute(report: Report) -> xarray.Dataset:
         f"times; over mu_f,th they lie from {100 * np.nanmin(off):.1f} to {100 * np.nanmax(off):+.1f} % of the line y = x, "
         f"the error of mu_f,th itself (over our uniform law within {100 * np.nanmax(np.abs(ours)):.2f} %). The slope grows "
         f"from {np.nanmin(slopes):.2f} to {np.nanmax(slopes):.2f}. Lambda at the minimum falls from "
-        f"{np.nanmax(lowest['separation_at_minimum']):.1f} to {np.nanmin(lowest['separation_at_minimum']):.1f} with roughness; "
+        f"{np.nanmax(lowest['separation_at_minimum']):.1f} to {np.nanmin(lowest['separation_at_minimum']):.1f} with "
+        "roughness; "
         f"load {CASES[-1][0]} with roughness {CASES[-1][1]} has no minimum below its plateau. The paper names only load 0.1 "
         "with roughness 1e-4 and prints no table of the others."
     )
