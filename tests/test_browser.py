@@ -433,7 +433,8 @@ def test_axe_core_finds_no_fault(open_page, scheme):
     from axe_playwright_python.sync_playwright import Axe
 
     page = open_page(color_scheme=scheme)
-    settled(page)
+    page.wait_for_selector(".more tr[data-key=roughness]")
+    page.wait_for_selector(".more .ways:not(.old)")
     found = Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"]
     assert [(each["id"], [node["html"][:200] for node in each["nodes"]]) for each in found] == []
 
@@ -441,8 +442,9 @@ def test_axe_core_finds_no_fault(open_page, scheme):
 def test_nothing_jumps_while_values_change(open_page):
     page = open_page()
     settled(page)
-    boxes = """() => [...document.querySelectorAll('.chart, .knob')].map(e => {
-        const box = e.getBoundingClientRect(); return [box.x, box.y, box.width, box.height].map(Math.round); })"""
+    boxes = """() => [...document.querySelectorAll('.middle .chart, .knob')].map(e => {
+        const box = e.getBoundingClientRect();
+        return [box.x, box.y, box.width, box.height].map(Math.round); })"""
     before = page.evaluate(boxes)
     for name, text in (("load", "4"), ("viscosity", "1234"), ("roughness", "0"), ("roughness", "0.123")):
         at_rest(page, lambda name=name, text=text: (field(page, name).fill(text), field(page, name).press("Enter")))

@@ -56,3 +56,5 @@ document.addEventListener("keydown", (event) => {
   event.preventDefault();
   document.querySelector(`.history-${way}`)?.click();
 });
+
+document.documentElement.lang = "en";

@@ -90,7 +90,7 @@ class Page:
 
     def build(self, now: Inputs) -> None:
         """Make all elements."""
-        with ui.element("main").classes("explorer"):
+        with ui.element("div").classes("explorer"):
             self.build_bar(now)
             with ui.element("section").classes("card controls").props('aria-label="Inputs"'):
                 self.build_controls(now)

@@ -206,7 +206,7 @@ def margins_html(margins: RegimeMargins) -> str:
         A table with a line for each input and a column for each regime beside the present one.
     """
     targets = margins.targets
-    lines = ["<table><tr><th></th>", *(f'<th scope="col">to {target}</th>' for target in targets), "</tr>"]
+    lines = ["<table><tr><td></td>", *(f'<th scope="col">to {target}</th>' for target in targets), "</tr>"]
     for margin in margins.margins:
         lines.append(f'<tr data-key="{margin.name}"><th scope="row">{margin.name}</th>')
         for target in targets:
