@@ -32,7 +32,7 @@ REACH = 50.0
 FAR_PANELS = 2
 """Panels in ln r beyond twice the scale."""
 
-MOST_BYTES = 600_000_000
+MOST_BYTES = 700_000_000
 """Memory that operators and preconditioner of a mesh may take."""
 
 KEPT_BYTES = 120_000_000
@@ -163,7 +163,7 @@ def bytes_of(found: Resolution, band: int) -> int:
     """Return about the memory that operators and preconditioner take."""
     rings = found.mesh.rings
     band = min(band, found.modes - 1)
-    return found.modes * rings * rings * (8 + 4 * (2 * band + 1)) + 8 * (band + 1) ** 2 * rings * rings
+    return found.modes * rings * rings * (8 + 4 * (2 * band + 1)) + 5 * (band + 1) ** 2 * rings * rings
 
 
 _kept: OrderedDict[Resolution, Operators] = OrderedDict()
