@@ -17,6 +17,7 @@ ARGUMENTS = {
     "cost": ["--runs", "1"],
     "curve_speed": [],
     "peers": ["--quick"],
+    "point_speed": ["--runs", "1", "--speeds", "2"],
     "surface_errors": ["--number", "1"],
     "sweep_rate": ["--number", "4", "--workers", "1"],
 }

@@ -13,7 +13,15 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, split_where_poor
+from stribeck.equations.point.mesh_choice import (
+    EDGE,
+    MOST_BYTES,
+    MeshTooLargeError,
+    Resolution,
+    bytes_of,
+    layout,
+    split_where_poor,
+)
 from stribeck.equations.point.observables import identity_error, observables
 from stribeck.equations.point.system import Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh
@@ -37,6 +45,9 @@ MINIMUM_SLACK = 100.0
 
 PANEL_RATE = 1.49
 """Logarithm by which one degree more reduces the error of a pressure that has a square root at one panel's distance."""
+
+SIDE_LOBES = 7.5
+"""Number of modes over the width of the edge to the power -0.675 that resolves the minimum film of smooth contacts to 1e-4."""
 
 MOST_DEGREE, MOST_MODES = 18, 160
 MOST_ROUNDS = 6
@@ -140,8 +151,11 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     unseen = UNSEEN_RADIAL * legendre_tail(fine)
     if fine.equations.speed > 0:
         unseen += UNSEEN * float(modal_amplitudes(fine)[-2:].max())
+    # The series of the side lobes falls from one mesh to the other as the error of the minimum does.
+    last, before = (float(modal_amplitudes(level)[-2:].max()) for level in (fine, coarse))
+    gained = 2.0 * min(PART, max(0.05, last / max(before, 1e-300)))
     for name in ("minimum_gap", "minimum_gap_on_axis"):
-        errors[name] = max(2.0 * errors[name], unseen * scales[name])
+        errors[name] = max(gained * abs(values[name] - rough[name]), unseen * scales[name])
     for name in ("minimum_radius", "minimum_angle"):
         errors[name] = max(4.0 * errors[name], unseen)
     ok = coarse.outcome.ok and fine.outcome.ok
@@ -159,6 +173,9 @@ def first_resolution(level: Level, rtol: float, band: int) -> Resolution:
     scale = min(1.0, film + 0.3 * carried)
     degree = 1 + math.ceil(math.log(0.25 / (rtol * scale)) / PANEL_RATE)
     modes = max(1.4 * modes_for(level, 0.7 * math.sqrt(rtol)), modes_for(level, 0.5 * MINIMUM_SLACK * rtol / UNSEEN), 8)
+    if level.contact_pressure.max() < 1e-3:
+        width = layout(level.equations.speed, level.equations.law)[0] / EDGE
+        modes = max(modes, SIDE_LOBES * width**-0.675 * math.log(MINIMUM_SLACK * rtol) / math.log(1e-4))
     degree = min(MOST_DEGREE, max(7, degree))
     return affordable(replace(level.resolution, degree=degree, modes=2 * math.ceil(0.5 * modes)), band)
 

@@ -1,0 +1,128 @@
+"""Cost of states of the point contact: cold, from a neighbour, and along a curve, in units of one LU(1000).
+
+Usage::
+
+    python benchmarks/point_speed.py [--runs 3] [--speeds 25]
+
+Times are CPU seconds of one thread, each over that of an LU factorisation of a 1000 x 1000 matrix before and after it.
+Other solvers were measured at 7 to 28 s a state, good to 1.4 % (slippy), and at 10 to 33 s, good to 2 % (EHL-FBNS).
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable
+
+import numpy as np
+from scipy.linalg import lapack
+
+import stribeck as sb
+from stribeck.equations.point.mesh_choice import resolution
+from stribeck.equations.point.preconditioner import BandedModes
+from stribeck.equations.point.system import Linear, Operators
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.solver.point.solve import solve_cold, solve_from
+from stribeck.solver.point.state import PointState
+
+LOAD, KAPPA = 1e-3, 1e-3
+SIZE = 1000
+
+
+def unit(size: int = SIZE) -> float:
+    """Return the CPU seconds of one factorisation, the best of three."""
+    matrix = np.random.default_rng(1).normal(size=(size, size))
+    return min(timed(lambda: lapack.dgetrf(matrix))[0] for _ in range(3))
+
+
+def timed(work: Callable[[], PointState | object]) -> tuple[float, object]:
+    """Return CPU seconds and result."""
+    start = time.process_time()
+    found = work()
+    return time.process_time() - start, found
+
+
+def relative(work: Callable[[], PointState], runs: int) -> tuple[float, PointState]:
+    """Return the least cost of some runs in units of the factorisations around it, and the state."""
+    ratios = []
+    for _ in range(runs):
+        before = unit()
+        seconds, state = timed(work)
+        ratios.append(2.0 * seconds / (before + unit()))
+    assert isinstance(state, PointState)
+    return min(ratios), state
+
+
+def ball(speed: float, kappa: float = KAPPA) -> sb.Groups:
+    """Return the groups of a ball."""
+    return sb.Groups(speed, LOAD, kappa * LOAD ** (2 / 3), geometry="point")
+
+
+def single_states(runs: int) -> None:
+    """Print cold states and steps from a neighbour."""
+    print("| state | rtol | cost | rings x angles | Newton | GMRES | estimate | minimum film |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name, groups, rtol in (
+        ("cold, mixed, speed 1e-4", ball(1e-4), 1e-6),
+        ("cold, mixed, speed 1e-2, 1e-2", ball(1e-2, 1e-2), 1e-6),
+        ("cold, smooth, speed 1e-2", ball(1e-2, 0.0), 1e-6),
+        ("cold, smooth, speed 1e-3", ball(1e-3, 0.0), 1e-6),
+    ):
+        report(name, rtol, *relative(lambda g=groups, r=rtol: solve_cold(g, r), runs))
+    near = solve_cold(ball(1e-4), 1e-6)
+    report("neighbour, mixed, speed 1.2e-4", 1e-6, *relative(lambda: solve_from(near, ball(1.2e-4), 1e-6), runs))
+
+
+def report(name: str, rtol: float, cost: float, state: PointState) -> None:
+    """Print a row."""
+    nodes, errors = f"{state.mesh.rings} x {state.mesh.modes}", f"{state.error_estimate:.0e} | {state.minimum_gap_error:.0e}"
+    print(f"| {name} | {rtol:.0e} | {cost:.1f} | {nodes} | {state.newton_steps} | {state.krylov_steps} | {errors} |")
+
+
+def curve(count: int) -> None:
+    """Print the cost of a curve from boundary lubrication to full film, every state with its estimated errors."""
+    state: PointState | None = None
+    total, worst = 0.0, 0.0
+    for speed in np.geomspace(1e-7, 10, count):
+        groups, last = ball(float(speed)), state
+        cost, state = relative(lambda g=groups, s=last: solve_cold(g, 1e-5) if s is None else solve_from(s, g, 1e-5), 1)
+        total, worst = total + cost, max(worst, state.error_estimate)
+    print("\n| curve | rtol | cost in all | largest estimate |\n|---|---|---|---|")
+    print(f"| {count} speeds from 1e-7 to 10 | 1e-05 | {total:.0f} | {worst:.0e} |")
+
+
+def breakdown(runs: int) -> None:
+    """Print what the parts of a step cost on the mesh of a mixed state."""
+    state = solve_cold(ball(1e-4), 1e-6)
+    fine = state.work.fine
+    linear = Linear(fine.equations, fine.unknowns)
+    found = resolution(1e-4, fine.equations.law, state.mesh.degree, state.mesh.modes)
+    preconditioner = BandedModes(linear, 5)
+    right = linear.right(fine.equations.residual(fine.unknowns))
+    parts = {
+        "operators of the half-space": lambda: Operators(found.mesh).deflection,
+        "preconditioner": lambda: BandedModes(linear, 5),
+        "its application": lambda: preconditioner(right),
+        "product with the Jacobian": lambda: linear.product(right),
+        "residual": lambda: fine.equations.residual(fine.unknowns),
+    }
+    print(f"\n| part, on {state.mesh.rings} x {state.mesh.modes} nodes | cost |\n|---|---|")
+    for name, work in parts.items():
+        print(f"| {name} | {min(timed(work)[0] for _ in range(2 * runs + 1)) / unit():.3f} |")
+
+
+@one_blas_thread
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--speeds", type=int, default=25)
+    arguments = parser.parse_args()
+    print(f"unit: LU({SIZE}), {1e3 * unit():.0f} ms of CPU time\n")
+    single_states(arguments.runs)
+    breakdown(arguments.runs)
+    curve(arguments.speeds)
+
+
+if __name__ == "__main__":
+    main()
