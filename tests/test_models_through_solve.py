@@ -133,3 +133,12 @@ def test_a_cavity_at_ambient_pressure_reaches_to_infinity():
 def test_the_dry_smooth_contact_on_a_layer_is_refused():
     with pytest.raises(sb.InputError, match="closed form on the half-plane alone"):
         sb.solve(sb.Groups(0.0, 0.1, 0.0), solid=sb.solids.Layer(3.0))
+
+
+def test_the_states_of_a_curve_are_those_of_single_solves_with_the_same_model():
+    groups, speeds = sb.Groups(1e-4, 0.1, 1e-4), np.geomspace(1e-5, 1e-2, 31)
+    for keywords in ({"fluid": sb.fluids.Carreau(0.02, 0.5)}, {"cavitation": "exit"}):
+        curve = sb.stribeck_curve(groups, speed=speeds, **keywords)
+        for k in (3, 15, 22):
+            single = sb.solve(curve.solutions[k].groups)
+            assert curve.solutions[k].central_gap == pytest.approx(single.central_gap, rel=1e-6)

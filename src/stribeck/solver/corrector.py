@@ -16,6 +16,7 @@ from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.prediction import extrapolate
 from stribeck.equations.state import State, mesh_for, solve_state
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
@@ -74,6 +75,10 @@ class Corrector:
     def __call__(self, s: float, history: Sequence[tuple[float, RefinedState]]) -> RefinedState | None:
         """Return the point at ``s`` predicted from ``history``; from cold where that is empty."""
         groups = self.groups_at(s)
+        if groups.model.cavitation is Cavitation.REFORM and groups.speed > 0:  # cavities come and go along a path
+            from stribeck.solver.solve import solved_point
+
+            return solved_point(groups, self.rtol)
         if not history:
             path = first_path(with_positive_gap(groups)[0])
             if path.outcome is Outcome.INTERRUPTED:
@@ -131,6 +136,8 @@ class Corrector:
         if self.operators is None or self.fine is None:
             return None
         base, tolerance = with_positive_gap(groups)[0], newton_tolerance(self.rtol)
+        if base.model != self.operators.model:
+            self.operators, self.inverse = Operators(self.operators.mesh, base.model), None
         state = solve_state(base, self.operators, guess, tolerance, MOST_STEPS, self.inverse)
         if not state.outcome.ok:
             return None
@@ -166,7 +173,7 @@ class Corrector:
         except MeshTooLargeError:
             return
         if mesh.size < WORTH_COARSENING * state.mesh.size:
-            self.operators, self.fine, self.inverse = Operators(mesh), FineOperators(mesh), None
+            self.operators, self.fine, self.inverse = Operators(mesh, state.groups.model), FineOperators(mesh), None
 
     def _relax(self) -> None:
         """Widen the tolerances, up to those that a first mesh has."""

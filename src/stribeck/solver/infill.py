@@ -107,6 +107,9 @@ def interpolate_and_correct(
         In the order of the coordinates, each with its outcome.
     """
     operators, fine = on.operators, on.fine
+    model = operators.model
+    if operators.has_exit or model.film.uses_pressure or any(one.model != model for one in groups):
+        return []  # these have unknowns that are not interpolated here, or another model each
     mesh = operators.mesh
     weights = np.stack([extrapolation_weights([a.coordinate for a in through], s) for s in coordinates])
     states = [a.state for a in through]
