@@ -243,3 +243,11 @@ def test_a_thick_layer_is_the_half_plane_but_for_its_offset():
         differences.append(np.ptp((layer - plane)[inside]))
     assert differences[0] < 1e-3
     assert differences[0] / differences[1] == pytest.approx(4.0, rel=0.05)
+
+
+def test_a_curve_of_a_film_that_ends_finds_its_range_and_its_minimum():
+    """Minimum of friction at load 0.1 and kappa 1e-3 with a free exit: 0.02410 at speed 1.095e-3; full film 0.02635."""
+    curve = sb.stribeck_curve(sb.Groups(1e-4, 0.1, 1e-4), cavitation="exit", points=7, rtol=1e-5)
+    assert curve.solutions[0].fluid_load_share < 1e-3 and curve.solutions[-1].contact_load_share < 1e-3
+    assert curve.minimum.value == pytest.approx(1.095e-3, abs=2e-6)
+    assert curve.minimum.friction == pytest.approx(0.02410, abs=1e-5)

@@ -10,6 +10,7 @@ import numpy as np
 
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
+from stribeck.contacts.model import ARTICLE
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import observables
@@ -40,9 +41,11 @@ MARGIN = 10.0
 def automatic_speed_range(groups: Groups, boundary_friction: float, beta: float, definition: str) -> tuple[float, float]:
     """Return the speed groups from boundary plateau to hydrodynamic branch for the load and roughness of ``groups``.
 
-    They are found on coarse states that come down in speed from the rigid film.  Smooth surfaces have no plateau: their
-    curve covers ten decades up to speed 10.
+    They are found on coarse states that come down in speed from the rigid film, with the fluid and the solid of the article:
+    other parts change what the film carries by less than the margin.  Smooth surfaces have no plateau: their curve covers ten
+    decades up to speed 10.
     """
+    groups = replace(groups, model=ARTICLE)
     kappa = float(groups.relative_roughness)
     if kappa == 0:
         return 1e-9, 10.0
