@@ -136,7 +136,7 @@ class StribeckCurve(Shown, ByValue):
         Notes
         -----
         On first use about a dozen states are solved and expanded into Taylor series; from then on a value takes
-        a fraction of a millisecond.  Between the states observables are polynomials in the logarithm of ``value``, whose
+        about a millisecond.  Between the states observables are polynomials in the logarithm of ``value``, whose
         difference from ones of lower order is part of the error (``test_curve_function.py``).
         """
         values = given_values(self.over, value, self.contact)
