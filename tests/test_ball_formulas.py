@@ -362,6 +362,17 @@ def test_share_and_friction_at_any_speed_are_within_their_stated_errors():
     assert np.abs(found / viscous(groups, J, 0.1) - 1)[inside].max() <= friction.viscous_friction.worst
 
 
+def test_the_speed_of_a_share_and_the_smooth_integral_are_as_near_as_they_were_fitted():
+    speed, load, kappa, share, _, _ = columns("mixed")
+    shared = (share > 0.05) & (share < 0.95)
+    found = sharing.speed_of_share(ball(1.0, load[shared], kappa[shared]), 1 - share[shared])
+    off = np.abs(np.log(found / speed[shared]))
+    assert off.max() < 0.15 and np.median(off) < 0.085
+    speed, _, _, _, J = columns("smooth")
+    far = speed * float(far_integral(1.0, 15.0))
+    assert np.abs((friction.smooth_integral(speed) - J) / (J + far)).max() < 8e-4
+
+
 def test_share_and_speed_of_a_share_are_inverse():
     groups = ball(1.0, 0.03, 3e-3)
     for wanted in (0.05, 0.5, 0.99):

@@ -200,7 +200,7 @@ def contact_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = 
     predicts="viscous_friction",
     plane="mixed",
     limits=SLOW,
-    worst=0.12,
+    worst=0.09,
     source="ours",
 )
 def viscous_friction(
