@@ -253,6 +253,23 @@ def test_at_rest_a_fluid_with_a_plateau_is_newtonian_and_a_power_law_is_finite()
     assert np.isfinite(ShearThinning(PowerLaw(2.0, 0.3)).at(0.0).gradient(h, None, m)).all()
 
 
+@pytest.mark.quick
+@pytest.mark.parametrize("name", FILMS)
+def test_a_milder_film_goes_from_nearly_newtonian_to_the_film_itself(name):
+    h, p, m = some_films()
+    film = FILMS[name]
+    p = p if film.uses_pressure else None
+
+    def gradient(part):
+        return film.milder(part).at(1.3).gradient(h, p, m)
+
+    np.testing.assert_allclose(gradient(1.0), film.at(1.3).gradient(h, p, m), rtol=1e-12)
+    newtonian = Newtonian(slide=film.slide).gradient(h, None, m)
+    mild, all_of_it = (np.abs(gradient(part) / newtonian - 1).max() for part in (1e-6, 1.0))
+    assert mild < 0.1
+    assert all_of_it > 3 * mild or name == "plain"
+
+
 # Pressure and density
 
 
