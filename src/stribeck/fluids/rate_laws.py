@@ -313,8 +313,8 @@ class PowerLaw(RateLaw):
     -----
     Without a plateau the viscosity is infinite where nothing flows, and pressures fall off far away as broken powers, which
     panels resolve slowly: with exponents near 0.7 a tolerance of 1e-4 is reached, below 0.5 often none.  The outcome says so.
-    A Carreau fluid with a long relaxation time is the same where it matters.  If the viscosity grows with the pressure, the rate
-    at a given stress falls by its factor, as with the other laws.
+    A Carreau fluid with a long relaxation time is the same where it matters.  If the viscosity grows with the pressure, the
+    rate at a given stress falls by its factor, as with the other laws.
     """
 
     relaxation_time: float
