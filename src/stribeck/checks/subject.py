@@ -76,6 +76,11 @@ class Subject:
         return float(getattr(self.solution, "flux_gap", self.solution.central_gap))
 
     @property
+    def is_slow(self) -> bool:
+        """Whether a curve would take minutes, as that of a ball does, and is not known yet."""
+        return self.contact.groups.geometry == "point" and self.traced is None
+
+    @property
     def minimum(self) -> Landmark | None:
         """The minimum of friction over the speed."""
         return self.curve.minimum

@@ -122,6 +122,9 @@ def checks_of(subject: Subject, effort: Effort = "tail") -> Checks:
     for row in ROWS:
         if EFFORTS.index(row.effort) > EFFORTS.index(effort):
             continue
+        if row.effort in ("curve", "tail") and subject.is_slow:
+            unchecked.append(f"{row.name}: a curve of a ball takes minutes.")
+            continue
         try:
             made = row.check(subject)
         except (SolveError, InputError) as problem:

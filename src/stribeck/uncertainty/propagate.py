@@ -61,7 +61,7 @@ def propagate(
     definition : {"balanced", "published"}
         Definition of the viscous friction.
     transitions : bool
-        Whether minimum and transitions are looked for too, a curve for each uncertain input.
+        Whether minimum and transitions are looked for too, a curve for each uncertain input; never of a ball.
 
     Returns
     -------
@@ -117,7 +117,7 @@ def propagate(
     if contact.roughness > 0:
         ratio = states["minimum_gap"] * height / scale(lambda each: each.roughness)
         spreads.append(_spread("lambda_ratio", "Lambda (minimum film over h_rms)", solution.lambda_ratio, ratio))
-    if transitions and contact.speed > 0:
+    if transitions and contact.speed > 0 and groups.geometry == "line":
         spreads += _transitions(contact, sigmas, definition)
     slopes = {name: sum(sensitivities[each] for each in inputs) for name, inputs in zip(names, moves, strict=True)}
     parts = {name: (slopes[name] * sigmas[name]) ** 2 for name in names}
