@@ -331,7 +331,9 @@ def test_arguments_that_cannot_be_are_refused(arguments, words):
 
 
 def test_groups_that_are_missing_are_named():
-    with pytest.raises(sb.InputError, match="roughness missing; give a LineContact or PointContact, or the groups that do not vary"):
+    with pytest.raises(
+        sb.InputError, match="roughness missing; give a LineContact or PointContact, or the groups that do not vary"
+    ):
         sb.stribeck_curve(load=0.1)
 
 

@@ -634,7 +634,7 @@ def test_a_tolerance_out_of_range_is_refused_in_a_sentence(rtol):
 @pytest.mark.quick
 @pytest.mark.parametrize("problem", [0.1, "case.toml", (1e-2, 0.1, 1e-4), None])
 def test_a_problem_of_another_kind_is_refused(problem):
-    with pytest.raises(sb.InputError, match="must be a LineContact or Groups"):
+    with pytest.raises(sb.InputError, match="must be a LineContact, PointContact or Groups"):
         sb.solve(problem)
 
 

@@ -26,6 +26,7 @@ from stribeck.sweeps.columns import OUTCOMES, columns_of
 from stribeck.sweeps.lock import LOCK, locked
 from stribeck.sweeps.seal import SEALED, SUMS
 
+PHYSICS = sb.Groups(0.0, 1.0, 0.0).physics
 SMALL = GRID.replace("17", "3")
 
 
@@ -50,8 +51,8 @@ def test_zarr_reads_what_was_written(filled):
     group = zarr.open_group(str(filled.path), mode="r", use_consolidated=False)
     assert np.array_equal(group["values"][:], filled.rows.values)
     assert (group["done"][:] > 0).all()
-    assert group["values"].attrs["columns"] == list(columns_of(si=False))
-    assert group["values"].chunks == (1, len(columns_of(si=False)))
+    assert group["values"].attrs["columns"] == list(columns_of(si=False, physics=PHYSICS))
+    assert group["values"].chunks == (1, len(columns_of(si=False, physics=PHYSICS)))
     texts = [bytes(row).rstrip(b"\0").decode() for row in group["text"][:]]
     assert texts == list(filled.rows.texts)
     assert group.attrs["design"] == SMALL == (filled.path / "sweep.toml").read_text()
@@ -140,7 +141,7 @@ def test_a_torn_state_is_not_done_and_is_computed_again(copy, filled, damage):
         f"done/c.{said}",
     }
     # Now it began cold: its mesh is another one, its numbers agree within the tolerance.
-    numbers = [k for k, name in enumerate(columns_of(si=False)) if name not in ("nodes", "newton_steps")]
+    numbers = [k for k, name in enumerate(columns_of(si=False, physics=PHYSICS)) if name not in ("nodes", "newton_steps")]
     assert again.rows.values[said, numbers] == pytest.approx(filled.rows.values[said, numbers], rel=2e-6, abs=2e-6)
 
 

@@ -16,8 +16,9 @@ from stribeck.asymptotics.dry import hertz, rest
 from stribeck.asymptotics.rough import boundary, load_sharing, transitions, uniform
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contacts.scaling import SCALINGS
+from stribeck.evidence.ball import OBSERVED
 from stribeck.evidence.coefficients import JUDGED, RATIOS, largest_errors
-from stribeck.evidence.formulas import AXES, MEASURED, error_map, error_maps, kind_of, relative_error
+from stribeck.evidence.formulas import AXES, LOCATED, MEASURED, OF_STATE, error_map, error_maps, kind_of, relative_error
 
 pytest.importorskip("xarray")
 
@@ -299,5 +300,7 @@ def test_numbers_are_short_and_true(script):
 
 
 def test_every_quantity_that_a_formula_predicts_is_measured():
-    groups = sb.Groups(1e-4, 0.1, 1e-4)
-    assert all(math.isfinite(measure(groups)) for measure in MEASURED.values())
+    line, ball = sb.Groups(1e-4, 0.1, 1e-4), sb.Groups(1e-2, 1e-3, 1e-4, geometry="point")
+    assert all(math.isfinite(MEASURED[name](line)) for name in (*OF_STATE, *LOCATED))
+    assert all(math.isfinite(MEASURED[name](ball)) for name in OBSERVED)
+    assert {*OF_STATE, *LOCATED, *OBSERVED} == MEASURED.keys()
