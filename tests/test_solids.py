@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 from test_model_parts import REFERENCE, observed
 
 import stribeck as sb
@@ -44,7 +45,7 @@ def test_the_hysteresis_friction_is_parsevals_integral():
     k = np.linspace(1e-6, 60, 400_001)
     loss = (1 - 1 / ratio) * k * deborah / (1 + (k * deborah) ** 2)
     power = np.pi * width**2 * np.exp(-((k * width) ** 2) / 2)
-    assert found == pytest.approx(2 / np.pi * np.trapezoid(loss * power, k) / np.pi, rel=1e-8)
+    assert found == pytest.approx(2 / np.pi * trapezoid(loss * power, k) / np.pi, rel=1e-8)
     assert abs(hysteresis_friction(FINE, HalfPlane(), bump(FINE.nodes))) < 1e-12
 
 

@@ -184,7 +184,7 @@ json.dump(list(sys.modules), sys.stderr)
 @pytest.mark.parametrize(
     ("arguments", "unloaded"),
     [
-        (["--help"], {"numpy.fft", "scipy", "pydantic", "stribeck.solver", "stribeck.curves"}),
+        (["--help"], {"scipy", "pydantic", "stribeck.solver", "stribeck.curves"}),
         (
             ["solve", str(EXAMPLE)],
             {"scipy.optimize", "stribeck.fits", "xarray"},
