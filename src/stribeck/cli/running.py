@@ -31,7 +31,7 @@ from stribeck.cli.studies import explore_command, fit_command, surface_command, 
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
 
-HELP = """Friction and film thickness of lubricated rough line contacts, from a TOML file with units.
+HELP = """Friction and film thickness of lubricated rough contacts, from a TOML file with units.
 
 Example: stribeck curve examples/pdms_cylinder.toml -o curve.nc --plot curve.png
 
