@@ -30,6 +30,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Numbers
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.equations.damping import longest_step
 from stribeck.equations.operators import LOAD, Operators
 from stribeck.equations.unknowns import Layout
 from stribeck.fluids.fluid import Film, Slopes
@@ -38,8 +39,6 @@ from stribeck.numerics.running_integral import RunningIntegral, Volterra
 from stribeck.quantities.outcome import Outcome
 
 __all__ = ["LOAD", "Equations", "Operators", "gradient_in_film", "slopes_in_film"]
-
-MOST_HALVINGS = 20
 
 
 def gradient_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | None, flux_gap: Numbers) -> Array:
@@ -342,34 +341,13 @@ class Equations:
         The gap may lose 70 % at most; if contact matters, its pressure may grow or fall by e**3 at most.
         """
         at = self.layout
-        h, dh = y[at.gap], dy[at.gap]
-        part = 0.7 / max(0.7, -float((dh / h).min()))
         flux = dy[at.flux_gap.start] / (y[at.flux_gap.start] if self.operators.is_article else self._flux_unit(y)[0])
-        part = min(part, 0.7 / max(0.7, abs(flux)))
+        part = 0.7 / max(0.7, abs(flux))
         if self.operators.has_exit:
             part = min(part, 0.3 / max(0.3, abs(dy[at.exit.start])))
         if self.operators.has_reformation:
             part = min(part, 0.3 / max(0.3, abs(dy[at.dilation.start] / y[at.dilation.start])))
-        if np.all(self.law.decay_length > 0):
-            log_p = self.law.log_pressure(h)
-            decays = dh / self.law.local_decay_length(h)
-            allowed = 3.0 + np.maximum(0.0, -1.0 - log_p)
-            closing = float((-decays / allowed).max())
-            opening = float((decays * (log_p > -7.0)).max()) / 3.0
-            part = min(part, 1.0 / max(1.0, closing, opening))
-            if not self.law.constant_decay:
-                part = self._held_by_law(h, dh, float(part), log_p, allowed)
-        return float(part)
-
-    def _held_by_law(self, h: Array, dh: Array, part: float, log_p: Array, allowed: Array) -> float:
-        """Return the part halved until the pressure of a law that stiffens grows by no more than half as much again."""
-        for _ in range(MOST_HALVINGS):
-            with np.errstate(all="ignore"):
-                growth = self.law.log_pressure(h + part * dh) - log_p
-            if (growth <= 1.5 * allowed).all():
-                break
-            part *= 0.5
-        return part
+        return longest_step(self.law, y[at.gap], dy[at.gap], float(part))
 
     def size(self, y: Array, dy: Array) -> float:
         """Return the relative size of a step: the largest relative change of gap and flux gap, in any row.

@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.equations.point.iteration import longest_step
+from stribeck.equations.damping import longest_step
 from stribeck.equations.point.mesh_choice import gaps_at
 from stribeck.equations.point.system import LOAD, Operators
 from stribeck.numerics.newton import Dense, StepControl, root_find

@@ -16,6 +16,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.equations.damping import longest_step
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Unknowns
 from stribeck.numerics.krylov import gmres
@@ -38,8 +39,6 @@ LINEAR = 1e-2
 
 ACCEPTED = 0.1
 """The same from which a kept preconditioner is given up."""
-
-MOST_HALVINGS = 20
 
 BENDING = 3.0
 """Factor from the square of a step to the error that it leaves, where no two steps tell it."""
@@ -70,30 +69,6 @@ class Iterated:
     factorisations: int
     left: float
     preconditioner: BandedModes | None
-
-
-def longest_step(law: ContactLaw, h: Array, dh: Array) -> float:
-    """Return the longest fraction of a step that keeps the gap positive and the contact pressure sane.
-
-    The gap may lose 70 % at most; where contact matters, its pressure may grow or fall by e**3 at most.
-    """
-    part = 0.7 / max(0.7, -float((dh / h).min()))
-    if not np.all(law.decay_length > 0):
-        return part
-    log_p = law.log_pressure(h)
-    decays = dh / law.local_decay_length(h)
-    allowed = 3.0 + np.maximum(0.0, -1.0 - log_p)
-    closing = float((-decays / allowed).max())
-    opening = float((decays * (log_p > -7.0)).max()) / 3.0
-    part = min(part, 1.0 / max(1.0, closing, opening))
-    if not law.constant_decay:
-        for _ in range(MOST_HALVINGS):
-            with np.errstate(all="ignore"):
-                growth = law.log_pressure(h + part * dh) - log_p
-            if (growth <= 1.5 * allowed).all():
-                break
-            part *= 0.5
-    return float(part)
 
 
 def step_size(law: ContactLaw, h: Array, dh: Array, load_scale: float = 1.0) -> float:

@@ -77,16 +77,17 @@ def solve_level(
     tolerance: float,
     kept: BandedModes | None = None,
     max_steps: int = 40,
+    largest: float = MOST_BYTES,
 ) -> Level:
     """Return the state of one speed and law on a mesh, from unknowns on that or another mesh.
 
     Raises
     ------
     MeshTooLargeError
-        If the mesh takes too much memory.
+        If the mesh takes more than ``largest`` bytes.
     """
     band = band_for(speed, law)
-    if bytes_of(resolution, band) > MOST_BYTES:
+    if bytes_of(resolution, band) > largest:
         raise MeshTooLargeError
     operators = operators_of(resolution)
     equations = Equations(operators, speed, law)

@@ -197,8 +197,9 @@ def _at_rest(groups: Groups, rtol: float) -> PointState:
     return _state(groups, rtol, replace(found, outcome=outcome), shift)
 
 
-def _dry_level(law: ContactLaw, degree: int, tolerance: float) -> Level:
+def _dry_level(law: ContactLaw, degree: int, tolerance: float, halvings: int | None = None) -> Level:
     found = resolution(0.0, law, degree, 2)
+    found = found if halvings is None else replace(found, halvings=halvings)
     operators = operators_of(found)
     dry = dry_contact(operators, law, tolerance)
     y = Unknowns(np.tile(dry.gap, (2, 1)), np.zeros((2, dry.gap.size)), dry.offset)

@@ -1,0 +1,169 @@
+"""Random cold states of the ball: how many are solved, and whether the stated errors cover the true ones.
+
+Usage::
+
+    python benchmarks/point_box.py [--number 300] [--rtol 1e-6] [--seed 14] [--out build/point_box.jsonl]
+
+Of ten states four have the exponential law, three that of Persson (H = 0.8, q1/q0 = 1000, gamma = 0.45), two are smooth and
+one is at rest.  Groups are even in the logarithm: speed 1e-7 to 1e3, load 1e-8 to 10 (Persson to 1e4), kappa 1e-5 to 10,
+smooth speeds 1e-5 to 1e4.  Each state is solved once more on a mesh with panels half as wide at the edge, three degrees and
+1.4 times the modes more; by how much it differs from that is taken for its error.  States that are done are kept in the file
+and not solved again: an interrupted run goes on.  300 states take about an hour; prints the table that docs/numerics.md shows.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+from collections import Counter
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import stribeck as sb
+from stribeck.contact_laws.law import ContactLaw
+from stribeck.equations.point.observables import observables
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.solver.point.level import solve_level
+from stribeck.solver.point.refinement import Pair
+from stribeck.solver.point.solve import _dry_level, solve_cold
+from stribeck.solver.point.state import WITHOUT_TOLERANCE, PointState
+
+KINDS = ("exponential", "persson", "smooth", "exponential", "persson", "rest", "exponential", "smooth", "persson", "exponential")
+FINER_DEGREE, FINER_MODES, MOST_MODES = 3, 1.4, 200
+TIGHT = 1e-11
+SHIFTED = ("central_gap", "minimum_gap", "minimum_gap_on_axis", "offset")
+
+
+@cache
+def persson() -> ContactLaw:
+    """Return Persson's law of the states in ``tests/data/point_states.json``."""
+    spectrum = sb.surfaces.SelfAffine(h_rms=1e-6, q0=3e4, q1=3e7, hurst=0.8)
+    return sb.surfaces.persson_law(spectrum, 0.45)
+
+
+def draw(seed: int, number: int) -> tuple[str, sb.Groups]:
+    """Return the kind and the groups of one state; that of a number does not depend on the others."""
+    rng = np.random.default_rng([seed, number])
+    kind = KINDS[number % len(KINDS)]
+    speed, load, kappa, smooth = 10 ** rng.uniform((-7, -8, -5, -5), (3, 4 if kind == "persson" else 1, 1, 4))
+    if kind == "smooth":
+        return kind, sb.Groups(smooth, 1e-3, 0.0, geometry="point")
+    law = persson() if kind == "persson" else None
+    speed = 0.0 if kind == "rest" else speed
+    return kind, sb.Groups(speed, load, kappa * load ** (2 / 3), law=law, geometry="point")
+
+
+def better_values(state: PointState) -> dict[str, float] | None:
+    """Return the observables on a finer mesh, None where it has no solution."""
+    fine = state.work.fine
+    finer = replace(fine.resolution, halvings=fine.resolution.halvings + 1)
+    speed, law = fine.equations.speed, fine.equations.law
+    if speed == 0:
+        level = _dry_level(law, 20, TIGHT, finer.halvings)
+    else:
+        modes = max(fine.mesh.modes, min(MOST_MODES, round(FINER_MODES * fine.mesh.modes)))
+        finer = replace(finer, degree=finer.degree + FINER_DEGREE, modes=modes)
+        level = solve_level(finer, speed, law, fine.unknowns, fine.mesh, TIGHT, largest=math.inf)
+    if not level.outcome.ok:
+        return None
+    found = observables(level.equations, level.unknowns)
+    shift = state.values["offset"] - observables(fine.equations, fine.unknowns)["offset"]
+    return found | {name: found[name] + shift for name in SHIFTED}
+
+
+def judged(seed: int, number: int, rtol: float) -> dict[str, Any]:
+    """Return what came of one state."""
+    kind, groups = draw(seed, number)
+    row: dict[str, Any] = {"seed": seed, "number": number, "rtol": rtol, "kind": kind, "speed": float(groups.speed)}
+    row |= {"load": float(groups.load), "kappa": float(groups.relative_roughness)}
+    start = time.process_time()
+    state = solve_cold(groups, rtol)
+    row |= {"outcome": state.outcome.name, "seconds": time.process_time() - start}
+    if not isinstance(state.work, Pair):
+        return row
+    friction = abs(state.values["J_balanced"]) or 1.0
+    row |= {
+        "estimate": state.error_estimate,
+        "minimum_estimate": state.minimum_gap_error,
+        "rings": state.mesh.rings,
+        "modes": state.mesh.modes,
+        "load_error": abs(state.load_error),
+        "identity": abs(state.identity_error) / friction,
+    }
+    exact = better_values(state)
+    if exact is not None:
+        ratios = {name: abs(state.values[name] - exact[name]) / error for name, error in state.absolute_errors.items()}
+        kept = {name: ratio for name, ratio in ratios.items() if name not in WITHOUT_TOLERANCE}
+        row["worst"] = max(kept, key=kept.__getitem__)
+        row["ratio"] = kept[row["worst"]]
+        row["error"] = max(abs(state.values[name] - exact[name]) / state.scales[name] for name in kept)
+        row["minimum_ratio"] = ratios["minimum_gap"]
+        row["minimum_error"] = abs(state.values["minimum_gap"] - exact["minimum_gap"]) / state.scales["minimum_gap"]
+    return row
+
+
+def table(rows: list[dict[str, Any]]) -> str:
+    """Return the counts by kind."""
+    lines = [
+        "| states | number | solved | error covered | worst error/stated | minimum film covered | worst | load balance"
+        " | identity | CPU s, median | most |",
+        "|---|---|---|---|---|---|---|---|---|---|---|",
+    ]
+    for kind in (*dict.fromkeys(KINDS), "all"):
+        some = [row for row in rows if kind in (row["kind"], "all")]
+        checked = [row for row in some if "ratio" in row]
+        if not checked:
+            continue
+        ratios, minima = (np.array([row[name] for row in checked]) for name in ("ratio", "minimum_ratio"))
+        seconds = [row["seconds"] for row in some]
+        solved = sum(row["outcome"] == "CONVERGED" for row in some)
+        lines.append(
+            f"| {kind} | {len(some)} | {solved} | {np.mean(ratios <= 1):.1%} | {ratios.max():.1f} | {np.mean(minima <= 1):.1%}"
+            f" | {minima.max():.1f} | {max(row['load_error'] for row in checked):.0e}"
+            f" | {max(row['identity'] for row in checked):.0e} | {np.median(seconds):.1f} | {max(seconds):.0f} |"
+        )
+    return "\n".join(lines)
+
+
+def describe(row: dict[str, Any]) -> str:
+    """Return a state in a line."""
+    here = f"{row['number']}: {row['kind']}, speed {row['speed']:.3e}, load {row['load']:.3e}, kappa {row['kappa']:.3e}"
+    found = ", ".join(f"{name} {row[name]:.2g}" for name in ("estimate", "minimum_estimate", "ratio", "minimum_ratio") if name in row)
+    return f"{here}: {row['outcome']}, {found} {row.get('worst', '')}"
+
+
+@one_blas_thread
+def main() -> None:
+    """Solve the states that the file does not hold, and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--number", type=int, default=300)
+    parser.add_argument("--rtol", type=float, default=1e-6)
+    parser.add_argument("--seed", type=int, default=14)
+    parser.add_argument("--out", type=Path, default=Path("build/point_box.jsonl"))
+    arguments = parser.parse_args()
+    arguments.out.parent.mkdir(parents=True, exist_ok=True)
+    old = [json.loads(line) for line in arguments.out.read_text().splitlines()] if arguments.out.exists() else []
+    rows = [row for row in old if (row["seed"], row["rtol"]) == (arguments.seed, arguments.rtol)]
+    done = {row["number"] for row in rows}
+    rows = [row for row in rows if row["number"] < arguments.number]
+    with arguments.out.open("a") as file:
+        for number in range(arguments.number):
+            if number not in done:
+                rows.append(judged(arguments.seed, number, arguments.rtol))
+                print(json.dumps(rows[-1]), file=file, flush=True)
+    print(f"{arguments.number} random cold states, rtol {arguments.rtol:g}, seed {arguments.seed}:\n")
+    print(table(rows))
+    poor = [row for row in rows if row["outcome"] != "CONVERGED" or max(row.get("ratio", 0), row.get("minimum_ratio", 0)) > 1]
+    counts = Counter(row["outcome"] for row in rows)
+    print(f"\noutcomes: {dict(counts)}; not solved, or not covered:\n")
+    print("\n".join(describe(row) for row in poor) or "none")
+
+
+if __name__ == "__main__":
+    main()
