@@ -23,7 +23,7 @@ ARGUMENTS = {
 }
 """Scripts, and what makes them small; those of the explorer need a browser, instructions valgrind: they are tested apart."""
 
-APART = {"walk", "explorer_latency", "explorer_memory", "instructions"}
+APART = {"point_box", "walk", "explorer_latency", "explorer_memory", "instructions"}
 NO_SCRIPTS = {"textbook"}
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
 
