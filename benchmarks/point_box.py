@@ -34,7 +34,8 @@ from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.solve import _dry_level, solve_cold
 from stribeck.solver.point.state import WITHOUT_TOLERANCE, PointState
 
-KINDS = ("exponential", "persson", "smooth", "exponential", "persson", "rest", "exponential", "smooth", "persson", "exponential")
+USUAL = "exponential"
+KINDS = (USUAL, "persson", "smooth", USUAL, "persson", "rest", USUAL, "smooth", "persson", USUAL)
 FINER_DEGREE, FINER_MODES, MOST_MODES = 3, 1.4, 200
 TIGHT = 1e-11
 SHIFTED = ("central_gap", "minimum_gap", "minimum_gap_on_axis", "offset")
@@ -134,7 +135,8 @@ def table(rows: list[dict[str, Any]]) -> str:
 def describe(row: dict[str, Any]) -> str:
     """Return a state in a line."""
     here = f"{row['number']}: {row['kind']}, speed {row['speed']:.3e}, load {row['load']:.3e}, kappa {row['kappa']:.3e}"
-    found = ", ".join(f"{name} {row[name]:.2g}" for name in ("estimate", "minimum_estimate", "ratio", "minimum_ratio") if name in row)
+    names = ("estimate", "minimum_estimate", "ratio", "minimum_ratio")
+    found = ", ".join(f"{name} {row[name]:.2g}" for name in names if name in row)
     return f"{here}: {row['outcome']}, {found} {row.get('worst', '')}"
 
 
