@@ -186,6 +186,30 @@ def test_the_docstring_of_a_formula_is_complete(formula):
     assert ".. math::" in text and "Notes\n-----" in text and "Source: " in text
 
 
+@pytest.mark.parametrize("geometry", ["line", "point"])
+def test_a_formula_depends_on_the_groups_that_it_names_and_on_no_others(geometry):
+    here = {"speed": 1e-6, "load": 0.1, "relative_roughness": 1e-3}
+
+    def at(speed, load, relative_roughness):
+        groups = sb.Groups(speed, load, relative_roughness, geometry=geometry)
+        return replace(groups, roughness=relative_roughness * load**groups.scaling.roughness_exponent)
+
+    def value(formula, x, **state):
+        with np.errstate(all="ignore"):
+            return np.nan_to_num(formula.function(at(**state), *x))
+
+    for formula in FORMULAS:
+        if formula.geometry != geometry:
+            continue
+        x = arguments(formula, at(**here))
+        first = value(formula, x, **here)
+        others = {name: value(formula, x, **here | {name: 1.2 * here[name]}) for name in here}
+        changed = [name for name, other in others.items() if not math.isclose(first, other, rel_tol=1e-10)]
+        # The roughness is the load times the relative roughness.
+        named = {"roughness": ("load", "relative_roughness")}
+        assert set(changed) == {part for name in formula.uses for part in named.get(name, (name,))}, formula.name
+
+
 # --- the error ---
 
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.asymptotics.constants import BALL_FILM_CONSTANT, FILM_CONSTANT
+from stribeck.asymptotics.documentation import completed
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry
 from stribeck.contacts.line import Groups
@@ -27,6 +28,7 @@ from stribeck.quantities.units import InputError, real_array, show
 Value = float | Array
 Arguments = ParamSpec("Arguments")
 Plane = Literal["smooth", "rest", "mixed"]
+GROUPS = ("speed", "load", "roughness")
 
 
 def coefficient(name: str, value: Any) -> float:
@@ -152,6 +154,8 @@ class Formula(Generic[Arguments]):
         Where it comes from.
     geometry : {"line", "point"}
         Whether it is about the cylinder or about the ball.
+    uses : tuple of str
+        The groups on which its value depends.
     """
 
     function: Callable[Concatenate[Groups, Arguments], Value]
@@ -166,6 +170,7 @@ class Formula(Generic[Arguments]):
     interval: Callable[[Groups], tuple[float, float]] | None
     source: str
     geometry: Geometry = "line"
+    uses: tuple[str, ...] = GROUPS
 
     @property
     def module(self) -> str:
@@ -309,13 +314,21 @@ def formula(
     interval: Callable[[Groups], tuple[float, float]] | None = None,
     source: str,
     geometry: Geometry = "line",
+    uses: tuple[str, ...] = GROUPS,
+    undefined: str = "",
 ) -> Callable[[Callable[Concatenate[Groups, Arguments], Value]], Formula[Arguments]]:
-    """Return the decorator that makes a function a :class:`Formula`; arguments as its attributes."""
+    """Return the decorator that makes a function a :class:`Formula`; arguments as its attributes.
+
+    ``undefined`` says where the value is nan.  What the docstring leaves out is filled in, see
+    :mod:`stribeck.asymptotics.documentation`.
+    """
 
     def decorate(function: Callable[Concatenate[Groups, Arguments], Value]) -> Formula[Arguments]:
         made = Formula(
-            function, predicts, plane, limits, worst, small, error_order, approach, steps, interval, source, geometry
+            function, predicts, plane, limits, worst, small, error_order, approach, steps, interval, source, geometry, uses
         )
+        if function.__doc__ is not None:  # as it is under `python -OO`
+            function.__doc__ = completed(function, predicts, uses, undefined)
         kept: dict[str, object] = {name: getattr(function, name) for name in functools.WRAPPER_ASSIGNMENTS}
         vars(made).update(kept, __wrapped__=function)
         return made

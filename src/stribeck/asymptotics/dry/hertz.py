@@ -22,6 +22,7 @@ def _contact_and_around(groups: Groups) -> tuple[float, float]:
 
 @formula(
     predicts="pressure",
+    uses=(),
     plane="mixed",
     limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-4)),
     worst=0.05,
@@ -36,13 +37,6 @@ def pressure(groups: Groups, x: Value) -> Value:
     r"""Return the Hertz pressure, contact and fluid together.
 
     .. math:: p = (1 - x^2)^{1/2}
-
-    Parameters
-    ----------
-    groups : Groups
-        Any; the answer takes their shape, broadcast with ``x``.
-    x : float or array_like
-        Positions [a].
 
     Returns
     -------
@@ -61,6 +55,7 @@ def pressure(groups: Groups, x: Value) -> Value:
 
 @formula(
     predicts="gap",
+    uses=(),
     plane="mixed",
     limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-4)),
     worst=1e-3,
@@ -75,13 +70,6 @@ def gap(groups: Groups, x: Value) -> Value:
     r"""Return the gap around the dry contact.
 
     .. math:: h = \tfrac12 \left[|x| \sqrt{x^2 - 1} - \ln\left(|x| + \sqrt{x^2 - 1}\right)\right] \text{ beyond } |x| = 1
-
-    Parameters
-    ----------
-    groups : Groups
-        Any; the answer takes their shape, broadcast with ``x``.
-    x : float or array_like
-        Positions [a].
 
     Returns
     -------
@@ -99,6 +87,7 @@ def gap(groups: Groups, x: Value) -> Value:
 
 @formula(
     predicts="offset",
+    uses=(),
     plane="mixed",
     limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-4)),
     worst=1e-3,
@@ -112,11 +101,6 @@ def offset(groups: Groups) -> Value:
     r"""Return the offset of the dry contact.
 
     .. math:: z_0 = -\frac{1 + \ln 4}{4}
-
-    Parameters
-    ----------
-    groups : Groups
-        Any; the answer takes their shape.
 
     Returns
     -------

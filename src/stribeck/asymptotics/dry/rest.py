@@ -41,6 +41,8 @@ def _gaussian(groups: Groups) -> tuple[float, float]:
 
 @formula(
     predicts="gap",
+    uses=("load", "relative_roughness"),
+    undefined="from the edge of the contact outwards, where this has no value",
     plane="rest",
     limits=LARGE_INDENTATION,
     worst=0.03,
@@ -56,25 +58,6 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
 
     .. math:: h = -\frac\kappa2 \ln\left[\bar F_N (1 - x^2)\right] \; \left(+ \frac{\kappa^2}{1 - x^2}\right)
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast with ``x``.
-    x : float or array_like
-        Positions [a].
-    terms : int
-        1, or 2 for the term in brackets too.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz]; nan from the edge of the contact outwards, where this has no value.
-
-    Raises
-    ------
-    InputError
-        If ``terms`` is neither 1 nor 2.
-
     Notes
     -----
     Judged up to 0.9 of the half-width; the edge has a layer of width kappa**(2/3).
@@ -89,6 +72,7 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
 
 @formula(
     predicts="central_gap",
+    uses=("load", "relative_roughness"),
     plane="rest",
     limits=LARGE_INDENTATION,
     worst=0.03,
@@ -103,23 +87,6 @@ def central_gap(groups: Groups, terms: int = 1) -> Value:
 
     .. math:: h(0) = -\frac\kappa2 \ln \bar F_N \; (+ \kappa^2)
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
-    terms : int
-        1, or 2 for the term in brackets too.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
-    Raises
-    ------
-    InputError
-        If ``terms`` is neither 1 nor 2.
-
     Notes
     -----
     With both terms the error is -2.67 kappa**4, as measured.
@@ -131,6 +98,7 @@ def central_gap(groups: Groups, terms: int = 1) -> Value:
 
 @formula(
     predicts="offset",
+    uses=("load", "relative_roughness"),
     plane="rest",
     limits=LARGE_INDENTATION,
     worst=1e-4,
@@ -145,22 +113,10 @@ def offset(groups: Groups, terms: int = 1) -> Value:
 
     .. math:: z_0 = -\frac{1 + \ln 4}{4} + \kappa \left(\ln 2 - \tfrac12 \ln \bar F_N\right) \; (+ \tfrac13 \kappa^2)
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
-    terms : int
-        1, or 2 for the term in brackets too.
-
     Returns
     -------
     float or ndarray
         Offset [u_Hz], in the gauge ln(abs(x-y)/a).
-
-    Raises
-    ------
-    InputError
-        If ``terms`` is neither 1 nor 2.
 
     Notes
     -----
@@ -177,6 +133,7 @@ def offset(groups: Groups, terms: int = 1) -> Value:
 
 @formula(
     predicts="gap",
+    uses=("load", "relative_roughness"),
     plane="rest",
     limits=SMALL_INDENTATION,
     worst=0.011,
@@ -192,25 +149,6 @@ def gap_small_indentation(groups: Groups, x: Value, terms: int = 1) -> Value:
 
     .. math:: h = -\frac\kappa2 \ln \frac{\pi \bar F_N}{8 \kappa} \; \left(+ \tfrac14 \ln 2\right) + \frac{x^2}{2}
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast with ``x``.
-    x : float or array_like
-        Positions [a].
-    terms : int
-        1, or 2 for the term in brackets too.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
-    Raises
-    ------
-    InputError
-        If ``terms`` is neither 1 nor 2.
-
     Notes
     -----
     Judged up to three standard deviations of the pressure, :math:`3 \kappa^{1/2}`.  The second term is right at x = 0.
@@ -223,6 +161,7 @@ def gap_small_indentation(groups: Groups, x: Value, terms: int = 1) -> Value:
 
 @formula(
     predicts="central_gap",
+    uses=("load", "relative_roughness"),
     plane="rest",
     limits=SMALL_INDENTATION,
     worst=0.009,
@@ -237,23 +176,6 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
 
     .. math:: h(0) = -\frac\kappa2 \ln \frac{\pi \bar F_N}{8 \kappa} \; \left(+ \tfrac14 \ln 2\right)
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
-    terms : int
-        1, or 2 for the term in brackets too.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
-    Raises
-    ------
-    InputError
-        If ``terms`` is neither 1 nor 2.
-
     Notes
     -----
     The second term is the mean, over the Gaussian pressure, of its own deflection against that at the centre.
@@ -267,6 +189,7 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
 
 @formula(
     predicts="offset",
+    uses=("load", "relative_roughness"),
     plane="rest",
     limits=SMALL_INDENTATION,
     worst=3e-4,
@@ -280,11 +203,6 @@ def offset_small_indentation(groups: Groups) -> Value:
     r"""Return the offset of a very rough contact at rest.
 
     .. math:: z_0 = -\frac\kappa2 \ln \frac{\pi \bar F_N}{8 \kappa} + \tfrac14 \ln \kappa - \tfrac14 \gamma_E
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
 
     Returns
     -------
@@ -305,6 +223,7 @@ def offset_small_indentation(groups: Groups) -> Value:
 
 @formula(
     predicts="contact_pressure",
+    uses=("relative_roughness",),
     plane="rest",
     limits=SMALL_INDENTATION,
     worst=0.018,
@@ -322,17 +241,8 @@ def contact_pressure_small_indentation(groups: Groups, x: Value, printed: bool =
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``relative_roughness`` [-]; arrays broadcast with ``x``.
-    x : float or array_like
-        Positions [a].
     printed : bool
         With the minus sign that is printed.
-
-    Returns
-    -------
-    float or ndarray
-        Contact pressure [p_Hz].
 
     Notes
     -----

@@ -109,6 +109,7 @@ def edges(load: Value, kappa: Value, coefficients: tuple[float, float, float]) -
 @formula(
     geometry="point",
     predicts="fluid_load_share",
+    undefined="from load 1 on",
     plane="mixed",
     limits=SLOW,
     worst=0.06,
@@ -124,22 +125,10 @@ def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "q
 
     Parameters
     ----------
-    groups : Groups
-        Uses all three groups [-]; arrays broadcast.
     with_edges : bool
         Whether with the bracket and the exponential, which go to one as kappa goes to zero.
     form : {"quadrature", "closed"}
         As in :func:`phi`.
-
-    Returns
-    -------
-    float or ndarray
-        Part of the load [-]; nan from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If the form is unknown.
 
     Notes
     -----
@@ -159,6 +148,7 @@ def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "q
 @formula(
     geometry="point",
     predicts="contact_load_share",
+    undefined="from load 1 on",
     plane="mixed",
     limits=SLOW,
     worst=2e-4,
@@ -171,22 +161,10 @@ def contact_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = 
 
     Parameters
     ----------
-    groups : Groups
-        Uses all three groups [-]; arrays broadcast.
     with_edges : bool
         As in :func:`fluid_load_share`.
     form : {"quadrature", "closed"}
         As in :func:`phi`.
-
-    Returns
-    -------
-    float or ndarray
-        Part of the load [-]; nan from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If the form is unknown.
 
     Notes
     -----
@@ -198,6 +176,7 @@ def contact_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = 
 @formula(
     geometry="point",
     predicts="viscous_friction",
+    undefined="from load 1 on",
     plane="mixed",
     limits=SLOW,
     worst=0.09,
@@ -218,24 +197,10 @@ def viscous_friction(
 
     Parameters
     ----------
-    groups : Groups
-        Uses all three groups [-]; arrays broadcast.
-    beta : float
-        Coefficient of the contact law [-].
     definition : {"balanced", "published"}
         The force on the flat; or with the moment in brackets, which the definition of the paper has.
     wetted_radius : float, optional
         Where the liquid ends [a]; by default that of a whole sphere, :mod:`stribeck.contacts.cut_off`.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-]; nan from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If the definition is unknown, or the wetted radius lies in the contact.
 
     Notes
     -----
@@ -264,6 +229,7 @@ def viscous_friction(
 @formula(
     geometry="point",
     predicts="friction",
+    undefined="from load 1 on",
     plane="mixed",
     limits=(*SLOW, Limit("beta/mu0", 0.0, 1.0)),
     worst=1e-3,
@@ -282,26 +248,10 @@ def friction(
 
     Parameters
     ----------
-    groups : Groups
-        Uses all three groups [-]; arrays broadcast.
-    boundary_friction : float
-        Friction coefficient of the dry contact [-].
-    beta : float
-        Coefficient of the contact law [-].
     definition : {"balanced", "published"}
         As in :func:`viscous_friction`.
     wetted_radius : float, optional
         As in :func:`viscous_friction`.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-]; nan from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If the definition is unknown, or the wetted radius lies in the contact.
 
     Notes
     -----

@@ -69,6 +69,7 @@ def _inside(groups: Groups) -> tuple[float, float]:
 @formula(
     geometry="point",
     predicts="central_gap",
+    uses=("speed",),
     plane="smooth",
     limits=(Limit("speed", 0.0, 1e-2),),
     worst=0.014,
@@ -83,15 +84,8 @@ def central_gap_slow(groups: Groups, leakage: bool = True) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
     leakage : bool
         Whether with the flow to the sides, the bracket.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----
@@ -108,6 +102,7 @@ def central_gap_slow(groups: Groups, leakage: bool = True) -> Value:
 @formula(
     geometry="point",
     predicts="central_gap",
+    uses=("speed",),
     plane="smooth",
     limits=(),
     worst=0.0011,
@@ -121,16 +116,6 @@ def central_gap(groups: Groups) -> Value:
         h(0) = c \lambda^{3/5} \left[\frac{1 + (d_1 - \pi c^2) u + n_2 u^2 + n_3 u^3 + n_4 u^4 + K d_3 u^5 + K d_4 u^6}
         {1 + d_1 u + d_2 u^2 + d_3 u^3 + d_4 u^4}\right]^{1/2}, \quad u = \lambda^{1/5},
         \quad K = \left(\frac{0.18162}{c}\right)^2
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----
@@ -157,6 +142,8 @@ def film_of(speed: Value) -> Value:
 @formula(
     geometry="point",
     predicts="gap",
+    uses=("speed",),
+    undefined="from the edge of the contact outwards, where this has no value",
     plane="smooth",
     limits=(Limit("speed", 0.0, 1e-3),),
     worst=0.03,
@@ -170,18 +157,6 @@ def gap_slow(groups: Groups, x: Value) -> Value:
 
         h = q - \frac{q^3}{\lambda} \frac{x}{(1-x^2)^{1/2}}, \qquad
         q = c \lambda^{3/5} \left[1 + 2 c^2 \lambda^{1/5} \left(\arcsin x + \tfrac\pi2\right)\right]^{-1/2}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast with ``x``.
-    x : float or array_like
-        Positions [a].
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz]; nan from the edge of the contact outwards, where this has no value.
 
     Notes
     -----
@@ -198,6 +173,7 @@ def gap_slow(groups: Groups, x: Value) -> Value:
 @formula(
     geometry="point",
     predicts="minimum_gap_on_axis",
+    uses=("speed",),
     plane="smooth",
     limits=(Limit("speed", 0.0, 1e-2),),
     worst=0.018,
@@ -210,16 +186,6 @@ def minimum_gap_on_axis(groups: Groups) -> Value:
 
         h = 0.75801 \, c \lambda^{3/5} \, f^{\, 0.8283 - 0.078 \ln f}, \qquad
         f = \left(1 + 2\pi c^2 \lambda^{1/5}\right)^{-1/2}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----
@@ -238,6 +204,7 @@ def minimum_gap_on_axis(groups: Groups) -> Value:
 @formula(
     geometry="point",
     predicts="minimum_gap",
+    uses=("speed",),
     plane="smooth",
     limits=(Limit("speed", 1e-6, 0.3),),
     worst=0.017,
@@ -247,16 +214,6 @@ def minimum_gap(groups: Groups) -> Value:
     r"""Return the minimum film of a slow smooth ball, at its two sides.
 
     .. math:: h = \frac{0.6817 \, \lambda^{3/4}}{1 + 0.9625 \, \lambda^{1/4} + 1.0682 \, \lambda^{1/2}}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----

@@ -68,6 +68,7 @@ def smooth_integral(speed: Value) -> Value:
 @formula(
     geometry="point",
     predicts="viscous_friction",
+    uses=("speed", "load"),
     plane="smooth",
     limits=(),
     worst=6e-3,
@@ -80,22 +81,8 @@ def viscous_friction_smooth(groups: Groups, beta: float = 1.0, wetted_radius: fl
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``speed`` and ``load`` [-]; arrays broadcast.
-    beta : float
-        Coefficient of the contact law [-].
     wetted_radius : float, optional
         Where the liquid ends [a]; by default that of a whole sphere, :mod:`stribeck.contacts.cut_off`.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-].
-
-    Raises
-    ------
-    InputError
-        If the wetted radius lies in the contact.
 
     Notes
     -----
@@ -109,6 +96,7 @@ def viscous_friction_smooth(groups: Groups, beta: float = 1.0, wetted_radius: fl
 @formula(
     geometry="point",
     predicts="viscous_friction",
+    undefined="from load 1 on",
     plane="mixed",
     limits=(*BOX, Limit("film_ratio", 0.0, 12.0)),
     worst=0.19,
@@ -125,22 +113,8 @@ def viscous_friction(groups: Groups, beta: float = 1.0, wetted_radius: float | N
 
     Parameters
     ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-    beta : float
-        Coefficient of the contact law [-].
     wetted_radius : float, optional
         As in :func:`viscous_friction_smooth`.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-]; nan from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If the wetted radius lies in the contact.
 
     Notes
     -----
@@ -155,6 +129,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, wetted_radius: float | N
 @formula(
     geometry="point",
     predicts="friction",
+    undefined="from load 1 on",
     plane="mixed",
     limits=(*BOX, Limit("beta/mu0", 0.1, 1.0)),
     worst=0.1,
@@ -167,24 +142,8 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
 
     Parameters
     ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-    boundary_friction : float
-        Friction coefficient of the dry contact [-].
-    beta : float
-        Coefficient of the contact law [-].
     wetted_radius : float, optional
         As in :func:`viscous_friction_smooth`.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-]; nan from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If the wetted radius lies in the contact.
 
     Notes
     -----

@@ -29,6 +29,7 @@ def _contact_and_around(groups: Groups) -> tuple[float, float]:
 @formula(
     geometry="point",
     predicts="pressure",
+    uses=(),
     plane="mixed",
     limits=(Limit("speed", 0, 1e-7), Limit("relative_roughness", 0, 1e-3)),
     worst=0.11,
@@ -46,8 +47,6 @@ def pressure(groups: Groups, x: Value) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Any of the point geometry; the answer takes their shape, broadcast with ``x``.
     x : float or array_like
         Positions, or distances from the middle [a].
 
@@ -69,6 +68,7 @@ def pressure(groups: Groups, x: Value) -> Value:
 @formula(
     geometry="point",
     predicts="gap",
+    uses=(),
     plane="mixed",
     limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-3)),
     worst=0.012,
@@ -86,8 +86,6 @@ def gap(groups: Groups, x: Value) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Any of the point geometry; the answer takes their shape, broadcast with ``x``.
     x : float or array_like
         Positions, or distances from the middle [a].
 
@@ -116,6 +114,7 @@ def dry_gap(r: Array) -> Array:
 @formula(
     geometry="point",
     predicts="offset",
+    uses=(),
     plane="mixed",
     limits=(Limit("speed", 0, 1e-7), Limit("load", 1e-4, 0.9), Limit("relative_roughness", 0, 1e-3)),
     worst=0.0045,
@@ -129,11 +128,6 @@ def offset(groups: Groups) -> Value:
     r"""Return the offset of the dry contact of a ball.
 
     .. math:: z_0 = -1
-
-    Parameters
-    ----------
-    groups : Groups
-        Any of the point geometry; the answer takes their shape.
 
     Returns
     -------

@@ -31,6 +31,7 @@ from stribeck.quantities.units import InputError, real_array, show
 @formula(
     geometry="point",
     predicts="central_gap",
+    uses=("speed",),
     plane="smooth",
     limits=(Limit("speed", 1e-5, 10.0),),
     worst=0.35,
@@ -40,23 +41,6 @@ def hamrock_dowson_soft(groups: Groups, slope: float = 0.1) -> Value:
     r"""Return the central film of Hamrock and Dowson for soft contacts, of a ball.
 
     .. math:: H = 7.32 \, (1 - 0.72 e^{-0.28}) \, U_\mathrm{HD}^{0.64} W_\mathrm{HD}^{-0.22}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-    slope : float or array_like
-        a/R [-].
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
-    Raises
-    ------
-    InputError
-        If the slope is not positive.
 
     Notes
     -----
@@ -73,6 +57,7 @@ def hamrock_dowson_soft(groups: Groups, slope: float = 0.1) -> Value:
 @formula(
     geometry="point",
     predicts="central_gap",
+    uses=("speed",),
     plane="smooth",
     limits=(Limit("speed", 1e-6, 10.0),),
     worst=0.11,
@@ -82,23 +67,6 @@ def de_vicente(groups: Groups, slope: float = 0.1) -> Value:
     r"""Return the central film of de Vicente, Stokes and Spikes for soft balls.
 
     .. math:: H = 3.3 \, U_\mathrm{HD}^{0.60} W_\mathrm{HD}^{-0.14}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-    slope : float or array_like
-        a/R [-].
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
-    Raises
-    ------
-    InputError
-        If the slope is not positive.
 
     Notes
     -----
@@ -115,6 +83,7 @@ def de_vicente(groups: Groups, slope: float = 0.1) -> Value:
 @formula(
     geometry="point",
     predicts="central_gap",
+    uses=("speed",),
     plane="smooth",
     limits=(Limit("speed", 1e-6, 0.4),),
     worst=0.09,
@@ -128,16 +97,6 @@ def nijenbanning_venner_moes(groups: Groups) -> Value:
         H &= \left[H_\mathrm{RI}^{3/2} + \left(H_\mathrm{EI}^{-4} + H_{00}^{-4}\right)^{-3/8}\right]^{2/3} \\
         H_\mathrm{RI} &= 145 \cdot 1.796^{-15/7} M^{-2}, \qquad H_\mathrm{EI} = 3.18 \cdot 1.63^{-14/25} M^{-2/15}, \qquad
         H_{00} = 1.8
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----

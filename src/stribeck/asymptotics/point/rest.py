@@ -71,6 +71,8 @@ def _edge(groups: Groups) -> tuple[float, float]:
 @formula(
     geometry="point",
     predicts="gap",
+    uses=("load", "relative_roughness"),
+    undefined="from the edge of the contact outwards, where this has no value",
     plane="rest",
     limits=LARGE_INDENTATION,
     worst=0.05,
@@ -91,22 +93,8 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast with ``x``.
     x : float or array_like
         Positions, or distances from the middle [a].
-    terms : int
-        1, or 2 for the term in brackets too.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz]; nan from the edge of the contact outwards, where this has no value.
-
-    Raises
-    ------
-    InputError
-        If ``terms`` is neither 1 nor 2.
 
     Notes
     -----
@@ -127,6 +115,7 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
 @formula(
     geometry="point",
     predicts="central_gap",
+    uses=("load", "relative_roughness"),
     plane="rest",
     limits=LARGE_INDENTATION,
     worst=0.062,
@@ -140,23 +129,6 @@ def central_gap(groups: Groups, terms: int = 1) -> Value:
     r"""Return the gap in the middle of a rough ball at rest.
 
     .. math:: h(0) = -\frac\kappa3 \ln \bar F_N \; \left(+ \left[\tfrac12 + G\right] \kappa^2\right), \quad G = 0.915966
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
-    terms : int
-        1, or 2 for the term in brackets too.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
-    Raises
-    ------
-    InputError
-        If ``terms`` is neither 1 nor 2.
 
     Notes
     -----
@@ -173,6 +145,7 @@ def central_gap(groups: Groups, terms: int = 1) -> Value:
 @formula(
     geometry="point",
     predicts="offset",
+    uses=("load", "relative_roughness"),
     plane="rest",
     limits=LARGE_INDENTATION,
     worst=2e-4,
@@ -189,23 +162,6 @@ def offset(groups: Groups, terms: int = 1) -> Value:
 
         z_0 = -1 + \kappa \left(1 - \tfrac13 \ln \bar F_N\right) \;
         \left(+ \kappa^2 \left[0.6532 - \frac{\pi^2}{48} \ln \kappa\right]\right)
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
-    terms : int
-        1, or 2 for the term in brackets too.
-
-    Returns
-    -------
-    float or ndarray
-        Offset [u_Hz].
-
-    Raises
-    ------
-    InputError
-        If ``terms`` is neither 1 nor 2.
 
     Notes
     -----
@@ -226,6 +182,7 @@ def offset(groups: Groups, terms: int = 1) -> Value:
 @formula(
     geometry="point",
     predicts="gap",
+    uses=("load", "relative_roughness"),
     plane="rest",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 1e-2)),
     worst=0.012,
@@ -246,15 +203,8 @@ def edge_gap(groups: Groups, x: Value) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
     x : float or ndarray
         Positions near 1 or -1, or distances from the middle [a]; broadcast with the groups.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----
@@ -270,6 +220,7 @@ def edge_gap(groups: Groups, x: Value) -> Value:
 @formula(
     geometry="point",
     predicts="contact_pressure",
+    uses=("relative_roughness",),
     plane="rest",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 1e-2)),
     worst=0.07,
@@ -288,15 +239,8 @@ def edge_contact_pressure(groups: Groups, x: Value) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``relative_roughness`` [-]; arrays broadcast.
     x : float or ndarray
         Positions near 1 or -1, or distances from the middle [a]; broadcast with the groups.
-
-    Returns
-    -------
-    float or ndarray
-        Contact pressure [p_Hz].
 
     Notes
     -----
@@ -311,6 +255,7 @@ def edge_contact_pressure(groups: Groups, x: Value) -> Value:
 @formula(
     geometry="point",
     predicts="central_gap",
+    uses=("load", "relative_roughness"),
     plane="rest",
     limits=SMALL_INDENTATION,
     worst=0.006,
@@ -328,23 +273,6 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
         h(0) = \kappa \ln\left(3 \kappa \bar F_N^{-1/3}\right) \;
         \left(+ \frac{4 - 2 \sqrt2}{3 (2 \pi \kappa)^{1/2}}\right)
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
-    terms : int
-        1, or 2 for the term in brackets too.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
-    Raises
-    ------
-    InputError
-        If ``terms`` is neither 1 nor 2.
-
     Notes
     -----
     The pressure is Gaussian, :math:`e^{-r^2/(2\kappa)}/(3\kappa)`, on the rigid ball; the second term is the deflection in the
@@ -360,6 +288,7 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
 @formula(
     geometry="point",
     predicts="offset",
+    uses=("load", "relative_roughness"),
     plane="rest",
     limits=SMALL_INDENTATION,
     worst=6e-5,
@@ -373,16 +302,6 @@ def offset_small_indentation(groups: Groups) -> Value:
     r"""Return the offset of a very rough ball at rest.
 
     .. math:: z_0 = \kappa \ln\left(3 \kappa \bar F_N^{-1/3}\right) - \frac{2}{3 (\pi \kappa)^{1/2}}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Offset [u_Hz].
 
     Notes
     -----

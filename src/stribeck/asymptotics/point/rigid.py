@@ -49,6 +49,7 @@ def gap_of(groups: Groups) -> Value:
 @formula(
     geometry="point",
     predicts="minimum_gap",
+    uses=("speed",),
     plane="smooth",
     limits=RANGE,
     worst=8e-4,
@@ -63,16 +64,6 @@ def minimum_gap(groups: Groups) -> Value:
 
     .. math:: h_0 = \left(\frac{81 \pi}{12800 \sqrt2}\right)^{2/5} \lambda^{4/5} = 0.18162 \, \lambda^{4/5}
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
     Notes
     -----
     In other words :math:`F_N E^* h_0^{5/2} = \tfrac{243 \pi^3}{3200 \sqrt2} \, \eta^2 U^2 R^{5/2}`, with 1.6649.  The
@@ -86,6 +77,7 @@ def minimum_gap(groups: Groups) -> Value:
 @formula(
     geometry="point",
     predicts="fluid_pressure",
+    uses=("speed",),
     plane="smooth",
     limits=(Limit("speed", 3e2),),
     worst=0.26,
@@ -103,15 +95,8 @@ def fluid_pressure(groups: Groups, x: Value) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast with ``x``.
     x : float or array_like
         Positions [a]; off the middle at x, y the same with :math:`h_0 + (x^2 + y^2)/2`.
-
-    Returns
-    -------
-    float or ndarray
-        Fluid pressure [p_Hz].
 
     Notes
     -----

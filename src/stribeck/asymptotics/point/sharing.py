@@ -63,11 +63,6 @@ def contact_load_share(groups: Groups) -> Value:
 
     .. math:: \lambda(S) = \left(\lambda_w^{-m} + \lambda_f^{-m}\right)^{-1/m}
 
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-
     Returns
     -------
     float or ndarray

@@ -60,6 +60,7 @@ def _slower(fluid_number: float) -> Groups:
 
 @formula(
     predicts="fluid_load_share",
+    undefined="from load 1 on",
     plane="mixed",
     limits=SLOWER,
     worst=0.07,
@@ -76,23 +77,11 @@ def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool
 
     Parameters
     ----------
-    groups : Groups
-        Uses all three groups [-]; arrays broadcast.
     form : {"quadrature", "closed", "asymptote", "power", "printed"}
         Form of :func:`stribeck.asymptotics.rough.perturbation.phi`; "printed" is :math:`(-\ln \bar F_N)^5/2`.
     printed : bool
         With the factors of Eq. (fluid-normal): pi**2, as :math:`6 \pi \eta U a` is printed for :math:`6 \eta U a`, and phi
         without its 2/pi.
-
-    Returns
-    -------
-    float or ndarray
-        Load share [-]; nan from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If the form is unknown.
 
     Notes
     -----
@@ -127,8 +116,6 @@ def contact_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bo
 
     Parameters
     ----------
-    groups : Groups
-        Uses all three groups [-]; arrays broadcast.
     form : {"quadrature", "closed", "asymptote", "power", "printed"}
         As in :func:`fluid_load_share`.
     printed : bool
@@ -139,11 +126,6 @@ def contact_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bo
     float or ndarray
         Load share [-], negative where the formula has long ceased to hold; nan from load 1 on.
 
-    Raises
-    ------
-    InputError
-        If the form is unknown.
-
     Notes
     -----
     Source: [BP] Eq. (friction_contact).
@@ -153,6 +135,7 @@ def contact_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bo
 
 @formula(
     predicts="viscous_friction",
+    undefined="from load 1 on",
     plane="mixed",
     limits=SLOWER,
     worst=0.075,
@@ -173,22 +156,8 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "publ
 
     Parameters
     ----------
-    groups : Groups
-        Uses all three groups [-]; arrays broadcast.
-    beta : float
-        Coefficient of the contact law [-].
     viscous : {"published", "balanced", "neglected"}
         Definition; or none of it.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-]; nan from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If the definition is unknown.
 
     Notes
     -----
@@ -210,6 +179,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "publ
 
 @formula(
     predicts="friction",
+    undefined="from load 1 on",
     plane="mixed",
     limits=(*SLOW, Limit("beta/mu0", 0.0, 3.0)),
     worst=0.017,
@@ -233,28 +203,12 @@ def friction(
 
     Parameters
     ----------
-    groups : Groups
-        Uses all three groups [-]; arrays broadcast.
-    boundary_friction : float
-        Friction coefficient of the dry contact [-].
-    beta : float
-        Coefficient of the contact law [-].
     viscous : {"published", "balanced", "neglected"}
         Definition of the viscous part, as in :func:`viscous_friction`.
     form : {"quadrature", "closed", "asymptote", "power", "printed"}
         As in :func:`fluid_load_share`.
     printed : bool
         As in :func:`fluid_load_share`; what is printed has the viscous part neglected too.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-]; nan from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If the form or the definition is unknown.
 
     Notes
     -----

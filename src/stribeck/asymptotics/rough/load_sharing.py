@@ -51,6 +51,8 @@ NEWTON_STEPS = 60
 
 @formula(
     predicts="speed_at_half_fluid",
+    uses=("load", "roughness"),
+    undefined="from load 1 on, and without roughness",
     plane="mixed",
     limits=BOX[1:],
     worst=0.105,
@@ -71,20 +73,8 @@ def speed_at_fluid_share(groups: Groups, share: float = 0.5) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``load`` and ``roughness`` [-]; arrays broadcast.
     share : float or array_like
         Part of the load on the fluid [-], between 0 and 1.
-
-    Returns
-    -------
-    float or ndarray
-        Speed group [-]; nan from load 1 on, and without roughness.
-
-    Raises
-    ------
-    InputError
-        If the share is not between 0 and 1.
 
     Notes
     -----
@@ -112,11 +102,6 @@ def contact_load_share(groups: Groups) -> Value:
     r"""Return the part of the load on the asperities, the inverse of :func:`speed_at_fluid_share`.
 
     .. math:: \lambda(1 - S) = \lambda
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
 
     Returns
     -------

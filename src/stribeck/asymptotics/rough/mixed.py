@@ -59,24 +59,12 @@ def contact_load_share(groups: Groups, film: Film = "uniform", *, printed: bool 
 
     Parameters
     ----------
-    groups : Groups
-        All three [-]; arrays broadcast.
     film : {"uniform", "central", "large"}
         Film that the asperities meet: ``"large"``, as [BP], the limit of slow speed; ``"central"``, the same with
         :func:`~stribeck.asymptotics.hydrodynamic.central_gap`; ``"uniform"``, with the thinner outlet and with the thickening
         of the film by the asperities.
     printed : bool
         Whether ``film="large"`` with the constant 0.44 as printed.
-
-    Returns
-    -------
-    float or ndarray
-        Part of the load [-].
-
-    Raises
-    ------
-    InputError
-        If ``film`` is none of the three.
 
     Notes
     -----
@@ -126,12 +114,6 @@ def friction(
 
     Parameters
     ----------
-    groups : Groups
-        All three [-]; arrays broadcast.
-    boundary_friction : float
-        Friction coefficient of the dry contact [-].
-    beta : float
-        Coefficient of the contact law [-].
     film : {"uniform", "central", "large"}
         Film that the asperities meet, see :func:`contact_load_share`, and law of the viscous friction:
         :func:`~stribeck.asymptotics.hydrodynamic.friction_large` for ``"large"``, else
@@ -143,11 +125,6 @@ def friction(
     -------
     float or ndarray
         Friction coefficient, by the definition of [BP] [-].
-
-    Raises
-    ------
-    InputError
-        If ``film`` is none of the three.
 
     Notes
     -----

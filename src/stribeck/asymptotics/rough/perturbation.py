@@ -161,6 +161,8 @@ def _contact(groups: Groups) -> tuple[float, float]:
 
 @formula(
     predicts="flux_gap",
+    uses=("load", "relative_roughness"),
+    undefined="from load 1 on",
     plane="rest",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3)),
     worst=0.009,
@@ -174,16 +176,6 @@ def flux_gap(groups: Groups) -> Value:
     r"""Return the flux gap of a slow rough contact.
 
     .. math:: h^* = \kappa H_0^*, \quad H_0^* = \frac{\int_{-1}^1 H_0^{-2} dx}{\int_{-1}^1 H_0^{-3} dx}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Flux gap [u_Hz]; nan from load 1 on.
 
     Notes
     -----
@@ -213,10 +205,6 @@ def fluid_pressure_first(groups: Groups, x: Value, printed: bool = False) -> Val
 
     Parameters
     ----------
-    groups : Groups
-        Uses all three groups [-]; arrays broadcast with ``x``.
-    x : float or array_like
-        Positions [a].
     printed : bool
         With the denominator as printed in Appendix C, h_0 for its cube; then the pressure behind the contact is not zero.
 
@@ -246,6 +234,7 @@ def _first_pressure(load: Value, x: Value, power: int = 3) -> Array:
 
 @formula(
     predicts="gap",
+    undefined="outside the contact, where this has no value, and from load 1 on",
     plane="mixed",
     limits=(Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Limit("paper_fluid_share", 0, 0.1)),
     worst=0.06,
@@ -260,18 +249,6 @@ def gap_first(groups: Groups, x: Value) -> Value:
     r"""Return the gap in the contact to first order in the speed.
 
     .. math:: h = \kappa H_0 + \frac{\lambda}{\kappa} H_1, \quad H_1 = \frac{P_{f,1}}{(1 - x^2)^{1/2}}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses all three groups [-]; arrays broadcast with ``x``.
-    x : float or array_like
-        Positions [a].
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz]; nan outside the contact, where this has no value, and from load 1 on.
 
     Notes
     -----
@@ -306,13 +283,6 @@ def fluid_pressure_second(groups: Groups, x: Value) -> Value:
 
         p_f = \frac{\lambda}{\kappa^2} P_{f,1} + \frac{\lambda^2}{\kappa^4} P_{f,2}, \quad
         P_{f,2} = \int_{-1}^x \frac{(3 H_0^* - 2 H_0) H_1}{H_0^4} \, dy
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses all three groups [-]; arrays broadcast with ``x``.
-    x : float or array_like
-        Positions [a].
 
     Returns
     -------

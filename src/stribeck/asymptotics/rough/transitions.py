@@ -57,6 +57,8 @@ BOX = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-5, 0.01), Limit(
 
 @formula(
     predicts="separation_at_minimum",
+    uses=("load", "roughness"),
+    undefined="where the form has no minimum",
     plane="mixed",
     limits=BOX,
     worst=0.044,
@@ -74,28 +76,12 @@ def separation_at_minimum(
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``load`` and ``roughness`` [-]; arrays broadcast.
-    boundary_friction : float
-        Friction coefficient of the dry contact [-].
-    beta : float
-        Coefficient of the contact law [-].
     form : {"uniform", "exact", "expansion", "leading"}
         ``"uniform"``: the minimum of :func:`stribeck.asymptotics.rough.mixed.friction`, and
         :func:`~stribeck.asymptotics.hydrodynamic.central_gap` there.  The others: [BP]'s friction, in Lambert's W, its
         expansion for small k, and the first term of that.
     printed : bool
         Whether the expansion with the constant 0.44 as printed.
-
-    Returns
-    -------
-    float or ndarray
-        Lambda [-]; nan where the form has no minimum.
-
-    Raises
-    ------
-    InputError
-        If ``form`` is none of the four.
 
     Notes
     -----
@@ -122,6 +108,8 @@ def separation_at_minimum(
 
 @formula(
     predicts="speed_at_minimum",
+    uses=("load", "roughness"),
+    undefined="where the form has no minimum",
     plane="mixed",
     limits=BOX,
     worst=0.069,
@@ -136,26 +124,10 @@ def speed_at_minimum(
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``load`` and ``roughness`` [-]; arrays broadcast.
-    boundary_friction : float
-        Friction coefficient of the dry contact [-].
-    beta : float
-        Coefficient of the contact law [-].
     form : {"uniform", "exact", "expansion", "leading"}
         Of Lambda, as in :func:`separation_at_minimum`; for ``"uniform"`` the speed itself.
     printed : bool
         Whether as printed: the leading form with the constant 0.44.
-
-    Returns
-    -------
-    float or ndarray
-        Speed group [-]; nan where the form has no minimum.
-
-    Raises
-    ------
-    InputError
-        If ``form`` is none of the four.
 
     Notes
     -----
@@ -180,6 +152,8 @@ def speed_at_minimum(
 
 @formula(
     predicts="friction_at_minimum",
+    uses=("load", "roughness"),
+    undefined="where the form has no minimum",
     plane="mixed",
     limits=BOX,
     worst=0.049,
@@ -197,27 +171,11 @@ def friction_at_minimum(
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``load`` and ``roughness`` [-]; arrays broadcast.
-    boundary_friction : float
-        Friction coefficient of the dry contact [-].
-    beta : float
-        Coefficient of the contact law [-].
     form : {"uniform", "exact", "expansion", "leading"}
         Of Lambda, as in :func:`separation_at_minimum`; for ``"uniform"`` the friction of
         :func:`stribeck.asymptotics.rough.mixed.friction` at its minimum.
     printed : bool
         Whether as printed: the leading form with the constant 0.44 and Lambda to the power -2/3 for 2/3.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-]; nan where the form has no minimum.
-
-    Raises
-    ------
-    InputError
-        If ``form`` is none of the four.
 
     Notes
     -----
@@ -249,6 +207,8 @@ def friction_at_minimum(
 
 @formula(
     predicts="speed_at_half_fluid",
+    uses=("load", "roughness"),
+    undefined="from load 1 on",
     plane="mixed",
     limits=(Limit("load", 1e-4, 0.1), Limit("relative_roughness", 1e-5, 1e-3)),
     worst=0.72,
@@ -261,15 +221,8 @@ def speed_boundary_to_mixed(groups: Groups, *, printed: bool = False) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``load`` and ``roughness`` [-]; arrays broadcast.
     printed : bool
         Whether with the printed :math:`\phi = \tfrac12 (-\ln \bar F_N)^5`.
-
-    Returns
-    -------
-    float or ndarray
-        Speed group [-]; nan from load 1 on.
 
     Notes
     -----

@@ -32,6 +32,7 @@ it. That of first order is within 1 % of (4/pi) :func:`perturbation.pressure_mom
 
 @formula(
     predicts="viscous_friction",
+    undefined="from load 1 on",
     plane="mixed",
     limits=(*BOX, Limit("film_ratio", 0.0, 12.0)),
     worst=0.75,
@@ -50,22 +51,8 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
 
     Parameters
     ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-    beta : float
-        Coefficient of the contact law [-].
     definition : {"balanced", "published"}
         As the paper defines it, or without the moment mu_m as the force on the substrate.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-]; nan from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If the definition is unknown.
 
     Notes
     -----
@@ -79,6 +66,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
 
 @formula(
     predicts="friction",
+    undefined="from load 1 on",
     plane="mixed",
     limits=(*BOX, Limit("beta/mu0", 1e-3, 1.0)),
     worst=0.075,
@@ -91,24 +79,8 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
 
     Parameters
     ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-    boundary_friction : float
-        Friction coefficient of the dry contact [-].
-    beta : float
-        Coefficient of the contact law [-].
     definition : {"balanced", "published"}
         As in :func:`viscous_friction`.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-]; nan from load 1 on.
-
-    Raises
-    ------
-    InputError
-        If the definition is unknown.
 
     Notes
     -----

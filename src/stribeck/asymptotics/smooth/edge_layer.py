@@ -59,6 +59,7 @@ def _coordinate(groups: Groups, x: Value, printed: bool) -> Array:
 
 @formula(
     predicts="gap",
+    uses=("load", "relative_roughness"),
     plane="rest",
     limits=RANGE,
     worst=0.025,
@@ -77,17 +78,10 @@ def gap(groups: Groups, x: Value, printed: bool = False) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``load`` and ``relative_roughness`` [-]; arrays broadcast.
     x : float or ndarray
         Positions near 1 or -1 [a]; broadcast with the groups.
     printed : bool
         Put the edge at 1 as [BP] do, and not at 1 - kappa.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----
@@ -103,6 +97,7 @@ def gap(groups: Groups, x: Value, printed: bool = False) -> Value:
 
 @formula(
     predicts="contact_pressure",
+    uses=("relative_roughness",),
     plane="rest",
     limits=RANGE,
     worst=0.07,
@@ -120,17 +115,10 @@ def contact_pressure(groups: Groups, x: Value, printed: bool = False) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``relative_roughness`` [-]; arrays broadcast.
     x : float or ndarray
         Positions near 1 or -1 [a]; broadcast with the groups.
     printed : bool
         Put the edge at 1 as [BP] do, and not at 1 - kappa.
-
-    Returns
-    -------
-    float or ndarray
-        Contact pressure [p_Hz].
 
     Notes
     -----

@@ -54,6 +54,7 @@ def _at_outlet(groups: Groups) -> tuple[float, float]:
 
 @formula(
     predicts="gap",
+    uses=("speed",),
     plane="smooth",
     limits=RANGE,
     worst=0.04,
@@ -71,15 +72,8 @@ def gap_inlet(groups: Groups, x: Value) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
     x : float or ndarray
         Positions near -1 [a]; broadcast with the groups.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----
@@ -94,6 +88,7 @@ def gap_inlet(groups: Groups, x: Value) -> Value:
 
 @formula(
     predicts="gap",
+    uses=("speed",),
     plane="smooth",
     limits=RANGE,
     worst=0.055,
@@ -111,15 +106,8 @@ def gap_outlet(groups: Groups, x: Value) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
     x : float or ndarray
         Positions near 1 [a]; broadcast with the groups.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----
@@ -134,6 +122,7 @@ def gap_outlet(groups: Groups, x: Value) -> Value:
 
 @formula(
     predicts="fluid_pressure",
+    uses=("speed",),
     plane="smooth",
     limits=RANGE,
     worst=0.09,
@@ -151,15 +140,8 @@ def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
     x : float or ndarray
         Positions near -1 [a]; broadcast with the groups.
-
-    Returns
-    -------
-    float or ndarray
-        Fluid pressure [p_Hz].
 
     Notes
     -----
@@ -173,6 +155,7 @@ def fluid_pressure_inlet(groups: Groups, x: Value) -> Value:
 
 @formula(
     predicts="fluid_pressure",
+    uses=("speed",),
     plane="smooth",
     limits=RANGE,
     worst=0.095,
@@ -190,15 +173,8 @@ def fluid_pressure_outlet(groups: Groups, x: Value) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
     x : float or ndarray
         Positions near 1 [a]; broadcast with the groups.
-
-    Returns
-    -------
-    float or ndarray
-        Fluid pressure [p_Hz].
 
     Notes
     -----

@@ -56,6 +56,7 @@ FRICTION_FIT = (3.69, 2.09, -1.10)
 
 @formula(
     predicts="central_gap",
+    uses=("speed",),
     plane="smooth",
     limits=(),
     worst=0.0028,
@@ -68,16 +69,6 @@ def central_gap(groups: Groups) -> Value:
 
         h(0) = c \lambda^{3/5} \left[\frac{1 + (6 s + d_1) u + b_2 u^2 + A d_2 u^3 + A d_3 u^4}
         {1 + d_1 u + d_2 u^2 + d_3 u^3}\right]^{1/6}, \quad u = \lambda^{2/5}, \quad A = \frac{1}{576 c^6}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----
@@ -94,6 +85,7 @@ def central_gap(groups: Groups) -> Value:
 
 @formula(
     predicts="flux_gap",
+    uses=("speed",),
     plane="smooth",
     limits=(),
     worst=0.0004,
@@ -107,16 +99,6 @@ def flux_gap(groups: Groups) -> Value:
         h^* = c \lambda^{3/5} \left[\frac{1 + (6 s + d_1) u + b_2 u^2 + A d_2 u^3 + A d_3 u^4}
         {1 + d_1 u + d_2 u^2 + d_3 u^3}\right]^{1/6}, \quad u = \lambda^{2/5},
         \quad A = \left(\frac43\right)^6 \frac{1}{576 c^6}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----
@@ -133,6 +115,7 @@ def flux_gap(groups: Groups) -> Value:
 
 @formula(
     predicts="viscous_friction",
+    uses=("speed", "load"),
     plane="smooth",
     limits=(),
     worst=0.072,
@@ -142,18 +125,6 @@ def friction(groups: Groups, beta: float = 1.0) -> Value:
     r"""Return the viscous friction at any speed by the interpolation of the paper.
 
     .. math:: \mu_{f,\mathrm{th}} = \sqrt{\mu_\mathrm{small}^2 + \mu_\mathrm{large}^2}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` and ``load`` [-]; arrays broadcast.
-    beta : float
-        Coefficient of the contact law [-].
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-].
 
     Notes
     -----
@@ -166,6 +137,7 @@ def friction(groups: Groups, beta: float = 1.0) -> Value:
 
 @formula(
     predicts="viscous_friction",
+    uses=("speed", "load"),
     plane="smooth",
     limits=(),
     worst=0.00225,
@@ -178,18 +150,6 @@ def friction_uniform(groups: Groups, beta: float = 1.0) -> Value:
 
         \mu = \mu_\mathrm{large} \left[1 + A u - \frac{(A - \frac32 s) u + b u^{3/2}}{1 + e_1 u^{1/2} + e_2 u + b u^{3/2}}
         \right]^{2/3}, \quad u = \lambda^{2/5}, \quad A u = \left(\frac{\mu_\mathrm{small}}{\mu_\mathrm{large}}\right)^{3/2}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` and ``load`` [-]; arrays broadcast.
-    beta : float
-        Coefficient of the contact law [-].
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-].
 
     Notes
     -----

@@ -23,6 +23,7 @@ def _at_speed(speed: float) -> Groups:
 
 @formula(
     predicts="central_gap",
+    uses=("speed",),
     plane="smooth",
     limits=RANGE,
     worst=0.015,
@@ -39,15 +40,8 @@ def central_gap_large(groups: Groups, *, printed: bool = False) -> Value:
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
     printed : bool
         Whether with the constant 0.44 as printed.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
 
     Notes
     -----
@@ -60,6 +54,7 @@ def central_gap_large(groups: Groups, *, printed: bool = False) -> Value:
 
 @formula(
     predicts="flux_gap",
+    uses=("speed",),
     plane="smooth",
     limits=RANGE,
     worst=0.015,
@@ -74,16 +69,6 @@ def flux_gap_large(groups: Groups) -> Value:
 
     .. math:: h^* = c \lambda^{3/5}
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
     Notes
     -----
     As :func:`central_gap_large`; the two differ by less than 1e-3 even at the end of the range.
@@ -95,6 +80,7 @@ def flux_gap_large(groups: Groups) -> Value:
 
 @formula(
     predicts="minimum_gap",
+    uses=("speed",),
     plane="smooth",
     limits=RANGE,
     worst=0.012,
@@ -109,16 +95,6 @@ def minimum_gap_large(groups: Groups) -> Value:
 
     .. math:: \min h = 0.33794 \lambda^{3/5} = 0.75801 \, c \lambda^{3/5}
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
     Notes
     -----
     The next term, relative to it, is 0.191 lambda**(2/5).  Without cavitation, as the whole model.
@@ -130,6 +106,7 @@ def minimum_gap_large(groups: Groups) -> Value:
 
 @formula(
     predicts="viscous_friction",
+    uses=("speed", "load"),
     plane="smooth",
     limits=(Limit("speed", 0.0, 1e-4),),
     worst=0.083,
@@ -146,17 +123,8 @@ def friction_large(groups: Groups, beta: float = 1.0, *, printed: bool = False) 
 
     Parameters
     ----------
-    groups : Groups
-        Uses ``speed`` and ``load`` [-]; arrays broadcast.
-    beta : float
-        Coefficient of the contact law [-].
     printed : bool
         Whether with the constant 0.44 as printed.
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-].
 
     Notes
     -----

@@ -31,6 +31,7 @@ def _four_widths(groups: Groups) -> tuple[float, float]:
 
 @formula(
     predicts="central_gap",
+    uses=("speed",),
     plane="smooth",
     limits=RANGE,
     worst=0.021,
@@ -45,16 +46,6 @@ def central_gap_small(groups: Groups) -> Value:
 
     .. math:: h(0) = \frac{\lambda^{2/3}}{24^{1/3}}
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
     Notes
     -----
     The next term, relative to it, is 2.10 lambda**(-2/3).
@@ -66,6 +57,7 @@ def central_gap_small(groups: Groups) -> Value:
 
 @formula(
     predicts="flux_gap",
+    uses=("speed",),
     plane="smooth",
     limits=RANGE,
     worst=0.002,
@@ -80,16 +72,6 @@ def flux_gap_small(groups: Groups) -> Value:
 
     .. math:: h^* = \frac43 \frac{\lambda^{2/3}}{24^{1/3}}
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
     Notes
     -----
     The next term, relative to it, is 0.201 lambda**(-2/3).
@@ -101,6 +83,7 @@ def flux_gap_small(groups: Groups) -> Value:
 
 @formula(
     predicts="gap",
+    uses=("speed",),
     plane="smooth",
     limits=RANGE,
     worst=0.017,
@@ -116,18 +99,6 @@ def gap_small(groups: Groups, x: float | Array) -> Value:
 
     .. math:: h(x) = h_0 + \frac{x^2}{2}, \quad h_0 = \frac{\lambda^{2/3}}{24^{1/3}}
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-    x : float or array_like
-        Position [a]; broadcasts with the groups.
-
-    Returns
-    -------
-    float or ndarray
-        Gap [u_Hz].
-
     Notes
     -----
     The next term is the deflection under the pressure of :func:`pressure_small`, of order lambda**(1/3); it is
@@ -140,6 +111,7 @@ def gap_small(groups: Groups, x: float | Array) -> Value:
 
 @formula(
     predicts="fluid_pressure",
+    uses=("speed",),
     plane="smooth",
     limits=(Limit("speed", 1e5),),
     worst=0.092,
@@ -155,18 +127,6 @@ def pressure_small(groups: Groups, x: float | Array) -> Value:
 
     .. math:: p(x) = -\frac{\lambda}{3} \frac{x}{(h_0 + x^2/2)^2}, \quad h_0 = \frac{\lambda^{2/3}}{24^{1/3}}
 
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` [-]; arrays broadcast.
-    x : float or array_like
-        Position [a]; broadcasts with the groups.
-
-    Returns
-    -------
-    float or ndarray
-        Pressure [p_Hz].
-
     Notes
     -----
     It is antisymmetric and carries no load; what carries it, of the order lambda**(-1/3), is the next term.
@@ -178,6 +138,7 @@ def pressure_small(groups: Groups, x: float | Array) -> Value:
 
 @formula(
     predicts="viscous_friction",
+    uses=("speed", "load"),
     plane="smooth",
     limits=(Limit("speed", 1e2),),
     worst=0.00095,
@@ -191,18 +152,6 @@ def friction_small(groups: Groups, beta: float = 1.0) -> Value:
     r"""Return the viscous friction at small deformation, speed group -> infinity.
 
     .. math:: \mu = \frac{4 \sqrt2}{3} \, 24^{1/6} \, \beta \bar F_N^{1/2} \lambda^{2/3}
-
-    Parameters
-    ----------
-    groups : Groups
-        Uses ``speed`` and ``load`` [-]; arrays broadcast.
-    beta : float
-        Coefficient of the contact law [-].
-
-    Returns
-    -------
-    float or ndarray
-        Friction coefficient [-].
 
     Notes
     -----

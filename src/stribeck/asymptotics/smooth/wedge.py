@@ -126,11 +126,6 @@ def contact_load_share(groups: Groups) -> Value:
 
     .. math:: S = \frac2\pi \int_{-1}^1 F^{-1/2} e^{-H} dx
 
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast, each state is solved.
-
     Returns
     -------
     float or ndarray
