@@ -186,6 +186,23 @@ def test_a_keyword_that_is_misspelled_is_answered_with_the_nearest(state):
             call()
 
 
+def test_every_result_writes_its_dataset_and_refuses_a_table_of_more_than_one_dimension(state, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    fit = sb.fit(noisy(seed=5_417), CONTACT, free=["boundary_friction"])
+    batch = sb.solve_batch(sb.Groups(1e-5, 0.1, 1e-4), speed=[[1e-5], [2e-5]], load=[0.1, 0.2])
+    for name, found in {"state": state, "fit": fit, "batch": batch}.items():
+        found.to_netcdf(tmp_path / f"{name}.nc")
+        with xarray.open_dataset(tmp_path / f"{name}.nc") as data:
+            for variable, written in found.to_dataset().variables.items():
+                np.testing.assert_array_equal(data[variable], written)
+    state.to_csv(tmp_path / "state.csv")
+    names, *rows = [line for line in (tmp_path / "state.csv").read_text().splitlines() if not line.startswith("#")]
+    assert names.split(",")[:2] == ["x [m]", "gap [m]"]
+    np.testing.assert_array_equal([float(row.split(",")[1]) for row in rows], state.to_si().gap)
+    with pytest.raises(sb.InputError, match=r"has one dimension and this dataset has .*, .*; write NetCDF"):
+        batch.to_csv(tmp_path / "batch.csv")
+
+
 @pytest.mark.quick
 def test_a_contact_is_a_table_in_a_notebook_and_a_dictionary_in_si():
     assert "50 mPa·s" in CONTACT._repr_html_() and "effective modulus" in CONTACT._repr_html_()

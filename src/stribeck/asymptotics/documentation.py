@@ -88,7 +88,7 @@ def completed(function: Callable[..., Any], predicts: str, uses: tuple[str, ...]
         "Parameters": "\n".join(f"{name} : {described.get(name) or common[name]}" for name in names),
         "Returns": own.get("Returns", value),
         "Raises": own.get("Raises", "\n".join(refused)),
-        "Notes": own["Notes"],
+        "Notes": own.get("Notes", ""),
     }
     body = "\n\n".join(f"{title}\n{'-' * len(title)}\n{text}" for title, text in sections.items() if text)
     return f"{head.strip()}\n\n{body}\n"

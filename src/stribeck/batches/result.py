@@ -13,6 +13,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray, check_definition, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.files.datasets import Column, new_dataset
+from stribeck.files.results import Exported
 from stribeck.quantities.inputs import quantity, refuse_former, unit_of
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES, FILMS, NAMES, OBSERVABLES, ROWS
@@ -26,7 +27,7 @@ __all__ = ["BatchSolution"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BatchSolution(Shown, ByValue):
+class BatchSolution(Exported, Shown, ByValue):
     """Observables of many states, in arrays of the shape of the groups; gaps in u_Hz, nan if there is no state.
 
     Attributes
@@ -216,31 +217,10 @@ class BatchSolution(Shown, ByValue):
         first: Contact = self.contacts.ravel()[0]
         return unit_of(name, first.INPUTS)
 
-    def plot(self, path: Any = None, *, ax: Any = None, force: bool = False) -> Any:
-        """Draw friction over the input that varies along the longest dimension, a line for each other state.
-
-        Parameters
-        ----------
-        path : str or path-like, optional
-            Image file to write as well, its format by its ending.
-        ax : matplotlib.axes.Axes, optional
-            Axes to draw into, in place of a new figure.
-        force : bool
-            Whether an existing file is replaced; else it is kept and the call refused.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure; needs the extra ``plot``.
-
-        Raises
-        ------
-        InputError
-            If nothing varies, or the file cannot be written, or exists and ``force`` is not given.
-        """
+    def _draw(self, path: Any, **options: Any) -> Any:
         from stribeck.batches.plot import plot_batch
 
-        return plot_batch(self, path, ax=ax, force=force)
+        return plot_batch(self, path, **options)
 
     def _card(self) -> Card:
         shape = ", ".join(f"{name} {size}" for name, size in zip(self.dims, self.groups.shape, strict=True)) or "one state"

@@ -22,6 +22,7 @@ from stribeck.curves.function import CurveValues
 from stribeck.curves.landmarks import Landmark, locate
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.equations.sensitivity import GROUPS, friction_slopes
+from stribeck.files.results import Exported
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
@@ -44,7 +45,7 @@ SLACK = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StribeckCurve(Shown, ByValue):
+class StribeckCurve(Exported, Shown, ByValue):
     """Converged states along one coordinate, and the friction on them.
 
     Attributes
@@ -384,44 +385,6 @@ class StribeckCurve(Shown, ByValue):
 
         return curve_dataset(self)
 
-    def to_netcdf(self, path: Any, *, force: bool = False) -> None:
-        """Write the curve as NetCDF.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file.
-        force : bool
-            Whether an existing file is replaced; else it is kept and the call refused.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given.
-        """
-        from stribeck.files.datasets import write_netcdf
-
-        write_netcdf(self.to_dataset(), path, force=force)
-
-    def to_csv(self, path: Any, *, force: bool = False) -> None:
-        """Write the curve as CSV.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file.
-        force : bool
-            Whether an existing file is replaced; else it is kept and the call refused.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given.
-        """
-        from stribeck.files.datasets import write_csv
-
-        write_csv(self.to_dataset(), path, force=force)
-
     def to_si(self) -> dict[str, Array]:
         """Return films and Hertz scales of the points in SI units.
 
@@ -440,31 +403,10 @@ class StribeckCurve(Shown, ByValue):
         films = [si_films(solution) for solution in self.solutions]
         return {name: np.array([film[name][0] for film in films]) for name in (films[0] if films else ())}
 
-    def plot(self, path: Any = None, *, ax: Any = None, force: bool = False) -> Any:
-        """Draw the curve.
-
-        Parameters
-        ----------
-        path : str or path-like, optional
-            Image file to write as well, its format by its ending.
-        ax : matplotlib.axes.Axes, optional
-            Axes to draw friction into, over what varies, in place of a new figure.
-        force : bool
-            Whether an existing file is replaced; else it is kept and the call refused.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure; needs the extra ``plot``.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given.
-        """
+    def _draw(self, path: Any, **options: Any) -> Any:
         from stribeck.curves.plot import plot_curve
 
-        return plot_curve(self, path, ax=ax, force=force)
+        return plot_curve(self, path, **options)
 
     def _card(self) -> Card:
         if not len(self):

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
+from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
     import xarray
@@ -108,8 +109,11 @@ def write_csv(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -
     Raises
     ------
     InputError
-        If the file cannot be written, or exists and ``force`` is not given.
+        If the dataset has other than one dimension, the file cannot be written, or exists and ``force`` is not given.
     """
+    if len(dataset.sizes) != 1:
+        dimensions = ", ".join(map(str, dataset.sizes)) or "none"
+        raise InputError(f"a CSV file has one dimension and this dataset has {dimensions}; write NetCDF (.nc) instead.")
     (over,) = dataset.sizes
     columns = [dataset[over], *dataset.data_vars.values()]
     with (

@@ -14,6 +14,7 @@ from stribeck.checks.check import Checks
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.files.datasets import Column, new_dataset
+from stribeck.files.results import Exported
 from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
@@ -87,7 +88,7 @@ class FittedInput:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Fit(Shown, ByValue):
+class Fit(Exported, Shown, ByValue):
     """Inputs of a contact fitted to measured friction, with their intervals.
 
     Attributes
@@ -319,31 +320,10 @@ class Fit(Shown, ByValue):
         coords: dict[str, Column] = {"row": ("row", self.data.rows, "1", "row of the file")}
         return new_dataset(columns, coords, {"title": "Fit to measured friction", "message": self.outcome.value} | values)
 
-    def plot(self, path: Any = None, *, ax: Any = None, force: bool = False) -> Any:
-        """Draw measured friction with the fitted curves and their 95 % bands.
-
-        Parameters
-        ----------
-        path : str or path-like, optional
-            Image file to write as well, its format by its ending.
-        ax : matplotlib.axes.Axes, optional
-            Axes to draw into, in place of a new figure with residuals.
-        force : bool
-            Whether an existing file is replaced; else it is kept and the call refused.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure; needs the extra ``plot``.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given.
-        """
+    def _draw(self, path: Any, **options: Any) -> Any:
         from stribeck.fits.plot import plot_fit
 
-        return plot_fit(self, path, ax=ax, force=force)
+        return plot_fit(self, path, **options)
 
     def _card(self) -> Card:
         rows = [

@@ -16,6 +16,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import Regime, regime_of
+from stribeck.files.results import Exported
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import HERTZ, OUTPUT_TABLES, OutputTable
@@ -53,7 +54,7 @@ class Profile:
         return self.contact_pressure + self.fluid_pressure
 
 
-class BaseSolution(Shown, ByValue, ABC):
+class BaseSolution(Exported, Shown, ByValue, ABC):
     """One solved state; see the solution of a geometry for its fields.
 
     Attributes

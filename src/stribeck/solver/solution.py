@@ -284,28 +284,7 @@ class Solution(BaseSolution):
         x = {"x": ("x", fields_.x, units[0], "position along the contact; fluid enters from the left")}
         return new_dataset(columns, x, {"title": "Fields along a lubricated rough line contact"} | numbers)
 
-    def plot(self, path: Any = None, *, ax: Any = None, force: bool = False) -> Any:
-        """Draw gap and pressures along the contact.
-
-        Parameters
-        ----------
-        path : str or path-like, optional
-            Image file to write as well, its format by its ending.
-        ax : matplotlib.axes.Axes, optional
-            Axes to draw the pressures into, in place of a new figure.
-        force : bool
-            Whether an existing file is replaced; else it is kept and the call refused.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure; needs the extra ``plot``.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given.
-        """
+    def _draw(self, path: Any, **options: Any) -> Any:
         from stribeck.solver.plot import plot_profile
 
-        return plot_profile(self, path, ax=ax, force=force)
+        return plot_profile(self, path, **options)

@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.curves.regime import regime_of
-from stribeck.files.datasets import write_netcdf
+from stribeck.files.results import Exported
 from stribeck.files.writing import MissingExtraError, PathLike
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
@@ -28,7 +28,7 @@ PENDING = "NOT_COMPUTED"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Sweep(Shown, ByValue):
+class Sweep(Exported, Shown, ByValue):
     """The states of a store at the time it was read.
 
     Attributes
@@ -126,45 +126,8 @@ class Sweep(Shown, ByValue):
             },
         )
 
-    def to_netcdf(self, path: PathLike, *, force: bool = False) -> None:
-        """Write all states as NetCDF.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file.
-        force : bool
-            Whether an existing file is replaced; else it is kept and the call refused.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given.
-        """
-        write_netcdf(self.to_dataset(), path, force=force)
-
-    def plot(self, path: PathLike | None = None, *, ax: Any = None, force: bool = False) -> Any:
-        """Draw friction over the first input that varies, a point for each finished state.
-
-        Parameters
-        ----------
-        path : str or path-like, optional
-            Image file to write as well, its format by its ending.
-        ax : matplotlib.axes.Axes, optional
-            Axes to draw into, in place of a new figure.
-        force : bool
-            Whether an existing file is replaced; else it is kept and the call refused.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure; needs the extra ``plot``.
-
-        Raises
-        ------
-        InputError
-            If the store is not what was written, or the file cannot be written.
-        """
+    def _draw(self, path: Any, *, ax: Any = None, force: bool = False) -> Any:
+        """Draw friction over the first input that varies, a point for each finished state."""
         from stribeck.files import pictures
 
         data, name = self.to_dataset(), self.about["varied"][0]

@@ -23,6 +23,7 @@ from stribeck.files.pictures import (
     INK,
     MARK,
     add_legend,
+    figure_of,
     finish_figure,
     new_figure,
 )
@@ -83,6 +84,7 @@ def plot_point_solution(
     solution: PointSolution,
     path: PathLike | None = None,
     *,
+    ax: Axes | None = None,
     colours: Colours = "film",
     force: bool = False,
     title: str = "",
@@ -95,6 +97,8 @@ def plot_point_solution(
         The state.
     path : str or path-like, optional
         Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw the film into, in place of a new figure.
     colours : {"film", "interference"}
         What colours the film: its thickness, or the light that it reflects in an optical rig, which needs a contact.
     force : bool
@@ -118,10 +122,14 @@ def plot_point_solution(
         raise InputError(f"colours = {show(colours)}; it must be 'film' or 'interference'.")
     if colours == "interference" and solution.contact is None:
         raise InputError("colours = 'interference' needs a film thickness in metres; solve a PointContact instead of Groups.")
-    figure, (film, load, gap, pressure) = new_figure(
-        SIZE, footer_of(solution), rows=2, columns=2, title=title or "Film and pressure of a ball"
-    )
-    film.get_gridspec().update(right=0.91, wspace=0.42, hspace=0.18)  # type: ignore[union-attr]
+    others: list[Axes] = []
+    if ax is None:
+        figure, (film, *others) = new_figure(
+            SIZE, footer_of(solution), rows=2, columns=2, title=title or "Film and pressure of a ball"
+        )
+        film.get_gridspec().update(right=0.91, wspace=0.42, hspace=0.18)  # type: ignore[union-attr]
+    else:
+        figure, film = figure_of(ax), ax
     along = np.linspace(-REACH, REACH, POINTS)
     field = solution.field(along, along[:, None])
     to_x, to_gap, to_pressure = _scales(solution, 3 * abs(solution.central_gap))
@@ -134,14 +142,18 @@ def plot_point_solution(
         film.set_title(f"interference colours, refractive index {INDEX:g}", size=9.5, color=INK)
     else:
         _film_map(figure, film, field.gap * to_gap[0], extent, to_gap[1])
-    _pressure_map(figure, load, field.pressure * to_pressure[0], extent, to_pressure[1])
-    for axes in (film, load):
+    if others:
+        _pressure_map(figure, others[0], field.pressure * to_pressure[0], extent, to_pressure[1])
+    else:
+        film.set_xlabel(to_x[1])
+    for axes in (film, *others[:1]):
         turn = np.linspace(0, 2 * math.pi, 181)
         axes.plot(to_x[0] * np.cos(turn), to_x[0] * np.sin(turn), color=GREY, lw=0.9, ls=(0, (2, 2)))
         axes.set_ylabel(to_x[1].replace("x", "y", 1) if axes is film else "")
         axes.set_aspect("equal")
     _mark_minimum(film, solution, to_x[0])
-    _cut(gap, pressure, solution, to_x, to_gap, to_pressure)
+    if others:
+        _cut(others[1], others[2], solution, to_x, to_gap, to_pressure)
     return finish_figure(figure, path, force)
 
 

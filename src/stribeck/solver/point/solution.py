@@ -374,52 +374,10 @@ class PointSolution(BaseSolution):
 
         return field_dataset(self, points, reach)
 
-    def to_netcdf(self, path: Any, *, force: bool = False, points: int = 161, reach: float = 2.0) -> None:
-        """Write :meth:`to_dataset` as NetCDF.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The file.
-        force : bool
-            Whether an existing file is replaced; else it is kept and the call refused.
-        points, reach : int, float
-            As in :meth:`to_dataset`.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given.
-        """
-        from stribeck.files.datasets import write_netcdf
-
-        write_netcdf(self.to_dataset(points=points, reach=reach), path, force=force)
-
-    def plot(self, path: Any = None, *, colours: Literal["film", "interference"] = "film", force: bool = False) -> Any:
-        """Draw the film with its horseshoe, the pressure, and the cut along the middle line.
-
-        Parameters
-        ----------
-        path : str or path-like, optional
-            Image file to write as well, its format by its ending.
-        colours : {"film", "interference"}
-            What colours the film: its thickness, or the light of an optical rig that it would reflect.
-        force : bool
-            Whether an existing file is replaced; else it is kept and the call refused.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure; needs the extra ``plot``.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written, or exists and ``force`` is not given.
-        """
+    def _draw(self, path: Any, **options: Any) -> Any:
         from stribeck.solver.point.plot import plot_point_solution
 
-        return plot_point_solution(self, path, colours=colours, force=force)
+        return plot_point_solution(self, path, **options)
 
 
 def solution_of(state: PointState, contact: Contact | None) -> PointSolution:

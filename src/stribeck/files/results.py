@@ -1,0 +1,84 @@
+"""What results of every kind do with files: they become a dataset, a table and a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from stribeck.files.datasets import write_csv, write_netcdf
+from stribeck.files.writing import PathLike
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+__all__ = ["Exported"]
+
+
+class Exported:
+    """A result that writes and draws itself, from its ``to_dataset`` and its ``_draw``."""
+
+    to_dataset: Callable[..., xarray.Dataset]
+    _draw: Callable[..., Figure]
+
+    def to_netcdf(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
+        """Write the dataset as NetCDF.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+        force : bool
+            Whether an existing file is replaced; otherwise it is kept and the call refused.
+        **sampling
+            What ``to_dataset`` takes, as of a ball ``points`` and ``reach``.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given.
+        """
+        write_netcdf(self.to_dataset(**sampling), path, force=force)
+
+    def to_csv(self, path: PathLike, *, force: bool = False) -> None:
+        """Write the dataset as a table of values separated by commas.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+        force : bool
+            Whether an existing file is replaced; otherwise it is kept and the call refused.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or exists and ``force`` is not given.
+        """
+        write_csv(self.to_dataset(), path, force=force)
+
+    def plot(self, path: PathLike | None = None, *, ax: Any = None, force: bool = False, **options: Any) -> Figure:
+        """Draw the result.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw the main panel into, in place of a new figure.
+        force : bool
+            Whether an existing file is replaced; otherwise it is kept and the call refused.
+        **options
+            What this picture alone takes: ``title`` of most, ``colours="interference"`` of a ball.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure; needs the extra ``plot``.
+
+        Raises
+        ------
+        InputError
+            If there is nothing to draw, or the file cannot be written, or exists and ``force`` is not given.
+        """
+        return self._draw(path, ax=ax, force=force, **options)
