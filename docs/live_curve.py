@@ -5,6 +5,7 @@
 
 import base64
 import json
+import math
 import sys
 import tomllib
 import zlib
@@ -15,13 +16,17 @@ from pathlib import Path
 import numpy as np
 
 from stribeck import atlas
-from stribeck.atlas.grid import BREAK_TERMS, HEAVY, REGIONS
-from stribeck.atlas.table import FILE, FILM_RANGE, STEP, TABULATED
+from stribeck.atlas.grid import BREAK_TERMS, HEAVY
+from stribeck.atlas.table import STEP, TABULATED
+from stribeck.atlas.tables import TABLES
 from stribeck.quantities.inputs import INPUTS, QUANTITIES, quantity
 from stribeck.quantities.units import DIMENSIONS
 
 FUNCTIONS = ("log_odds", "viscous_balanced", "central_gap", "minimum_gap")
 """What of the table the page shows, in the order in which the script reads it."""
+
+TABLE = TABLES[0]
+"""The table of the contacts that the page shows: cylinders of the exponential law."""
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml"
 
@@ -58,10 +63,10 @@ def planes(whole: np.ndarray) -> bytes:
 def table() -> dict:
     """Return all that the script needs, ready for JSON."""
     chosen = [TABULATED.index(name) for name in FUNCTIONS]
-    with files("stribeck.atlas").joinpath(FILE).open("rb") as stream, np.load(stream) as data:
+    with files("stribeck.atlas").joinpath(TABLE.file).open("rb") as stream, np.load(stream) as data:
         flat, breaks, film = data["blocks"], data["breaks"], data["film"]
     parts, position = [], 0
-    for region in REGIONS:
+    for region in TABLE.grid.regions:
         for _ in range(region.pieces[0] * region.pieces[1]):
             for count in region.speeds:
                 size = len(TABULATED) * count * region.nodes[0] * region.nodes[1]
@@ -71,12 +76,12 @@ def table() -> dict:
     film = np.ascontiguousarray(film[:, :, [k - 1 for k in chosen[1:]]])  # smooth films have no odds
     return {
         "functions": FUNCTIONS,
-        "regions": [asdict(region) for region in REGIONS],
+        "regions": [asdict(region) for region in TABLE.grid.regions],
         "step": STEP,
         "breakTerms": BREAK_TERMS,
         "heavy": HEAVY,
         "filmShape": film.shape,
-        "filmRange": FILM_RANGE,
+        "filmRange": [math.log(end) for end in TABLE.grid.films],
         "box": {"speed": atlas.BOX["speed"], "load": atlas.BOX["load"], "kappa": atlas.BOX["relative_roughness"]},
         "coefficients": text(planes(np.concatenate(parts))),
         "breaks": text(breaks.astype("<f8").tobytes()),

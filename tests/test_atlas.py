@@ -10,10 +10,12 @@ from numpy.polynomial import chebyshev as reference
 import stribeck as sb
 from stribeck.atlas import grid as atlas_grid
 from stribeck.atlas import table as atlas_table
+from stribeck.atlas.tables import TABLES
 from stribeck.contacts.model import Model
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.evidence import atlas_build
 from stribeck.evidence.atlas_certificate import FRICTIONS, QUANTITIES, certify, compare, solved
+from stribeck.evidence.atlas_states import speed_range
 from stribeck.fluids.cavitation import Cavitation
 
 DEFINITIONS = ("published", "balanced")
@@ -42,7 +44,7 @@ def transition_groups(number, seed):
     """Return random states near the speeds at which fluid and asperities share the load."""
     rng = np.random.default_rng(seed)
     load, kappa = (np.exp(rng.uniform(*np.log(ends), number)) for ends in ((1e-5, 0.98), (2e-6, 50.0)))
-    half = np.array([atlas_build.speed_range(-math.log(F), k)[0] + math.log(60) for F, k in zip(load, kappa, strict=True)])
+    half = np.array([speed_range(TABLES[0], -math.log(F), k)[0] + math.log(60) for F, k in zip(load, kappa, strict=True)])
     speed = np.clip(np.exp(half + rng.uniform(-4, 3, number)), 2e-12, 5e5)
     return sb.Groups(speed, load, kappa * load)
 
@@ -225,11 +227,13 @@ def test_something_else_than_groups_is_refused():
 # --- the table ---
 
 
-def test_the_table_is_small_and_says_where_it_comes_from():
-    path = atlas_table.files("stribeck.atlas").joinpath(atlas_table.FILE)
+@pytest.mark.parametrize("row", TABLES, ids=lambda row: row.name)
+def test_a_table_is_small_and_says_where_it_comes_from(row):
+    path = atlas_table.files("stribeck.atlas").joinpath(row.file)
     assert path.stat().st_size < 5e6
-    about = sb.atlas.info()
-    assert about["states"] > 50_000
+    about = sb.atlas.info(row.name)
+    assert about["states"] > 1_000
+    assert (about["geometry"], about["law"], about["box"]) == (row.geometry, row.law, row.box)
     assert len(about["solver_hash"]) == 64
     assert about["same_solver"] is (about["solver_hash"] == atlas_table.solver_hash())
 
@@ -279,14 +283,15 @@ def test_the_coordinate_of_load_is_undone_and_its_slopes_are_right(region):
 
 
 def test_a_table_is_packed_and_unpacked_within_its_unit():
-    table = atlas_table.load_table()
+    table = TABLES[0].table
     rng = np.random.default_rng(13)
     shapes = [
         (n, *region.nodes, 7) for region in atlas_grid.REGIONS for _ in range(math.prod(region.pieces)) for n in region.speeds
     ]
     dense = [rng.normal(size=shape) for shape in shapes]
-    again = atlas_table.unpack(atlas_table.pack(table.breaks, dense, table.film, {"made": "here"}))
-    assert again.about == {"made": "here"}
+    about = {"functions": list(atlas_table.TABULATED)}
+    again = atlas_table.unpack(table.grid, atlas_table.pack(table.breaks, dense, table.film, about))
+    assert again.about == about
     for block, wanted in zip(again.blocks, dense, strict=True):
         if block is not None:
             found = block.coefficients.transpose(0, 2, 1).reshape(wanted.shape)

@@ -13,7 +13,8 @@ import pytest
 from test_browser import LONG, chromium  # noqa: F401
 
 import stribeck as sb
-from stribeck.atlas.table import STEP, TABULATED, load_table
+from stribeck.atlas.table import STEP, TABULATED
+from stribeck.atlas.tables import TABLES
 from stribeck.quantities.inputs import QUANTITIES
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -51,7 +52,7 @@ def test_the_script_holds_the_coefficients_of_the_packaged_atlas(made):
     table = json.loads(json.dumps(made.table()))
     planes = np.frombuffer(zlib.decompress(base64.b64decode(table["coefficients"])), dtype=np.uint8).reshape(4, -1)
     whole = np.ascontiguousarray(planes.T).view("<i4").ravel()
-    block, region = load_table().blocks[0], table["regions"][0]
+    block, region = TABLES[0].table.blocks[0], table["regions"][0]
     shape = region["speeds"][0], *region["nodes"]
     first = whole[: 4 * math.prod(shape)].reshape(4, *shape)
     for row, name in enumerate(table["functions"]):

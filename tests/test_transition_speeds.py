@@ -17,7 +17,7 @@ NAMES = {
 @pytest.mark.parametrize(("load", "boundary_friction", "beta"), [(0.098, 0.7, 0.06), (0.003, 1.0, 0.01)])
 def test_they_are_those_of_solved_curves_within_the_stated_error(load, boundary_friction, beta, definition):
     roughness = load * np.array([1e-3, 0.03, 0.2])
-    found = transition_speeds(load, roughness, boundary_friction, beta, definition)
+    found = transition_speeds(sb.Groups(1.0, load, roughness), boundary_friction, beta, definition)
     for i, h in enumerate(roughness):
         curve = sb.stribeck_curve(
             load=load,
@@ -36,13 +36,13 @@ def test_they_are_those_of_solved_curves_within_the_stated_error(load, boundary_
 
 
 def test_the_stated_error_is_small():
-    found = transition_speeds(0.1, np.array([1e-3, 1e-2]), 0.7, 0.06)
+    found = transition_speeds(sb.Groups(1.0, 0.1, np.array([1e-3, 1e-2])), 0.7, 0.06)
     assert found.error.max() < 1e-3
 
 
 def test_fewer_narrowings_state_a_larger_error_and_keep_it():
-    fine = transition_speeds(0.1, np.array([1e-3]), 0.7, 0.06)
-    coarse = transition_speeds(0.1, np.array([1e-3]), 0.7, 0.06, narrowings=1)
+    fine = transition_speeds(sb.Groups(1.0, 0.1, np.array([1e-3])), 0.7, 0.06)
+    coarse = transition_speeds(sb.Groups(1.0, 0.1, np.array([1e-3])), 0.7, 0.06, narrowings=1)
     for row, name in enumerate(NAMES):
         gap = abs(np.log(getattr(coarse, name)[0] / getattr(fine, name)[0]))
         assert gap <= coarse.error[row, 0]
@@ -50,9 +50,9 @@ def test_fewer_narrowings_state_a_larger_error_and_keep_it():
 
 
 def test_what_holds_at_all_speeds_asked_for_is_at_zero_and_what_never_does_at_infinity():
-    found = transition_speeds(0.1, np.array([1e-3]), 0.7, 0.06, speeds=(1.0, 1e3))
+    found = transition_speeds(sb.Groups(1.0, 0.1, np.array([1e-3])), 0.7, 0.06, speeds=(1.0, 1e3))
     assert found.boundary[0] == found.hydrodynamic[0] == 0
-    found = transition_speeds(0.1, np.array([1e-3]), 0.7, 0.06, speeds=(1e-12, 1e-10))
+    found = transition_speeds(sb.Groups(1.0, 0.1, np.array([1e-3])), 0.7, 0.06, speeds=(1e-12, 1e-10))
     assert found.boundary[0] == found.hydrodynamic[0] == np.inf
     assert np.isnan(found.minimum[0])
 

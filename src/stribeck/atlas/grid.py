@@ -131,20 +131,61 @@ REGIONS = (
 """The regions: nearly smooth ones, the heavy loads of these, and rougher ones."""
 
 
-def region_at(log_load: Array, kappa: Array) -> Indices:
-    """Return the region of states with a positive relative roughness."""
-    rough = np.searchsorted([region.roughness[0] for region in REGIONS[2:]], kappa, side="right")
-    return np.asarray(np.where(rough > 0, rough + 1, np.where(log_load < HEAVY, 1, 0)), dtype=np.intp)
+@dataclass(frozen=True)
+class Grid:
+    """The coordinates and the blocks of one table.
+
+    Attributes
+    ----------
+    regions : tuple of Region
+        Its regions; where two hold a state, the one whose smallest roughness and load are larger does.
+    heaviest : float
+        Load group at which L is zero.
+    load_factor : float
+        Factor of the logarithm in L = factor ln(heaviest/load); twice that of the pressure where the law is exponential.
+    power : int
+        Power of the speed in the fluid's share at small speed.
+    films : tuple of float
+        Speeds between which smooth films are tabulated.
+    """
+
+    regions: tuple[Region, ...]
+    heaviest: float = 1.0
+    load_factor: float = 1.0
+    power: int = 2
+    films: tuple[float, float] = (MIN_SPEED, 1e6)
+
+    def log_load(self, load: Array) -> Array:
+        """Return L of a load group, not beyond the regions."""
+        highest = max(region.logs[1] for region in self.regions)
+        return np.asarray(np.clip(self.load_factor * np.log(self.heaviest / load), 0.0, highest))
+
+    def load_at(self, log_load: float) -> float:
+        """Return the load group at L."""
+        return self.heaviest * math.exp(-log_load / self.load_factor)
+
+    @property
+    def pieces(self) -> int:
+        """Pieces in roughness and load; each has :data:`SEGMENTS` blocks."""
+        return sum(math.prod(region.pieces) for region in self.regions)
+
+    def piece_at(self, region: int, i: int, j: int) -> int:
+        """Return the number of the piece i in roughness and j in load of a region."""
+        before = sum(math.prod(other.pieces) for other in self.regions[:region])
+        return before + i * self.regions[region].pieces[1] + j
+
+    def region_at(self, log_load: Array, kappa: Array) -> Indices:
+        """Return the region of states with a positive relative roughness."""
+        found = np.zeros(np.broadcast_shapes(log_load.shape, kappa.shape), dtype=np.intp)
+        order = sorted(range(len(self.regions)), key=lambda n: (self.regions[n].roughness[0], self.regions[n].logs[0]))
+        for number in order:
+            region = self.regions[number]
+            found[(kappa >= region.roughness[0]) & (log_load >= region.logs[0])] = number
+        return found
 
 
-PIECES = sum(math.prod(region.pieces) for region in REGIONS)
-"""Pieces in roughness and load; each has :data:`SEGMENTS` blocks."""
-
-
-def piece_at(region: int, i: int, j: int) -> int:
-    """Return the number of the piece i in roughness and j in load of a region."""
-    before = sum(math.prod(other.pieces) for other in REGIONS[:region])
-    return before + i * REGIONS[region].pieces[1] + j
+LINE_EXPONENTIAL = Grid(REGIONS)
+"""Cylinder, exponential law, full film."""
 
 
 def chebyshev(x: Array, terms: int) -> Array:
@@ -194,9 +235,9 @@ def breaks_from(values: Array) -> Array:
     return np.concatenate([values[:1], 0.5 * (values[:1] + values[1:2]), values[1:]])
 
 
-def segment_nodes(region: Region, ends: Array) -> Array:
+def segment_nodes(region: Region, ends: Array, power: int = 2) -> Array:
     """Return the logarithms of the speeds at the nodes of all segments that end at ``ends``."""
-    squared = np.empty(0) if not region.has_rest else ends[0] + 0.5 * np.log(0.5 * (nodes(region.speeds[0]) + 1))
+    squared = np.empty(0) if not region.has_rest else ends[0] + 1 / power * np.log(0.5 * (nodes(region.speeds[0]) + 1))
     others = [
         low + 0.5 * (nodes(count) + 1) * (high - low)
         for low, high, count in zip(ends[:-1], ends[1:], region.speeds[1:], strict=True)

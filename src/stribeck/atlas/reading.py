@@ -1,8 +1,8 @@
 r"""The solved states of the whole box as smooth functions: friction, load shares and films of a million states a second.
 
 What the solver computes in milliseconds is read here from a table of solved states, :mod:`stribeck.atlas.table`, in less
-than a microsecond, with derivatives.  Nothing is extrapolated: outside :data:`BOX` every function refuses.  The error, against
-states that the table was not made from, is in docs/atlas.md; for single answers the solver remains the default.
+than a microsecond, with derivatives.  Nothing is extrapolated: outside the box of a table every function refuses.  The
+error, against states that the table was not made from, is in docs/atlas.md; for single answers the solver remains the default.
 """
 
 from __future__ import annotations
@@ -12,13 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array, Flags
-from stribeck.atlas.grid import HEAVY, MIN_LOAD, MIN_SPEED, NEARLY_SMOOTH, region_at
-from stribeck.atlas.table import TABULATED, Values, load_table, solver_hash
-from stribeck.contact_laws.law import AsperityLaw, is_exponential
+from stribeck._types import Array
+from stribeck.atlas.grid import HEAVY, NEARLY_SMOOTH
+from stribeck.atlas.table import TABULATED, Values, solver_hash
+from stribeck.atlas.tables import BOX, SLACK, TABLES, covers, for_groups, holds_for, table_for
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import Groups, InputError
-from stribeck.contacts.model import ARTICLE
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import quantity, refuse_former
 from stribeck.quantities.units import show
@@ -32,6 +31,7 @@ __all__ = [
     "covers",
     "flux_gap",
     "fluid_load_share",
+    "for_groups",
     "friction",
     "friction_derivatives",
     "friction_parts",
@@ -42,14 +42,8 @@ __all__ = [
     "viscous_friction",
 ]
 
-BOX = {"speed": (MIN_SPEED, 1e6), "load": (MIN_LOAD, 1.0), "relative_roughness": (1e-6, 1e2)}
-"""Smallest and largest groups of the atlas, beside speed 0, at rest, and roughness 0, smooth."""
-
 HEAVY_REGION = 1
 """Number of the region of heavy loads on nearly smooth surfaces, which does not begin at rest."""
-
-SLACK = 1e-12
-"""Relative excess over an end of the box that is rounding."""
 
 ODDS, CENTRAL, MINIMUM, FLUX, DEFLECTION = (
     TABULATED.index(name) for name in ("log_odds", "central_gap", "minimum_gap", "flux_gap", "deflection")
@@ -81,7 +75,7 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
     Raises
     ------
     InputError
-        If a state is outside :data:`BOX`, or an argument is wrong.
+        If a state is outside the box of its table, or an argument is wrong.
 
     Notes
     -----
@@ -113,7 +107,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
     Raises
     ------
     InputError
-        If a state is outside :data:`BOX`, or an argument is wrong.
+        If a state is outside the box of its table, or an argument is wrong.
     """
     beta, row = quantity("beta", beta), _row(definition)
     flat, values = _read(groups, (row,))
@@ -146,7 +140,7 @@ def friction_derivatives(
     Raises
     ------
     InputError
-        If a state is outside :data:`BOX`, or an argument is wrong.
+        If a state is outside the box of its table, or an argument is wrong.
 
     Notes
     -----
@@ -181,7 +175,7 @@ def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple
     Raises
     ------
     InputError
-        If a state is outside :data:`BOX`, or the definition unknown.
+        If a state is outside the box of its table, or the definition unknown.
 
     Notes
     -----
@@ -225,7 +219,7 @@ def shares_and_friction(
     Raises
     ------
     InputError
-        If a state is outside :data:`BOX`, or an argument is wrong.
+        If a state is outside the box of its table, or an argument is wrong.
     """
     boundary_friction, beta, row = quantity("boundary_friction", boundary_friction), quantity("beta", beta), _row(definition)
     flat, values = _read(groups, (ODDS, row), slopes=True)
@@ -253,7 +247,7 @@ def contact_load_share(groups: Groups) -> Value:
     Raises
     ------
     InputError
-        If a state is outside :data:`BOX`.
+        If a state is outside the box of its table.
     """
     return _shaped(groups, _contact(_read(groups, (ODDS,))[1].values[0]))
 
@@ -274,7 +268,7 @@ def fluid_load_share(groups: Groups) -> Value:
     Raises
     ------
     InputError
-        If a state is outside :data:`BOX`.
+        If a state is outside the box of its table.
     """
     return _shaped(groups, _contact(-_read(groups, (ODDS,))[1].values[0]))
 
@@ -295,7 +289,7 @@ def central_gap(groups: Groups) -> Value:
     Raises
     ------
     InputError
-        If a state is outside :data:`BOX`.
+        If a state is outside the box of its table.
     """
     return _gap(groups, CENTRAL)
 
@@ -316,7 +310,7 @@ def minimum_gap(groups: Groups) -> Value:
     Raises
     ------
     InputError
-        If a state is outside :data:`BOX`.
+        If a state is outside the box of its table.
     """
     return _gap(groups, MINIMUM)
 
@@ -337,7 +331,7 @@ def flux_gap(groups: Groups) -> Value:
     Raises
     ------
     InputError
-        If a state is outside :data:`BOX`.
+        If a state is outside the box of its table.
     """
     return _gap(groups, FLUX)
 
@@ -358,27 +352,43 @@ def offset(groups: Groups) -> Value:
     Raises
     ------
     InputError
-        If a state is outside :data:`BOX`.
+        If a state is outside the box of its table.
     """
     _, values = _read(groups, (CENTRAL, DEFLECTION))
     return _shaped(groups, np.exp(values.values[0]) + values.values[1])
 
 
-def info() -> dict[str, Any]:
-    """Return where the table comes from.
+def info(name: str = TABLES[0].name) -> dict[str, Any]:
+    """Return where a table comes from, where it holds and how well.
+
+    Parameters
+    ----------
+    name : str
+        Name of the table, one of ``tables`` below.
 
     Returns
     -------
     dict
         ``version`` and ``solver_hash`` of the solver that made it, whether that is the ``same_solver`` as the installed one,
-        and number of ``states`` and their tolerance ``rtol``.
+        number of ``states`` and their tolerance ``rtol``; its ``geometry``, ``law``, ``cavitation`` and ``box``, and the
+        relative ``error`` of the friction that is stated; the names of all ``tables``.
+
+    Raises
+    ------
+    InputError
+        If there is no table of this name.
 
     Notes
     -----
     A solver whose sources changed keeps the table: whether its numbers moved too is for the certificate to say.
     """
-    made = load_table().about
-    return {**made, "same_solver": made["solver_hash"] == solver_hash()}
+    rows = {row.name: row for row in TABLES}
+    if name not in rows:
+        raise InputError(f"name = {show(name)}; the tables of the atlas are {', '.join(rows)}.")
+    row = rows[name]
+    made = row.table.about
+    about = {key: getattr(row, key) for key in ("geometry", "law", "cavitation", "box", "error")}
+    return {**made, "same_solver": made["solver_hash"] == solver_hash(), **about, "tables": tuple(rows)}
 
 
 Flat = tuple[Array, Array, Array]
@@ -387,27 +397,25 @@ Flat = tuple[Array, Array, Array]
 @one_blas_thread
 def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> tuple[Flat, Values]:
     """Return speed, load and relative roughness as flat arrays inside the box, and the functions of the table there."""
-    if not isinstance(groups, Groups):
-        raise InputError(f"groups = {show(groups)}; it must be Groups(speed, load, roughness).")
-    check_law(groups)
+    held = table_for(groups)
+    box, grid = held.box, held.grid
     speed, load, kappa = (
         np.broadcast_to(np.asarray(value, dtype=float), groups.shape).ravel()
         for value in (groups.speed, groups.load, groups.relative_roughness)
     )
-    _check("speed", speed, *BOX["speed"], zero=True)
-    _check("load", load, *BOX["load"], zero=False)
-    _check("relative_roughness", kappa, *BOX["relative_roughness"], zero=True)
+    for name, values in (("speed", speed), ("load", load), ("relative_roughness", kappa)):
+        _check(name, values, *box[name], zero=name != "load")
     with np.errstate(divide="ignore"):
         log_speed = np.log(speed)
-    log_load = np.clip(-np.log(load), 0.0, -math.log(MIN_LOAD))
-    inside = np.where(kappa > 0, np.clip(kappa, *BOX["relative_roughness"]), 0.0)
-    closing = (speed == 0) & (inside > 0) & (region_at(log_load, inside) == HEAVY_REGION)
+    log_load = grid.log_load(load)
+    inside = np.where(kappa > 0, np.clip(kappa, *box["relative_roughness"]), 0.0)
+    closing = (speed == 0) & (inside > 0) & (grid.region_at(log_load, inside) == HEAVY_REGION)
     if FLUX in functions and closing.any():
         raise InputError(
             f"load has the value {load[closing][0]:g} at speed 0; there, at relative roughness below {NEARLY_SMOOTH:g}, the "
             f"atlas holds the flux gap for loads up to {math.exp(-HEAVY):.4g}. Use solve."
         )
-    found = load_table().read(functions, log_speed, np.where(closing, HEAVY, log_load), inside, slopes)
+    found = held.table.read(functions, log_speed, np.where(closing, HEAVY, log_load), inside, slopes)
     # At rest the load shifts the gap and does nothing else.
     shift = 0.5 * inside[closing] * (log_load[closing] - HEAVY)
     dry = (speed == 0) & (kappa == 0)
@@ -416,71 +424,6 @@ def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> t
             found.values[row, closing] = np.log(np.exp(found.values[row, closing]) + shift)
         found.values[row, dry] = hertz.OFFSET if function == DEFLECTION else -math.inf
     return (speed, load, kappa), found
-
-
-def holds_for(law: AsperityLaw | None) -> bool:
-    """Return whether the atlas covers the rough states of a contact law.
-
-    Parameters
-    ----------
-    law : AsperityLaw or None
-        The law; None is the exponential one.
-
-    Returns
-    -------
-    bool
-        True for the exponential law.
-    """
-    return is_exponential(law)
-
-
-def covers(groups: Groups) -> Flags:
-    """Return whether the atlas covers states: their geometry, model and contact law, and their groups inside :data:`BOX`.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states [-]; arrays broadcast.
-
-    Returns
-    -------
-    ndarray of bool
-        Of the shape of the groups. The flux gap of heavy, nearly smooth contacts at rest is missing nevertheless.
-    """
-    found = np.ones(groups.shape, dtype=bool)
-    for name, (low, high) in BOX.items():
-        value = np.asarray(getattr(groups, name))
-        inside = (low * (1 - SLACK) <= value) & (value <= high * (1 + SLACK))
-        found &= inside if name == "load" else inside | (value == 0)
-    if groups.geometry != "line" or groups.model != ARTICLE:
-        return np.zeros_like(found)
-    return found & (holds_for(groups.law) or np.asarray(groups.roughness) == 0)
-
-
-def check_law(groups: Groups) -> None:
-    """Refuse balls, other fluids and bodies than those of the article, and rough states of another law than the exponential.
-
-    Parameters
-    ----------
-    groups : Groups
-        The states.
-
-    Raises
-    ------
-    InputError
-        If the atlas does not hold their geometry, model or law.
-    """
-    if groups.geometry != "line":
-        raise InputError(
-            f"the atlas covers cylinders, geometry = 'line', and these states have {groups.geometry!r}; use solve."
-        )
-    if groups.model != ARTICLE:
-        raise InputError(
-            "the atlas covers a Newtonian fluid that does not cavitate, on a half-space, and these states have another model; "
-            "use the solver."
-        )
-    if groups.law is not None and not holds_for(groups.law) and np.any(groups.roughness):
-        raise InputError(f"the atlas covers states of the exponential contact law, not of {groups.law.name}; use the solver.")
 
 
 def _check(name: str, values: Array, low: float, high: float, zero: bool) -> None:

@@ -22,25 +22,29 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.atlas.grid import (
     BREAK_TERMS,
-    MIN_SPEED,
-    PIECES,
-    REGIONS,
     SEGMENTS,
+    Grid,
     Region,
     breaks_from,
     chebyshev,
     chebyshev_slopes,
     local,
-    piece_at,
-    region_at,
 )
 
 TABULATED = ("log_odds", "viscous_published", "viscous_balanced", "central_gap", "minimum_gap", "flux_gap", "deflection")
 r"""What is tabulated, in the order of the table: the logarithms of fluid over contact share, of both viscous frictions over
 :math:`\beta \bar F_N^{1/2} \lambda` and of the three gaps, and the offset less the central gap. Below the first speed that
-segments end at, twice the logarithm of the speed is taken off the first."""
+segments end at, the logarithm of the power of the speed with which the fluid's share begins is taken off the first."""
 
-FILE = "atlas.npz"
+BALL = ("log_odds", "couette", "poiseuille", "published", "central_gap", "minimum_gap", "deflection")
+"""The same for balls, with the logarithms of the two parts and the published sum of the friction integral over lambda, up to
+the radius :data:`FAR`."""
+
+FAR = 1e3
+"""Radius of the disc of liquid of which the friction of balls is tabulated [a]."""
+
+FUNCTIONS = {"line": TABULATED, "point": BALL}
+"""What is tabulated, by geometry."""
 
 SOLVER = ("solver.cold_start", "solver.corrector", "solver.refinement", "solver.at_rest")
 """Modules that make the states of a table; the hash of these and of all that they import says which solver made it."""
@@ -53,9 +57,6 @@ STEP = 2.0**-25
 
 CHUNK = 1024
 """States that are summed at once: their polynomials then fit into the cache."""
-
-FILM_RANGE = (math.log(MIN_SPEED), math.log(1e6))
-"""Logarithms of the speeds between which smooth films are tabulated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,10 +120,12 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """The whole table; :func:`load_table` reads the one that comes with the package.
+    """A whole table; :func:`load_table` reads one that comes with the package.
 
     Attributes
     ----------
+    grid : Grid
+        Its coordinates and blocks.
     breaks : tuple of ndarray, each of shape (5, terms in roughness, terms in load)
         For each region the coefficients of the logarithms of the speeds b_1 .. b_5.
     blocks : tuple of Block or None
@@ -133,6 +136,7 @@ class Table:
         Where the table comes from.
     """
 
+    grid: Grid
     breaks: tuple[Array, ...]
     blocks: tuple[Block | None, ...]
     film: Array
@@ -153,11 +157,11 @@ class Table:
 
     def read(self, functions: tuple[int, ...], log_speed: Array, log_load: Array, kappa: Array, slopes: bool) -> Values:
         """Return functions at states inside the box, flat arrays; -inf as ``log_speed`` is rest, ``kappa`` 0 smooth."""
-        states = log_speed.size
-        block = np.full(states, PIECES * SEGMENTS)
+        states, last = log_speed.size, self.grid.pieces * SEGMENTS
+        block = np.full(states, last)
         coordinates, chain = np.empty((3, states)), np.zeros((6, states if slopes else 0))
-        regions = np.where(kappa > 0, region_at(log_load, kappa), -1)
-        for number, region in enumerate(REGIONS):
+        regions = np.where(kappa > 0, self.grid.region_at(log_load, kappa), -1)
+        for number, region in enumerate(self.grid.regions):
             inside = np.nonzero(regions == number)[0]
             for start in range(0, inside.size, 4 * CHUNK):
                 part = inside[start : start + 4 * CHUNK]
@@ -167,7 +171,7 @@ class Table:
                 if found_chain is not None:
                     chain[:, part] = found_chain
         found = self._sums(functions, block, coordinates, slopes)
-        film = block == PIECES * SEGMENTS
+        film = block == last
         if film.any():
             found[..., film] = self._film(functions, log_speed[film], slopes)
         by_state = None
@@ -179,13 +183,13 @@ class Table:
             by_state[2] = t_kappa * found[1] + y_kappa * found[3] + k_kappa * found[2]
             by_state[:, :, film] = 0.0
             by_state[0][:, film] = found[1][:, film]
-        self._add_squared_speed(functions, found[0], by_state, log_speed, (block % SEGMENTS == 0) & ~film)
+        self._add_power_of_speed(functions, found[0], by_state, log_speed, (block % SEGMENTS == 0) & ~film)
         return Values(found[0], by_state, film)
 
     def _sums(self, functions: tuple[int, ...], block: Indices, coordinates: Array, slopes: bool) -> Array:
         """Return the sums of :meth:`Block.sum` for states in any order; those on no block are left open."""
-        order = np.argsort(block.astype(np.uint8), kind="stable")
-        counts = np.bincount(block, minlength=PIECES * SEGMENTS + 1)
+        order = np.argsort(block.astype(np.uint16), kind="stable")
+        counts = np.bincount(block, minlength=self.grid.pieces * SEGMENTS + 1)
         ends = np.cumsum(counts).tolist()
         coordinates = coordinates[:, order]
         found = np.empty((4 if slopes else 1, len(functions), block.size))
@@ -211,12 +215,13 @@ class Table:
         ends = self.ends(number, k, y)
         segment = np.maximum((s >= ends).sum(axis=0), 0 if region.has_rest else 1)
         (i, k_local), (j, y_local) = (local(c, n) for c, n in zip((k, y), region.pieces, strict=True))
-        block = np.where(segment < SEGMENTS, SEGMENTS * (piece_at(number, 0, 0) + i * region.pieces[1] + j) + segment, -1)
-        block[segment >= SEGMENTS] = PIECES * SEGMENTS
+        first, power = self.grid.piece_at(number, 0, 0), self.grid.power
+        block = np.where(segment < SEGMENTS, SEGMENTS * (first + i * region.pieces[1] + j) + segment, -1)
+        block[segment >= SEGMENTS] = self.grid.pieces * SEGMENTS
         at = np.arange(s.size)
         high, low = ends[np.minimum(segment, SEGMENTS - 1), at], ends[np.clip(segment - 1, 0, SEGMENTS - 1), at]
         squared = segment == 0
-        ratio = np.exp(2 * np.minimum(s - ends[0], 0.0))
+        ratio = np.exp(power * np.minimum(s - ends[0], 0.0))
         length = np.where(squared, 1.0, high - low)
         length[length == 0] = 1.0
         t = np.where(squared, 2 * ratio - 1, np.clip(2 * (np.where(squared, low, s) - low) / length - 1, -1.0, 1.0))
@@ -224,10 +229,10 @@ class Table:
         if not slopes:
             return block, coordinates, None
         by_k, by_y = self.end_slopes(number, k, y)
-        t_s = np.where(squared, 4 * ratio, 2 / length)
+        t_s = np.where(squared, 2 * power * ratio, 2 / length)
         choose = np.minimum(segment, SEGMENTS - 1), np.clip(segment - 1, 0, SEGMENTS - 1)
         # Below b_1 the coordinate moves with b_1; on the others low and high move it in proportion.
-        t_high = np.where(squared, -4 * ratio, -(t + 1) / length)
+        t_high = np.where(squared, -2 * power * ratio, -(t + 1) / length)
         t_low = np.where(squared, 0.0, (t - 1) / length)
         t_k, t_y = (t_high * end[choose[0], at] + t_low * end[choose[1], at] for end in (by_k, by_y))
         y_L, y_kappa = region.load_slopes(log_load, kappa)
@@ -240,7 +245,7 @@ class Table:
     def _film(self, functions: tuple[int, ...], log_speed: Array, slopes: bool) -> Array:
         """Return functions of smooth films and, if wanted, their derivative by ln(speed), as :meth:`Block.sum`."""
         pieces, terms, _ = self.film.shape
-        low, high = FILM_RANGE
+        low, high = (math.log(end) for end in self.grid.films)
         piece, x = local((2 * np.maximum(log_speed, low) - low - high) / (high - low), pieces)
         found = np.zeros((4 if slopes else 1, len(functions), log_speed.size))
         for number in np.unique(piece):
@@ -256,16 +261,15 @@ class Table:
                     found[1, row, here] = slope * 2 * pieces / (high - low)
         return found
 
-    @staticmethod
-    def _add_squared_speed(
-        functions: tuple[int, ...], values: Array, slopes: Array | None, log_speed: Array, squared: Array
+    def _add_power_of_speed(
+        self, functions: tuple[int, ...], values: Array, slopes: Array | None, log_speed: Array, early: Array
     ) -> None:
-        """Put back, in fresh arrays, the two powers of speed that were taken off the odds below b_1."""
+        """Put back, in fresh arrays, the power of speed that was taken off the odds below b_1."""
         if 0 in functions:
-            row = functions.index(0)
-            values[row] += np.where(squared, 2 * log_speed, 0.0)
+            row, power = functions.index(0), float(self.grid.power)
+            values[row] += np.where(early, power * log_speed, 0.0)
             if slopes is not None:
-                slopes[0, row] += np.where(squared, 2.0, 0.0)
+                slopes[0, row] += np.where(early, power, 0.0)
 
 
 def pack(breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dict[str, Any]) -> dict[str, Any]:
@@ -279,19 +283,21 @@ def pack(breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dic
     }
 
 
-def unpack(data: Any) -> Table:
+def unpack(grid: Grid, data: Any) -> Table:
     """Return the table of the arrays of a file."""
+    about = json.loads(str(data["about"]))
+    functions = len(about["functions"])
     flat, position = data["blocks"] * STEP, 0
     blocks: list[Block | None] = []
-    for region in REGIONS:
+    for region in grid.regions:
         for _ in range(math.prod(region.pieces)):
             for count in region.speeds:
-                shape = len(TABULATED), count, *region.nodes
+                shape = functions, count, *region.nodes
                 size = math.prod(shape)
                 dense = np.moveaxis(flat[position : position + size].reshape(shape), 0, 3)
                 blocks.append(Block.of(dense) if count else None)
                 position += size
-    return Table(tuple(data["breaks"]), tuple(blocks), data["film"], json.loads(str(data["about"])))
+    return Table(grid, tuple(data["breaks"]), tuple(blocks), data["film"], about)
 
 
 def solver_sources() -> list[str]:
@@ -325,8 +331,8 @@ def solver_hash() -> str:
     return found.hexdigest()
 
 
-@lru_cache(maxsize=1)
-def load_table() -> Table:
-    """Return the table that comes with the package, read on first use."""
-    with files("stribeck.atlas").joinpath(FILE).open("rb") as stream, np.load(stream) as data:
-        return unpack(data)
+@lru_cache(maxsize=16)
+def load_table(file: str, grid: Grid) -> Table:
+    """Return a table that comes with the package, read on first use."""
+    with files("stribeck.atlas").joinpath(file).open("rb") as stream, np.load(stream) as data:
+        return unpack(grid, data)

@@ -10,15 +10,12 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
-from stribeck.atlas.reading import check_law
+from stribeck.atlas.tables import TableRow, table_for
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.quantities.units import InputError, show
-
-ERROR = 1e-4
-"""Relative error that is stated for what is read off the atlas, its bound in docs/atlas.md."""
 
 OBSERVABLES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
 
@@ -75,12 +72,17 @@ class AtlasCurve:
     definition: Definition
 
     def __post_init__(self) -> None:
-        """Refuse a law that the atlas does not hold."""
-        check_law(self.groups_at(self.values[:1]))
+        """Refuse a geometry, model or law that the atlas does not hold."""
+        _ = self.table
 
     def __len__(self) -> int:
         """Return the number of points."""
         return len(self.values)
+
+    @cached_property
+    def table(self) -> TableRow:
+        """The table of the atlas that holds for the curve."""
+        return table_for(self.groups_at(self.values[:1]))
 
     @cached_property
     def groups(self) -> Groups:
@@ -127,7 +129,7 @@ class AtlasCurve:
     @property
     def friction_error(self) -> Array:
         """Stated absolute error of the friction coefficient [-]."""
-        return ERROR * self.friction
+        return self.table.error * self.friction
 
     @property
     def regimes(self) -> tuple[Regime, ...]:

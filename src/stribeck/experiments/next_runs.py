@@ -298,7 +298,7 @@ def _speed_range(fit: Fit) -> tuple[float, float]:
 def _row(fit: Fit, curve: str, contact: Contact) -> tuple[Array, float] | None:
     """Return the derivatives of ln(friction) with respect to the fitted inputs, and the friction; None if unsolvable."""
     try:
-        if contact.groups.geometry == "line" and bool(atlas.covers(contact.groups)):
+        if bool(atlas.covers(contact.groups)):
             _, slopes = friction_sensitivities(contact, definition=fit.definition, method="atlas")
             friction = float(atlas.friction(contact.groups, contact.boundary_friction, contact.beta, fit.definition))
         else:

@@ -13,9 +13,9 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
+from stribeck.atlas.tables import table_for
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.line import Groups, LineContact
-from stribeck.curves.atlas_curve import ERROR
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.regimes.phase_from_atlas import transition_speeds
@@ -135,7 +135,7 @@ def transition_marks(contact: LineContact, definition: Definition) -> tuple[Tran
         return ()
     groups, unit = contact.groups, _speed_group(contact)
     boundary_friction, beta = contact.boundary_friction, contact.beta
-    found = transition_speeds(float(groups.load), np.array([float(groups.roughness)]), boundary_friction, beta, definition)
+    found = transition_speeds(groups, boundary_friction, beta, definition)
     marks = [
         Transition(name, float(getattr(found, name)[0]) / unit, float(found.error[i, 0]))
         for i, name in enumerate(("boundary", "hydrodynamic", "minimum"))
@@ -149,7 +149,10 @@ def axis_speeds(contact: LineContact, marks: Sequence[Transition]) -> tuple[floa
     places = [mark.speed for mark in marks] or [1e-8 / unit, 1.0 / unit]
     places += [contact.speed] if contact.speed > 0 else []
     low, high = 10.0 ** math.floor(math.log10(min(places)) - 0.7), 10.0 ** math.ceil(math.log10(max(places)) + 0.7)
-    lowest, highest = (end / unit for end in atlas.BOX["speed"])
+    row = atlas.for_groups(contact.groups)
+    if row is None:
+        return low, high
+    lowest, highest = (end / unit for end in row.box["speed"])
     return max(low, lowest), min(high, highest)
 
 
@@ -158,10 +161,11 @@ def curve_from_atlas(contact: LineContact, speeds: tuple[float, float], marks: t
     groups, unit = contact.groups, _speed_group(contact)
     boundary_friction, beta = contact.boundary_friction, contact.beta
     speed = np.geomspace(*speeds, POINTS)
-    along = Groups(np.clip(speed * unit, *atlas.BOX["speed"]), groups.load, groups.roughness)
+    row = table_for(groups)
+    along = Groups(np.clip(speed * unit, *row.box["speed"]), groups.load, groups.roughness, **groups.physics)
     solid = boundary_friction * np.asarray(atlas.contact_load_share(along))
     friction = {kind: solid + np.asarray(atlas.viscous_friction(along, beta, kind)) for kind in DEFINITIONS}
-    return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(ERROR)}")
+    return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(row.error)}")
 
 
 def solved_curve(contact: LineContact, definition: Definition) -> Curve:
@@ -211,20 +215,23 @@ def diagram_from_atlas(contact: LineContact, definition: Definition, speeds: tup
     roughness = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)
     none = np.full(ROWS, math.nan)
     load, unit = float(contact.groups.load), _speed_group(contact)
-    lowest, highest = atlas.BOX["load"]
+    row = atlas.for_groups(contact.groups)
+    if row is None:
+        message = "Regime map unavailable: no lookup table holds this contact law."
+        return Diagram(roughness, none, none, none, message)
+    lowest, highest = row.box["load"]
     message = ""
-    if not atlas.holds_for(contact.law):
-        message = "Regime map unavailable: the lookup table holds the exponential contact law only."
-    elif not lowest <= load <= highest:
+    if not lowest <= load <= highest:
         bound = f"up to {highest:g}" if load > highest else f"from {lowest:g}"
         message = f"Regime map unavailable: the lookup table covers load groups {bound}; here it is {load:.3g}."
     if message:
         return Diagram(roughness, none, none, none, message)
     h = roughness * float(contact.replace(roughness=1.0).groups.roughness)
-    low, high = atlas.BOX["relative_roughness"]
+    low, high = row.box["relative_roughness"]
     inside = np.clip(h, low * load, high * load)
-    ends = (max(speeds[0] * unit, atlas.BOX["speed"][0]), min(speeds[1] * unit, atlas.BOX["speed"][1]))
-    found = transition_speeds(load, inside, contact.boundary_friction, contact.beta, definition, ends, narrowings=1)
+    ends = (max(speeds[0] * unit, row.box["speed"][0]), min(speeds[1] * unit, row.box["speed"][1]))
+    rows = replace(contact.groups, roughness=inside)
+    found = transition_speeds(rows, contact.boundary_friction, contact.beta, definition, ends, narrowings=1)
     boundary, hydrodynamic, minimum = (
         np.where(inside == h, line / unit, math.nan) for line in (found.boundary, found.hydrodynamic, found.minimum)
     )

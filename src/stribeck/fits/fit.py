@@ -138,7 +138,7 @@ def fit(
     _check_enough(data, wanted)
     report = on_step or (lambda what, count: None)
     solved = solved_parts(definition, problem.rtol)
-    by_atlas = atlas.holds_for(contact.law)
+    by_atlas = atlas.for_groups(contact.groups) is not None
     quick = atlas_or_solved_parts(definition, problem.rtol) if by_atlas else solved
     goal = objective(model, quick, settings, settings.robust)
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
+from stribeck.atlas.tables import table_for
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.curves.stribeck_curve import stribeck_curve
@@ -21,9 +22,6 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.solve import SolveError
 
 __all__ = ["FrictionParts", "PartsOf", "atlas_parts", "atlas_or_solved_parts", "solved_parts"]
-
-ATLAS_ERROR = 2.4e-5
-"""Largest relative error of both parts in docs/atlas.md, on states that the atlas was not made from."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +52,7 @@ def atlas_parts(definition: Definition) -> PartsOf:
 
     def parts(groups: Groups) -> FrictionParts:
         values, by_contact, by_viscous = atlas.friction_parts(groups, definition)
-        return FrictionParts(values, np.stack([by_contact, by_viscous]), np.full(values.shape, ATLAS_ERROR))
+        return FrictionParts(values, np.stack([by_contact, by_viscous]), np.full(values.shape, table_for(groups).error))
 
     return parts
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -56,7 +55,7 @@ class Posterior:
 
 
 def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int], object] | None = None) -> Posterior:
-    """Draw from the posterior of a fit with the exponential law, whose states the atlas covers.
+    """Draw from the posterior of a fit whose contact the atlas covers.
 
     Parameters
     ----------
@@ -77,7 +76,7 @@ def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int],
     MissingExtraError
         If emcee is not installed.
     InputError
-        If the fit did not converge, its loss is robust, its law is not the exponential one, or ``steps`` is below 100.
+        If the fit did not converge, its loss is robust, the atlas has no table for its contact, or ``steps`` is below 100.
     """
     try:
         import emcee
@@ -85,10 +84,11 @@ def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int],
         raise MissingExtraError("a posterior", "fit", "emcee") from None
     if isinstance(steps, bool) or not isinstance(steps, int) or steps < 100:
         raise InputError(f"steps = {steps!r}; a chain has at least 100.")
-    if not fit.converged or fit.robust or fit.law != "exponential":
-        why = fit.outcome.value if not fit.converged else "" if not fit.robust else "A robust loss is not a likelihood."
-        raise InputError(f"no posterior is drawn. {why or 'The atlas holds the exponential law only.'}")
     at: Minimum = fit._minimum
+    missing = atlas.for_groups(at.objective.model.contact.groups) is None
+    if not fit.converged or fit.robust or missing:
+        why = fit.outcome.value if not fit.converged else "" if not fit.robust else "A robust loss is not a likelihood."
+        raise InputError(f"no posterior is drawn. {why or f'The atlas has no table for the law {fit.law} of this contact.'}")
     p = len(at.theta)
     walkers = max(16, 4 * p)
     rng = np.random.RandomState(SEED)
@@ -129,15 +129,17 @@ def _log_density(fit: Fit) -> Callable[[Array], Array]:
     rows, means = goal.priors
     data = model.data
     A = model.exponents[data.curve]
+    physics = model.contact.groups.physics
 
     def density(theta: Array) -> Array:
         x = np.exp(model.logs + np.einsum("wp,npk->wnk", theta, A))
-        inside = ((theta > low) & (theta < high)).all(axis=1) & _in_box(x)
+        states = Groups(x[..., 0], x[..., 1], x[..., 2], **physics)
+        inside = ((theta > low) & (theta < high)).all(axis=1) & atlas.covers(states).all(axis=1)
         found = np.full(len(theta), -np.inf)
         if not inside.any():
             return found
         y = x[inside]
-        groups = Groups(y[..., 0], y[..., 1], y[..., 2])
+        groups = Groups(y[..., 0], y[..., 1], y[..., 2], **physics)
         contact, viscous = atlas.contact_load_share(groups), atlas.viscous_friction(groups, 1.0, fit.definition)
         friction = y[..., 3] * contact + y[..., 4] * viscous
         r = np.log(friction / data.friction) if goal.logarithmic else friction - data.friction
@@ -147,9 +149,3 @@ def _log_density(fit: Fit) -> Callable[[Array], Array]:
         return found
 
     return density
-
-
-def _in_box(x: Array) -> Any:
-    ends = atlas.BOX["speed"], atlas.BOX["load"], atlas.BOX["relative_roughness"]
-    values = x[..., 0], x[..., 1], x[..., 2] / x[..., 1]
-    return np.all([((v >= a) & (v <= b)).all(axis=1) for v, (a, b) in zip(values, ends, strict=True)], axis=0)

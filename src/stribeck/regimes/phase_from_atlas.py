@@ -10,9 +10,10 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
+from stribeck.atlas.tables import table_for
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.line import Groups
-from stribeck.curves.atlas_curve import ERROR, AtlasCurve
+from stribeck.contacts.groups import Groups
+from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
@@ -54,28 +55,25 @@ class TransitionSpeeds:
 @refuse_former
 @one_blas_thread
 def transition_speeds(
-    load: float,
-    roughness: Array,
+    groups: Groups,
     boundary_friction: float = 1.0,
     beta: float = 1.0,
     definition: Definition = "balanced",
-    speeds: tuple[float, float] = atlas.BOX["speed"],
+    speeds: tuple[float, float] | None = None,
     narrowings: int = NARROWINGS,
 ) -> TransitionSpeeds:
     """Return where the regimes of many contacts of one load pass into each other, all located at once on the atlas.
 
     Parameters
     ----------
-    load : float
-        Load group [-].
-    roughness : ndarray, shape (n,)
-        Roughness groups [-].
+    groups : Groups
+        The contacts, of one load and any roughnesses, shape (n,); their speed does not matter.
     boundary_friction, beta : float
         Friction coefficient of the dry contact and coefficient of the contact law [-].
     definition : {"balanced", "published"}
         Definition of the viscous friction.
-    speeds : tuple of float
-        Smallest and largest speed group between which to look.
+    speeds : tuple of float, optional
+        Smallest and largest speed group between which to look; those of the table by default.
     narrowings : int
         Rounds in which a passage is narrowed, two evaluations each; with fewer the stated error is larger.
 
@@ -87,9 +85,11 @@ def transition_speeds(
     Raises
     ------
     InputError
-        If a state is outside :data:`stribeck.atlas.BOX`.
+        If the atlas has no table for the groups, or a state is outside its box.
     """
-    roughness = np.asarray(roughness, dtype=float)
+    row = table_for(groups)
+    roughness = np.atleast_1d(np.asarray(groups.roughness, dtype=float))
+    speeds = row.box["speed"] if speeds is None else speeds
     count = 1 + max(2, math.ceil(COARSE * math.log10(speeds[1] / speeds[0])))
     grid = np.log(np.geomspace(*speeds, count))
 
@@ -98,7 +98,7 @@ def transition_speeds(
     def signs(s: Array, h: Array) -> Array:
         """Return what passes from below to above zero at each of the three, shape (3, ...)."""
         fluid, contact, viscous, slope = atlas.shares_and_friction(
-            Groups(np.exp(s), load, h), boundary_friction, beta, definition
+            Groups(np.exp(s), groups.load, h, **groups.physics), boundary_friction, beta, definition
         )
         solid = boundary_friction * contact
         return np.stack(
@@ -109,13 +109,15 @@ def transition_speeds(
             ]
         )
 
-    found, error = _passages(signs, grid, roughness, narrowings)
+    found, error = _passages(signs, grid, roughness, narrowings, row.error)
     with np.errstate(over="ignore"):
         speed = np.exp(found)
     return TransitionSpeeds(speed[0], speed[1], np.where(np.isfinite(found[2]), speed[2], np.nan), error)
 
 
-def _passages(signs: Callable[[Array, Array], Array], grid: Array, roughness: Array, narrowings: int) -> tuple[Array, Array]:
+def _passages(
+    signs: Callable[[Array, Array], Array], grid: Array, roughness: Array, narrowings: int, stated: float
+) -> tuple[Array, Array]:
     """Return where each function passes from below to above zero in each row, and errors, shape (3, rows).
 
     Logarithms of the speed; -inf or inf where it is above or below at all speeds.  The printed viscous friction lets friction
@@ -150,7 +152,7 @@ def _passages(signs: Callable[[Array, Array], Array], grid: Array, roughness: Ar
         above = np.where(~under, left, np.where(~over, right, ends[3]))
     steep = (above - below) / np.maximum(high - low, 1e-300)
     found[which, rows] = low + (high - low) * below / (below - above)
-    error[which, rows] = ERROR / np.maximum(steep, 1e-300) + (high - low)
+    error[which, rows] = stated / np.maximum(steep, 1e-300) + (high - low)
     return found, error
 
 
@@ -172,18 +174,18 @@ def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups) -> None:
     friction = np.asarray(atlas.friction(groups, boundary_friction, beta, definition))
     fluid, central = np.asarray(atlas.fluid_load_share(groups)), np.asarray(atlas.central_gap(groups))
     contact = boundary_friction * np.asarray(atlas.contact_load_share(groups)) / np.where(friction > 0, friction, 1.0)
-    kappa = float(groups.relative_roughness)
+    kappa, error = float(groups.relative_roughness), table_for(groups).error
     alpha = 1.0 if diagram.contact is None else diagram.contact.alpha
     values = {
         "friction": friction,
-        "friction_error": ERROR * friction,
+        "friction_error": error * friction,
         "fluid_load_share": fluid,
         "contact_friction_share": contact,
         "central_gap": central,
         "lambda_ratio": np.asarray(atlas.minimum_gap(groups)) / (alpha * kappa)
         if kappa > 0
         else np.full_like(central, np.inf),
-        "error_estimate": np.full_like(central, ERROR),
+        "error_estimate": np.full_like(central, error),
     }
     for name, found in values.items():
         diagram.fields[name][row] = found
@@ -194,8 +196,8 @@ def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups) -> None:
 
 
 def _enter_lines(diagram: Diagram, row: tuple[int, int], groups: Groups, unit: float) -> None:
-    """Locate the transitions of a row between the smallest and largest speed of the atlas."""
-    low, high = atlas.BOX["speed"]
+    """Locate the transitions of a row between the smallest and largest speed of its table."""
+    low, high = table_for(groups).box["speed"]
 
     def groups_at(speed: Array) -> Groups:
         return Groups(speed, groups.load, groups.roughness, **groups.physics)

@@ -17,7 +17,6 @@ from stribeck import atlas
 from stribeck._types import Array
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.line import Groups
-from stribeck.contacts.model import ARTICLE
 from stribeck.solver.solve import solve
 
 __all__ = ["NAMES", "states_of"]
@@ -59,7 +58,7 @@ def states_of(groups: Groups, offsets: Array, definition: Definition, rtol: floa
     str
         ``"atlas"`` or ``"solver"``.
     """
-    if groups.geometry == "line" and groups.model == ARTICLE and atlas.holds_for(groups.law):
+    if atlas.for_groups(groups) is not None:
         samples = _moved(groups, offsets)
         if bool(np.all(atlas.covers(samples))):
             found = {name: np.asarray(getattr(atlas, name)(samples)) for name in NAMES}

@@ -1,0 +1,208 @@
+"""Which tables the atlas has, and which of them holds for given groups: one row a table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stribeck._types import Flags
+from stribeck.atlas.grid import LINE_EXPONENTIAL, MIN_LOAD, MIN_SPEED, Grid
+from stribeck.atlas.table import FAR, FUNCTIONS, Table, load_table
+from stribeck.contact_laws.law import AsperityLaw, is_exponential
+from stribeck.contacts.groups import Geometry, Groups
+from stribeck.contacts.model import ARTICLE, Model
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["BOX", "SLACK", "TABLES", "Box", "TableRow", "covers", "for_groups", "holds_for", "table_for"]
+
+Box = dict[str, tuple[float, float]]
+
+BOX: Box = {"speed": (MIN_SPEED, 1e6), "load": (MIN_LOAD, 1.0), "relative_roughness": (1e-6, 1e2)}
+"""Smallest and largest groups of the first table, beside speed 0, at rest, and roughness 0, smooth."""
+
+REFERENCE_SPECTRUM = {"h_rms": 1e-6, "q0": 1e4, "q1": 1e7, "hurst": 0.8}
+"""The surface of the tables of Persson's law."""
+
+SLACK = 1e-12
+"""Relative excess over an end of a box that is rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class TableRow:
+    """One table of the atlas: for which contacts it holds, between which groups, and how well.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    geometry : {"line", "point"}
+        A cylinder or a ball.
+    law : str
+        Name of the contact law.
+    cavitation : Cavitation
+        How the film ends.
+    box : dict of str to tuple of float
+        Smallest and largest ``speed``, ``load`` and ``relative_roughness`` [-].
+    error : float
+        Relative error of the friction that is stated, above the largest of its certificate in docs/atlas.md.
+    file : str
+        Name of the file.
+    grid : Grid
+        Its coordinates and blocks.
+    """
+
+    name: str
+    geometry: Geometry
+    law: str
+    cavitation: Cavitation
+    box: Box
+    error: float
+    file: str
+    grid: Grid
+
+    @property
+    def model(self) -> Model:
+        """Fluid, cavitation and solid."""
+        return replace(ARTICLE, cavitation=self.cavitation)
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """What is tabulated."""
+        return FUNCTIONS[self.geometry]
+
+    @property
+    def radius(self) -> float:
+        """Radius up to which the friction of a ball is tabulated [a]."""
+        return FAR
+
+    @property
+    def table(self) -> Table:
+        """The table, read on first use."""
+        return load_table(self.file, self.grid)
+
+    def is_of_model(self, groups: Groups) -> bool:
+        """Return whether geometry, fluid, cavitation and solid of groups are those of the table."""
+        return groups.geometry == self.geometry and groups.model == self.model
+
+    def is_of_law(self, law: AsperityLaw | None) -> bool:
+        """Return whether a contact law is that of the table."""
+        return LAWS[self.law](law)
+
+    def covers(self, groups: Groups) -> Flags:
+        """Return which states lie in the box, whatever their law and model."""
+        found = np.ones(groups.shape, dtype=bool)
+        for name, (low, high) in self.box.items():
+            value = np.asarray(getattr(groups, name))
+            inside = (low * (1 - SLACK) <= value) & (value <= high * (1 + SLACK))
+            found &= inside if name == "load" else inside | (value == 0)
+        return found
+
+
+LAWS = {"exponential": is_exponential}
+"""Whether a law is the one of a table, by the name of that."""
+
+TABLES = (TableRow("line-exponential", "line", "exponential", Cavitation.NONE, BOX, 1e-4, "atlas.npz", LINE_EXPONENTIAL),)
+"""The tables; the first that holds answers."""
+
+
+def for_groups(groups: Groups) -> TableRow | None:
+    """Return the table that holds for the geometry, model and contact law of groups, wherever in its box they lie.
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-].
+
+    Returns
+    -------
+    TableRow or None
+        Its box, stated error and name; None where the atlas has no such table.
+
+    Notes
+    -----
+    Smooth contacts have no law. :func:`covers` tells which of the states lie in the box.
+    """
+    for row in TABLES:
+        if row.is_of_model(groups) and (row.is_of_law(groups.law) or not np.any(groups.roughness)):
+            return row
+    return None
+
+
+def table_for(groups: Groups) -> TableRow:
+    """Return the table that holds for groups.
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-].
+
+    Returns
+    -------
+    TableRow
+        The table.
+
+    Raises
+    ------
+    InputError
+        If the atlas does not hold their geometry, model or law.
+    """
+    if not isinstance(groups, Groups):
+        raise InputError(f"groups = {show(groups)}; it must be Groups(speed, load, roughness).")
+    row = for_groups(groups)
+    if row is not None:
+        return row
+    of_geometry = [row for row in TABLES if row.geometry == groups.geometry]
+    if not of_geometry:
+        raise InputError(
+            f"the atlas covers cylinders, geometry = 'line', and these states have {groups.geometry!r}; use solve."
+        )
+    of_model = [row for row in of_geometry if row.is_of_model(groups)]
+    if not of_model:
+        raise InputError(
+            "the atlas covers a Newtonian fluid that does not cavitate, on a half-space, and these states have another model; "
+            "use the solver."
+        )
+    laws = " and ".join(row.law for row in of_model)
+    assert groups.law is not None
+    raise InputError(f"the atlas covers states of the {laws} contact law, not of {groups.law.name}; use the solver.")
+
+
+def covers(groups: Groups) -> Flags:
+    """Return whether the atlas covers states: a table for their geometry, model and contact law, with them in its box.
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+
+    Returns
+    -------
+    ndarray of bool
+        Of the shape of the groups. The flux gap of heavy, nearly smooth contacts at rest is missing nevertheless.
+    """
+    row = for_groups(groups)
+    if row is not None:
+        return row.covers(groups)
+    # Of several states those that are smooth have no law.
+    smooth = for_groups(replace(groups, roughness=0.0))
+    if smooth is None:
+        return np.zeros(groups.shape, dtype=bool)
+    return np.asarray(smooth.covers(groups) & (np.asarray(groups.roughness) == 0))
+
+
+def holds_for(law: AsperityLaw | None) -> bool:
+    """Return whether the first table, of cylinders in a full film, holds for the rough states of a contact law.
+
+    Parameters
+    ----------
+    law : AsperityLaw or None
+        The law; None is the exponential one.
+
+    Returns
+    -------
+    bool
+        True for the exponential law. :func:`for_groups` asks all tables.
+    """
+    return is_exponential(law)

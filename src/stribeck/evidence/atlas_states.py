@@ -1,0 +1,150 @@
+"""The states that tables of the atlas are made from: how each table is planned, solved along the speed and tabulated."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.atlas.grid import MIN_SPEED, SHARES, YIELDING, Region
+from stribeck.atlas.tables import REFERENCE_SPECTRUM, TableRow
+from stribeck.contact_laws.law import AsperityLaw
+from stribeck.contact_laws.persson import persson_law
+from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.contacts.cut_off import COUETTE, POISEUILLE
+from stribeck.contacts.groups import Groups
+from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.solver.solve import solve
+
+GAPS = (0.5, 2.0, 6.5, 30.0)
+"""Central gaps over the relative roughness at which segments end that begin at the smallest speed, where the law has no shares
+of its own to go by."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How the states of a table are solved.
+
+    Attributes
+    ----------
+    rtol, coarse_rtol, film_rtol : float
+        Tolerances of the states of the table, of the curves that find the ends of segments, and of smooth films.
+    coarse_nodes : tuple of int
+        Nodes of a region in roughness and load of these curves.
+    coarse_step : float
+        Their step in the logarithm of the speed.
+    films : tuple of int
+        Pieces of the smooth films, and nodes of a piece.
+    """
+
+    rtol: float = 1e-6
+    coarse_rtol: float = 1e-4
+    film_rtol: float = 1e-7
+    coarse_nodes: tuple[int, int] = (14, 12)
+    coarse_step: float = 0.35
+    films: tuple[int, int] = (8, 20)
+
+
+PLANS = {
+    "line-exponential": Plan(),
+}
+"""The tables by their names."""
+
+
+@lru_cache(maxsize=1)
+def reference_law() -> AsperityLaw:
+    """Return the law of Persson's tables."""
+    return persson_law(SelfAffine(**REFERENCE_SPECTRUM))
+
+
+def groups_of(row: TableRow, speed: float, load: float, kappa: float) -> Groups:
+    """Return the groups of a state of a table."""
+    law = None if row.law == "exponential" else reference_law()
+    like = Groups(1.0, 1.0, 0.0, law=law, geometry=row.geometry, model=row.model)
+    return Groups(speed, load, kappa * load**like.scaling.roughness_exponent, **like.physics)
+
+
+def solved(row: TableRow, log_speeds: Array, log_load: float, kappa: float, rtol: float) -> Array:
+    """Return the tabulated functions along ascending speeds, shape (speeds, functions)."""
+    load = row.grid.load_at(log_load)
+    curve = stribeck_curve(groups_of(row, 1.0, load, kappa), speed=np.exp(log_speeds), rtol=rtol)
+    if len(curve) != len(log_speeds):
+        raise RuntimeError(f"load {load:.6g}, relative roughness {kappa:.6g}: {curve.outcome.value}")
+    return tabulated(row, [s.observables for s in curve.solutions], log_speeds, load)
+
+
+def tabulated(row: TableRow, observed: list[object], log_speeds: Array, load: float) -> Array:
+    """Return the functions of a table on solved states, shape (states, functions)."""
+    names = FROM[row.geometry]
+    values = dict(zip(names, np.array([[getattr(o, name) for name in names] for o in observed]).T, strict=True))
+    with np.errstate(divide="ignore"):
+        odds = np.log(values["fluid_load_share"]) - np.log(values["contact_load_share"])
+    central, minimum = np.log(values["central_gap"]), np.log(values["minimum_gap"])
+    deflection = values["offset"] - values["central_gap"]
+    if row.geometry == "line":
+        scale = log_speeds + 0.5 * math.log(load)
+        published, balanced = (np.log(values[f"viscous_{name}"]) - scale for name in ("published", "balanced"))
+        return np.stack([odds, published, balanced, central, minimum, np.log(values["flux_gap"]), deflection], axis=1)
+    speed, far = np.exp(log_speeds), math.log(row.radius)
+    couette, poiseuille = values["J_couette"] / speed + COUETTE * far, values["J_poiseuille"] / speed + POISEUILLE * far
+    published = couette + poiseuille - values["J_pcx"] / speed
+    drag = [np.log(couette), np.log(poiseuille), np.log(published)]
+    return np.stack([odds, *drag, central, minimum, deflection], axis=1)
+
+
+_SHARED = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "offset")
+FROM = {
+    "line": (*_SHARED, "flux_gap", "viscous_published", "viscous_balanced"),
+    "point": (*_SHARED, "J_couette", "J_poiseuille", "J_pcx"),
+}
+"""Observables that tables are made from, by geometry."""
+
+
+# --- where segments end ---
+
+
+def speed_range(row: TableRow, log_load: float, kappa: float) -> tuple[float, float]:
+    """Return logarithms of speeds from rest to the film without asperities, roughly, by the scales of wedge and film."""
+    if row.law == "exponential":
+        rest = 0.5 * log_load
+        gap = math.log(2) + 0.5 * math.log1p(8 * kappa / math.pi) + rest
+    else:
+        rest = float(solve(groups_of(row, 0.0, row.grid.load_at(log_load), kappa), rtol=1e-3).central_gap) / kappa
+        gap = rest
+    wedge = 2 * math.log(kappa) + math.log(5) + 2.55 * math.log(gap)
+    film, last = (math.log((kappa * s / 0.446) ** (5 / 3) + (2.88 * kappa * s) ** 1.5) for s in (gap, max(gap, 1.0)))
+    half = -float(np.logaddexp(-wedge, -film))
+    yielding = 2.5 * max(0.0, -math.log(rest * 2 + 2 * kappa / (1 + kappa))) if row.law == "exponential" else 0.0
+    slower = 2 / row.grid.power
+    return half - slower * math.log(60) - yielding, last + math.log(300)
+
+
+def breaks_on(row: TableRow, log_speeds: Array, found: Array, kappa: float, has_rest: bool) -> Array:
+    """Return b_1 .. b_5 on a coarse curve; b_1 is the minimum speed where segments do not begin at rest."""
+    from scipy.interpolate import PchipInterpolator
+
+    odds, central = found[:, 0], np.exp(found[:, row.functions.index("central_gap")])
+    there = np.isfinite(odds) & (odds < 600)
+    s, odds, central = log_speeds[there], odds[there], central[there]
+    if not has_rest and row.law != "exponential":
+        ends = PchipInterpolator(np.log(central), s)(np.log(kappa * np.array(GAPS)))
+        return np.array([math.log(row.box["speed"][0]), *ends.tolist()])
+    first = math.log(MIN_SPEED)
+    if has_rest:
+        yielding = np.exp(odds) + central / central[0] - 1
+        early = np.arange(1, 1 + int(np.argmax(yielding > 8 * YIELDING)))
+        first = float(PchipInterpolator(np.log(yielding[early]), s[early])(math.log(YIELDING)))
+    return np.array([first, *PchipInterpolator(np.logaddexp(0, odds), s)(SHARES).tolist()])
+
+
+def coarse_breaks(row: TableRow, region: Region, log_load: float, kappa: float) -> Array:
+    """Return b_1 .. b_5 of one load and roughness."""
+    plan = PLANS[row.name]
+    low, high = speed_range(row, log_load, kappa)
+    if not region.has_rest:
+        low = math.log(row.box["speed"][0])
+    speeds = np.linspace(low, high, max(12, int((high - low) / plan.coarse_step)))
+    return breaks_on(row, speeds, solved(row, speeds, log_load, kappa, plan.coarse_rtol), kappa, region.has_rest)
