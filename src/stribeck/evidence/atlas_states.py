@@ -136,6 +136,7 @@ def breaks_on(row: TableRow, log_speeds: Array, found: Array, kappa: float, has_
     if has_rest:
         yielding = np.exp(odds) + central / central[0] - 1
         early = np.arange(1, 1 + int(np.argmax(yielding > 8 * YIELDING)))
+        early = early[yielding[early] > 0.02]  # below is the tolerance of the states
         first = float(PchipInterpolator(np.log(yielding[early]), s[early])(math.log(YIELDING)))
     return np.array([first, *PchipInterpolator(np.logaddexp(0, odds), s)(SHARES).tolist()])
 
