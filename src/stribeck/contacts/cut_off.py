@@ -33,6 +33,9 @@ and H. Brenner (1967), whose 0.9588 and -0.2526 are fits at finite gaps; M. Chao
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+
+from stribeck.fluids.cavitation import Cavitation
 
 __all__ = ["COUETTE", "POISEUILLE", "SLIDING", "TURNING", "log_cut_offs"]
 
@@ -41,6 +44,40 @@ SLIDING, TURNING = 0.954293, -0.257268
 
 COUETTE, POISEUILLE = 2 / 3 * math.pi, 2 / 5 * math.pi
 """Coefficients of lambda ln X in the two parts of the friction integral."""
+
+
+@dataclass(frozen=True)
+class FarFilm:
+    r"""How a film far from the contact ends, and the logarithms of its friction.
+
+    Attributes
+    ----------
+    pressure : float
+        The factor of :math:`-\lambda \cos\theta/r^3` in the film pressure [-].
+    couette, poiseuille : float
+        Coefficients of :math:`\lambda \ln X` in the two parts of the friction integral [-].
+    """
+
+    pressure: float
+    couette: float
+    poiseuille: float
+
+
+FULL = FarFilm(0.8, COUETTE, POISEUILLE)
+"""The film is full on both sides."""
+
+RUPTURE = 1.249038748131262
+"""Angle at which a film that ends at ambient pressure ruptures far from the contact [radian]."""
+
+CAVITATED = FarFilm(
+    0.40553909094606316,
+    (2 / 3) * (math.pi - RUPTURE) + (10 / 27) * (RUPTURE - math.sin(2 * RUPTURE) / 2),
+    0.40553909094606316 * math.pi / 2,
+)
+"""The film ends at ambient pressure; its liquid goes on as streaks in the wake."""
+
+FAR = {Cavitation.NONE: FULL, Cavitation.EXIT: CAVITATED}
+"""The far film by how it ends."""
 
 _COUETTE_RADIUS = 0.5 * (math.log(2) + 1.5 * (SLIDING + TURNING))
 _POISEUILLE_RADIUS = 0.5 * (math.log(2) + 2 + 2.5 * (SLIDING - TURNING))

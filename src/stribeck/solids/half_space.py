@@ -94,6 +94,11 @@ def deflection_by_mode(mesh: PolarMesh, modes: int | None = None, targets: Array
 
 def tilt_from_beyond(mesh: PolarMesh, power: float) -> Array:
     """Return the deflection at the radii of a mesh, of mode one, under ``(r/rim)**power`` beyond its rim, power < -1."""
+    return np.asarray(deflections_from_beyond(mesh, power, 2)[1])
+
+
+def deflections_from_beyond(mesh: PolarMesh, power: float, modes: int) -> Array:
+    """Return the same of the first modes, shape (modes, rings)."""
     v, w = _clustered(NEAR_POINTS)
     r, rim = mesh.radii[:, None], mesh.rim
     # s = rim/(1 - v), so that it reaches from the rim to infinity; far out the kernel falls as r/s**2.
@@ -102,7 +107,7 @@ def tilt_from_beyond(mesh: PolarMesh, power: float) -> Array:
     weights = w * rim / (1.0 - v) ** 2 * (source / rim) ** power
     difference = np.broadcast_to(beyond, (mesh.rings, v.size)) + (rim - r)
     radius, sources = np.broadcast_to(r, difference.shape), np.broadcast_to(source, difference.shape)
-    kernel = ring_functions(radius.ravel(), sources.ravel(), difference.ravel(), 2)[1].reshape(difference.shape)
+    kernel = ring_functions(radius.ravel(), sources.ravel(), difference.ravel(), modes).reshape(modes, *difference.shape)
     return np.asarray((4.0 / np.pi**2 * kernel * np.sqrt(sources / radius)) @ weights)
 
 

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array
+from stribeck.contacts.cut_off import FULL, FarFilm
 
 DEFLECTION = 4.0 / (3.0 * math.pi)
 """b: the deflection under the load, far away, times the distance."""
@@ -28,11 +29,11 @@ POINTS = 40
 """Gauss points of the integrals from the rim to infinity."""
 
 
-def particular(r: Array, offset: float, speed: float) -> tuple[Array, Array]:
+def particular(r: Array, offset: float, speed: float, far: FarFilm = FULL) -> tuple[Array, Array]:
     """Return the factor of cos(theta) in the first part, and its derivative in r."""
     rigid = offset + 0.5 * r * r
     bent = 1.0 - 16.0 * DEFLECTION / r**3
-    base = -0.2 * speed * r / rigid**2
+    base = -0.25 * far.pressure * speed * r / rigid**2
     slope = base * (1.0 / r - 2.0 * r / rigid) * bent + base * 48.0 * DEFLECTION / r**4
     return np.asarray(base * bent), np.asarray(slope)
 
@@ -42,7 +43,7 @@ def rates(modes: int) -> Array:
     return np.asarray(-3.0 - np.sqrt(9.0 + np.arange(modes) ** 2))
 
 
-def tails(rim: float, offset: float, speed: float, pressure: float) -> tuple[float, float, float]:
+def tails(rim: float, offset: float, speed: float, pressure: float, far: FarFilm = FULL) -> tuple[float, float, float]:
     """Return what lies beyond the rim of shear, pressure flow and moment, less the logarithms at infinity.
 
     ``pressure`` is the factor of cos(theta) in the film pressure at the rim.
@@ -52,11 +53,11 @@ def tails(rim: float, offset: float, speed: float, pressure: float) -> tuple[flo
     r = rim / u
     ring = rim / u**2 * w * r
     h = offset + 0.5 * r * r + DEFLECTION / r
-    f, slope = particular(r, offset, speed)
-    decaying = (pressure - float(particular(np.array([rim]), offset, speed)[0][0])) * (r / rim) ** rates(2)[1]
+    f, slope = particular(r, offset, speed, far)
+    decaying = (pressure - float(particular(np.array([rim]), offset, speed, far)[0][0])) * (r / rim) ** rates(2)[1]
     f, slope = f + decaying, slope + decaying * rates(2)[1] / r
-    log = math.log(rim)
-    couette = speed * math.pi / 3.0 * (float((ring * (1.0 / h - 2.0 / r**2)).sum()) - 2.0 * log)
-    poiseuille = 0.5 * math.pi * (float((ring * (h * (slope + f / r) - 0.8 * speed / r**2)).sum()) - 0.8 * speed * log)
-    moment = math.pi * (float((ring * (f * r + 0.8 * speed / r**2)).sum()) + 0.8 * speed * log)
+    log, strength = math.log(rim), far.pressure * speed
+    couette = 0.5 * far.couette * speed * (float((ring * (1.0 / h - 2.0 / r**2)).sum()) - 2.0 * log)
+    poiseuille = 0.5 * math.pi * (float((ring * (h * (slope + f / r) - strength / r**2)).sum()) - strength * log)
+    moment = math.pi * (float((ring * (f * r + strength / r**2)).sum()) + strength * log)
     return couette, poiseuille, moment

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -58,7 +59,7 @@ class Iterated:
         Its cost.
     left : float
         Estimated relative error of the gap that the iteration leaves.
-    preconditioner : BandedModes or None
+    preconditioner : BandedModes, Capacitance or None
         The last one, for neighbours.
     """
 
@@ -68,7 +69,7 @@ class Iterated:
     krylov_steps: int
     factorisations: int
     left: float
-    preconditioner: BandedModes | None
+    preconditioner: Any
 
 
 def step_size(law: ContactLaw, h: Array, dh: Array, load_scale: float = 1.0) -> float:

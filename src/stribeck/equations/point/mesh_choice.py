@@ -16,7 +16,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.system import Operators
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 
@@ -70,6 +72,8 @@ class Resolution:
         Degree of the polynomials, and number of cosines.
     splits : tuple of float
         Radii at which panels are split besides [a].
+    model : Model
+        Fluid, cavitation and solid, whose equations are solved on the mesh.
     """
 
     halvings: int
@@ -77,6 +81,7 @@ class Resolution:
     degree: int
     modes: int
     splits: tuple[float, ...] = ()
+    model: Model = ARTICLE
 
     @property
     def mesh(self) -> PolarMesh:
@@ -118,10 +123,14 @@ def gaps_at(law: ContactLaw, log_pressures: Array) -> Array:
     return low
 
 
-def layout(speed: float, law: ContactLaw) -> tuple[float, float]:
+RIGID_CAVITATED = 0.2249
+"""Height of a rigid ball over the square of the speed group, where its film ends at ambient pressure."""
+
+
+def layout(speed: float, law: ContactLaw, model: Model = ARTICLE) -> tuple[float, float]:
     """Return the width of the smallest panel over the scale of the contact, and that scale [a]."""
     decay = float(np.max(law.decay_length))
-    height = film_scale(speed)
+    height = film_scale(speed) + CAVITATED_FILM[model.cavitation] * speed**2
     if decay > 0.0:
         at_edge = gaps_at(law, np.log(np.array([EDGE_PRESSURE])))
         decay = min(decay, float(np.max(law.local_decay_length(at_edge))))
@@ -131,15 +140,19 @@ def layout(speed: float, law: ContactLaw) -> tuple[float, float]:
     return min(0.5, EDGE * max(speed**0.4, decay ** (2.0 / 3.0))), scale
 
 
-def resolution(speed: float, law: ContactLaw, degree: int, modes: int) -> Resolution:
+CAVITATED_FILM = {Cavitation.NONE: 0.0, Cavitation.EXIT: RIGID_CAVITATED}
+"""What a fast film is thicker by, over the square of the speed group, by how it ends."""
+
+
+def resolution(speed: float, law: ContactLaw, degree: int, modes: int, model: Model = ARTICLE) -> Resolution:
     """Return the resolution of a state."""
-    width, scale = layout(speed, law)
-    return Resolution(math.ceil(-math.log2(1.2 * width)), round(math.log2(scale)), degree, modes)
+    width, scale = layout(speed, law, model)
+    return Resolution(math.ceil(-math.log2(1.2 * width)), round(math.log2(scale)), degree, modes, model=model)
 
 
 def fits(found: Resolution, speed: float, law: ContactLaw) -> bool:
     """Return whether the panels of a neighbour serve a state."""
-    width, scale = layout(speed, law)
+    width, scale = layout(speed, law, found.model)
     excess = math.log2(width) + found.halvings
     return -0.4 <= excess <= 2.1 and abs(math.log2(scale) - found.doublings) <= 0.8
 
@@ -172,6 +185,7 @@ _lock = threading.Lock()
 
 def operators_of(found: Resolution) -> Operators:
     """Return the operators of a mesh; the last ones are kept."""
+    found = replace(found, model=replace(ARTICLE, solid=found.model.solid))
     with _lock:
         if found in _kept:
             _kept.move_to_end(found)

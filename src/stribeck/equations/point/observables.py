@@ -13,11 +13,10 @@ Beyond the rim the film is that of :mod:`stribeck.equations.point.far_field`.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.contacts.cut_off import FULL, FarFilm
 from stribeck.equations.point.far_field import tails
 from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_axis
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
@@ -38,7 +37,7 @@ def observables(equations: Equations, y: Unknowns) -> dict[str, float]:
     lowest: Minimum = minimum_gap(mesh, h)
     found = {
         "contact_load_share": float((contact @ row).sum()) / LOAD,
-        "fluid_load_share": float((y.fluid @ row).sum()) / LOAD,
+        "fluid_load_share": float(equations.load_row @ y.fluid.mean(axis=0)) / LOAD,
         "central_gap": at_centre(mesh, h),
         "minimum_gap": lowest.gap,
         "minimum_radius": lowest.radius,
@@ -58,11 +57,11 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
     turn = 2.0 * np.pi / mesh.modes
     radial = turn * mesh.local_weights * mesh.local_radii * mesh.scattered(h * cos) * mesh.radial_derivative(p)
     tangential = turn * mesh.ring_weights * sin * h * (mesh.angular_derivative @ p)
-    couette = speed / 6.0 * float(((1.0 / h) @ mesh.area_weights).sum())
+    couette = speed / 6.0 * (float(((1.0 / h) @ mesh.area_weights).sum()) - equations.shear_missing(y))
     poiseuille = 0.5 * float(radial.sum() - tangential.sum())
     of_fluid, of_contact = float((moment * p).sum()), float((moment * contact).sum())
     at_rim = float(mesh.to_modes[1] @ p[:, -1])
-    beyond = tails(mesh.rim, y.offset, speed, at_rim)
+    beyond = tails(mesh.rim, y.offset, speed, at_rim, equations.far)
     couette, poiseuille, of_fluid = couette + beyond[0], poiseuille + beyond[1], of_fluid + beyond[2]
     return {
         "J_couette": couette,
@@ -73,6 +72,6 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
     }
 
 
-def identity_error(values: dict[str, float], speed: float) -> float:
-    """Return ``J_balanced - J_published - J_pcx + 0.4 pi lambda``, zero for every state."""
-    return values["J_balanced"] - values["J_published"] - values["J_pcx"] + 0.4 * math.pi * speed
+def identity_error(values: dict[str, float], speed: float, far: FarFilm = FULL) -> float:
+    """Return ``J_balanced - J_published - J_pcx + c lambda``, zero for every state; c = 0.4 pi for the full film."""
+    return values["J_balanced"] - values["J_published"] - values["J_pcx"] + far.poiseuille * speed

@@ -28,7 +28,7 @@ class BandedModes:
         self.shape = (operators.mesh.modes, operators.mesh.rings)
         coupling = Coupling(linear)
         self.factors = BlockLU(coupling.columns(min(band, self.shape[0] - 1)), min(band, self.shape[0] - 1), self.shape)
-        self.row = operators.load_row
+        self.row = linear.equations.load_row
         self.column = self.factors.solve(coupling.of_offset())
         self.pivot = float(self.row @ self.column[0])
 
@@ -41,9 +41,10 @@ class BandedModes:
             [ w  0 ] [dz] = [s]
         """
         found = np.empty_like(right)
-        x = self.factors.solve(right[:-1].reshape(self.shape))
+        many = right.shape[1:]
+        x = self.factors.solve(right[:-1].reshape(*self.shape, *many))
         offset = (self.row @ x[0] - right[-1]) / self.pivot
-        found[:-1] = (x - offset * self.column).ravel()
+        found[:-1] = (x - np.multiply.outer(self.column, offset)).reshape(-1, *many)
         found[-1] = offset
         return found
 
@@ -159,15 +160,15 @@ class BlockLU:
         self.below.append(below)
 
     def solve(self, right: Array) -> Array:
-        """Return the solution for a right-hand side of the shape (count, size)."""
-        x = (right * self.scale).astype(np.float32)
-        size = x.shape[1]
+        """Return the solution for a right-hand side of the shape (count, size), or for many, (count, size, many)."""
+        x = (right * self.scale.reshape(*self.scale.shape, *(1 for _ in right.shape[2:]))).astype(np.float32)
+        one = x.shape[1:]
         for k in range(self.count):
             x[k] = lapack.sgetrs(*self.pivots[k], x[k])[0]
             if k < len(self.below):
                 last = min(self.count, k + self.band + 1)
-                x[k + 1 : last] -= (self.below[k] @ x[k]).reshape(-1, size)
+                x[k + 1 : last] -= (self.below[k] @ x[k]).reshape(-1, *one)
         for k in range(self.count - 2, -1, -1):
             last = min(self.count, k + self.band + 1)
-            x[k] -= self.right[k] @ x[k + 1 : last].ravel()
+            x[k] -= self.right[k] @ x[k + 1 : last].reshape(-1, *one[1:])
         return x.astype(np.float64)

@@ -18,14 +18,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.contacts.cut_off import FULL, FarFilm
 from stribeck.equations.point.far_field import particular, rates
 from stribeck.numerics.fourier_panels import PolarMesh
-from stribeck.solids.half_space import deflection_by_mode, tilt_from_beyond
+from stribeck.solids.half_space import deflection_by_mode, deflections_from_beyond, tilt_from_beyond
 
 LOAD = 2.0 * np.pi / 3.0
 """Load in Hertz units: the integral of the pressure."""
@@ -47,6 +49,11 @@ class Operators:
         if self.mesh.modes > 1:
             found[1, :, -1] += tilt_from_beyond(self.mesh, -3.0)
         return found
+
+    @cached_property
+    def deflection_from_beyond(self) -> Array:
+        """Deflection by mode under a pressure that falls as r**-3 beyond the rim, shape (modes, rings)."""
+        return deflections_from_beyond(self.mesh, -3.0, self.mesh.modes)
 
     @cached_property
     def parabola(self) -> Array:
@@ -90,13 +97,28 @@ class Equations:
     speed: float
     law: ContactLaw
 
+    far: ClassVar[FarFilm] = FULL
+
+    @property
+    def load_row(self) -> Array:
+        """Weights of the load on the axisymmetric mode, shape (rings,)."""
+        return self.operators.load_row
+
+    def deflect(self, by_mode: Array) -> Array:
+        """Return the deflection by mode under a pressure by mode, shape (modes, rings)."""
+        return self.operators.deflect(by_mode)
+
+    def shear_missing(self, y: Unknowns) -> float:
+        """Return by how much the integral of 1/h is less where the gap is not full of liquid."""
+        return 0.0
+
     def residual(self, y: Unknowns) -> tuple[Array, Array, float]:
         """Return R_1 at the nodes, R_2 by node, both of shape (modes, rings), and R_3."""
         op, mesh = self.operators, self.operators.mesh
         total = self.law.pressure(y.gap) + y.fluid
         by_mode = mesh.to_modes @ total
-        shape = y.gap - y.offset - op.parabola - mesh.cosines @ op.deflect(by_mode)
-        return shape, self.flow(y.gap, y.fluid, y.offset), float(op.load_row @ by_mode[0]) - LOAD
+        shape = y.gap - y.offset - op.parabola - mesh.cosines @ self.deflect(by_mode)
+        return shape, self.flow(y.gap, y.fluid, y.offset), float(self.load_row @ by_mode[0]) - LOAD
 
     def flow(self, h: Array, p: Array, offset: float) -> Array:
         """Return the weak residual of Reynolds' equation, R_2."""
@@ -118,6 +140,10 @@ class Equations:
         first, slope = particular(np.array([mesh.rim]), offset, self.speed)
         cos = np.cos(mesh.angles)
         return np.asarray(self.operators.rim_rates @ (p - first * cos) + slope * cos)
+
+    def rim_rates(self, offset: float) -> Array:
+        """Return the derivative of :meth:`rim_slope` by the pressure, shape (angles, angles)."""
+        return self.operators.rim_rates
 
 
 def _weights(mesh: PolarMesh) -> tuple[Array, Array]:
@@ -150,24 +176,24 @@ class Linear:
         radial = self.radial_of_pressure * mesh.radial_derivative(dp) + self.radial_of_gap * mesh.scattered(dh)
         angular = self.angular_of_pressure * (mesh.angular_derivative @ dp) + self.angular_of_gap * dh
         found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ angular
-        rates_at_rim = self.equations.operators.rim_rates
+        rates_at_rim = self.equations.rim_rates(self.y.offset)
         found[:, -1] += self.rim_of_pressure * (rates_at_rim @ dp[:, -1]) + self.rim_of_gap * dh[:, -1]
         return found
 
     def changes(self, x: Array, shape: Array | float = 0.0) -> Unknowns:
         """Return the changes of the unknowns for a change of total pressure and offset, R_1 being ``shape``."""
-        op, mesh = self.equations.operators, self.equations.operators.mesh
+        mesh = self.equations.operators.mesh
         by_mode = x[:-1].reshape(mesh.modes, mesh.rings)
-        dh = mesh.cosines @ op.deflect(by_mode) + x[-1] - shape
+        dh = mesh.cosines @ self.equations.deflect(by_mode) + x[-1] - shape
         return Unknowns(dh, mesh.cosines @ by_mode - self.contact_slope * dh, float(x[-1]))
 
     def product(self, x: Array) -> Array:
         """Return the change of R_2 by mode and of R_3."""
-        op, mesh = self.equations.operators, self.equations.operators.mesh
+        mesh = self.equations.operators.mesh
         change = self.changes(x)
         found = np.empty_like(x)
         found[:-1] = (mesh.cosines.T @ self.flow(change.fluid, change.gap)).ravel()
-        found[-1] = op.load_row @ x[: mesh.rings]
+        found[-1] = self.equations.load_row @ x[: mesh.rings]
         return found
 
     def right(self, residual: tuple[Array, Array, float]) -> Array:

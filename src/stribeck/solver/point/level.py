@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.equations.point.cavitation import CavitatedEquations, iterate_cavitated
 from stribeck.equations.point.iteration import Iterated, iterate
 from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, operators_of
-from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Unknowns
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 
@@ -65,6 +67,11 @@ def moved(y: Unknowns, old: PolarMesh, new: PolarMesh) -> Unknowns:
     beyond = np.maximum(1.0, new.radii / old.rim)
     fields = np.stack([np.log(y.gap / (1.0 + old.radii**2)), y.fluid])
     shape, fluid = old.transfer(new, fields)
+    torn = y.fluid == 0.0
+    if torn.any():  # the series of the pressure waves about zero there
+        ring = np.abs(np.log(new.radii[:, None] / old.radii)).argmin(axis=1)
+        angle = np.abs(new.angles[:, None] - old.angles).argmin(axis=1)
+        fluid = np.where(torn[angle][:, ring], 0.0, np.maximum(fluid, np.finfo(float).tiny))
     return Unknowns(np.exp(shape) * (1.0 + new.radii**2), fluid / beyond**3, y.offset)
 
 
@@ -75,7 +82,7 @@ def solve_level(
     start: Unknowns,
     start_mesh: PolarMesh,
     tolerance: float,
-    kept: BandedModes | None = None,
+    kept: Any = None,
     max_steps: int = 40,
     largest: float = MOST_BYTES,
 ) -> Level:
@@ -90,11 +97,19 @@ def solve_level(
     if bytes_of(resolution, band) > largest:
         raise MeshTooLargeError
     operators = operators_of(resolution)
-    equations = Equations(operators, speed, law)
+    kind, iteration = PROBLEMS[resolution.model.cavitation]
+    equations = kind(operators, speed, law)
     guess = moved(start, start_mesh, operators.mesh)
     if kept is not None and kept.shape != guess.gap.shape:
         kept = None
-    return Level(resolution, equations, iterate(equations, guess, tolerance, band, kept, max_steps))
+    return Level(resolution, equations, iteration(equations, guess, tolerance, band, kept, max_steps))
+
+
+PROBLEMS: dict[Cavitation, tuple[type[Equations], Callable[..., Iterated]]] = {
+    Cavitation.NONE: (Equations, iterate),
+    Cavitation.EXIT: (CavitatedEquations, iterate_cavitated),
+}
+"""The equations and what solves them, by how the film ends."""
 
 
 def extrapolated(weights: Sequence[float] | Array, levels: Sequence[Level], mesh: PolarMesh) -> Unknowns:

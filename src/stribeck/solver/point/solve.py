@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.contacts.cut_off import FAR
 from stribeck.contacts.groups import Groups, contact_law
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.dry import dry_contact, hertz_gap
 from stribeck.equations.point.iteration import Iterated
 from stribeck.equations.point.mesh_choice import fits, operators_of, resolution
 from stribeck.equations.point.observables import identity_error
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.newtonian import Newtonian
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.at_rest import with_positive_gap
+from stribeck.solver.point.cavitated import follow_cavitated, held, refine_cavitated, tolerance_of
 from stribeck.solver.point.level import Level
 from stribeck.solver.point.refinement import Pair, follow, newton_tolerance, pair_of, refine
 from stribeck.solver.point.start import first_state
@@ -61,10 +68,12 @@ def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
     if groups.speed == 0:
         return _at_rest(groups, rtol)
     speed, law = float(groups.speed), contact_law(groups)
-    first = first_state(speed, law)
+    ending = ENDINGS[groups.model.cavitation]
+    first = first_state(speed, law, replace(groups.model, cavitation=Cavitation.NONE))
     if isinstance(first, Outcome):
         return _failed(groups, rtol, first)
-    return _state(groups, rtol, refine(speed, law, first, rtol))
+    rtol = ending.tolerance(rtol)
+    return _state(groups, rtol, ending.refine(speed, law, first, rtol))
 
 
 def solve_from(neighbour: PointState, groups: Groups, rtol: float = 1e-6) -> PointState:
@@ -95,27 +104,66 @@ def solve_from(neighbour: PointState, groups: Groups, rtol: float = 1e-6) -> Poi
     if groups.speed == 0 or not isinstance(pair, Pair) or not pair.fine.equations.speed > 0:
         return solve_cold(groups, rtol)
     speed, law = float(groups.speed), contact_law(groups)
-    if fits(pair.fine.resolution, speed, law):
-        found = follow(speed, law, pair, rtol)
-        if found is not None and found.total <= rtol:
-            return _state(groups, rtol, found)
+    if fits(pair.fine.resolution, speed, law) and pair.fine.resolution.model == groups.model:
+        ending = ENDINGS[groups.model.cavitation]
+        held = ending.tolerance(rtol)
+        found = ending.follow(speed, law, pair, held)
+        if found is not None and ending.error(found) <= held:
+            return _state(groups, held, found)
         if found is not None:
-            return _state(groups, rtol, refine(speed, law, found.fine, rtol))
+            return _state(groups, held, ending.refine(speed, law, found.fine, held))
     return solve_cold(groups, rtol)
+
+
+class Ending(NamedTuple):
+    """How states of a film that ends in one way are refined.
+
+    Attributes
+    ----------
+    refine, follow : callable
+        From a first state, and from a neighbour's meshes, to a state on two meshes.
+    error : callable
+        Largest error of such a pair that the tolerance holds.
+    tolerance : callable
+        The tolerance that is aimed at for one that was asked for.
+    """
+
+    refine: Callable[[float, ContactLaw, Level, float], Pair | Outcome]
+    follow: Callable[[float, ContactLaw, Pair, float], Pair | None]
+    error: Callable[[Pair], float]
+    tolerance: Callable[[float], float]
+
+
+ENDINGS = {
+    Cavitation.NONE: Ending(refine, follow, attrgetter("total"), float),
+    Cavitation.EXIT: Ending(refine_cavitated, follow_cavitated, held, tolerance_of),
+}
+"""How states are refined, by how the film ends."""
 
 
 def check(groups: Groups, rtol: float) -> None:
     """Refuse what is not one state of a ball, and tolerances out of range."""
     if not isinstance(groups, Groups) or groups.geometry != "point" or groups.shape != ():
         raise InputError(f"groups = {show(groups)}; it must be one state, Groups(speed, load, roughness, geometry='point').")
-    if groups.model != ARTICLE:
-        raise InputError(
-            "the groups have another fluid, cavitation, solid or motion; a ball is solved with a Newtonian fluid that does not"
-            " cavitate, on a half-space, and PointContact has slide_to_roll."
-        )
+    check_model(groups.model)
     low, high = RTOL_RANGE
     if isinstance(rtol, bool) or not isinstance(rtol, int | float) or not low <= rtol <= high:
         raise InputError(f"rtol = {show(rtol)}; for a ball it must be a number from {low:g} to {high:g}.")
+
+
+def check_model(model: Model) -> None:
+    """Refuse by name what the equations of a ball do not have."""
+    if model.cavitation not in ENDINGS:
+        raise InputError(
+            f"cavitation = {str(model.cavitation)!r}: of a ball the film ends at ambient pressure, 'exit', or does not break, "
+            "'none'; a cavity at another pressure is not modelled."
+        )
+    plain = replace(ARTICLE, cavitation=model.cavitation, film=replace(Newtonian(), slide=model.film.slide))
+    if model != plain:
+        raise InputError(
+            "the groups have another fluid or solid; a ball is solved with a Newtonian fluid of constant viscosity on a "
+            "half-space."
+        )
 
 
 def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0) -> PointState:
@@ -136,7 +184,7 @@ def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0
         values=values,
         absolute_errors=errors,
         scales=pair.scales,
-        identity_error=identity_error(values, float(groups.speed)),
+        identity_error=identity_error(values, float(groups.speed), FAR[groups.model.cavitation]),
         load_error=values["contact_load_share"] + values["fluid_load_share"] - 1.0,
         mesh=fine.mesh,
         nodal_gap=y.gap + shift,

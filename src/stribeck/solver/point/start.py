@@ -15,6 +15,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.dry import dry_contact
 from stribeck.equations.point.mesh_choice import (
     MeshTooLargeError,
@@ -128,12 +129,12 @@ def first_guess(found: Resolution, speed: float, law: ContactLaw, lift: float = 
     return solved, Unknowns(np.tile(dry.gap, (modes, 1)), np.tile(fluid, (modes, 1)), dry.offset)
 
 
-def first_state(speed: float, law: ContactLaw) -> Level | Outcome:
+def first_state(speed: float, law: ContactLaw, model: Model = ARTICLE) -> Level | Outcome:
     """Return a coarse state at a speed, or why there is none."""
     last: Outcome = Outcome.STALLED
     for path in (_direct, _upward, _downward):
         try:
-            for level in path(speed, law):
+            for level in path(speed, law, model):
                 if level.outcome.ok:
                     return level
                 last = level.outcome
@@ -142,28 +143,28 @@ def first_state(speed: float, law: ContactLaw) -> Level | Outcome:
     return last
 
 
-def _direct(speed: float, law: ContactLaw) -> Iterator[Level]:
+def _direct(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     for lift in (1.0, 1.5, 0.7):
-        guess = first_guess(resolution(speed, law, DEGREE, first_modes(speed, law)), speed, law, lift)
+        guess = first_guess(resolution(speed, law, DEGREE, first_modes(speed, law), model), speed, law, lift)
         if guess is not None:
             found, y = guess
             yield solve_level(found, speed, law, y, operators_of(found).mesh, TOLERANCE, max_steps=MAX_STEPS)
 
 
-def _upward(speed: float, law: ContactLaw) -> Iterator[Level]:
+def _upward(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     """Yield the state at the end of the path from slow to the speed, if it gets there."""
     slow = speed
     while film_scale(slow) > 0.1 * _dry_gap(law) and slow > SLOW * speed:
         slow /= 4.0
-    yield from _path(slow, speed, law)
+    yield from _path(slow, speed, law, model)
 
 
-def _downward(speed: float, law: ContactLaw) -> Iterator[Level]:
+def _downward(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     """Yield the same from fast."""
-    yield from _path(max(FAST, 2.0 * speed), speed, law)
+    yield from _path(max(FAST, 2.0 * speed), speed, law, model)
 
 
-def _path(begin: float, end: float, law: ContactLaw) -> Iterator[Level]:
+def _path(begin: float, end: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     count = 0
 
     def correct(s: float, history: Sequence[tuple[float, Level]]) -> Level | None:
@@ -172,7 +173,7 @@ def _path(begin: float, end: float, law: ContactLaw) -> Iterator[Level]:
         if count > LONGEST_PATH:
             return None
         speed = math.exp(s)
-        here = resolution(speed, law, DEGREE, first_modes(speed, law))
+        here = resolution(speed, law, DEGREE, first_modes(speed, law), model)
         if history:
             here = replace(here, splits=history[-1][1].resolution.splits)
             weights = extrapolation_weights([at for at, _ in history], s)

@@ -1,0 +1,94 @@
+r"""What fills the cavity behind a ball: streaks of liquid, from wall to wall, that keep the flow of the line of rupture.
+
+Where the film is torn the pressure is the same everywhere and the liquid goes with the walls, so that along x
+
+.. math:: \phi \, h = h_\mathrm{e}(y), \qquad \phi \le 1
+
+with the gap :math:`h_\mathrm{e}` at which the film ruptures; :math:`\phi` is the part of the width that is wet.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from stribeck._types import Array, Indices
+from stribeck.numerics.fourier_panels import PolarMesh
+
+POINTS = 12
+"""Gauss points of an integral over the angles of the wake on one ring."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rupture:
+    """The line at which a film ruptures.
+
+    Attributes
+    ----------
+    rings : ndarray of int
+        Rings that it crosses.
+    angles : ndarray
+        Where it crosses them; nearer to the middle line the film is torn.
+    distances, gaps : ndarray
+        Distances from the middle line, ascending from zero [a], and the gap there over one plus their square.
+    """
+
+    rings: Indices
+    angles: Array
+    distances: Array
+    gaps: Array
+
+    def gap_at(self, across: Array) -> Array:
+        """Return the gap at the line by the distance from the middle line [u_Hz]."""
+        return np.asarray(np.exp(np.interp(across, self.distances, np.log(self.gaps))) * (1.0 + across**2))
+
+
+def rupture_line(mesh: PolarMesh, gap: Array, fluid: Array) -> Rupture | None:
+    """Return where a film ruptures; None where it does not.
+
+    Parameters
+    ----------
+    mesh : PolarMesh
+        The mesh.
+    gap, fluid : ndarray, shape (modes, rings)
+        Gap and film pressure at the nodes, zero where the film is torn.
+
+    Notes
+    -----
+    Pressure and its slope vanish at the line: it lies where the root of the pressure, continued from three nodes, does.
+    """
+    torn = fluid <= 0.0
+    rings = np.flatnonzero(torn[0] & ~torn[-1] & ~torn[-2])
+    if not rings.size:
+        return None
+    last = np.minimum(mesh.modes - 1 - np.argmax(torn[::-1, rings], axis=0), mesh.modes - 4)
+    first, second, third = (np.sqrt(np.maximum(fluid[last + k, rings], 0.0)) for k in (1, 2, 3))
+    with np.errstate(all="ignore"):  # inverse interpolation, in spacings
+        bend = (1.0 / (third - second) - 1.0 / (second - first)) / (third - first)
+        back = np.clip(first / (second - first) - bend * first * second, 0.0, 1.0)
+    back[np.isnan(back)] = 0.5
+    angles = mesh.angles[last + 1] - back * (np.pi / mesh.modes)
+    coefficients = mesh.to_modes @ np.log(gap[:, rings])
+    log_gap = (np.cos(np.outer(np.arange(mesh.modes), angles)) * coefficients).sum(axis=0)
+    distances = mesh.radii[rings] * np.sin(angles)
+    order = np.argsort(distances, kind="stable")
+    gaps = np.exp(log_gap) / (1.0 + distances**2)
+    return Rupture(rings, angles, np.append(0.0, distances[order]), np.append(gaps[order][:1], gaps[order]))
+
+
+def shear_missing(mesh: PolarMesh, gap: Array, fluid: Array) -> float:
+    r"""Return what the dry streaks of the wake take off the shear, :math:`\int (1 - \phi)/h` up to the rim [a**2/u_Hz]."""
+    line = rupture_line(mesh, gap, fluid)
+    if line is None:
+        return 0.0
+    t, w = legendre.leggauss(POINTS)
+    angle = 0.5 * line.angles[:, None] * (1.0 + t)
+    orders = np.arange(mesh.modes)
+    coefficients = mesh.to_modes @ np.log(gap[:, line.rings])
+    h = np.exp(np.einsum("mr,mrk->rk", coefficients, np.cos(orders[:, None, None] * angle)))
+    r = mesh.radii[line.rings]
+    wet = np.minimum(1.0, line.gap_at(r[:, None] * np.sin(angle)) / h)
+    by_ring = ((1.0 - wet) / h) @ w * line.angles  # both halves of the plane
+    return float(by_ring @ (mesh.ring_weights[line.rings] * r))

@@ -1,0 +1,159 @@
+"""Refining a state of a ball whose film ends at ambient pressure until its estimated error holds a tolerance.
+
+The line of rupture lies between nodes, so that errors fall as the number of angles to the power -2, not faster.  Each state is
+solved on coarse angles first, as on many at once the line moves a node a step; the last two meshes differ in the radius too.
+Numbers of angles are multiples of five: the rays along which the film ruptures far away lie midway between nodes then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from stribeck.contact_laws.law import ContactLaw
+from stribeck.contacts.cut_off import FAR
+from stribeck.equations.point.mesh_choice import (
+    RIGID_CAVITATED,
+    MeshTooLargeError,
+    Resolution,
+    fits,
+    operators_of,
+    resolution,
+    split_where_poor,
+)
+from stribeck.equations.point.observables import identity_error, observables
+from stribeck.equations.point.system import Unknowns
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.quantities.outcome import Outcome
+from stribeck.solver.point.level import Level, moved, solve_level
+from stribeck.solver.point.refinement import COMPANY, Pair, scales_of
+from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
+
+FINEST_RTOL = 1e-4
+"""Smallest tolerance that is aimed at."""
+
+FIRST_ANGLES, LADDER = 10, (20, 30, 45, 65)
+"""Numbers of angles: of the first mesh, and of the meshes of which neighbours tell the error."""
+
+DEGREE = 10
+"""Degree of the panels of all but the finer of these, which has two more."""
+
+PART = 1.0
+"""Stated error over the difference between two meshes: that of the finer one is about 0.8 of it."""
+
+RIGID = 2.0
+"""Speed from which a rigid ball is nearer to the state than that of the full film."""
+
+TOLERANCE = 1e-7
+"""Relative error of the gap that an iteration may leave."""
+
+
+def pair_of(coarse: Level, fine: Level) -> Pair:
+    """Return the pair of two levels of one state."""
+    speed = fine.equations.speed
+    values, rough = observables(fine.equations, fine.unknowns), observables(coarse.equations, coarse.unknowns)
+    scales = scales_of(values, speed)
+    scales["offset"] = max(abs(values["offset"]), values["central_gap"])  # it passes zero
+    errors = {name: PART * abs(value - rough[name]) + fine.iterated.left * scales[name] for name, value in values.items()}
+    balance = 0.3 * abs(identity_error(values, speed, FAR[Cavitation.EXIT]))
+    for name in ("J_balanced", "J_published", "J_pcx"):
+        errors[name] = max(errors[name], balance)
+    # Two meshes may agree by chance in one number, hardly in all.
+    widest = max(errors[name] / scales[name] for name in errors if name not in (*WITHOUT_TOLERANCE, *LOOSE_WHERE_TORN))
+    errors = {name: max(error, COMPANY * widest * scales[name]) for name, error in errors.items()}
+    ok = coarse.outcome.ok and fine.outcome.ok
+    outcome = Outcome.CONVERGED if ok else (fine.outcome if coarse.outcome.ok else coarse.outcome)
+    steps, krylov = (getattr(coarse.iterated, name) + getattr(fine.iterated, name) for name in ("steps", "krylov_steps"))
+    return Pair(coarse, fine, values, errors, scales, outcome, steps, krylov)
+
+
+def held(pair: Pair) -> float:
+    """Return the largest error of those that the tolerance holds."""
+    return max(
+        pair.errors[name] / pair.scales[name] for name in pair.errors if name not in (*WITHOUT_TOLERANCE, *LOOSE_WHERE_TORN)
+    )
+
+
+def refine_cavitated(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair | None = None) -> Pair | Outcome:
+    """Return a state whose estimated error holds a tolerance from that of the full film, or the best that was found.
+
+    ``known`` is the state with a larger error.
+    """
+    found = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
+    model = replace(found.model, cavitation=Cavitation.EXIT)
+    base = resolution(speed, law, DEGREE, FIRST_ANGLES, model)
+    base = replace(base, splits=found.splits if base.doublings == found.doublings else ())
+    start, mesh = guess.unknowns, guess.mesh
+    if speed >= RIGID:
+        mesh = operators_of(base).mesh
+        start = rigid(mesh, speed)
+    best = known
+    try:
+        last = solve_level(base, speed, law, start, mesh, TOLERANCE)
+        if not last.outcome.ok:
+            return last.outcome
+        for few, many in zip(LADDER[:-1], LADDER[1:], strict=True):
+            pair = _pair(replace(base, modes=few), many, speed, law, last)
+            if isinstance(pair, Outcome):
+                return pair if best is None else replace(best, outcome=pair)
+            best, last = pair, pair.fine
+            if held(pair) <= rtol:
+                return pair
+    except MeshTooLargeError:
+        pass
+    return Outcome.REFINEMENT_LIMIT if best is None else replace(best, outcome=Outcome.REFINEMENT_LIMIT)
+
+
+def rigid(mesh: PolarMesh, speed: float) -> Unknowns:
+    """Return about the state of a rigid ball: half of the pressure of its full film."""
+    offset = RIGID_CAVITATED * speed**2
+    gap = np.tile(offset + 0.5 * mesh.radii**2, (mesh.modes, 1))
+    x = mesh.radii * np.cos(mesh.angles)[:, None]
+    return Unknowns(gap, np.maximum(-0.2 * speed * x / gap**2, 0.0), offset)
+
+
+def _pair(coarser: Resolution, angles: int, speed: float, law: ContactLaw, last: Level) -> Pair | Outcome:
+    coarse = solve_level(coarser, speed, law, last.unknowns, last.mesh, TOLERANCE)
+    if not coarse.outcome.ok:
+        return coarse.outcome
+    finer = replace(coarser, modes=angles, degree=DEGREE + 2)
+    fine = solve_level(finer, speed, law, coarse.unknowns, coarse.mesh, TOLERANCE)
+    return pair_of(coarse, fine) if fine.outcome.ok else fine.outcome
+
+
+def follow_cavitated(
+    speed: float, law: ContactLaw, neighbour: Pair, rtol: float, line: Sequence[tuple[float, Pair]] = ()
+) -> Pair | None:
+    """Return the state of a neighbour's meshes at other groups, or None where it does not come from there."""
+    if not fits(neighbour.fine.resolution, speed, law):
+        return None
+    old_coarse, old_fine = neighbour.coarse, neighbour.fine
+    kept = old_coarse.iterated.preconditioner
+    coarse = solve_level(
+        old_coarse.resolution, speed, law, old_coarse.unknowns, old_coarse.mesh, TOLERANCE, kept, max_steps=15
+    )
+    if not coarse.outcome.ok:
+        return None
+    # What the finer mesh had beyond the coarser one, the neighbour tells.
+    carried = moved(coarse.unknowns, coarse.mesh, old_fine.mesh)
+    known = moved(old_coarse.unknowns, old_coarse.mesh, old_fine.mesh)
+    fluid = np.maximum(carried.fluid + old_fine.unknowns.fluid - known.fluid, np.finfo(float).tiny)
+    guess = Unknowns(
+        carried.gap * (old_fine.unknowns.gap / known.gap),
+        np.where(carried.fluid == 0.0, 0.0, fluid),
+        carried.offset + (old_fine.unknowns.offset - known.offset),
+    )
+    kept = old_fine.iterated.preconditioner
+    fine = solve_level(old_fine.resolution, speed, law, guess, old_fine.mesh, TOLERANCE, kept, max_steps=15)
+    return pair_of(coarse, fine) if fine.outcome.ok else None
+
+
+def tolerance_of(rtol: float) -> float:
+    """Return the tolerance that is aimed at."""
+    return max(rtol, FINEST_RTOL)
+
+
+__all__ = ["follow_cavitated", "held", "refine_cavitated", "tolerance_of"]

@@ -1,0 +1,116 @@
+"""A ball whose film ends at ambient pressure: independent states, limits, and what fills the wake."""
+
+import math
+
+import numpy as np
+import pytest
+
+from stribeck.contacts.cut_off import CAVITATED, RUPTURE
+from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import Model
+from stribeck.equations.point.wake import rupture_line, shear_missing
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.quantities.units import InputError
+from stribeck.solver.point.solve import solve_cold, solve_from
+
+EXIT = Model(cavitation=Cavitation.EXIT)
+
+# Speed, kappa; central and minimum gap, contact share, each with its uncertainty: finite volumes on three grids.
+FINITE_VOLUMES = [
+    (0.1, 0.1, (0.256338, 4e-6), (0.255425, 5e-6), (0.83863, 3e-5)),
+    (0.1, 0.0, (0.096783, 2e-6), (0.0708, 1e-4), (0.0, 1e-9)),
+    pytest.param(1.0, 0.0, (0.42996, 2e-5), (0.3601, 1e-4), (0.0, 1e-9), marks=pytest.mark.slow),
+    pytest.param(0.01, 0.0, (0.024598, 1e-6), (0.0160, 3e-4), (0.0, 1e-9), marks=pytest.mark.slow),
+    pytest.param(0.01, 0.01, (0.030522, 1e-6), (0.027614, 5e-6), (0.58045, 5e-5), marks=pytest.mark.slow),
+]
+
+
+def ball(speed, kappa, load=1e-3, model=EXIT):
+    return Groups(speed, load, kappa * load ** (2 / 3), geometry="point", model=model)
+
+
+@pytest.mark.parametrize(("speed", "kappa", "central", "minimum", "share"), FINITE_VOLUMES)
+def test_states_agree_with_finite_volumes(speed, kappa, central, minimum, share):
+    state = solve_cold(ball(speed, kappa), 1e-4)
+    assert state.outcome.ok
+    assert state.error_estimate <= 1e-4
+    for name, (value, uncertainty) in zip(
+        ("central_gap", "minimum_gap", "contact_load_share"), (central, minimum, share), strict=True
+    ):
+        assert abs(state.values[name] - value) <= uncertainty + state.absolute_errors[name], name
+    assert abs(state.load_error) < 1e-8
+    assert abs(state.identity_error) <= 1e-6 * state.scales["J_balanced"]
+    assert state.nodal_fluid_pressure.min() == 0.0
+
+
+def test_in_boundary_lubrication_the_share_of_the_fluid_grows_with_the_speed_itself():
+    slow, slower = (solve_cold(ball(speed, 0.1), 1e-3).values["fluid_load_share"] for speed in (1e-4, 1e-5))
+    assert slow / 1e-4 == pytest.approx(1.664, rel=5e-4)
+    assert math.log10(slow / slower) == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.slow
+def test_in_boundary_lubrication_of_smoother_surfaces_the_share_is_that_of_finite_volumes():
+    assert solve_cold(ball(1e-6, 0.01), 1e-3).values["fluid_load_share"] / 1e-6 == pytest.approx(35.470, rel=5e-4)
+
+
+@pytest.mark.slow
+def test_a_fast_ball_is_rigid():
+    state = solve_cold(ball(30.0, 0.0), 1e-4)
+    assert 4 * math.pi * math.sqrt(state.values["central_gap"]) / 30.0 == pytest.approx(5.9597, rel=1e-4)
+
+
+@pytest.mark.quick
+def test_far_away_pressure_and_friction_are_those_of_the_angular_law():
+    # g'' - 9 g = 2 cos(theta) with g = g' = 0 at the line and g' = 0 upstream, by finite differences.
+    n = 1000
+    angle = np.linspace(RUPTURE, np.pi, n + 1)
+    step = angle[1] - angle[0]
+    matrix = np.diag(np.full(n + 1, -2 / step**2 - 9))
+    matrix += np.diag(np.full(n, 1 / step**2), 1) + np.diag(np.full(n, 1 / step**2), -1)
+    matrix[0, :2], matrix[n, n - 1] = (1.0, 0.0), 2 / step**2
+    right = 2 * np.cos(angle)
+    right[0] = 0.0
+    g = np.linalg.solve(matrix, right)
+    assert abs(g[1]) < 2 * step**2  # the slope at the line
+    product = g * np.cos(angle)
+    moment = 2 * step * (product.sum() - 0.5 * product[-1])
+    assert CAVITATED.poiseuille == pytest.approx(-2 * moment, rel=3e-5)
+    assert CAVITATED.pressure == pytest.approx(-4 * moment / math.pi, rel=3e-5)
+    wake = np.linspace(0, RUPTURE, 2001)
+    wet = float(((10 / 9 * np.sin(wake) ** 2)[1:-1]).sum() + 5 / 9 * math.sin(RUPTURE) ** 2) * (wake[1] - wake[0])
+    assert CAVITATED.couette == pytest.approx(2 / 3 * (math.pi - RUPTURE + wet), rel=1e-6)
+
+
+@pytest.mark.quick
+def test_streaks_in_the_wake_carry_the_flow_of_the_line_of_rupture():
+    mesh = PolarMesh(np.array([0.0, 0.5, 1.0, 2.0, 6.0]), 3, 12, 40)
+    x, y = mesh.radii * np.cos(mesh.angles)[:, None], mesh.radii * np.sin(mesh.angles)[:, None]
+    gap = 1.0 + 0.5 * (x**2 + y**2)
+    front = 0.4 + y / 3
+    fluid = np.where(x < front, (front - x) ** 2, 0.0)
+    line = rupture_line(mesh, gap, fluid)
+    at = np.array([0.3, 1.0, 3.0])
+    assert line.gap_at(at) == pytest.approx(1.0 + 0.5 * ((0.4 + at / 3) ** 2 + at**2), rel=3e-3)
+    # The integral of (1 - h_e/h)/h over the wake up to the rim, on a fine grid of its own.
+    v, u = np.meshgrid((np.arange(1500) + 0.5) * 6 / 1500, (np.arange(1500) + 0.5) * 6 / 1500)
+    h, line_h = 1.0 + 0.5 * (u**2 + v**2), 1.0 + 0.5 * ((0.4 + v / 3) ** 2 + v**2)
+    inside = (u > 0.4 + v / 3) & (u**2 + v**2 < 36)
+    expected = 2 * ((1 - line_h / h) / h)[inside].sum() * (6 / 1500) ** 2
+    assert shear_missing(mesh, gap, fluid) == pytest.approx(expected, rel=5e-3)
+
+
+@pytest.mark.quick
+def test_neighbours_lead_to_the_state_that_a_cold_start_finds():
+    near = solve_cold(ball(0.1, 0.1), 1e-3)
+    warm, cold = solve_from(near, ball(0.12, 0.1), 1e-3), solve_cold(ball(0.12, 0.1), 1e-3)
+    assert warm.outcome.ok
+    for name, value in cold.values.items():
+        assert abs(warm.values[name] - value) <= 2 * (warm.absolute_errors[name] + cold.absolute_errors[name]), name
+
+
+@pytest.mark.quick
+def test_a_cavity_at_another_pressure_is_refused_by_name():
+    with pytest.raises(InputError, match="cavitation = 'reform': of a ball the film ends at ambient pressure"):
+        solve_cold(ball(0.1, 0.1, model=Model(cavitation=Cavitation.REFORM)))
