@@ -29,8 +29,9 @@ from scipy.linalg import lu_factor, lu_solve
 
 from stribeck._types import Array, Flags, Indices
 from stribeck.contacts.cut_off import CAVITATED, FarFilm
+from stribeck.equations.damping import longest_step
 from stribeck.equations.point.far_field import particular
-from stribeck.equations.point.iteration import SMALLEST_PART, Iterated, longest_step, step_size
+from stribeck.equations.point.iteration import SMALLEST_PART, Iterated, step_size
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Unknowns
 from stribeck.equations.point.wake import shear_missing
