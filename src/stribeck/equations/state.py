@@ -23,6 +23,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import Mesh, adapt, graded
 from stribeck.quantities.outcome import Outcome
+from stribeck.solids.solid import lengths_of
 
 CHORD = 0.25
 """Contraction above which a kept factorisation is given up."""
@@ -45,6 +46,9 @@ FINEST_OF_LAYER = 0.75
 
 REACH_OF_LAYER = 24.0
 """Distance in thicknesses beyond which a layer is not felt."""
+
+FORGOTTEN = 30.0
+"""Memories of a solid after which nothing of a pressure is left."""
 
 TAIL_OF_ERROR = 0.2
 """Tolerance of a mesh that goes with an error of one."""
@@ -252,7 +256,7 @@ def mesh_for(
     width = np.sqrt(1.0 + central_gap)
     scale = 2.0 ** round(float(np.log2(width).mean()))
     minimum_position = guess.minimum_position / to_guess
-    thickness = float(getattr(groups.model.solid, "thickness", math.inf))
+    thickness, memories = lengths_of(groups.model.solid)
 
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
@@ -288,12 +292,18 @@ def mesh_for(
             wide = half_widths * np.where(half_widths > FINEST_OF_LAYER * thickness, wrong.reshape(x.shape).max(axis=1), 0.0)
             missed = wide > (tolerance / TAIL_OF_ERROR) ** 2
             fields.append(np.where(missed[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
+        if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
+            behind = x - (centre + float(width.mean()))
+            fading = [min(1 / de, de) ** 0.5 * np.exp(-np.maximum(behind, 0.0) / de) for de in memories]
+            fields.append(np.where((behind > 0).all(axis=1)[:, None], np.stack(fading), 0.0))
         return np.concatenate(fields)
 
     reach = (8 if order < LONG_REACH_ORDER else 16) * scale
     if thickness < math.inf:  # beyond the panels in x a layer is felt only where it is pressed
         carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_OF_ERROR / tolerance
         reach = max(reach, min(REACH_OF_LAYER * thickness, carried))
+    if memories:  # where the panel through infinity begins, all is forgotten
+        reach = max(reach, FORGOTTEN * max(memories))
     if not ends:
         return adapt(fields, scale, reach, order, tolerance, guess.mesh if isinstance(guess, State) else None)
     mesh = adapt(fields, scale, 2 * reach, order, tolerance)

@@ -9,7 +9,7 @@ Each law is of the form :math:`\tau t/\eta_0 = g(t \dot\gamma)` with one time t,
         x \, [\epsilon + (1 - \epsilon)(1 + x^2)^{(n-1)/2}] & \text{Carreau} \\
         x \, [\epsilon + (1 - \epsilon)/(1 + x^m)] & \text{Cross} \\
         \operatorname{arsinh} x, \quad t = \eta_0/\tau_0 & \text{Eyring} \\
-        x^n & \text{power law}
+        x \, (10^{-16} + x^2)^{(n-1)/2} \approx x^n & \text{power law}
     \end{cases}
 
 Source: [Carreau 1972], [Cross 1965], [Eyring 1936].
@@ -18,9 +18,11 @@ Source: [Carreau 1972], [Cross 1965], [Eyring 1936].
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Self
+from inspect import cleandoc
+from typing import Self, TypeVar
 
 import numpy as np
 
@@ -31,8 +33,14 @@ from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Carreau", "Cross", "Eyring", "PowerLaw"]
 
+Plateaus = TypeVar("Plateaus", bound="_BetweenPlateaus")
+
 SMALLEST_EXPONENT = 0.05
 """Of fluids that thin: with less, the stress hardly depends on the rate, as that of a plastic solid."""
+
+LOWEST = 1e-8
+"""Rate times relaxation time below which a power law has its plateau: without one, pressure and drag fall off so slowly far
+away that for n <= 1/2 the drag has no bound."""
 
 MILDEST = 1e-3
 """What plateaus and stresses change by on the way from nearly Newtonian fluids."""
@@ -67,10 +75,8 @@ def _table(law: _Tabulated) -> Table:
 
 
 @dataclass(frozen=True, init=False)
-class Carreau(_Tabulated):
-    r"""The fluid that thins from one plateau of its viscosity to another.
-
-    .. math:: \eta = \eta_\infty + (\eta_0 - \eta_\infty) \, [1 + (t \dot\gamma)^2]^{(n-1)/2}
+class _BetweenPlateaus(_Tabulated):
+    r"""A law with a plateau of the viscosity at low and one at high rates.
 
     :math:`\eta_0` is the viscosity of the contact.
 
@@ -79,7 +85,7 @@ class Carreau(_Tabulated):
     relaxation_time : str or float
         :math:`t > 0` [s]; with groups :math:`t U/u_\mathrm{Hz}`, the Weissenberg number at their speed.
     exponent : float
-        :math:`n`, 0.05 to 1 [-]; 1 is the Newtonian fluid.
+        Of the law [-].
     infinite_viscosity : str or float
         :math:`\eta_\infty \ge 0` [Pa s], below :math:`\eta_0`; with groups over :math:`\eta_0`.
 
@@ -92,7 +98,7 @@ class Carreau(_Tabulated):
     -----
     If the viscosity grows with the pressure, so do both plateaus and the time t: the stress at which thinning begins is held.
 
-    Source: [Carreau 1972].
+    Source: [law].
     """
 
     relaxation_time: float
@@ -100,13 +106,13 @@ class Carreau(_Tabulated):
     infinite_viscosity: float
 
     def __init__(self, relaxation_time: str | float, exponent: float, infinite_viscosity: str | float = 0.0) -> None:
-        _set(self, relaxation_time=_time(relaxation_time), exponent=_exponent(exponent))
+        _set(self, relaxation_time=_time(relaxation_time), exponent=self._checked(exponent))
         _set(self, infinite_viscosity=_infinite(infinite_viscosity))
 
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-        return "carreau"
+    @staticmethod
+    def _checked(exponent: float) -> float:
+        """Return the exponent, if it is one of the law."""
+        return _exponent(exponent)
 
     @property
     def parameters(self) -> dict[str, float | str]:
@@ -121,6 +127,30 @@ class Carreau(_Tabulated):
     def scaled(self, units: FilmUnits) -> Self:
         """Return the law in Hertz units."""
         return type(self)(self.relaxation_time / units.time, self.exponent, _ratio(self.infinite_viscosity, units))
+
+    def _with_time_one(self) -> Self:
+        return type(self)(1.0, self.exponent, self.infinite_viscosity)
+
+
+def _documented(exponent: str, source: str) -> Callable[[type[Plateaus]], type[Plateaus]]:
+    """Return the decorator that adds to a docstring what both laws say of themselves in the same words."""
+
+    def decorator(law: type[Plateaus]) -> type[Plateaus]:
+        law.__doc__ = cleandoc(law.__doc__ or "") + "\n\n" + cleandoc(_BetweenPlateaus.__doc__ or "").partition("\n\n")[2]
+        law.__doc__ = law.__doc__.replace("Of the law [-].", exponent).replace("[law]", source)
+        return law
+
+    return decorator
+
+
+@_documented(":math:`n`, 0.05 to 1 [-]; 1 is the Newtonian fluid.", "[Carreau 1972]")
+class Carreau(_BetweenPlateaus):
+    r"""The fluid that thins from one plateau of its viscosity to another.
+
+    .. math:: \eta = \eta_\infty + (\eta_0 - \eta_\infty) \, [1 + (t \dot\gamma)^2]^{(n-1)/2}
+    """
+
+    name = "carreau"
 
     def milder(self, part: float) -> Self:
         """Return the fluid whose viscosity is that to the power of the part, nearly."""
@@ -132,73 +162,29 @@ class Carreau(_Tabulated):
         thinning = (1 - rest) * np.exp(0.5 * (n - 1) * np.log1p(square))
         return rate * (rest + thinning), rest + thinning * (1 + (n - 1) * (square / (1 + square)))
 
-    def _with_time_one(self) -> Carreau:
-        return Carreau(1.0, self.exponent, self.infinite_viscosity)
-
     def _smallest(self) -> float:
         return -21.0
 
 
-@dataclass(frozen=True, init=False)
-class Cross(_Tabulated):
+@_documented(":math:`m`, 0.1 to 0.95 [-]; the viscosity falls as the rate to the power -m.", "[Cross 1965]")
+class Cross(_BetweenPlateaus):
     r"""The fluid that thins from one plateau of its viscosity to another, more gradually than Carreau's.
 
     .. math:: \eta = \eta_\infty + \frac{\eta_0 - \eta_\infty}{1 + (t \dot\gamma)^m}
-
-    :math:`\eta_0` is the viscosity of the contact.
-
-    Parameters
-    ----------
-    relaxation_time : str or float
-        :math:`t > 0` [s]; with groups :math:`t U/u_\mathrm{Hz}`, the Weissenberg number at their speed.
-    exponent : float
-        :math:`m`, 0.1 to 0.95 [-]; the viscosity falls as the rate to the power -m.
-    infinite_viscosity : str or float
-        :math:`\eta_\infty \ge 0` [Pa s], below :math:`\eta_0`; with groups over :math:`\eta_0`.
-
-    Raises
-    ------
-    InputError
-        Where a value is impossible or its unit is wrong.
-
-    Notes
-    -----
-    If the viscosity grows with the pressure, so do both plateaus and the time t: the stress at which thinning begins is held.
-
-    Source: [Cross 1965].
     """
 
-    relaxation_time: float
-    exponent: float
-    infinite_viscosity: float
+    name = "cross"
 
-    def __init__(self, relaxation_time: str | float, exponent: float, infinite_viscosity: str | float = 0.0) -> None:
+    @staticmethod
+    def _checked(exponent: float) -> float:
+        """Return the exponent, if it is one of the law."""
         m = to_si(exponent, "number", "exponent")
         if not 0.1 <= m <= 1 - SMALLEST_EXPONENT:
             raise InputError(
                 f"exponent = {show(exponent)} of a Cross fluid must lie between 0.1 and {1 - SMALLEST_EXPONENT:g}: its "
                 "viscosity falls as the rate to the power -exponent. Of a Carreau fluid it is 1 - n."
             )
-        _set(self, relaxation_time=_time(relaxation_time), exponent=m, infinite_viscosity=_infinite(infinite_viscosity))
-
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-        return "cross"
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """All three."""
-        return _parameters(self, "relaxation_time", "exponent", "infinite_viscosity")
-
-    @property
-    def time(self) -> float:
-        """The relaxation time."""
-        return self.relaxation_time
-
-    def scaled(self, units: FilmUnits) -> Self:
-        """Return the law in Hertz units."""
-        return type(self)(self.relaxation_time / units.time, self.exponent, _ratio(self.infinite_viscosity, units))
+        return m
 
     def milder(self, part: float) -> Self:
         """Return the fluid with a higher plateau at high rates."""
@@ -209,9 +195,6 @@ class Cross(_Tabulated):
         m, rest, power = self.exponent, self.infinite_viscosity, rate**self.exponent
         thinning = (1 - rest) / (1 + power)
         return rate * (rest + thinning), rest + thinning * (1 - m * power / (1 + power))
-
-    def _with_time_one(self) -> Cross:
-        return Cross(1.0, self.exponent, self.infinite_viscosity)
 
     def _smallest(self) -> float:
         return -38.0 / self.exponent
@@ -289,9 +272,9 @@ class Eyring(RateLaw):
 
 @dataclass(frozen=True, init=False)
 class PowerLaw(RateLaw):
-    r"""The fluid whose viscosity falls as a power of the rate, without plateaus.
+    r"""The fluid whose viscosity falls as a power of the rate, above a rate far below those of films.
 
-    .. math:: \eta = \eta_0 (t \dot\gamma)^{n-1}
+    .. math:: \eta = \eta_0 \, [10^{-16} + (t \dot\gamma)^2]^{(n-1)/2} \approx \eta_0 (t \dot\gamma)^{n-1}
 
     The viscosity of the contact is that at the rate 1/t.  With the consistency :math:`K = \eta_0 t^{n-1}`, that is
     :math:`\tau = K \dot\gamma^n`.
@@ -311,10 +294,10 @@ class PowerLaw(RateLaw):
 
     Notes
     -----
-    Without a plateau the viscosity is infinite where nothing flows, and pressures fall off far away as broken powers, which
-    panels resolve slowly: with exponents near 0.7 a tolerance of 1e-4 is reached, below 0.5 often none.  The outcome says so.
-    A Carreau fluid with a long relaxation time is the same where it matters.  If the viscosity grows with the pressure, the
-    rate at a given stress falls by its factor, as with the other laws.
+    Below the rate :math:`10^{-8}/t` the viscosity is constant, which no film feels.  A pure power law is infinitely viscous where
+    nothing flows: its drag falls off so slowly along the gap that it has no bound for :math:`n \le 1/2`.  There a large part of
+    the drag comes from far outside the contact, where no cylinder is a parabola; films and load shares do not.  If the viscosity
+    grows with the pressure, the rate at a given stress falls by its factor, as with the other laws.
     """
 
     relaxation_time: float
@@ -347,21 +330,21 @@ class PowerLaw(RateLaw):
         return type(self)(self.relaxation_time, 1 - part * (1 - self.exponent))
 
     def stress(self, rate: Array) -> tuple[Array, Array]:
-        """Return ``x**n`` and its slope."""
-        n = self.exponent
-        rate = np.maximum(rate, 1e-300)
-        g = rate**n
-        return g, n * g / rate
+        """Return g(x) and its slope."""
+        n, square = self.exponent, rate * rate
+        whole = square + LOWEST**2
+        viscosity = whole ** (0.5 * (n - 1))
+        return rate * viscosity, viscosity * (1 + (n - 1) * square / whole)
 
     def rate(self, stress: Array) -> Array:
         """Return the rate at a stress."""
-        return np.asarray(stress ** (1 / self.exponent))
+        return LOWEST * _table(Carreau(1.0, self.exponent)).rate(stress / LOWEST**self.exponent)
 
     def moments(self, rate: Array) -> tuple[Array, Array]:
-        """Return ``n g x/(n + 1)`` and ``n g**2 x/(2 n + 1)``."""
-        n = self.exponent
-        g = rate**n
-        return n / (n + 1) * g * rate, n / (2 * n + 1) * g * g * rate
+        """Return both moments: those of Carreau's law in the units of its plateau."""
+        n, unit = self.exponent, LOWEST**self.exponent
+        first, second = _table(Carreau(1.0, n)).moments(rate / LOWEST, self.stress(rate)[0] / unit)
+        return LOWEST * unit * first, LOWEST * unit**2 * second
 
 
 def _set(law: RateLaw, **values: float) -> None:

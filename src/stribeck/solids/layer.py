@@ -31,6 +31,7 @@ from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import nodal_deflection
+from stribeck.solids.solid import Lengths
 
 __all__ = ["Layer"]
 
@@ -82,6 +83,11 @@ class Layer:
     def parameters(self) -> dict[str, float | str]:
         """Thickness and Poisson's ratio."""
         return {"thickness": self.thickness, "poisson_ratio": self.poisson_ratio}
+
+    @property
+    def lengths(self) -> Lengths:
+        """Its thickness, for meshes."""
+        return Lengths(self.thickness)
 
     def scaled(self, length: float, speed: float = 1.0) -> Layer:
         """Return the layer with its thickness over a length, the Hertz half-width."""

@@ -1,14 +1,39 @@
 """What the equations ask of an elastic body: its deflection under a pressure on the line.
 
-A new solid is a new file with one frozen class that has the members of :class:`Solid`.
+A new solid is a new file with one frozen class that has the members of :class:`Solid`, and ``lengths`` if it has any.
 """
 
 from __future__ import annotations
 
-from typing import Protocol
+import math
+from typing import NamedTuple, Protocol
 
 from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
+
+
+class Lengths(NamedTuple):
+    """The lengths of a body that a mesh must resolve [a].
+
+    Attributes
+    ----------
+    thickness : float
+        Of the thinnest layer; infinite without one.
+    memories : tuple of float
+        Over which the body remembers the pressure that has passed.
+    """
+
+    thickness: float = math.inf
+    memories: tuple[float, ...] = ()
+
+    def joined(self, other: Lengths) -> Lengths:
+        """Return the lengths of two bodies."""
+        return Lengths(min(self.thickness, other.thickness), self.memories + other.memories)
+
+
+def lengths_of(solid: Solid) -> Lengths:
+    """Return the lengths that a solid has beside the width of the contact: none where it does not tell any."""
+    return getattr(solid, "lengths", Lengths())
 
 
 class Solid(Protocol):

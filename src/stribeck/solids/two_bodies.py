@@ -15,7 +15,7 @@ from stribeck._types import Array
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import HalfPlane
-from stribeck.solids.solid import Solid
+from stribeck.solids.solid import Lengths, Solid, lengths_of
 
 __all__ = ["TwoBodies"]
 
@@ -67,6 +67,11 @@ class TwoBodies:
     def uses_speed(self) -> bool:
         """Whether one of them is viscoelastic."""
         return any(getattr(body, "uses_speed", False) for body in (self.first, self.second))
+
+    @property
+    def lengths(self) -> Lengths:
+        """Those of both, for meshes."""
+        return lengths_of(self.first).joined(lengths_of(self.second))
 
     def scaled(self, length: float, speed: float = 1.0) -> Solid:
         """Return both in Hertz units."""

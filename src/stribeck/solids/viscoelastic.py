@@ -29,7 +29,7 @@ from stribeck._types import Array
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import HalfPlane
-from stribeck.solids.solid import Solid
+from stribeck.solids.solid import Lengths, Solid, lengths_of
 
 __all__ = ["Prony", "StandardLinearSolid", "creep_of_relaxation", "hysteresis_friction", "memory"]
 
@@ -45,6 +45,11 @@ class _Viscoelastic:
     def _creep(self) -> tuple[float, tuple[tuple[float, float], ...]]:
         """Return j_0 and pairs of j and time."""
         raise NotImplementedError
+
+    @property
+    def lengths(self) -> Lengths:
+        """Its Deborah numbers and the lengths of its base, for meshes."""
+        return lengths_of(self.base).joined(Lengths(memories=tuple(time for _, time in self._creep()[1])))
 
     def deflection(self, mesh: Mesh) -> Array:
         """Return the matrix from nodal pressures to the deflection at the nodes [u_Hz per p_Hz].

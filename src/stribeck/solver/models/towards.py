@@ -36,7 +36,7 @@ from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.half_plane import HalfPlane
-from stribeck.solids.solid import Solid
+from stribeck.solids.solid import Lengths, Solid, lengths_of
 
 __all__ = ["path_to_model"]
 
@@ -198,6 +198,11 @@ class BlendedSolid:
     def parameters(self) -> dict[str, float | str]:
         """Those of the solid."""
         return self.solid.parameters
+
+    @property
+    def lengths(self) -> Lengths:
+        """Those of the solid."""
+        return lengths_of(self.solid)
 
     def deflection(self, mesh: Mesh) -> Array:
         """Return the weighted mean of both."""
