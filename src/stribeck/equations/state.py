@@ -20,6 +20,7 @@ from stribeck.contacts.line import Groups
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.fluid import fall_of
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import Mesh, adapt, graded
 from stribeck.quantities.outcome import Outcome
@@ -46,6 +47,18 @@ FINEST_OF_LAYER = 0.75
 
 REACH_OF_LAYER = 24.0
 """Distance in thicknesses beyond which a layer is not felt."""
+
+BROKEN = 30.0
+"""Factor by which a pressure that falls off as a broken power is resolved better at infinity than one that is smooth there."""
+
+FAR_OFF = 512.0
+"""Distance, over the scale of the mesh, up to which panels resolve such a power."""
+
+WIDEST_FAR = 0.5
+"""Half-width over the distance of panels on which a broken power is resolved."""
+
+COARSE = 1e-3
+"""Tolerance of a mesh from which it serves to find a state, not to read off drag."""
 
 FORGOTTEN = 30.0
 """Memories of a solid after which nothing of a pressure is left."""
@@ -180,9 +193,14 @@ class State:
         return np.log(self.gap / self.mesh.far)
 
     @cached_property
+    def fluid_pressure(self) -> Array:
+        """Fluid pressure at the nodes [p_Hz]."""
+        return self.equations.pressures(self.y)[1]
+
+    @cached_property
     def _nodal(self) -> Array:
         """Nodal fields of the guess that this state is for others: :attr:`shape` and fluid pressure."""
-        return np.stack([self.shape, self.equations.pressures(self.y)[1]])
+        return np.stack([self.shape, self.fluid_pressure])
 
     @cached_property
     def _on_other_mesh(self) -> dict[Mesh, Array]:
@@ -256,6 +274,10 @@ def mesh_for(
     width = np.sqrt(1.0 + central_gap)
     scale = 2.0 ** round(float(np.log2(width).mean()))
     minimum_position = guess.minimum_position / to_guess
+    plateau, broken = fall_of(groups.model.film, float(groups.speed))
+    lift = 1.0
+    if broken and isinstance(guess, State):  # kinks that no load feels are felt by the flux
+        lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
     thickness, memories = lengths_of(groups.model.solid)
 
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
@@ -272,7 +294,11 @@ def mesh_for(
             if ends and stretch[0, 0] == 1.0:
                 fluid = np.where(flat > 0, 0.0, fluid)
         edge_scale = np.minimum(1.0, half_widths / width) ** 0.5
-        pressures = width / np.repeat(edge_scale, x.shape[1], axis=-1) * np.stack([law.pressure(gap), fluid])
+        pressures = (
+            width
+            / np.repeat(edge_scale, x.shape[1], axis=-1)
+            * np.stack([law.pressure(gap), fluid if stretch[0, 0] != 1.0 else lift * fluid])
+        )
         nodal = (*gap.shape[:-1], *x.shape)
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
@@ -283,6 +309,11 @@ def mesh_for(
         shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[..., None]
         shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
         fields = [stretch * pressures.reshape(2, *nodal), shape[None], shear[None]]
+        if broken and stretch[0, 0] != 1.0:
+            fields[0] *= BROKEN
+        if broken and tolerance < COARSE and stretch[0, 0] == 1.0:  # the drag far away counts as that in the contact
+            far_apart = (half_widths > WIDEST_FAR * np.abs(centres)) & (half_widths > 2 * scale)
+            fields.append(np.where(far_apart[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
         if thickness < math.inf and stretch[0, 0] == 1.0:
             pressure = np.abs(np.stack([law.pressure(gap), fluid])).sum(axis=0)
             felt = groups.speed * (np.abs(flat) + np.repeat(half_widths, x.shape[1])) / gap**3
@@ -295,17 +326,21 @@ def mesh_for(
         if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
             behind = x - (centre + float(width.mean()))
             fading = [min(1 / de, de) ** 0.5 * np.exp(-np.maximum(behind, 0.0) / de) for de in memories]
-            fields.append(np.where((behind > 0).all(axis=1)[:, None], np.stack(fading), 0.0))
+            fields.append(np.where(np.all(behind > 0, axis=1)[:, None], np.stack(fading), 0.0))
         return np.concatenate(fields)
 
     reach = (8 if order < LONG_REACH_ORDER else 16) * scale
     if thickness < math.inf:  # beyond the panels in x a layer is felt only where it is pressed
         carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_OF_ERROR / tolerance
         reach = max(reach, min(REACH_OF_LAYER * thickness, carried))
+    if broken and tolerance < COARSE:
+        reach = max(reach, plateau, FAR_OFF * scale)
     if memories:  # where the panel through infinity begins, all is forgotten
         reach = max(reach, FORGOTTEN * max(memories))
     if not ends:
         return adapt(fields, scale, reach, order, tolerance, guess.mesh if isinstance(guess, State) else None)
+    if restart < math.inf:
+        reach = max(reach, restart)
     mesh = adapt(fields, scale, 2 * reach, order, tolerance)
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))
     places = [0.0] if restart == math.inf else [0.0, restart]

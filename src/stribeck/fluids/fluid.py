@@ -6,7 +6,7 @@ Steady flow keeps the mass flux m, the flux gap h*, the same at every x.  The la
 
 Gaps and m are in u_Hz, pressures in p_Hz, tractions in :math:`\eta_0 U/u_\mathrm{Hz}` with U the sum of the surface speeds.
 A new fluid is a new law of viscosity, density or rate (:mod:`stribeck.fluids.laws`), or one frozen class that has the members
-of :class:`Film`.
+of :class:`Film`, and ``fall(speed)`` if its pressure does not fall off as an even power.
 """
 
 from __future__ import annotations
@@ -27,6 +27,27 @@ class Slopes(NamedTuple):
     by_pressure: Array | None
     by_flux: Array
     by_speed: Array | None = None
+
+
+class Fall(NamedTuple):
+    """How the pressure of a film falls off far away, for meshes.
+
+    Attributes
+    ----------
+    plateau : float
+        Distance beyond which the viscosity is constant [a].
+    broken : bool
+        Whether it falls as a broken power of the distance.
+    """
+
+    plateau: float = 0.0
+    broken: bool = False
+
+
+def fall_of(film: Film, speed: float) -> Fall:
+    """Return how the pressure of a film falls off at a speed group: as an even power where the film does not tell."""
+    told = getattr(film, "fall", None)
+    return Fall() if told is None else told(speed)
 
 
 class Film(Protocol):

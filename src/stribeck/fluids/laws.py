@@ -133,6 +133,11 @@ class RateLaw(Law, Protocol):
     def time(self) -> float:
         """One over the rate at which thinning begins."""
 
+    @property
+    def plateau(self) -> float:
+        """Rate x below which the viscosity is constant up to even powers of it; zero where there is no such rate."""
+        return 1.0
+
     def stress(self, rate: Array) -> tuple[Array, Array]:
         """Return g(x) and its slope."""
 

@@ -174,6 +174,7 @@ class Cross(_BetweenPlateaus):
     """
 
     name = "cross"
+    plateau = 0.0
 
     @staticmethod
     def _checked(exponent: float) -> float:
@@ -294,10 +295,10 @@ class PowerLaw(RateLaw):
 
     Notes
     -----
-    Below the rate :math:`10^{-8}/t` the viscosity is constant, which no film feels.  A pure power law is infinitely viscous where
-    nothing flows: its drag falls off so slowly along the gap that it has no bound for :math:`n \le 1/2`.  There a large part of
-    the drag comes from far outside the contact, where no cylinder is a parabola; films and load shares do not.  If the viscosity
-    grows with the pressure, the rate at a given stress falls by its factor, as with the other laws.
+    Below the rate :math:`10^{-8}/t` the viscosity is constant, which no film feels.  A pure power law is infinitely viscous
+    where nothing flows: its drag falls off so slowly along the gap that it has no bound for :math:`n \le 1/2`.  There much of
+    the drag comes from far outside the contact, where no cylinder is a parabola; films and load shares do not.  If the
+    viscosity grows with the pressure, the rate at a given stress falls by its factor, as with the other laws.
     """
 
     relaxation_time: float
@@ -324,6 +325,11 @@ class PowerLaw(RateLaw):
     def scaled(self, units: FilmUnits) -> Self:
         """Return the law in Hertz units."""
         return type(self)(self.relaxation_time / units.time, self.exponent)
+
+    @property
+    def plateau(self) -> float:
+        """Rate below which the viscosity is constant."""
+        return LOWEST
 
     def milder(self, part: float) -> Self:
         """Return the fluid whose viscosity is that to the power of the part."""

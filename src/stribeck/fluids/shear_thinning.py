@@ -14,13 +14,14 @@ the fluid for the flow along the film too, so that the film depends on s.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.fluids.fluid import Slopes
+from stribeck.fluids.fluid import Fall, Slopes
 from stribeck.fluids.laws import DensityLaw, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.local_flow import Profile, profile
 from stribeck.fluids.viscosity import Constant, Incompressible
@@ -109,6 +110,11 @@ class ShearThinning:
         return replace(
             self, law=self.law.milder(part), viscosity=self.viscosity.milder(part), density=self.density.milder(part)
         )
+
+    def fall(self, speed: float) -> Fall:
+        """Return how the pressure falls off far away: there the rate is about 1/h, and h about x**2/2."""
+        rate = self.law.plateau
+        return Fall(math.sqrt(2 * self.law.time * speed / rate) if 0 < rate < 1 else 0.0, rate < 1)
 
     def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
         """Return G."""

@@ -16,6 +16,7 @@ from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
 from stribeck.equations.state import END_GAIN, State, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
+from stribeck.fluids.fluid import fall_of
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import with_positive_gap
@@ -100,8 +101,9 @@ def converge(
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
         fine, values, in_article = FineOperators(mesh), values_of(state, groups), state.equations.operators.is_article
         [estimate] = error_estimates(state.stacked, [values], fine)
-        # Where a film ends, meshes may share what makes their error.
-        if last is not None and mesh.size >= CLEARLY_FINER * last[0] and not state.equations.operators.has_exit:
+        # Where a film ends, or the rate falls to zero in a fluid without a plateau, meshes may share what makes their error.
+        shared = state.equations.operators.has_exit or fall_of(state.equations.film, 1.0).broken
+        if last is not None and mesh.size >= CLEARLY_FINER * last[0] and not shared:
             estimate = estimate.at_most(np.abs(values.array(in_article) - last[1]))
         last = mesh.size, values.array(in_article)
         if best.estimate is None or estimate.total < best.estimate.total:

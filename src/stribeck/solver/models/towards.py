@@ -64,8 +64,8 @@ BLENDING = Steps(1.0, 1.0, 1e-3)
 CAVITIES = 4001
 """Lengths of cavities that are looked at."""
 
-FIRST_SUCTION = 0.3
-"""Part of the largest suction that a film could begin anew with, with which the cavity begins."""
+FIRST_SUCTIONS = (0.3, 0.03, 1e-3)
+"""Parts of the largest suction that a film could begin anew with, with which the cavity begins: the longer the likelier."""
 
 DEEPENING = Steps(0.5, 1.0, 1e-3)
 SLOWING = Steps(0.7, 2.0, 1e-3)
@@ -259,8 +259,6 @@ def _reforming(groups: Groups, ended: Path[State]) -> Path[State]:
     slopes = film.gradient(gap, np.zeros_like(gap) if film.uses_pressure else None, flux) * float(groups.speed)
     cells = 0.5 * (slopes[1:] + slopes[:-1]) * np.diff(distance)
     suction = np.append(np.cumsum(cells[::-1])[::-1], 0.0)
-    start = min(wanted, FIRST_SUCTION * float(suction.max()))
-    length = float(distance[np.flatnonzero(suction >= start)[-1]])
 
     def correct(log_suction: float, history: Sequence[tuple[float, State]]) -> State | None:
         pressure = -wanted if log_suction == math.log(wanted) else -math.exp(log_suction)
@@ -268,7 +266,13 @@ def _reforming(groups: Groups, ended: Path[State]) -> Path[State]:
         guess = extrapolate(history, log_suction) if history else SeenFrom(state, state.exit, length, pressure)
         return _settled(here, guess)
 
-    return march(correct, math.log(start), math.log(wanted), DEEPENING)
+    for part in FIRST_SUCTIONS:
+        start = min(wanted, part * float(suction.max()))
+        length = float(distance[np.flatnonzero(suction >= start)[-1]])
+        path = march(correct, math.log(start), math.log(wanted), DEEPENING)
+        if path.outcome.ok:
+            break
+    return path
 
 
 def _extended(path: Path[State], state: State) -> Path[State]:
