@@ -26,8 +26,7 @@ from stribeck.equations.drag import Nodal, viscous_friction
 from stribeck.equations.line import LOAD, Equations, Operators, gradient_in_film, slopes_in_film
 from stribeck.equations.observables import ROW, VISCOUS, Observables, friction_integrals, friction_scale, gradients
 from stribeck.equations.position_error import position_errors
-from stribeck.equations.state import StackedStates
-from stribeck.fluids.fluid import fall_of
+from stribeck.equations.state import StackedStates, fall_of
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
 from stribeck.numerics.running_integral import RunningIntegral, Volterra
 from stribeck.quantities.outputs import ABSOLUTE, ENDS, NAMES

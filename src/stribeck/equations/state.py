@@ -20,11 +20,11 @@ from stribeck.contacts.line import Groups
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.fluid import fall_of
+from stribeck.fluids.fluid import Fall, Film
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import Mesh, adapt, graded
 from stribeck.quantities.outcome import Outcome
-from stribeck.solids.solid import lengths_of
+from stribeck.solids.solid import Lengths
 
 CHORD = 0.25
 """Contraction above which a kept factorisation is given up."""
@@ -223,6 +223,12 @@ class State:
         return found
 
 
+def fall_of(film: Film, speed: float) -> Fall:
+    """Return how the pressure of a film falls off at a speed group: as an even power where the film does not tell."""
+    told = getattr(film, "fall", None)
+    return Fall() if told is None else told(speed)
+
+
 def mesh_for(
     guess: Guess,
     groups: Groups,
@@ -278,7 +284,7 @@ def mesh_for(
     lift = 1.0
     if broken and isinstance(guess, State):  # kinks that no load feels are felt by the flux
         lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
-    thickness, memories = lengths_of(groups.model.solid)
+    thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
 
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()

@@ -44,12 +44,6 @@ class Fall(NamedTuple):
     broken: bool = False
 
 
-def fall_of(film: Film, speed: float) -> Fall:
-    """Return how the pressure of a film falls off at a speed group: as an even power where the film does not tell."""
-    told = getattr(film, "fall", None)
-    return Fall() if told is None else told(speed)
-
-
 class Film(Protocol):
     r"""A column of fluid between the surfaces: frozen, hashable, in Hertz units, for all speeds.
 

@@ -14,9 +14,8 @@ from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, erro
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.state import END_GAIN, State, mesh_for, solve_state
+from stribeck.equations.state import END_GAIN, State, fall_of, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
-from stribeck.fluids.fluid import fall_of
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import with_positive_gap
