@@ -185,9 +185,6 @@ def complete(app, docname, content):
         text, found = re.subn(r"(!\[[^\]]*\]\(images/curve\.png\))\s+\*.*?\*\n", LIVE, text, flags=re.DOTALL)
         if found != 1:
             raise ExtensionError("index.md has no picture for the live curve to replace")
-    if docname == "symbols":
-        theory = (HERE / "theory.md").read_text()
-        text += theory[theory.index("\n## 4.") : theory.index("\n## 5.")].split("\n", 2)[2].replace("](#", "](theory.md#")
     if docname in CONTENTS:
         below = "\n".join(CONTENTS[docname])
         text += f"\n```{{toctree}}\n:hidden:\n\n{below}\n```\n"

@@ -112,11 +112,9 @@ def test_every_public_name_is_documented():
     assert [name for name in sb.__all__ if not re.search(rf"\b{name}\b", code)] == []
 
 
-def names_in_tables_of(section):
-    """Return the names in code type of the tables of one section of theory.md, without their class."""
-    theory = TEXT[ROOT / "docs" / "theory.md"]
-    body = theory.split(f"\n## {section}", 1)[1].split("\n## ", 1)[0]
-    lines = [line for line in body.splitlines() if line.startswith("|")]
+def names_in_tables():
+    """Return the names in code type of the tables of symbols.md, without their class."""
+    lines = [line for line in TEXT[ROOT / "docs" / "symbols.md"].splitlines() if line.startswith("|")]
     return [name.rpartition(".")[2] for name in re.findall(r"`([A-Za-z_.0-9]+)`", "\n".join(lines))]
 
 
@@ -138,14 +136,14 @@ RESULTS += (
 def test_the_table_of_symbols_names_every_field(kind):
     parts = {"contact", "viscous", "total", "error"}
     fields = parts if kind is sb.Friction else {each.name for each in dataclasses.fields(kind) if each.name[0] != "_"}
-    assert fields - set(names_in_tables_of("4. Symbols")) == set()
+    assert fields - set(names_in_tables()) == set()
 
 
 def test_the_table_of_symbols_names_every_variable_of_a_data_file():
     pytest.importorskip("xarray")
     case = sb.load_case(ROOT / "examples" / "pdms_cylinder.toml")
     curve = sb.stribeck_curve(case.contact, speed=(1e-3, 1e-2), points=3)
-    assert set(curve.to_dataset().variables) - set(names_in_tables_of("4. Symbols")) <= {"speed"}
+    assert set(curve.to_dataset().variables) - set(names_in_tables()) <= {"speed"}
 
 
 def test_the_table_of_symbols_names_every_variable_of_a_sweep(tmp_path):
@@ -154,13 +152,13 @@ def test_the_table_of_symbols_names_every_variable_of_a_sweep(tmp_path):
     (tmp_path / "sweep.toml").write_text((ROOT / "examples" / "sweep.toml").read_text().replace("26", "2"))
     design = sb.load_sweep(tmp_path / "sweep.toml")
     contacts = sb.open_sweep(create_or_open(tmp_path / "contacts", design)).to_dataset()
-    assert {*groups.variables, *contacts.variables} - set(names_in_tables_of("4. Symbols")) == set()
+    assert {*groups.variables, *contacts.variables} - set(names_in_tables()) == set()
 
 
 def test_the_table_of_symbols_names_every_observable():
     state = sb.solve(sb.Groups(speed=0.0, load=0.1, roughness=0.0))
     inputs = {"message", "nodes"}
-    assert set(state.to_dict()) - inputs - set(names_in_tables_of("4. Symbols")) == set()
+    assert set(state.to_dict()) - inputs - set(names_in_tables()) == set()
 
 
 def test_the_shown_formulas_are_numbered_as_docstrings_cite_them():

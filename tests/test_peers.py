@@ -1,4 +1,4 @@
-"""The comparison with peers: the home-made solver, which shares no code with ours, and the tables that are shown."""
+"""The comparison with peers: the textbook solver, which shares no code with ours, and the tables that are shown."""
 
 import re
 import sys
@@ -15,7 +15,7 @@ BENCHMARKS = ROOT / "benchmarks"
 
 @pytest.fixture
 def textbook(load_benchmark):
-    """Return the home-made solver."""
+    """Return the textbook solver."""
     return load_benchmark("textbook")
 
 

@@ -1,4 +1,4 @@
-"""Lubricated rough line contacts: from a data sheet to a converged Stribeck curve."""
+"""Lubricated rough contacts, cylinder or ball: from a data sheet to a converged Stribeck curve."""
 
 from importlib import import_module as _import_module
 

@@ -282,7 +282,7 @@ class Solution(BaseSolution):
         numbers = {name: value for name, value in self.to_dict().items() if isinstance(value, float | int | str)}
         numbers |= {f"friction_{each}": self.friction(definition=each).total for each in DEFINITIONS}
         x = {"x": ("x", fields_.x, units[0], "position along the contact; fluid enters from the left")}
-        return new_dataset(columns, x, {"title": "Fields along a lubricated rough line contact"} | numbers)
+        return new_dataset(columns, x, {"title": "Fields along a lubricated rough contact"} | numbers)
 
     def _draw(self, path: Any, **options: Any) -> Any:
         from stribeck.solver.plot import plot_profile

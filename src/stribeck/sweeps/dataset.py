@@ -110,7 +110,7 @@ class Sweep(Exported, Shown, ByValue):
             {name: ("state", values, {"units": unit, "long_name": label}) for name, (values, unit, label) in columns.items()},
             coords={"state": ("state", np.arange(len(self)), {"units": "1", "long_name": "number of the state"})},
             attrs={
-                "title": self.about["title"] or "Sweep of lubricated rough line contacts",
+                "title": self.about["title"] or "Sweep of lubricated rough contacts",
                 "source": f"stribeck {self.about['version']}",
                 "complete": int(self.finished == len(self)),
                 "states": len(self),
