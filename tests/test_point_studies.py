@@ -63,7 +63,6 @@ def test_sensitivities_of_a_ball_are_those_of_frictions_beside_it(edge):
 @pytest.mark.parametrize(
     ("call", "what"),
     [
-        (lambda: sb.solve_batch(ball().groups), "solve_batch"),
         (lambda: sb.phase_diagram(ball()), "phase_diagram"),
     ],
 )

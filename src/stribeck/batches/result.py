@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -10,13 +11,14 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.batches.inputs import Contacts
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray, check_definition, sliding_part
+from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray, check_definition
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.quantities.inputs import quantity, refuse_former, unit_of
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import ALL_NAMES, FILMS, NAMES, OBSERVABLES, ROWS
+from stribeck.quantities.outputs import OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError
 
@@ -44,22 +46,12 @@ class BatchSolution(Exported, Shown, ByValue):
         The relative tolerance asked for.
     outcome : ndarray of Outcome
         How the solve of each state ended.
-    contact_load_share, fluid_load_share : ndarray
-        Parts of the load on asperities and fluid [-].
-    central_gap, minimum_gap, flux_gap : ndarray
-        Gap at x = 0, minimum gap and flux gap [u_Hz].
-    minimum_position : ndarray
-        Where the gap is at its minimum [a].
-    offset : ndarray
-        Height of the apex of the undeformed cylinder [u_Hz].
-    viscous_published, viscous_balanced : ndarray
-        Viscous friction for beta = 1 in its two definitions [-].
-    viscous_upper : ndarray
-        Viscous friction on the cylinder, for beta = 1 [-].
-    exit_position, reformation_position : ndarray
-        Where the film ends and begins anew [a]; nan where it does not.
-    relative_errors : ndarray, shape (observables, ...)
-        Estimated relative errors of the observables, absolute for the load shares; by name in :attr:`errors`.
+    values : dict of str to ndarray
+        The observables of the geometry by name; they are attributes too, such as ``contact_load_share`` or ``central_gap``.
+    errors : dict of str to ndarray
+        Estimated errors of the observables as a solution states them: relative, but absolute for the load shares.
+    error_estimate : ndarray
+        The largest of these of each state, as a solution states it.
     """
 
     groups: Groups
@@ -68,19 +60,24 @@ class BatchSolution(Exported, Shown, ByValue):
     varied: tuple[str, ...]
     rtol: float
     outcome: np.ndarray[Any, np.dtype[np.object_]]
-    contact_load_share: Array = field(repr=False)
-    fluid_load_share: Array = field(repr=False)
-    central_gap: Array = field(repr=False)
-    minimum_gap: Array = field(repr=False)
-    minimum_position: Array = field(repr=False)
-    flux_gap: Array = field(repr=False)
-    offset: Array = field(repr=False)
-    viscous_published: Array = field(repr=False)
-    viscous_balanced: Array = field(repr=False)
-    viscous_upper: Array = field(repr=False)
-    exit_position: Array = field(repr=False)
-    reformation_position: Array = field(repr=False)
-    relative_errors: Array = field(repr=False)
+    values: dict[str, Array] = field(repr=False)
+    errors: dict[str, Array] = field(repr=False)
+    error_estimate: Array = field(repr=False)
+
+    def __getattr__(self, name: str) -> Array:
+        """Return an observable under its own name."""
+        if not name.startswith("_") and name != "values" and name in self.values:
+            return self.values[name]
+        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
+
+    def __dir__(self) -> list[str]:
+        """Return the names of attributes, observables among them."""
+        return [*super().__dir__(), *self.values]
+
+    @property
+    def outputs(self) -> OutputTable:
+        """The table of the observables of this geometry."""
+        return OUTPUT_TABLES[self.groups.geometry]
 
     @property
     def ok(self) -> Flags:
@@ -88,14 +85,9 @@ class BatchSolution(Exported, Shown, ByValue):
         return np.array([one.ok for one in self.outcome.ravel()], dtype=bool).reshape(self.outcome.shape)
 
     @property
-    def error_estimate(self) -> Array:
-        """Largest estimated relative error of the observables of each state; load shares count absolutely."""
-        return np.asarray(np.fmax.reduce(self.relative_errors))
-
-    @property
-    def errors(self) -> dict[str, Array]:
-        """Estimated relative error of each observable; absolute for the load shares."""
-        return dict(zip(ALL_NAMES, self.relative_errors, strict=False))
+    def relative_errors(self) -> Array:
+        """All of :attr:`errors` in one array, shape (observables, ...)."""
+        return np.stack(list(self.errors.values()))
 
     @property
     def friction(self) -> FrictionArray:
@@ -112,21 +104,31 @@ class BatchSolution(Exported, Shown, ByValue):
     def _friction(
         self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
     ) -> FrictionArray:
-        mu0 = sliding_part(2 * self.groups.model.film.slide) * self._coefficient("boundary_friction", boundary_friction)
-        strength = self._coefficient("beta", beta)
-        name = f"viscous_{check_definition(definition)}"
-        viscous = strength * getattr(self, name)
-        error = np.abs(mu0) * self.relative_errors[0] + np.abs(viscous) * self.relative_errors[NAMES.index(name)]
+        rule, groups, definition = RULES[self.groups.geometry], self.groups, check_definition(definition)
+        inputs = {"beta": self._coefficient("beta", beta)}
+        for name, of in rule.inputs.items():
+            inputs.setdefault(name, self._each(of))
+        mu0 = rule.rubbing(groups, inputs) * self._coefficient("boundary_friction", boundary_friction)
+        parts = {name: self.values[name] for name in rule.parts("published") + rule.parts(definition)}
+        viscous = rule.viscous(parts, groups.speed, groups.load, inputs, definition)
+        error = np.abs(mu0) * self.errors["contact_load_share"]
+        error = error + rule.viscous_error(parts, self.errors, groups.speed, groups.load, inputs, definition)
         contact = mu0 * self.contact_load_share
         return FrictionArray(contact, viscous, contact + viscous, error, self._friction)
+
+    def _each(self, of: Callable[[Any], float]) -> float | Array:
+        """Return an input of each contact; of groups alone, that of a contact that has none of its own."""
+        if self.contacts is None:
+            return float(of(None))
+        return np.array([of(contact) for contact in self.contacts.ravel()]).reshape(self.contacts.shape)
 
     def _coefficient(self, name: str, given: float | None) -> float | Array:
         if given is not None or self.contacts is None:
             return quantity(name, 1.0 if given is None else given)
-        return np.array([getattr(contact, name) for contact in self.contacts.ravel()]).reshape(self.contacts.shape)
+        return self._each(lambda contact: getattr(contact, name))
 
     def to_si(self) -> dict[str, Array]:
-        """Return the films in SI units.
+        """Return films and other observables that have a scale in SI units.
 
         Returns
         -------
@@ -145,8 +147,9 @@ class BatchSolution(Exported, Shown, ByValue):
             "gap": np.reshape([each.indentation for each in hertz], self.contacts.shape),
             "width": np.reshape([each.half_width for each in hertz], self.contacts.shape),
         }
-        rows = [row for row in ROWS if row.film and hasattr(self, row.name)]
-        return {row.film: getattr(self, row.name) * scales[row.scale] for row in rows}
+        scales["pressure"] = np.reshape([each.pressure for each in hertz], self.contacts.shape)
+        rows = [row for row in self.outputs.rows if row.film and row.name in self.values]
+        return {row.film: self.values[row.name] * scales[row.scale] for row in rows}
 
     def to_dataset(self) -> xarray.Dataset:
         """Return all states as an xarray Dataset.
@@ -163,9 +166,9 @@ class BatchSolution(Exported, Shown, ByValue):
             If xarray is not installed.
         """
         columns: dict[str, Column] = {}
-        for row in ROWS:
-            if hasattr(self, row.name) and row.listed:
-                columns[row.name] = (self.dims, getattr(self, row.name), *OBSERVABLES[row.name])
+        for name, about in self.outputs.listed.items():
+            if name in self.values or name == "error_estimate":
+                columns[name] = (self.dims, getattr(self, name), *about)
         for definition in DEFINITIONS:
             found = self.friction(definition=definition)
             label = f"friction coefficient, definition {definition}"
@@ -173,7 +176,7 @@ class BatchSolution(Exported, Shown, ByValue):
             columns[f"friction_{definition}_error"] = (self.dims, found.error, "1", f"{label}: estimated absolute error")
         if self.contacts is not None:
             for name, values in self.to_si().items():
-                columns[name] = (self.dims, values, *FILMS[name])
+                columns[name] = (self.dims, values, *self.outputs.films[name])
         columns["outcome"] = (self.dims, np.vectorize(_name, otypes=[object])(self.outcome), "1", "how the solve ended")
         coords = {}
         for name in self.varied:

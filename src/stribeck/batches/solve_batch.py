@@ -9,19 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Indices
+from stribeck._types import Array, Indices
 from stribeck.batches.chain import Ended, solve_in_order
 from stribeck.batches.inputs import varied
 from stribeck.batches.order import chains_of
 from stribeck.batches.result import BatchSolution
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import ARTICLE
-from stribeck.equations.observables import Observables
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import ALL_NAMES, GROUPS, NAMES
+from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.solve import check_rtol, only_line
+from stribeck.solver.base_solution import BaseSolution
+from stribeck.solver.solve import check_rtol
 
 __all__ = ["solve_batch"]
 
@@ -74,7 +73,6 @@ def solve_batch(
         raise InputError(f"problem = {show(problem)}; it must be a contact or Groups(speed, load, roughness) of arrays.")
     check_rtol(rtol)
     groups, contacts, names = varied(problem, inputs, dims)
-    only_line(groups, "solve_batch")
     if isinstance(problem, Contact):
         kept = {name: other.of for other in problem.INPUTS.alternatives for name in other.inputs}
         given = tuple(dict.fromkeys(kept.get(name, name) for name in inputs))
@@ -85,8 +83,10 @@ def solve_batch(
     states = np.stack([np.broadcast_to(part, shape).ravel() for part in parts], axis=1)
     total = len(states)
     is_grid = all(np.size(part) < total for part in parts)
-    values = np.full((len(fields(Observables)), total), np.nan)
-    errors = np.full((len(NAMES if groups.model == ARTICLE else ALL_NAMES), total), np.nan)
+    table = OUTPUT_TABLES[groups.geometry].names
+    values = {name: np.full(total, np.nan) for name in table}
+    errors = {name: np.full(total, np.nan) for name in table}
+    estimate = np.full(total, np.nan)
     outcome = np.full(total, Outcome.INTERRUPTED, dtype=object)
     done = 0
 
@@ -97,8 +97,10 @@ def solve_batch(
             raise ended.fault
         outcome[row], done = ended.outcome, done + 1
         if ended.solution is not None:
-            values[:, row] = [getattr(ended.solution.observables, f.name) for f in fields(Observables)]
-            errors[: len(ended.solution.relative_errors), row] = ended.solution.relative_errors
+            estimate[row] = ended.solution.error_estimate
+            for kept, found in ((values, _observed(ended.solution)), (errors, ended.solution.errors)):
+                for name, value in found.items():
+                    kept.setdefault(name, np.full(total, np.nan))[row] = value
         if on_progress is not None:
             on_progress(done, total)
 
@@ -107,6 +109,15 @@ def solve_batch(
             solve_in_order(states[chain], groups.physics, rtol, partial(keep, chain))
     except KeyboardInterrupt:
         pass
-    found = {f.name: value.reshape(shape) for f, value in zip(fields(Observables), values, strict=True)}
-    relative = errors.reshape(len(errors), *shape)
-    return BatchSolution(groups, contacts, names, given, rtol, outcome.reshape(shape), relative_errors=relative, **found)
+
+    def shaped(kept: dict[str, Array]) -> dict[str, Array]:
+        return {name: value.reshape(shape) for name, value in kept.items()}
+
+    outcomes, estimates = outcome.reshape(shape), estimate.reshape(shape)
+    return BatchSolution(groups, contacts, names, given, rtol, outcomes, shaped(values), shaped(errors), estimates)
+
+
+def _observed(solution: BaseSolution) -> dict[str, float]:
+    """Return the observables of a state by name."""
+    found = solution.observables
+    return {each.name: float(getattr(found, each.name)) for each in fields(found) if not each.name.startswith("_")}

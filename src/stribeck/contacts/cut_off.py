@@ -33,11 +33,16 @@ and H. Brenner (1967), whose 0.9588 and -0.2526 are fits at finite gaps; M. Chao
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
+import numpy as np
+
+from stribeck.contacts.friction import Definition
 from stribeck.fluids.cavitation import Cavitation
 
-__all__ = ["COUETTE", "POISEUILLE", "SLIDING", "TURNING", "log_cut_offs"]
+__all__ = ["COUETTE", "POISEUILLE", "SLIDING", "TURNING", "friction_integral", "log_cut_offs"]
 
 SLIDING, TURNING = 0.954293, -0.257268
 """K and K'."""
@@ -83,21 +88,68 @@ _COUETTE_RADIUS = 0.5 * (math.log(2) + 1.5 * (SLIDING + TURNING))
 _POISEUILLE_RADIUS = 0.5 * (math.log(2) + 2 + 2.5 * (SLIDING - TURNING))
 
 
-def log_cut_offs(slope: float, wetted_radius: float | None = None) -> tuple[float, float]:
+def log_cut_offs(slope: Any, wetted_radius: Any = math.inf) -> tuple[Any, Any]:
     """Return ln X of the Couette and of the Poiseuille part [ln a].
 
     Parameters
     ----------
-    slope : float
+    slope : float or ndarray
         a/R [-].
-    wetted_radius : float, optional
-        Radius of the disc of liquid [a]; a whole ball in liquid without bounds by default.
+    wetted_radius : float or ndarray
+        Radius of the disc of liquid [a]; infinite for a whole ball in liquid without bounds.
 
     Returns
     -------
-    tuple of float
+    tuple of float or ndarray
         Both logarithms; the same for a disc of liquid.
     """
-    if wetted_radius is not None:
-        return math.log(wetted_radius), math.log(wetted_radius)
-    return _COUETTE_RADIUS - math.log(slope), _POISEUILLE_RADIUS - math.log(slope)
+    is_disc = np.isfinite(wetted_radius)
+    at_rim, at_ball = np.log(np.where(is_disc, wetted_radius, 1.0)), -np.log(slope)
+    couette, poiseuille = (np.where(is_disc, at_rim, own + at_ball) for own in (_COUETTE_RADIUS, _POISEUILLE_RADIUS))
+    return couette[()], poiseuille[()]
+
+
+def friction_integral(
+    parts: Mapping[str, Any],
+    speed: Any,
+    slope: Any,
+    slide_to_roll: Any,
+    wetted_radius: Any,
+    definition: Definition,
+    far: FarFilm = FULL,
+) -> Any:
+    r"""Return the friction integral J of balls up to where the liquid ends.
+
+    .. math:: J = \frac S2 J^\mathrm{couette} + J^\mathrm{poiseuille}
+
+    each with its logarithm: the force on the flat; published, that on the ball without the contact pressure along x.
+
+    Parameters
+    ----------
+    parts : mapping
+        Finite parts ``J_couette``, ``J_poiseuille`` and, for the published one, ``J_pcx`` [-].
+    speed : float or ndarray
+        Speed group; zero gives zero [-].
+    slope : float or ndarray
+        a/R [-].
+    slide_to_roll : float or ndarray
+        S [-].
+    wetted_radius : float or ndarray
+        Radius of the disc of liquid [a]; infinite for a whole ball.
+    definition : {"balanced", "published"}
+        Which force.
+    far : FarFilm
+        How the film ends far away.
+
+    Returns
+    -------
+    float or ndarray
+        J [-].
+    """
+    by_shear, by_pressure = log_cut_offs(slope, wetted_radius)
+    couette = parts["J_couette"] + far.couette * speed * by_shear
+    found = 0.5 * slide_to_roll * couette + parts["J_poiseuille"] + far.poiseuille * speed * by_pressure
+    if definition == "published":
+        # Of a whole ball both forces differ by the contact pressure alone; a disc of liquid ends with a pressure at its rim.
+        found = found - parts["J_pcx"] + np.where(np.isfinite(wetted_radius), far.poiseuille * speed, 0.0)
+    return np.where(np.real(speed) > 0, found, 0.0)[()]

@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import COUETTE, POISEUILLE, log_cut_offs
+from stribeck.contacts.cut_off import friction_integral
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.point import PURE_SLIDING, PointContact
@@ -95,20 +95,11 @@ class PointObservables:
 
         .. math:: J = \frac S2 J^\mathrm{couette} + J^\mathrm{poiseuille}
 
-        each with its logarithm, see :mod:`stribeck.contacts.cut_off`: the force on the flat; published, that on the ball
-        without the contact pressure along x.
+        each with its logarithm, see :func:`stribeck.contacts.cut_off.friction_integral`.
         """
-        speed, part = float(self._groups.speed), 0.5 * self._slide_to_roll
-        if speed == 0:
-            return 0.0
-        by_shear, by_pressure = log_cut_offs(slope, self._wetted_radius)
-        couette = self.J_couette + COUETTE * speed * by_shear
-        balanced = part * couette + self.J_poiseuille + POISEUILLE * speed * by_pressure
-        if definition == "balanced":
-            return balanced
-        # Of a whole ball both forces differ by the contact pressure alone; a disc of liquid ends with a pressure at its rim.
-        rim = POISEUILLE * speed if self._wetted_radius is not None else 0.0
-        return balanced - self.J_pcx + rim
+        parts = {name: getattr(self, name) for name in ("J_couette", "J_poiseuille", "J_pcx")}
+        wetted = math.inf if self._wetted_radius is None else self._wetted_radius
+        return float(friction_integral(parts, float(self._groups.speed), slope, self._slide_to_roll, wetted, definition))
 
     def viscous_friction(self, beta: float, definition: Definition = "balanced") -> float:
         r"""Return the viscous friction coefficient.

@@ -1,0 +1,176 @@
+r"""What friction is made of, by geometry: arrays of states and of the inputs that it takes beside them.
+
+.. math::
+
+    \mu = \mu_0 \, f(S) \frac{F_c}{F_N} + \mu_f, \qquad
+    \mu_f = \beta \, \mu_f(\beta = 1) \text{ on the line}, \qquad
+    \mu_f = \frac{3}{2\pi} \frac aR J \text{ on the ball}
+
+where the integral J of a ball is that of :mod:`stribeck.contacts.cut_off`.  All of it is analytic in its arguments, which may
+be complex: a step along the imaginary axis gives exact derivatives.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.cut_off import friction_integral
+from stribeck.contacts.friction import Definition, sliding_part
+from stribeck.contacts.groups import Geometry, Groups
+from stribeck.contacts.scaling import SCALINGS
+
+__all__ = ["RULES", "FrictionRule"]
+
+Values = Mapping[str, Any]
+"""Arrays by name."""
+
+PURE_SLIDING = 2.0
+"""Slide-to-roll ratio with one surface at rest."""
+
+
+class FrictionRule(NamedTuple):
+    """What the friction of one geometry is made of.
+
+    Attributes
+    ----------
+    inputs : dict of str to callable
+        What it takes of a contact beside groups and boundary_friction, by name; of none its usual value.
+    exponents : dict of str to dict
+        Exponents of inputs of the contact in those of them that are ratios.
+    parts : callable
+        ``parts(definition)`` names the observables that the viscous friction takes.
+    viscous : callable
+        ``viscous(parts, speed, load, inputs, definition)`` is the viscous friction coefficient.
+    scale : callable
+        ``scale(parts, speed)`` is what the stated errors of these observables are relative to, by name.
+    rubbing : callable
+        ``rubbing(groups, inputs)`` is the part of boundary_friction that acts.
+    hersey : callable
+        ``hersey(contact)`` is the speed at the Hersey number one [m/s].
+    hersey_exponents : dict of str to float
+        Exponents of the inputs in it.
+    """
+
+    inputs: Mapping[str, Callable[[Contact | None], float]]
+    exponents: Mapping[str, Mapping[str, float]]
+    parts: Callable[[Definition], tuple[str, ...]]
+    viscous: Callable[[Values, Any, Any, Values, Definition], Any]
+    scale: Callable[[Values, Any], dict[str, Any]]
+    rubbing: Callable[[Groups, Values], Any]
+    hersey: Callable[[Contact], float]
+    hersey_exponents: Mapping[str, float]
+
+    def of_contact(self, contact: Contact | None) -> dict[str, float]:
+        """Return the inputs of a contact; of none, those of groups alone."""
+        return {name: value(contact) for name, value in self.inputs.items()}
+
+    def viscous_error(
+        self, parts: Values, errors: Values, speed: Any, load: Any, inputs: Values, definition: Definition
+    ) -> Any:
+        """Return the absolute error of the viscous friction by the stated errors of its observables.
+
+        Parameters
+        ----------
+        parts, errors : mapping
+            Observables and their stated relative errors, by name.
+        speed, load : float or ndarray
+            Groups [-].
+        inputs : mapping
+            Those of the contact.
+        definition : {"balanced", "published"}
+            Definition of the viscous friction.
+
+        Returns
+        -------
+        float or ndarray
+            The sum of what each contributes [-].
+        """
+        scales = self.scale(parts, speed)
+        here = self.viscous(parts, speed, load, inputs, definition)
+        total: Any = 0.0
+        for name in self.parts(definition):
+            moved = {**parts, name: parts[name] + errors[name] * scales[name]}
+            total = total + np.abs(self.viscous(moved, speed, load, inputs, definition) - here)
+        return total
+
+
+def _line_viscous(parts: Values, speed: Any, load: Any, inputs: Values, definition: Definition) -> Any:
+    return inputs["beta"] * parts[f"viscous_{definition}"]
+
+
+def _line_scale(parts: Values, speed: Any) -> dict[str, Any]:
+    return {name: np.abs(value) for name, value in parts.items()}
+
+
+def _ball_viscous(parts: Values, speed: Any, load: Any, inputs: Values, definition: Definition) -> Any:
+    scaling = SCALINGS["point"]
+    slope = scaling.slope_factor * inputs["beta"] * load**scaling.pressure_exponent
+    J = friction_integral(parts, speed, slope, inputs["slide_to_roll"], inputs["wetted_radius"], definition)
+    return 1.5 / math.pi * slope * J
+
+
+def _ball_scale(parts: Values, speed: Any) -> dict[str, Any]:
+    """Return the scale of the friction integrals, as :func:`stribeck.solver.point.refinement.scales_of` has it."""
+    balanced = parts["J_couette"] + parts["J_poiseuille"]
+    published = balanced - parts["J_pcx"] + 0.4 * math.pi * speed
+    largest = np.maximum(np.maximum(np.abs(balanced), np.abs(published)), speed)
+    return dict.fromkeys(parts, largest)
+
+
+def _wetted(contact: Contact | None) -> float:
+    """Return the radius of the liquid [a], infinite for a whole ball."""
+    radius = getattr(contact, "wetted_radius", None)
+    return math.inf if contact is None or radius is None else float(radius) / contact.hertz.half_width
+
+
+def _beta(contact: Contact | None) -> float:
+    return 1.0 if contact is None else contact.beta
+
+
+def _slide(contact: Contact | None) -> float:
+    return float(getattr(contact, "slide_to_roll", PURE_SLIDING))
+
+
+def _line_parts(definition: Definition) -> tuple[str, ...]:
+    return (f"viscous_{definition}",)
+
+
+def _ball_parts(definition: Definition) -> tuple[str, ...]:
+    return ("J_couette", "J_poiseuille", *(("J_pcx",) if definition == "published" else ()))
+
+
+_sliding: Callable[[Any], Array] = np.vectorize(sliding_part, otypes=[float])
+
+RULES: dict[Geometry, FrictionRule] = {
+    "line": FrictionRule(
+        inputs={"beta": _beta},
+        exponents={},
+        parts=_line_parts,
+        viscous=_line_viscous,
+        scale=_line_scale,
+        rubbing=lambda groups, inputs: sliding_part(2 * groups.model.film.slide),
+        hersey=lambda each: each.load / each.viscosity,
+        hersey_exponents={"load": 1.0, "viscosity": -1.0},
+    ),
+    "point": FrictionRule(
+        inputs={
+            "beta": _beta,
+            "slide_to_roll": _slide,
+            "wetted_radius": _wetted,
+        },
+        exponents={"wetted_radius": {"radius": -1 / 3, "modulus": 1 / 3, "load": -1 / 3}},
+        parts=_ball_parts,
+        viscous=_ball_viscous,
+        scale=_ball_scale,
+        rubbing=lambda groups, inputs: _sliding(np.real(inputs["slide_to_roll"])),
+        hersey=lambda each: each.load / each.viscosity / each.radius,
+        hersey_exponents={"load": 1.0, "viscosity": -1.0, "radius": -1.0},
+    ),
+}
+"""The rules by geometry."""

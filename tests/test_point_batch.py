@@ -1,0 +1,90 @@
+"""Batches of balls: the states that are solved one by one, for arrays of any input, with the friction of each."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.batches import chain
+from stribeck.solver.point import path
+
+BALL = sb.PointContact.from_groups(
+    sb.Groups(1e-3, 1e-2, 2e-4, geometry="point"),
+    radius=0.01,
+    modulus=1e6,
+    viscosity=0.1,
+    alpha=2.0,
+    beta=0.1,
+    boundary_friction=0.8,
+    slide_to_roll=0.5,
+)
+RTOL = 1e-3
+ROUGHNESS = [BALL.roughness, 1.3 * BALL.roughness]
+
+
+@pytest.fixture(scope="module")
+def found():
+    return sb.solve_batch(BALL, roughness=ROUGHNESS, wetted_radius=[["2 mm"], ["4 mm"]], rtol=RTOL)
+
+
+def test_a_batch_of_balls_has_the_states_of_its_contacts(found):
+    assert found.groups.shape == (2, 2) and found.dims == ("wetted_radius", "roughness") and found.ok.all()
+    assert (found.error_estimate <= RTOL).all()
+    contact = BALL.replace(roughness=ROUGHNESS[1], wetted_radius="4 mm")
+    assert found.contacts[1, 1] == contact
+    alone = sb.solve(contact, rtol=RTOL)
+    for name in ("contact_load_share", "central_gap", "J_balanced", "minimum_radius"):
+        assert getattr(found, name)[1, 1] == pytest.approx(getattr(alone, name), abs=2 * RTOL, rel=2 * RTOL)
+    film = alone.minimum_gap * contact.hertz.indentation
+    assert found.to_si()["minimum_film_thickness"][1, 1] == pytest.approx(film, rel=0.1)
+    assert found.to_si()["central_total_pressure"][1, 1] == pytest.approx(
+        alone.central_pressure * contact.hertz.pressure, rel=2 * RTOL
+    )
+
+
+@pytest.mark.parametrize("arguments", [{}, {"definition": "published"}, {"boundary_friction": 0.1, "beta": 0.05}])
+def test_the_friction_of_a_batch_of_balls_is_that_of_the_states(found, arguments):
+    many = found.friction(**arguments)
+    one = sb.solve(found.contacts[0, 0], rtol=RTOL).friction(**arguments)
+    for part in ("contact", "viscous", "error"):
+        assert getattr(many, part)[0, 0] == pytest.approx(getattr(one, part), rel=2 * RTOL), part
+    # A smaller disc of liquid drags less; asperities do not know it.
+    assert (many.viscous[0] < many.viscous[1]).all()
+    np.testing.assert_allclose(many.contact[0], many.contact[1], rtol=RTOL)
+
+
+def test_a_batch_of_balls_becomes_a_dataset_and_a_pickle(found):
+    pytest.importorskip("xarray")
+    data = found.to_dataset()
+    assert dict(data.sizes) == {"wetted_radius": 2, "roughness": 2}
+    np.testing.assert_array_equal(data.central_pressure, found.central_pressure)
+    np.testing.assert_array_equal(data.friction_balanced, np.asarray(found.friction))
+    assert pickle.loads(pickle.dumps(found)) == found
+
+
+def test_groups_of_balls_may_be_arrays_and_rest_is_one_of_them():
+    found = sb.solve_batch(sb.Groups([0.0, 1e-3], 1e-2, 2e-4, geometry="point"), rtol=RTOL)
+    assert found.ok.all()
+    assert found.contact_load_share[0] == pytest.approx(1.0, abs=RTOL)
+    assert found.friction.viscous[0] == 0.0
+    alone = sb.solve(sb.Groups(1e-3, 1e-2, 2e-4, geometry="point"), rtol=RTOL)
+    assert found.friction(1.0, 0.1)[1] == pytest.approx(alone.friction(1.0, 0.1).total, rel=2 * RTOL)
+
+
+def test_a_ball_follows_its_neighbour(monkeypatch):
+    starts, solve = [], path.next_state
+    monkeypatch.setattr(path, "next_state", lambda start, *rest: starts.append(start is None) or solve(start, *rest))
+    assert sb.solve_batch(sb.Groups([1e-3, 1.2e-3, 1.4e-3], 1e-2, 2e-4, geometry="point"), rtol=RTOL).ok.all()
+    assert sum(starts) == 1
+    assert set(chain.CHAINS) == {"line", "point"}
+
+
+def test_a_ball_that_cannot_be_solved_has_its_outcome_and_no_numbers(monkeypatch):
+    from stribeck.quantities.outcome import Outcome
+    from stribeck.solver.point.solve import _failed
+
+    monkeypatch.setattr(path, "next_state", lambda start, groups, rtol: _failed(groups, rtol, Outcome.STALLED))
+    found = sb.solve_batch(sb.Groups([1e-3], 1e-2, 2e-4, geometry="point"), rtol=RTOL)
+    assert found.outcome[0] is Outcome.STALLED
+    assert np.isnan(found.central_gap[0]) and np.isnan(np.asarray(found.friction)[0])
