@@ -190,7 +190,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     fit = FitSettings()
     if "fit" in table:
         try:
-            fit = check_fit_table(table.pop("fit"))
+            fit = check_fit_table(table.pop("fit"), geometry)
         except InputError as problem:
             problems += str(problem).split("\n")
     errors, conversions = _convert(table, problems, inputs)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from stribeck.quantities.hints import advice_on
-from stribeck.quantities.inputs import LETTERS, QUANTITIES, ROWS, quantity
+from stribeck.quantities.inputs import INPUT_TABLES, LETTERS, LINE, ROWS, InputTable, quantity
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["FREE", "FitSettings", "Prior", "check_fit_table", "free_names"]
@@ -90,6 +90,8 @@ class FitSettings:
         Input -> :class:`Prior`.
     curves : dict
         Name of a curve -> inputs in SI units in which it differs from the case.
+    geometry : {"line", "point"}
+        What was measured: a cylinder or a ball.
     """
 
     free: tuple[str, ...] = ()
@@ -107,15 +109,23 @@ class FitSettings:
     bounds: dict[str, tuple[float, float]] = field(default_factory=dict)
     priors: dict[str, Prior] = field(default_factory=dict)
     curves: dict[str, dict[str, float]] = field(default_factory=dict)
+    geometry: str = "line"
+
+    @property
+    def inputs(self) -> InputTable:
+        """The inputs of the contact that was measured, with their units."""
+        return INPUT_TABLES[self.geometry]
 
 
-def check_fit_table(table: Any) -> FitSettings:
+def check_fit_table(table: Any, geometry: str = "line") -> FitSettings:
     """Return the settings that a ``[fit]`` table asks for.
 
     Parameters
     ----------
     table : object
         What TOML made of it.
+    geometry : {"line", "point"}
+        The contact of the case.
 
     Returns
     -------
@@ -130,7 +140,8 @@ def check_fit_table(table: Any) -> FitSettings:
     if not isinstance(table, dict):
         raise InputError(f"fit = {show(table)} must be a table, [fit].")
     problems: list[str] = []
-    found: dict[str, Any] = {}
+    found: dict[str, Any] = {"geometry": geometry}
+    inputs = INPUT_TABLES[geometry]
 
     def attempt(where: str, key: str, check: Any, *arguments: Any) -> Any:
         try:
@@ -149,9 +160,9 @@ def check_fit_table(table: Any) -> FitSettings:
                 continue
             for name, entry in value.items():
                 if key == "curves":
-                    found[key][name] = attempt("fit.curves", name, _curve, name, entry)
+                    found[key][name] = attempt("fit.curves", name, _curve, name, entry, inputs)
                 else:
-                    pair = attempt(f"fit.{key}", name, _entry, key, name, entry)
+                    pair = attempt(f"fit.{key}", name, _entry, key, name, entry, inputs)
                     if pair is not None:
                         found[key][pair[0]] = pair[1]
         else:
@@ -226,10 +237,10 @@ def _setting(key: str, value: Any) -> Any:
     return float(value)
 
 
-def _entry(table: str, name: str, value: Any) -> tuple[str, Any]:
+def _entry(table: str, name: str, value: Any, inputs: InputTable = LINE) -> tuple[str, Any]:
     if table in ("bounds", "priors"):
         [meant] = free_names([name], f"[fit.{table}]")
-        return meant, _bounds(meant, value) if table == "bounds" else _prior(meant, value)
+        return meant, _bounds(meant, value, inputs) if table == "bounds" else _prior(meant, value, inputs)
     known = (*COLUMNS, *(each for each in FREE if each != "boundary_friction"))
     meant = LETTERS.get(name, name)
     if meant not in known:
@@ -241,19 +252,19 @@ def _entry(table: str, name: str, value: Any) -> tuple[str, Any]:
     return meant, value
 
 
-def _bounds(name: str, value: Any) -> tuple[float, float]:
+def _bounds(name: str, value: Any, inputs: InputTable) -> tuple[float, float]:
     if not isinstance(value, list) or len(value) != 2:
         raise InputError(f"{name} = {show(value)} must be a list of two values, the lowest and the highest.")
-    low, high = (quantity(name, each) for each in value)
+    low, high = (quantity(name, each, inputs) for each in value)
     if not 0 < low < high:
         raise InputError(f"{name} = {show(value)} must be two positive values, the lowest first.")
     return low, high
 
 
-def _prior(name: str, value: Any) -> Prior:
+def _prior(name: str, value: Any, inputs: InputTable) -> Prior:
     if not isinstance(value, dict) or set(value) != {"value", "factor"}:
         raise InputError(f"{name} = {show(value)} must be a table such as {{ value = ..., factor = 1.2 }}.")
-    factor, median = value["factor"], quantity(name, value["value"])
+    factor, median = value["factor"], quantity(name, value["value"], inputs)
     if isinstance(factor, bool) or not isinstance(factor, int | float) or not 1 < factor <= LARGEST_FACTOR:
         raise InputError(f"{name} has factor = {show(factor)}, which must be a number above 1: 1.2 is 'known within 20 %'.")
     if median == 0:
@@ -261,15 +272,16 @@ def _prior(name: str, value: Any) -> Prior:
     return Prior(median, float(factor))
 
 
-def _curve(name: str, entry: Any) -> dict[str, float]:
+def _curve(name: str, entry: Any, inputs: InputTable) -> dict[str, float]:
     if not isinstance(entry, dict):
         raise InputError(f"{name} = {show(entry)} must be a table of inputs, [fit.curves.{name}].")
     found = {}
     for key, value in entry.items():
         meant = LETTERS.get(key, key)
-        if meant not in FREE or meant not in QUANTITIES:
-            raise InputError(f"{name}: {_unknown(key, value, FREE)}")
-        found[meant] = quantity(meant, value)
+        known = tuple(each for each in inputs.names if each != "speed")
+        if meant not in known:
+            raise InputError(f"{name}: {_unknown(key, value, known)}")
+        found[meant] = quantity(meant, value, inputs)
     return found
 
 

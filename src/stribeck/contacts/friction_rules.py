@@ -142,7 +142,7 @@ def _line_parts(definition: Definition) -> tuple[str, ...]:
 
 
 def _ball_parts(definition: Definition) -> tuple[str, ...]:
-    return ("J_couette", "J_poiseuille", *(("J_pcx",) if definition == "published" else ()))
+    return ("J_couette", "J_poiseuille", "J_pcx")
 
 
 _sliding: Callable[[Any], Array] = np.vectorize(sliding_part, otypes=[float])

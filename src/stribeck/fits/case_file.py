@@ -13,7 +13,6 @@ from stribeck.cases.case import Case, load_case, read_toml
 from stribeck.contacts.line import InputError
 from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit, FittedInput
-from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.units import format_si
 
 __all__ = ["format_interval", "format_value", "load_fit_case", "write_fitted_case"]
@@ -91,8 +90,9 @@ def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = Fal
             back = load_case(temporary).contact
         except InputError as problem:
             raise InputError(str(problem).replace(str(temporary), str(path))) from None
-        for name in QUANTITIES:
-            if hasattr(back, name) and not math.isclose(getattr(back, name), getattr(fit.contact, name), rel_tol=AGREEMENT):
+        for name in fit.contact.INPUTS.quantities:
+            kept = getattr(back, name, None)
+            if kept is not None and not math.isclose(kept, getattr(fit.contact, name), rel_tol=AGREEMENT):
                 raise InputError(
                     f"{path} cannot be written, as {case.path} does not have {name} on a line of its own in [contact]; "
                     "write it there."
@@ -120,7 +120,7 @@ def _fitted_text(text: str, fit: Fit) -> str:
             ]
             written.add("modulus")
         elif name in new:
-            lines += [f"# before the fit: {line.strip()}", *_comments(name, fit), _entry(name, new[name])]
+            lines += [f"# before the fit: {line.strip()}", *_comments(name, fit), _entry(name, new[name], fit)]
             written.add(name)
         else:
             lines.append(line)
@@ -141,7 +141,7 @@ def _added(new: dict[str, float], written: set[str], fit: Fit) -> list[str]:
     lines = []
     for name, value in new.items():
         if name not in written:
-            lines += [*_comments(name, fit), _entry(name, value)]
+            lines += [*_comments(name, fit), _entry(name, value, fit)]
             written.add(name)
     return lines
 
@@ -154,8 +154,8 @@ def _comments(name: str, fit: Fit) -> list[str]:
     ]
 
 
-def _entry(name: str, value: float) -> str:
-    dimension = QUANTITIES[name].dimension
+def _entry(name: str, value: float, fit: Fit) -> str:
+    dimension = fit.contact.INPUTS.quantities[name].dimension
     text = format_si(value, dimension, DIGITS)
     return f"{name} = {text}" if dimension == "number" else f'{name} = "{text}"'
 
@@ -178,7 +178,7 @@ def format_value(each: FittedInput, value: float | None = None, digits: int = 4)
         The text.
     """
     value = each.value if value is None else value
-    return f"{value:.{digits}g}" if each.is_factor else format_si(value, QUANTITIES[each.name].dimension, digits)
+    return f"{value:.{digits}g}" if each.is_factor else format_si(value, each.dimension, digits)
 
 
 def format_interval(each: FittedInput, level: float) -> str:

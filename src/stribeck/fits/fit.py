@@ -2,7 +2,8 @@
 
 Least squares on the logarithms of the inputs with analytic derivatives.  With the exponential law they run on
 :mod:`stribeck.atlas`, whose friction is within 2.4e-5 of the solver's, and are then finished on solved states; with
-other laws all states are solved.
+other laws all states are solved.  Those of balls run on a lattice of solved states, made where the search goes, and are
+finished on solved curves.
 """
 
 from __future__ import annotations
@@ -14,7 +15,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from stribeck import atlas
 from stribeck._types import Array
 from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings, free_names
@@ -24,7 +24,7 @@ from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.fits.case_file import load_fit_case
-from stribeck.fits.friction_parts import PartsOf, atlas_or_solved_parts, atlas_parts, solved_parts
+from stribeck.fits.friction_parts import PartsOf, ways_of
 from stribeck.fits.identifiability import Unidentifiable, undetermined
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.model import FreeInput, FrictionModel, free_inputs
@@ -33,9 +33,7 @@ from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_e
 from stribeck.fits.residuals import judge_residuals
 from stribeck.fits.result import Fit, FitOutcome, FittedInput, unit_of
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.inputs import si_text
-from stribeck.quantities.units import InputError, show
-from stribeck.solver.solve import only_line
+from stribeck.quantities.units import InputError, format_si, show
 
 __all__ = ["fit"]
 
@@ -126,7 +124,6 @@ def fit(
     contact, settings, definition = problem.contact, problem.settings, problem.definition
     if not isinstance(data, Measurements):
         data = read_measurements(data, settings)
-    only_line(contact.groups, "fit")
     names = free_names(free) if free is not None else settings.free or DEFAULT_FREE
     if not names:
         raise InputError("free is empty; name at least one input to fit, such as boundary_friction.")
@@ -137,12 +134,10 @@ def fit(
     model = FrictionModel(contact, data, wanted)
     _check_enough(data, wanted)
     report = on_step or (lambda what, count: None)
-    solved = solved_parts(definition, problem.rtol)
-    by_atlas = atlas.for_groups(contact.groups) is not None
-    quick = atlas_or_solved_parts(definition, problem.rtol) if by_atlas else solved
+    scan, quick, solved = ways_of(model, definition, problem.rtol)
     goal = objective(model, quick, settings, settings.robust)
 
-    found = _search(goal, atlas_parts(definition) if by_atlas else None, report)
+    found = _search(goal, scan, report)
     fine = (
         found
         if quick is solved
@@ -155,7 +150,7 @@ def fit(
         covariance, quantiles, inflation = _covariance(fine)
     shift = fine.theta - found.theta
     ends = [[Ends(e.low + d, e.high + d) for e in each] for each, d in zip(ends, shift.tolist(), strict=True)]
-    return _result(fine, ends, covariance, quantiles, problem, shift if by_atlas else None)
+    return _result(fine, ends, covariance, quantiles, problem, shift if quick is not solved else None)
 
 
 @dataclass(frozen=True)
@@ -171,7 +166,7 @@ class _Problem:
 
 def _problem(data: object, case: str | os.PathLike[str] | Case | Contact) -> _Problem:
     if isinstance(case, Contact):
-        return _Problem(case, FitSettings(), Case.definition, Case.rtol)
+        return _Problem(case, FitSettings(geometry=case.groups.geometry), Case.definition, Case.rtol)
     if not isinstance(case, Case):
         if not isinstance(case, str | os.PathLike):
             raise InputError(f"case = {show(case)}; it must be the path of a case file, a Case, LineContact or PointContact.")
@@ -188,12 +183,12 @@ def _check_enough(data: Measurements, wanted: Sequence[FreeInput]) -> None:
         )
 
 
-def _search(goal: Objective, atlas: PartsOf | None, report: Step) -> Minimum:
+def _search(goal: Objective, scan: PartsOf | None, report: Step) -> Minimum:
     """Return the best minimum found from the case, and with the atlas from places around it, with the noise settled."""
     first = replace(goal, scale=FIRST_NOISE if goal.sigma is None else 1.0)
     starts = [np.zeros(len(goal.model.free))]
-    if atlas is not None:
-        starts += _best(replace(first, parts_of=atlas), _places(goal))
+    if scan is not None:
+        starts += _best(replace(first, parts_of=scan), _places(goal))
     best: Minimum | None = None
     for start in starts:
         found = minimise(first, start, on_step=lambda n: report("searching", n))
@@ -325,13 +320,14 @@ def _result(
             name=free.name,
             curve=None if free.curve is None else data.curves[free.curve],
             value=free.value(float(at.theta[i])),
-            unit=unit_of(free.name, free.is_factor),
+            unit=unit_of(free.name, free.is_factor, contact.INPUTS),
             start=free.start,
             is_factor=free.is_factor,
             standard_error=float(width[i]),
             interval_68=_interval(free, ends[i][0]),
             interval_95=_interval(free, ends[i][1]),
             at_bound=bool(bound[i]),
+            dimension="number" if free.is_factor else contact.INPUTS.quantities[free.name].dimension,
         )
         for i, free in enumerate(model.free)
     )
@@ -404,7 +400,7 @@ def _notes(
     notes = []
     for each in inputs:
         if each.at_bound:
-            value = f"{each.value:.4g}" if each.is_factor else si_text(each.value, each.name, 4)
+            value = f"{each.value:.4g}" if each.is_factor else format_si(each.value, each.dimension, 4)
             notes.append(
                 f"{each.label} ended at its bound {value}: the data would move it further, and it has no standard error. "
                 "Widen the bound, or free fewer inputs."

@@ -1,19 +1,23 @@
-"""Friction of many states with its derivatives, for fits: read off the atlas, solved, or whichever holds.
+"""What the friction of many states is made of, with its derivatives, for fits: read off the atlas, solved, or interpolated.
 
-The two parts of the friction come for boundary_friction = beta = 1, so that both may differ from state to state.
+The load share and the observables of the viscous friction come without boundary_friction and beta, which may differ from
+state to state: :mod:`stribeck.contacts.friction_rules` puts them together.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import table_for
+from stribeck.batches.lattice import PARTS, STEPS, Lattice
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.equations.sensitivity import log_derivatives
@@ -21,26 +25,45 @@ from stribeck.quantities.outputs import NAMES
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve import SolveError
 
-__all__ = ["FrictionParts", "PartsOf", "atlas_parts", "atlas_or_solved_parts", "solved_parts"]
+if TYPE_CHECKING:
+    from stribeck.fits.model import FrictionModel
+
+__all__ = ["FrictionParts", "PartsOf", "Ways", "atlas_parts", "atlas_or_solved_parts", "solved_parts", "ways_of"]
+
+
+LATTICE_RTOL, BALL_RTOL = 3e-4, 1e-4
+"""Tolerances of solved balls in the search, and the smallest in the values that a fit returns: far below what rigs resolve."""
+
+LATTICE_ERROR = 1e-3
+"""Largest relative error of the parts read off a lattice of balls."""
+
+FINE_STEPS = (0.3, 1.0, 1.0)
+"""Steps of solved curves of balls: of ln(speed), and none that count of ln(load) and ln(relative roughness)."""
+
+CLOSE = 0.01
+"""Logarithm of a load or a roughness up to which a solved curve of a ball serves, to first order."""
 
 
 @dataclass(frozen=True)
 class FrictionParts:
-    """Both parts of the friction of n states for boundary_friction = beta = 1, and their derivatives.
+    """What the friction of n states is made of, and the derivatives of that.
 
     Parameters
     ----------
-    values : ndarray, shape (2, n)
-        Contact load share and viscous friction [-].
-    slopes : ndarray, shape (2, 3, n)
+    values : ndarray, shape (1 + parts, n)
+        Contact load share, and the observables that the rule of the geometry names [-].
+    slopes : ndarray, shape (1 + parts, 3, n)
         Derivatives of each by the logarithms of the groups of speed, load and roughness [-].
-    errors : ndarray, shape (2, n)
-        Estimated absolute error of the contact load share, and relative error of the viscous friction.
+    errors : ndarray, shape (1 + parts, n)
+        Estimated absolute error of the contact load share, and errors of the others as a solution states them.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
     """
 
     values: Array
     slopes: Array
     errors: Array
+    definition: Definition
 
 
 PartsOf = Callable[[Groups], FrictionParts]
@@ -52,7 +75,8 @@ def atlas_parts(definition: Definition) -> PartsOf:
 
     def parts(groups: Groups) -> FrictionParts:
         values, by_contact, by_viscous = atlas.friction_parts(groups, definition)
-        return FrictionParts(values, np.stack([by_contact, by_viscous]), np.full(values.shape, table_for(groups).error))
+        error = np.full(values.shape, table_for(groups).error)
+        return FrictionParts(values, np.stack([by_contact, by_viscous]), error, definition)
 
     return parts
 
@@ -83,7 +107,7 @@ def solved_parts(definition: Definition, rtol: float) -> PartsOf:
             speeds, at = np.unique(speed[rows], return_inverse=True)
             found = _along(speeds, float(F), float(h_rms), definition, rtol, groups.physics)
             values[:, rows], slopes[:, :, rows], errors[:, rows] = (array[..., at.ravel()] for array in found)
-        return FrictionParts(values, slopes, errors)
+        return FrictionParts(values, slopes, errors, definition)
 
     return parts
 
@@ -122,3 +146,150 @@ def _along(
         slopes[:, :, i] = derivatives["contact_load_share"], derivatives[f"viscous_{definition}"]
         errors[:, i] = solution.relative_errors[[0, row]]
     return values, slopes, errors
+
+
+class Ways(NamedTuple):
+    """How the states of a fit are had.
+
+    Attributes
+    ----------
+    scan : callable or None
+        So quickly that many places can be tried; None where there is no such way.
+    quick, solved : callable
+        For the search, and for the values that the fit returns.
+    """
+
+    scan: PartsOf | None
+    quick: PartsOf
+    solved: PartsOf
+
+
+def ways_of(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
+    """Return how the states of a fit are had: the atlas and the solver, or for a ball a lattice of solved states.
+
+    Parameters
+    ----------
+    model : FrictionModel
+        What is fitted.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+    rtol : float
+        Relative tolerance of solved states.
+
+    Returns
+    -------
+    Ways
+        The functions.
+    """
+    return WAYS[model.contact.groups.geometry](model, definition, rtol)
+
+
+def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
+    solved = solved_parts(definition, rtol)
+    if atlas.for_groups(model.contact.groups) is None:
+        return Ways(None, solved, solved)
+    return Ways(atlas_parts(definition), atlas_or_solved_parts(definition, rtol), solved)
+
+
+def _of_ball(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
+    logs, varies = model.start()
+    return Ways(None, lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL)))
+
+
+WAYS: dict[str, Callable[[FrictionModel, Definition, float], Ways]] = {"line": _of_cylinder, "point": _of_ball}
+"""The ways by geometry."""
+
+
+def lattice_parts(starts: Array, varies: Array, definition: Definition) -> PartsOf:
+    """Return the function that reads states of balls off lattices of solved states, made where they are asked for.
+
+    Parameters
+    ----------
+    starts : ndarray, shape (m, 3)
+        ln of speed, load and relative roughness of a state of each curve.
+    varies : ndarray of bool, shape (3,)
+        Which of these the fit changes.  A start is in the middle of a cell along those, on a node along the others.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+
+    Returns
+    -------
+    callable
+        Groups of many states -> their :class:`FrictionParts`; raises SolveError where a state cannot be solved.
+    """
+    lattices: list[Lattice] = []
+
+    def parts(groups: Groups) -> FrictionParts:
+        logs = _coordinates(groups)
+        is_smooth = not np.any(groups.roughness)
+        if not lattices:
+            for start in starts:
+                anchor = tuple(start + 0.5 * np.array(STEPS) * varies)
+                if not any(np.allclose(anchor[1:], each.anchor[1:], rtol=0, atol=1e-9) for each in lattices):
+                    lattices.append(Lattice(anchor, groups.physics, LATTICE_RTOL, is_smooth))
+        away = np.array([np.abs((logs - each.anchor) / each.steps)[:, 1:].max(axis=1) for each in lattices])
+        values, slopes = np.empty((4, len(logs))), np.empty((4, 3, len(logs)))
+        for k in np.unique(nearest := np.argmin(away, axis=0)):
+            rows = nearest == k
+            values[:, rows], slopes[:, :, rows] = lattices[k].at(logs[rows])
+        return _of_values(values, slopes, LATTICE_ERROR, groups, definition)
+
+    return parts
+
+
+def curve_parts(definition: Definition, rtol: float) -> PartsOf:
+    """Return the function that solves curves of balls at the loads and roughnesses asked for.
+
+    Between solved speeds a curve is interpolated with its derivatives; loads and roughnesses within a hundredth of a curve are
+    reached from there to first order.
+
+    Parameters
+    ----------
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+    rtol : float
+        Relative tolerance of each state.
+
+    Returns
+    -------
+    callable
+        Groups of many states -> their :class:`FrictionParts`; raises SolveError where a state cannot be solved.
+    """
+    curves: list[Lattice] = []
+
+    def parts(groups: Groups) -> FrictionParts:
+        logs = _coordinates(groups)
+        values, slopes = np.empty((4, len(logs))), np.empty((4, 3, len(logs)))
+        pairs, of_row = np.unique(logs[:, 1:], axis=0, return_inverse=True)
+        for k, pair in enumerate(pairs):
+            rows = np.nonzero(of_row.ravel() == k)[0]
+            near = [each for each in curves if np.abs(pair - each.anchor[1:]).max() < CLOSE]
+            if not near:
+                anchor = (float(logs[rows[0], 0]), float(pair[0]), float(pair[1]))
+                near = [Lattice(anchor, groups.physics, rtol, not np.any(groups.roughness), FINE_STEPS)]
+                curves.append(near[0])
+            on_curve = np.column_stack([logs[rows, 0], np.tile(near[0].anchor[1:], (len(rows), 1))])
+            found, by = near[0].at(on_curve)
+            offset = pair - near[0].anchor[1:]
+            values[:, rows] = found + np.einsum("pdn,d->pn", by[:, 1:], offset)
+            slopes[:, :, rows] = by
+        return _of_values(values, slopes, rtol, groups, definition)
+
+    return parts
+
+
+def _coordinates(groups: Groups) -> Array:
+    """Return ln of speed, load and relative roughness, zero for the last of smooth surfaces, shape (n, 3)."""
+    kappa = np.asarray(groups.relative_roughness, dtype=float)
+    kappa = np.where(kappa > 0, kappa, 1.0)
+    return np.log(np.stack(np.broadcast_arrays(groups.speed, groups.load, kappa), axis=1))
+
+
+def _of_values(values: Array, slopes: Array, error: float, groups: Groups, definition: Definition) -> FrictionParts:
+    """Return the parts by those of a lattice, whose derivatives are at fixed relative roughness."""
+    rows = [0, *(PARTS.index(name) for name in RULES[groups.geometry].parts(definition))]
+    by = slopes[rows].copy()
+    by[:, 1] -= groups.scaling.roughness_exponent * by[:, 2]
+    errors = np.full((len(rows), values.shape[1]), error)
+    errors[0] *= values[0]  # interpolated are its log odds
+    return FrictionParts(values[rows], by, errors, definition)

@@ -18,7 +18,7 @@ from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.text_table import MISSING, TextTable, number_of, read_table
 from stribeck.fits.rig import MADE_SPEED, RIG, Row, average_repeats, prepared
-from stribeck.quantities.inputs import QUANTITIES, ROWS, quantity
+from stribeck.quantities.inputs import ROWS, quantity
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Measurements", "read_measurements"]
@@ -135,7 +135,7 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     runs: list[str] = []
     empty: list[int] = []
     frictions = columns["friction"]
-    given = [name for name in columns if name in QUANTITIES and name not in ("speed", "boundary_friction")]
+    given = [name for name in columns if name in settings.inputs.quantities and name not in ("speed", "boundary_friction")]
     for i, number in enumerate(table.numbers):
         place = reader.value(i, columns[abscissa][0], abscissa)
         label = table.rows[i][table.header.index(columns["curve"][0])] if "curve" in columns else ""
@@ -209,7 +209,7 @@ class _Reader:
         return self.factors[key]
 
     def _factor(self, unit: str, meaning: str, where: str) -> float:
-        dimension = DIMENSION.get(meaning) or QUANTITIES[meaning].dimension
+        dimension = DIMENSION.get(meaning) or self.settings.inputs.quantities[meaning].dimension
         if dimension == "number":
             if unit not in BARE:
                 raise InputError(f"{where} has the unit {show(unit)}; {meaning.replace('_', ' ')} is a bare number or in %.")
@@ -249,9 +249,9 @@ class _Reader:
             )
         if meaning == "error" and value <= 0:
             raise InputError(f"{where}: {show(cell)} must be positive; a standard error of zero would outweigh all rows.")
-        if meaning in QUANTITIES and meaning != "speed":
+        if meaning in self.settings.inputs.quantities and meaning != "speed":
             try:
-                quantity(meaning, value)
+                quantity(meaning, value, self.settings.inputs)
             except InputError as problem:
                 raise InputError(f"{where}: {problem}") from None
         return value

@@ -4,11 +4,12 @@ A free input is the common factor :math:`e^\theta` on what the case or the curve
 
 .. math::
 
-    \ln (\lambda, \bar F_N, \bar h_\mathrm{rms}, \mu_0, \beta)_i = L_i + A_{c(i)}^T \theta, \qquad
+    \ln (\lambda, \bar F_N, \bar h_\mathrm{rms}, \mu_0, \beta, \ldots)_i = L_i + A_{c(i)}^T \theta, \qquad
     \frac{\partial \mu_i}{\partial \theta} = A_{c(i)} \frac{\partial \mu_i}
-    {\partial \ln (\lambda, \bar F_N, \bar h_\mathrm{rms}, \mu_0, \beta)}
+    {\partial \ln (\lambda, \bar F_N, \bar h_\mathrm{rms}, \mu_0, \beta, \ldots)}
 
-with a constant matrix A of exponents for each curve c, :data:`stribeck.quantities.inputs.GROUP_EXPONENTS`.
+with a constant matrix A of exponents for each curve c: those of the inputs of the contact in the groups, and in what the
+friction of its geometry takes beside them, see :mod:`stribeck.contacts.friction_rules`.
 """
 
 from __future__ import annotations
@@ -22,16 +23,19 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.fits.friction_parts import FrictionParts, PartsOf
 from stribeck.fits.measurements import Measurements
-from stribeck.quantities.inputs import GROUP_EXPONENTS, QUANTITIES
 from stribeck.quantities.units import InputError, format_si
 
 __all__ = ["FreeInput", "FrictionModel", "Prediction", "free_inputs"]
 
 DEFAULT_FACTOR = 1e3
 """Bounds of a free input without any of its own: this factor below and above its first value."""
+
+IMAGINARY = 1e-30
+"""Step along the imaginary axis, whose derivatives are exact."""
 
 
 @dataclass(frozen=True)
@@ -101,11 +105,13 @@ def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], sett
             start = values[curve] if curve is not None else 1.0 if differ else values[0]
             if start == 0:
                 raise InputError(f"{name} is 0 in the case; a fit looks for factors on it, so give it a first value.")
-            found.append(_free_input(name, curve, start, differ and not alone, settings))
+            found.append(_free_input(name, curve, start, differ and not alone, settings, contact))
     return tuple(found)
 
 
-def _free_input(name: str, curve: int | None, start: float, is_factor: bool, settings: FitSettings) -> FreeInput:
+def _free_input(
+    name: str, curve: int | None, start: float, is_factor: bool, settings: FitSettings, contact: Contact
+) -> FreeInput:
     low, high = -math.log(DEFAULT_FACTOR), math.log(DEFAULT_FACTOR)
     prior = settings.priors.get(name)
     if is_factor and (name in settings.bounds or prior):
@@ -116,15 +122,15 @@ def _free_input(name: str, curve: int | None, start: float, is_factor: bool, set
     if name in settings.bounds:
         ends = settings.bounds[name]
         if not ends[0] <= start <= ends[1]:
-            limits = " to ".join(_text(name, end) for end in ends)
-            raise InputError(f"{name} starts at {_text(name, start)}, outside its bounds {limits}.")
+            limits = " to ".join(_text(name, end, contact) for end in ends)
+            raise InputError(f"{name} starts at {_text(name, start, contact)}, outside its bounds {limits}.")
         low, high = math.log(ends[0] / start), math.log(ends[1] / start)
     mean_and_width = (math.log(prior.value / start), math.log(prior.factor)) if prior else None
     return FreeInput(name, curve, start, low, high, mean_and_width, is_factor)
 
 
-def _text(name: str, value: float) -> str:
-    return format_si(value, QUANTITIES[name].dimension)
+def _text(name: str, value: float, contact: Contact) -> str:
+    return format_si(value, contact.INPUTS.quantities[name].dimension)
 
 
 def _check_matters(name: str, data: Measurements) -> None:
@@ -178,24 +184,26 @@ class FrictionModel:
 
     def __init__(self, contact: Contact, data: Measurements, free: Sequence[FreeInput]) -> None:
         self.contact, self.data, self.free = contact, data, tuple(free)
+        self.rule = RULES[contact.groups.geometry]
         self.contacts = tuple(contact.replace(speed=1.0, **inputs) for inputs in data.inputs)
         exponents = [self._exponents(curve) for curve in range(len(data.curves))]
-        self.exponents = np.array(exponents).reshape(len(data.curves), len(self.free), 5)
+        self.exponents = np.array(exponents).reshape(len(data.curves), len(self.free), 4 + len(self.rule.inputs))
         self.logs = self.logs_at(data.curve, data.values)
 
     def _exponents(self, curve: int) -> list[list[float]]:
-        """Return the exponents with which each free input enters the groups, boundary_friction and beta of a curve."""
+        """Return the exponents with which each free input enters the groups, boundary_friction and what else there is."""
         rows = []
         for free in self.free:
-            speed, load, roughness = GROUP_EXPONENTS[free.name]
-            if self.data.abscissa == "hersey_number" and free.name == "load":
-                speed += 1  # U = H F_N/eta
-            row = [speed, load, roughness, free.name == "boundary_friction", free.name == "beta"]
+            speed, load, roughness = self.contact.INPUTS.exponents[free.name]
+            if self.data.abscissa == "hersey_number" and free.name != "viscosity":
+                speed += self.rule.hersey_exponents.get(free.name, 0.0)
+            row = [speed, load, roughness, free.name == "boundary_friction"]
+            row += [(free.name == name) + self.rule.exponents.get(name, {}).get(free.name, 0.0) for name in self.rule.inputs]
             rows.append([float(x) * (free.curve in (None, curve)) for x in row])
         return rows
 
     def logs_at(self, curve: Indices, values: Array) -> Array:
-        """Return the logarithms of groups, boundary_friction and beta at any places of the abscissa, all factors being one.
+        """Return the logarithms of groups, boundary_friction and beta at any places of the abscissa, all factors one.
 
         Parameters
         ----------
@@ -206,20 +214,39 @@ class FrictionModel:
 
         Returns
         -------
-        ndarray, shape (n, 5)
-            ln of speed group, load group, roughness group, boundary_friction and beta; minus infinity where one is zero.
+        ndarray, shape (n, 4 + inputs)
+            ln of speed group, load group, roughness group, boundary_friction, and beta and what else the friction of the
+            geometry takes; minus infinity where one is zero.
         """
-        rows = np.empty((len(self.contacts), 5))
+        rows = np.empty((len(self.contacts), 4 + len(self.rule.inputs)))
         for i, contact in enumerate(self.contacts):
-            g = contact.groups
-            eta, F_N = contact.viscosity, contact.load
-            per_value = {"speed": 1.0, "speed_viscosity": 1 / eta, "hersey_number": F_N / eta}
+            g, others = contact.groups, self.rule.of_contact(contact)
+            per_value = {"speed": 1.0, "speed_viscosity": 1 / contact.viscosity, "hersey_number": self.rule.hersey(contact)}
             speed = float(g.speed) * per_value[self.data.abscissa]
-            rows[i] = speed, float(g.load), float(g.roughness), contact.boundary_friction, contact.beta
+            rubbing = abs(float(self.rule.rubbing(g, others)))
+            rows[i] = (speed, float(g.load), float(g.roughness), rubbing * contact.boundary_friction, *others.values())
         with np.errstate(divide="ignore"):
             found = np.log(rows)[curve]
         found[:, 0] += np.log(values)
         return np.asarray(found)
+
+    def start(self) -> tuple[Array, Array]:
+        """Return where the curves of a ball begin, and what the fit changes.
+
+        Returns
+        -------
+        ndarray, shape (curves, 3)
+            ln of speed, load and relative roughness of the first row of each; zero for the last of smooth surfaces.
+        ndarray of bool, shape (3,)
+            Which of the three any free input changes.
+        """
+        exponent = self.contact.groups.scaling.roughness_exponent
+        firsts = [int(np.argmax(self.data.curve == curve)) for curve in range(len(self.contacts))]
+        logs = self.logs[firsts, :3].copy()
+        logs[:, 2] = np.where(np.isfinite(logs[:, 2]), logs[:, 2] - exponent * logs[:, 1], 0.0)
+        by = self.exponents[:, :, :3].copy()
+        by[:, :, 2] -= exponent * by[:, :, 1]
+        return logs, np.abs(by).max(axis=(0, 1), initial=0.0) > 1e-12
 
     def contact_of(self, curve: int, theta: Array) -> Contact:
         """Return the contact of a curve at a set of free inputs, at the speed of the case."""
@@ -253,14 +280,31 @@ class FrictionModel:
         A = self.exponents[curve]
         x = np.exp(logs + np.einsum("p,npk->nk", theta, A))
         found: FrictionParts = parts_of(Groups(x[:, 0], x[:, 1], x[:, 2], **self.contact.groups.physics))
-        contact, viscous = x[:, 3] * found.values[0], x[:, 4] * found.values[1]
-        by_groups = x[:, 3] * found.slopes[0] + x[:, 4] * found.slopes[1]
-        by_logs = np.concatenate([by_groups, contact[None], viscous[None]])
+        names = self.rule.parts(found.definition)
+        parts, inputs = dict(zip(names, found.values[1:], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
+
+        def viscous(values: Array, groups: Array, others: Array) -> Array:
+            """Return the viscous friction after changes of parts, of the logarithms of speed and load, and of inputs."""
+            moved = {name: part + values[i] for i, (name, part) in enumerate(parts.items())}
+            taken = {name: value * np.exp(others[i]) if others[i] else value for i, (name, value) in enumerate(inputs.items())}
+            speed, load = x[:, 0] * np.exp(groups[0]), x[:, 1] * np.exp(groups[1])
+            return np.asarray(self.rule.viscous(moved, speed, load, taken, found.definition))
+
+        still, no_group, no_input = np.zeros((len(names), 1)), np.zeros(3), np.zeros(len(inputs))
+        contact, fluid = x[:, 3] * found.values[0], viscous(still, no_group, no_input)
+        step = 1j * IMAGINARY
+        by_groups = [
+            x[:, 3] * found.slopes[0, d] + viscous(step * found.slopes[1:, d], step * np.eye(3)[d], no_input).imag / IMAGINARY
+            for d in range(3)
+        ]
+        by_inputs = [viscous(still, no_group, step * row).imag / IMAGINARY for row in np.eye(len(inputs))]
+        errors = dict(zip(names, found.errors[1:], strict=True))
         return Prediction(
-            friction=contact + viscous,
-            jacobian=np.einsum("kn,npk->np", by_logs, A),
-            contact_share=contact / (contact + viscous),
-            fluid_share=viscous / (contact + viscous),
+            friction=contact + fluid,
+            jacobian=np.einsum("kn,npk->np", np.array([*by_groups, contact, *by_inputs]), A),
+            contact_share=contact / (contact + fluid),
+            fluid_share=fluid / (contact + fluid),
             load_share=found.values[0],
-            error=x[:, 3] * found.errors[0] + viscous * found.errors[1],
+            error=np.abs(x[:, 3]) * found.errors[0]
+            + self.rule.viscous_error(parts, errors, x[:, 0], x[:, 1], inputs, found.definition),
         )

@@ -18,7 +18,7 @@ from stribeck.files.results import Exported
 from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
-from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.inputs import LINE, InputTable
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import DIMENSIONS
 
@@ -67,6 +67,8 @@ class FittedInput:
         Ends of its intervals by profile likelihood; 0 and infinity where the data leave an end open within the bounds.
     at_bound : bool
         Whether it ended at one of its bounds.
+    dimension : str
+        Kind of its unit, a key of :data:`stribeck.quantities.units.DIMENSIONS`.
     """
 
     name: str
@@ -79,6 +81,7 @@ class FittedInput:
     interval_68: tuple[float, float]
     interval_95: tuple[float, float]
     at_bound: bool
+    dimension: str = "number"
 
     @property
     def label(self) -> str:
@@ -248,7 +251,11 @@ class Fit(Exported, Shown, ByValue):
             "message": self.outcome.value,
             "inputs": inputs,
             "held": [
-                {"name": name, "unit": unit_of(name, False), "values": [getattr(each, name) for each in self.contacts]}
+                {
+                    "name": name,
+                    "unit": unit_of(name, False, self.contact.INPUTS),
+                    "values": [getattr(each, name) for each in self.contacts],
+                }
                 for name in self.held
             ],
             "covariance": self.covariance.tolist(),
@@ -336,6 +343,6 @@ class Fit(Exported, Shown, ByValue):
         return Card(self.outcome.value, rows, notes)
 
 
-def unit_of(name: str, is_factor: bool) -> str:
+def unit_of(name: str, is_factor: bool, table: InputTable = LINE) -> str:
     """Return the SI unit of a fitted input."""
-    return "" if is_factor else DIMENSIONS[QUANTITIES[name].dimension].unit
+    return "" if is_factor else DIMENSIONS[table.quantities[name].dimension].unit
