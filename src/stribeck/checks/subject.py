@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 from stribeck.contact_laws.finite_surface import FiniteSurface
 from stribeck.contacts.contact import Contact
@@ -23,8 +23,29 @@ __all__ = ["Subject"]
 PLAIN = ("", "newtonian", "half-plane", "half-space", "none")
 """Names of the parts of the article, of which nothing needs to be said."""
 
-POINTS, RTOL = 21, 1e-4
-"""Of the curves on which the minimum and the transitions are looked for, which are then located exactly."""
+RTOL = 1e-4
+
+
+class Tracing(NamedTuple):
+    """How the curve of one geometry is traced, on which the minimum and the transitions are looked for and then located.
+
+    Attributes
+    ----------
+    points : int
+        Its points.
+    rtol : float
+        Tolerance of its states.
+    films : tuple of float or None
+        Film of the smooth contact over h_rms at its slowest and fastest point; None for a curve that finds its ends itself.
+    """
+
+    points: int
+    rtol: float
+    films: tuple[float, float] | None
+
+
+TRACES = {"line": Tracing(21, RTOL, None), "point": Tracing(8, 1e-3, (0.3, 16.0))}
+"""By geometry: a ball takes a tenth of a second or more for each state, and its minimum lies where films are a few h_rms."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,17 +89,14 @@ class Subject:
         return self._curve_of(self.contact.replace(law=FiniteSurface(self.contact.alpha, law)))
 
     def _curve_of(self, contact: Contact) -> StribeckCurve:
-        return stribeck_curve(contact, points=POINTS, rtol=RTOL, definition=self.definition)
+        tracing = TRACES[contact.groups.geometry]
+        speeds = None if tracing.films is None else tuple(speed_of_film(contact, film) for film in tracing.films)
+        return stribeck_curve(contact, speed=speeds, points=tracing.points, rtol=tracing.rtol, definition=self.definition)
 
     @property
     def passing_gap(self) -> float:
         """Gap of the film that passes [u_Hz]: h* of a cylinder, the central gap of a ball."""
         return float(getattr(self.solution, "flux_gap", self.solution.central_gap))
-
-    @property
-    def is_slow(self) -> bool:
-        """Whether a curve would take minutes, as that of a ball does, and is not known yet."""
-        return self.contact.groups.geometry == "point" and self.traced is None
 
     @property
     def minimum(self) -> Landmark | None:
@@ -106,3 +124,22 @@ class Subject:
     def film(self, gap: float) -> float:
         """Return a gap in m."""
         return gap * self.contact.hertz.indentation
+
+
+def speed_of_film(contact: Contact, film: float) -> float:
+    """Return the speed at which the central film of the smooth ball is a multiple of its roughness [m/s].
+
+    Parameters
+    ----------
+    contact : PointContact
+        The contact.
+    film : float
+        Film over h_rms [-].
+
+    Returns
+    -------
+    float
+        By the leading law of slow speed, h(0) = 0.42480 u lambda^0.6.
+    """
+    at_one = float(contact.replace(speed=1.0).groups.speed)
+    return (film * contact.roughness / contact.hertz.indentation / 0.42480) ** (1 / 0.6) / at_one

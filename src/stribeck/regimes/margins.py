@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SH
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.inputs import GROUP_EXPONENTS
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solution import Solution
@@ -32,10 +31,37 @@ REACH = 1e6
 BOX = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
 """Groups between which is searched, where the solver is tested; the load also no further than the contact law holds."""
 
-PHYSICAL = {"speed": (1e-12, 1e3), "viscosity": (1e-5, 1e8), "load": (1e-6, math.inf), "roughness": (1e-10, math.inf)}
+PHYSICAL = {"speed": (1e-12, 1e3), "viscosity": (1e-5, 1e8), "roughness": (1e-10, math.inf)}
 """What an input can be made at all [SI]: a speed from an atom's width in 100 s to that of sound, a fluid from gas to pitch,
-a load per length from the weight of a thread of 10 um, a roughness from that of atoms.  Load and roughness end with the
-contact itself: see :func:`physical_bounds`."""
+a roughness from that of atoms.  Roughness ends with the contact itself: see :func:`physical_bounds`."""
+
+
+class Search(NamedTuple):
+    """How far and how finely the regimes of one geometry are searched.
+
+    Attributes
+    ----------
+    lightest : float
+        Smallest load: of a cylinder, per length, that of a thread of 10 um; of a ball that of a grain of dust [SI].
+    heaviest : callable
+        ``heaviest(contact)`` is the load at which the Hertz contact is as wide as the body [SI].
+    largest_group : float
+        Load group up to which the solver is tested, where the contact law allows it.
+    rtol : float
+        Smallest tolerance of the states that are scanned: a ball takes a tenth of a second or more each.
+    """
+
+    lightest: float
+    heaviest: Callable[[Contact], float]
+    largest_group: float
+    rtol: float
+
+
+SEARCHES: dict[Geometry, Search] = {
+    "line": Search(1e-6, lambda each: math.pi / 4 * each.modulus * each.radius, 10.0, 0.0),
+    "point": Search(1e-9, lambda each: 4 / 3 * each.modulus * each.radius**2, 1e4, 1e-4),
+}
+"""The searches by geometry."""
 
 DECADE = math.log(10.0)
 """Length of one step outwards in the logarithm of an input."""
@@ -145,7 +171,7 @@ def regime_margins(
     contact : Contact
         The contact; zero speed and zero roughness are ordinary inputs.
     rtol : float
-        Relative tolerance of the states that are scanned; the changes are located on finer ones.
+        Relative tolerance of the states that are scanned, at least 1e-4 of a ball; the changes are located on finer ones.
     definition : {"balanced", "published"}
         Definition of the viscous friction.
     on_point : callable, optional
@@ -168,14 +194,15 @@ def regime_margins(
     Notes
     -----
     Each input is followed by continuation, decade by decade, until the regime of :func:`regime_of` changes, by at most a
-    factor of 1e6, as far as the groups lie in speed 1e-12 to 1e6, load 1e-8 to 1, relative roughness 1e-6 to 1e3, and
-    within :func:`physical_bounds`.  More load lowers the speed group as its square, and the relative roughness.  Speed and
-    viscosity enter as their product: one scan serves both.
+    factor of 1e6, as far as the groups lie in speed 1e-12 to 1e6, load 1e-8 to 1, where the law goes on to 10 and of a ball to
+    1e4, relative roughness 1e-6 to 1e3, and within :func:`physical_bounds`.  More load lowers the speed group as a power, and
+    the relative roughness.  Speed and viscosity enter as their product: one scan serves both.
     """
     check_rtol(rtol)
     definition = check_definition(definition)
     if not isinstance(contact, Contact):
         raise InputError(f"contact = {show(contact)}; it must be a LineContact or PointContact, as margins are in SI units.")
+    rtol = max(rtol, SEARCHES[contact.groups.geometry].rtol)
     present = _regime(solve(contact, rtol=rtol), definition)
     scan = _Scan(contact, present, rtol, definition, on_point)
     notes = []
@@ -203,7 +230,8 @@ def regime_margins(
 def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:
     r"""Return between which values an input of a contact can be sought, whatever the model says beyond.
 
-    .. math:: F_N \le \frac{\pi}{4} E^* R \;\;(a \le R), \qquad h_\mathrm{rms} \le a
+    .. math:: F_N \le \frac{\pi}{4} E^* R \text{ on the line}, \quad \frac43 E^* R^2 \text{ on the ball} \;\;(a \le R),
+        \qquad h_\mathrm{rms} \le a
 
     Parameters
     ----------
@@ -215,18 +243,20 @@ def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:
     Returns
     -------
     tuple of float
-        Lowest and highest value [SI]: speed 1e-12 to 1000 m/s, viscosity 1e-5 to 1e8 Pa s, load from 1e-6 N/m to where the
-        Hertz contact is as wide as the cylinder, roughness from 0.1 nm to the half-width of that contact.
+        Lowest and highest value [SI]: speed 1e-12 to 1000 m/s, viscosity 1e-5 to 1e8 Pa s, load from 1e-6 N/m or 1e-9 N to
+        where the Hertz contact is as wide as the body, roughness from 0.1 nm to the half-width of that contact.
 
     Notes
     -----
     Rules of thumb: roughness higher than the contact is half wide is a matter of shape, and the present value counts as
     possible even where it is none.
     """
-    low, high = PHYSICAL[name]
     if name == "load":
-        high = math.pi / 4 * contact.modulus * contact.radius
-    elif name == "roughness":
+        search = SEARCHES[contact.groups.geometry]
+        low, high = search.lightest, search.heaviest(contact)
+    else:
+        low, high = PHYSICAL[name]
+    if name == "roughness":
         high = contact.hertz.half_width
     value = float(getattr(contact, name))
     return (min(low, value), max(high, value)) if value > 0 else (low, high)
@@ -376,11 +406,13 @@ class _Scan:
 
 def _limits(contact: Contact, name: str) -> tuple[float, float]:
     """Return the logarithms of the factors of an input between which it is possible and the groups stay in the box."""
-    box = BOX | {"load": (BOX["load"][0], min(BOX["load"][1], largest_load(contact.law)))}
-    n_speed, n_load, n_roughness = GROUP_EXPONENTS[name]
     groups = contact.groups
+    highest = min(SEARCHES[groups.geometry].largest_group, largest_load(contact.law))
+    box = BOX | {"load": (BOX["load"][0], highest)}
+    n_speed, n_load, n_roughness = contact.INPUTS.exponents[name]
+    n_roughness -= groups.scaling.roughness_exponent * n_load
     low, high = _possible_factors(contact, name)
-    for group, n in (("speed", n_speed), ("load", n_load), ("relative_roughness", n_roughness - n_load)):
+    for group, n in (("speed", n_speed), ("load", n_load), ("relative_roughness", n_roughness)):
         value = float(getattr(groups, group))
         if n == 0 or value == 0:
             continue

@@ -149,6 +149,8 @@ def _formula_speeds(diagram: Diagram) -> dict[str, Array]:
     from stribeck.asymptotics.rough import load_sharing, transitions
 
     groups, unit = _row_groups(diagram)
+    if not diagram.kind.has_formulas:
+        return {name: np.full(unit.shape, np.nan) for name in LABELS if name.startswith(("formula_speed", "printed_speed"))}
     boundary_friction, beta = diagram.boundary_friction, diagram.beta
     with np.errstate(all="ignore"):
         shares = load_sharing.speed_at_fluid_share.function
@@ -169,7 +171,7 @@ def _formula_merging(diagram: Diagram) -> Array:
 
     groups, _ = _row_groups(diagram)
     loads = np.asarray(groups.load)[:, 0]
-    if not transitions.speed_at_minimum.holds_for(groups.law):
+    if not (diagram.kind.has_formulas and transitions.speed_at_minimum.holds_for(groups.law)):
         return np.full(len(loads), np.nan)
     line = np.asarray(transitions.roughness_without_minimum(loads, diagram.boundary_friction, diagram.beta))
     if diagram.contact is None:

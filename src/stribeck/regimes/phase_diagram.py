@@ -22,11 +22,11 @@ from stribeck.contacts.groups import Groups
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method, regime_of
 from stribeck.curves.result import StribeckCurve
-from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.units import InputError
 from stribeck.regimes import phase_from_atlas as atlas_phase
 from stribeck.regimes.phase_grid import FIELDS, MARKS, REGIMES, Diagram, empty_diagram
 from stribeck.regimes.weakening import roughness_without_minimum, weakening
@@ -37,9 +37,6 @@ if TYPE_CHECKING:
     import xarray
 
 __all__ = ["phase_diagram"]
-
-DENSITY = 4
-"""States per decade that a row has at least, so that its transitions are seen and soon located."""
 
 
 @refuse_former
@@ -54,7 +51,7 @@ def phase_diagram(
     boundary_friction: float | None = None,
     beta: float | None = None,
     definition: Definition = "balanced",
-    rtol: float = 1e-4,
+    rtol: float | None = None,
     merging: bool = False,
     on_point: Callable[[int, int], object] | None = None,
     law: str | AsperityLaw | None = None,
@@ -71,16 +68,17 @@ def phase_diagram(
         Groups [-], or SI numbers or text with units for a LineContact.  Speed and roughness may be zero.  Without a speed
         the grid reaches from the boundary plateau to the hydrodynamic branch of all its rows.
     points : int or dict of str to int, optional
-        Points of the ranges, for all or by name; 2 loads, 25 roughnesses and 61 speeds where not given.
+        Points of the ranges, for all or by name; 2 loads, 25 roughnesses and 61 speeds where not given, of a ball 2, 5 and 13.
     boundary_friction, beta : float, optional
         Friction coefficient of the dry contact and coefficient of the contact law [-]; those of the contact, or 1.
     definition : {"balanced", "published"}
         Definition of the viscous friction.
-    rtol : float
-        Relative tolerance of the states of the grid; transitions are located on finer ones.
+    rtol : float, optional
+        Relative tolerance of the states of the grid, 1e-4 and of a ball 1e-3 where not given; transitions are located on finer
+        ones, of a ball on such states too.  ``error_estimate`` has what was reached.
     merging : bool
         Whether to look, at each load, for the roughness at which the minimum disappears, see
-        :func:`stribeck.regimes.weakening.roughness_without_minimum`; about a second each.
+        :func:`stribeck.regimes.weakening.roughness_without_minimum`; about a second each, of cylinders alone.
     on_point : callable, optional
         ``on_point(done, points)`` is called as points are finished, for progress.
     law : str or AsperityLaw, optional
@@ -106,14 +104,17 @@ def phase_diagram(
 
     Notes
     -----
-    About 0.4 s for each pair of load and roughness; more above load 1.
+    About 0.4 s for each pair of load and roughness; more above load 1.  Of a ball 5 to 30 s; formulas are left out.
 
     Source: [BP] Fig. 11, which shows the printed formulas alone.
     """
-    check_rtol(rtol)
+    if rtol is not None:
+        check_rtol(rtol)
     diagram = empty_diagram(
         problem, {"load": load, "roughness": roughness, "speed": speed}, points, boundary_friction, beta, definition, rtol, law
     )
+    if merging and not diagram.kind.has_formulas:
+        raise InputError("merging = True is for cylinders, geometry 'line'; leave it out for a ball.")
     from stribeck.regimes.phase_dataset import diagram_dataset, import_xarray
 
     import_xarray()
@@ -140,12 +141,12 @@ def phase_diagram(
 
 def _fill_row(diagram: Diagram, i: int, j: int, report: Callable[[float], None]) -> None:
     """Solve one load and roughness over the speed, and enter it; raise KeyboardInterrupt where that was interrupted."""
-    problem, groups, unit = diagram.problem(i, j)
+    problem, _, _ = diagram.problem(i, j)
     speeds = diagram.axes["speed"]
     wanted = {float(value): k for k, value in enumerate(speeds)}
     if 0.0 in wanted:
         _fill_rest(diagram, problem, (i, j, wanted.pop(0.0)))
-    values = _filled(np.array(list(wanted)), groups, unit, diagram)
+    values = _filled(np.array(list(wanted)), diagram, (i, j))
     settings: dict[str, Any] = {
         "boundary_friction": diagram.boundary_friction,
         "beta": diagram.beta,
@@ -170,7 +171,7 @@ def _fill_row(diagram: Diagram, i: int, j: int, report: Callable[[float], None])
     if curve.outcome is Outcome.INTERRUPTED:
         raise KeyboardInterrupt
     try:
-        _enter_lines(diagram, (i, j), curve, groups, unit)
+        _enter_lines(diagram, (i, j), curve)
     except SolveError as failure:
         diagram.messages[i, j] = str(failure)
 
@@ -194,8 +195,9 @@ def _enter(diagram: Diagram, place: tuple[int, int, int], solution: Solution) ->
     diagram.outcomes[place] = solution.outcome.name
 
 
-def _enter_lines(diagram: Diagram, place: tuple[int, int], curve: StribeckCurve, groups: Groups, unit: float) -> None:
+def _enter_lines(diagram: Diagram, place: tuple[int, int], curve: StribeckCurve) -> None:
     """Locate the transitions of a row; a minimum above the boundary plateau is not the minimum friction, yet one."""
+    _, groups, unit = diagram.problem(*place)
     marks: dict[str, Landmark] = {mark.name: mark for mark in curve.transitions}
     for variable, name in MARKS.items():
         if name in marks:
@@ -203,22 +205,24 @@ def _enter_lines(diagram: Diagram, place: tuple[int, int], curve: StribeckCurve,
     found = math.nan, math.nan
     if curve.minimum is not None:
         found = curve.minimum.value, curve.minimum.friction
-    elif groups.roughness > 0 and diagram.boundary_friction > 0:
+    elif diagram.kind.has_formulas and groups.roughness > 0 and diagram.boundary_friction > 0:
         branch = weakening(groups, diagram.boundary_friction, diagram.beta, diagram.definition)
         found = branch.minimum_speed / unit, branch.minimum_friction
     diagram.lines["speed_at_minimum"][place], diagram.lines["friction_at_minimum"][place] = found
     diagram.velocity_weakening[place] = int(math.isfinite(found[0]))
 
 
-def _filled(speeds: Array, groups: Groups, unit: float, diagram: Diagram) -> Array:
+def _filled(speeds: Array, diagram: Diagram, place: tuple[int, int]) -> Array:
     """Return the speeds of a row: those of the grid, what lies in wide gaps, and as far out as its transitions may lie."""
+    _, groups, _ = diagram.problem(*place)
     if len(speeds) > 1 and groups.roughness == 0:  # smooth surfaces have no transitions
         return speeds
-    low, high = (
-        end / unit for end in automatic_speed_range(groups, diagram.boundary_friction, diagram.beta, diagram.definition)
-    )
+    low, high = diagram.ends(*place)
     ends = sorted({*speeds.tolist(), low, high} if len(speeds) else {low, high})
-    pieces = [np.geomspace(*pair, 1 + max(1, round(DENSITY * math.log10(pair[1] / pair[0]))))[:-1] for pair in pairwise(ends)]
+    pieces = [
+        np.geomspace(*pair, 1 + max(1, round(diagram.kind.density * math.log10(pair[1] / pair[0]))))[:-1]
+        for pair in pairwise(ends)
+    ]
     return np.concatenate([*pieces, ends[-1:]])
 
 

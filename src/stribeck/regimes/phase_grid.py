@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.quantities.inputs import InputTable
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show, to_si
-from stribeck.solver.solve import as_groups, only_line, with_law
+from stribeck.solver.solve import as_groups, with_law
 
 __all__ = ["AXES", "FIELDS", "LINES", "MARKS", "REGIMES", "Diagram", "empty_diagram"]
 
@@ -30,8 +30,42 @@ AXES = ("load", "roughness", "speed")
 REGIMES: tuple[Regime, ...] = ("boundary", "mixed", "hydrodynamic")
 """Names of the regimes; their places are the codes in a diagram, where -1 stands for a point without a state."""
 
-POINTS = {"load": 2, "roughness": 25, "speed": 61}
-"""Points between the ends of a range, unless asked for otherwise."""
+
+class Kind(NamedTuple):
+    """How the diagrams of one geometry are made.
+
+    Attributes
+    ----------
+    points : dict of str to int
+        Points between the ends of a range, unless asked for otherwise.
+    density : float
+        States per decade that a row has at least, so that its transitions are seen and soon located.
+    rtol : float
+        Relative tolerance of the states of the grid, unless asked for otherwise.
+    ends : callable
+        ``ends(groups, boundary_friction, beta, definition)`` are the speed groups between which a row has its transitions.
+    has_formulas : bool
+        Whether formulas give transitions, and the branch of falling friction is followed beyond its minimum.
+    """
+
+    points: Mapping[str, int]
+    density: float
+    rtol: float
+    ends: Callable[[Groups, float, float, Definition], tuple[float, float]]
+    has_formulas: bool
+
+
+def _ends_of_ball(groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> tuple[float, float]:
+    from stribeck.curves.point_curve import point_speeds
+
+    return point_speeds(groups, boundary_friction, beta, definition)
+
+
+KINDS: dict[str, Kind] = {
+    "line": Kind({"load": 2, "roughness": 25, "speed": 61}, 4, 1e-4, automatic_speed_range, True),
+    "point": Kind({"load": 2, "roughness": 5, "speed": 13}, 1.5, 1e-3, _ends_of_ball, False),
+}
+"""The kinds by geometry: a state of a ball takes a tenth of a second or more."""
 
 MOST_POINTS = 10_000
 
@@ -112,6 +146,17 @@ class Diagram:
         row = self.contact.replace(load=load, roughness=roughness, speed=1.0)
         return row, row.groups, float(row.groups.speed)
 
+    @property
+    def kind(self) -> Kind:
+        """How the diagrams of this geometry are made."""
+        return KINDS[self.physics["geometry"]]
+
+    def ends(self, i: int, j: int) -> tuple[float, float]:
+        """Return the speeds between which a row has its transitions, in the unit of the axis."""
+        _, groups, unit = self.problem(i, j)
+        low, high = self.kind.ends(groups, self.boundary_friction, self.beta, self.definition)
+        return low / unit, high / unit
+
 
 def empty_diagram(
     problem: Contact | Groups | None,
@@ -120,7 +165,7 @@ def empty_diagram(
     boundary_friction: float | None,
     beta: float | None,
     definition: Definition,
-    rtol: float,
+    rtol: float | None,
     law: str | AsperityLaw | None = None,
 ) -> Diagram:
     """Return the empty diagram that the arguments ask for."""
@@ -134,10 +179,10 @@ def empty_diagram(
     missing = [name for name in ("load", "roughness") if given[name] is None]
     if missing:
         raise InputError(f"{' and '.join(missing)} missing; give numbers or ranges, or a LineContact or PointContact.")
-    counts, table = _points(points), None if contact is None else contact.INPUTS
-    axes = {name: _axis(name, given[name], table, counts[name]) for name in ("load", "roughness")}
     physics = (as_groups(problem)[0] if problem is not None else _unit_groups(law)).physics
-    only_line(Groups(1.0, 1.0, 1.0, **physics), "phase_diagram")
+    kind, table = KINDS[physics["geometry"]], None if contact is None else contact.INPUTS
+    counts, rtol = _points(points, kind), kind.rtol if rtol is None else rtol
+    axes = {name: _axis(name, given[name], table, counts[name]) for name in ("load", "roughness")}
     corners = Diagram(contact, axes | {"speed": np.ones(1)}, boundary_friction, beta, definition, rtol, physics)
     if given["speed"] is None:
         axes["speed"] = _automatic_axis(corners, counts["speed"])
@@ -151,7 +196,7 @@ def _unit_groups(law: str | AsperityLaw | None) -> Groups:
     return Groups(1.0, 1.0, 1.0, law=named_law(law) if isinstance(law, str) else check_law(law))
 
 
-def _points(points: int | Mapping[str, int] | None) -> dict[str, int]:
+def _points(points: int | Mapping[str, int] | None, kind: Kind) -> dict[str, int]:
     wanted = {} if points is None else points if isinstance(points, Mapping) else dict.fromkeys(AXES, points)
     unknown = [name for name in wanted if name not in AXES]
     if unknown:
@@ -159,7 +204,7 @@ def _points(points: int | Mapping[str, int] | None) -> dict[str, int]:
     for name, count in wanted.items():
         if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MOST_POINTS:
             raise InputError(f"points of {name} = {show(count)}; they must be a whole number from 2 to {MOST_POINTS}.")
-    return POINTS | dict(wanted)
+    return {**kind.points, **wanted}
 
 
 def _axis(name: str, value: Any, table: InputTable | None, points: int) -> Array:
@@ -188,8 +233,5 @@ def _automatic_axis(diagram: Diagram, points: int) -> Array:
     """Return speeds that reach from the lowest plateau to the highest branch of the outermost rows."""
     ends = []
     for i, j in product((0, -1), repeat=2):
-        _, groups, unit = diagram.problem(i, j)
-        ends += [
-            end / unit for end in automatic_speed_range(groups, diagram.boundary_friction, diagram.beta, diagram.definition)
-        ]
+        ends += diagram.ends(i, j)
     return np.geomspace(min(ends), max(ends), points)

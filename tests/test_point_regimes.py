@@ -1,0 +1,96 @@
+"""Regimes of balls: margins, phase diagrams and checks, judged by states that are solved beside them."""
+
+import math
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.checks.subject import TRACES, Subject, speed_of_film
+from stribeck.checks.table import checks_of
+from stribeck.regimes.margins import SEARCHES, _limits, physical_bounds, regime_margins
+
+BALL = sb.PointContact.from_groups(
+    sb.Groups(1e-3, 1e-2, 2e-4, geometry="point"),
+    radius=0.01,
+    modulus=1e6,
+    viscosity=0.1,
+    alpha=2.0,
+    beta=0.1,
+    boundary_friction=0.8,
+)
+LAW = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=3e4, q1=3e6, hurst=0.8))
+
+
+def test_the_limits_of_a_search_are_where_the_groups_of_a_ball_leave_the_box():
+    for name, group in (("load", "load"), ("roughness", "relative_roughness")):
+        low, high = _limits(BALL, name)
+        value = getattr(BALL, name)
+        ends = [
+            BALL.replace(**{name: value * math.exp(x)}).groups for x in (low, high) if physical_bounds(BALL, name)[0] < value
+        ]
+        assert all(1e-8 * (1 - 1e-9) <= each.load <= 1 + 1e-9 for each in ends)
+        assert all(1e-6 * (1 - 1e-9) <= each.relative_roughness <= 1e3 * (1 + 1e-9) for each in ends)
+        assert getattr(ends[1], group) > getattr(BALL.groups, group)
+    low, high = _limits(BALL.replace(law=LAW), "load")
+    assert BALL.replace(law=LAW, load=BALL.load * math.exp(high)).groups.load == pytest.approx(
+        min(SEARCHES["point"].largest_group, BALL.groups.load * physical_bounds(BALL, "load")[1] / BALL.load), rel=1e-6
+    )
+
+
+def test_the_heaviest_load_of_a_ball_makes_the_contact_as_wide_as_itself():
+    heavy = BALL.replace(load=physical_bounds(BALL, "load")[1])
+    assert heavy.hertz.half_width == pytest.approx(heavy.radius, rel=1e-12)
+
+
+@pytest.mark.slow
+def test_margins_of_a_ball_lead_to_the_regimes_that_they_name():
+    found = regime_margins(BALL, rtol=1e-3)
+    assert found.regime == "mixed" and found.geometry == "point"
+    for margin in found.margins:
+        for mark in (margin.less, margin.more):
+            if mark is None or margin.name == "load":
+                continue
+            ends = [sb.solve(BALL.replace(**{margin.name: mark.value * factor}), rtol=1e-4).regime for factor in (0.98, 1.02)]
+            assert set(ends) == {"mixed", mark.regime}, margin.name
+    speed, viscosity = found.margins[0], found.margins[3]
+    assert viscosity.more.factor == pytest.approx(speed.more.factor)
+
+
+@pytest.mark.slow
+def test_a_phase_diagram_of_balls_holds_states_and_their_transitions():
+    pytest.importorskip("xarray")
+    speeds = [1e-4, 1e-3, 1e-2]
+    found = sb.phase_diagram(BALL.groups, speed=speeds, load=[1e-2], roughness=[2e-4], boundary_friction=0.8, beta=0.1)
+    assert set(found.outcome.values.ravel()) == {"CONVERGED"}
+    assert float(found.error_estimate.max()) <= 1e-3
+    alone = sb.solve(sb.Groups(1e-3, 1e-2, 2e-4, geometry="point"), rtol=1e-3)
+    assert float(found.fluid_load_share[0, 0, 1]) == pytest.approx(alone.fluid_load_share, abs=2e-3)
+    assert float(found.friction[0, 0, 1]) == pytest.approx(alone.friction(0.8, 0.1).total, rel=3e-3)
+    half = float(found.speed_at_half_fluid[0, 0])
+    assert sb.solve(sb.Groups(half, 1e-2, 2e-4, geometry="point"), rtol=1e-3).fluid_load_share == pytest.approx(0.5, abs=2e-3)
+    assert float(found.speed_at_5_percent_fluid[0, 0]) < half < float(found.speed_at_minimum[0, 0])
+    assert np.isnan(found.formula_speed_at_minimum).all() and found.attrs["title"].endswith("rough point contact")
+    with pytest.raises(sb.InputError, match="merging"):
+        sb.phase_diagram(BALL, merging=True)
+
+
+def test_checks_of_a_ball_trace_its_curve_around_the_minimum():
+    slow, fast = (speed_of_film(BALL, film) for film in TRACES["point"].films)
+    curve = sb.stribeck_curve(BALL, speed=(slow, fast), points=TRACES["point"].points, rtol=TRACES["point"].rtol)
+    assert slow < curve.minimum.value < fast
+    film = sb.solve(BALL.replace(speed=fast, roughness=0.0), rtol=1e-3).central_gap * BALL.hertz.indentation
+    assert film / BALL.roughness == pytest.approx(TRACES["point"].films[1], rel=0.3)
+    found = checks_of(Subject(BALL, traced=curve), "curve")
+    check = found["contact law at the minimum"]
+    state = curve.minimum.solution
+    assert check.value == pytest.approx(state.central_gap * BALL.hertz.indentation / BALL.roughness)
+    assert not [each for each in found.unchecked if "minute" in each]
+
+
+@pytest.mark.slow
+def test_the_tail_of_the_law_moves_the_minimum_of_a_ball():
+    found = sb.check(BALL)
+    check = found["tail of the contact law"]
+    assert 0.02 < check.value < 0.6
+    assert "minimum of friction" in check.sentence
