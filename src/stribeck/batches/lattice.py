@@ -12,6 +12,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -114,7 +115,7 @@ class Lattice:
         y, slopes = np.zeros((4, n)), np.zeros((4, 3, n))
         steps = np.array(self.steps)
         for corner in product((0, 1), repeat=3):
-            chosen = [self.nodes.get(tuple(np.add(row, corner)), _NOTHING) for row in first]  # type: ignore[arg-type]
+            chosen = [self.nodes.get(tuple(np.add(row, corner)), _NOTHING) for row in first]
             f = np.array([each[0] for each in chosen]).T
             g = np.array([each[1] for each in chosen]).transpose(1, 2, 0) * steps[:, None]
             # Linear weight of the corner along each direction, and what turns a linear edge into a cubic one.
@@ -214,7 +215,7 @@ def _corners(first: Array, part: Array) -> list[Index]:
     return found
 
 
-def _to_smooth(values: Array, ln_speed: complex) -> Array:
+def _to_smooth(values: Any, ln_speed: complex) -> Any:
     """Return log odds, logarithm of the Couette integral up to 25 a over the speed, and both other integrals over it."""
     contact, fluid, couette, poiseuille, of_contact = values
     speed = np.exp(ln_speed)
@@ -223,7 +224,7 @@ def _to_smooth(values: Array, ln_speed: complex) -> Array:
     return np.array([np.log(contact / fluid), np.log(whole / speed), flow, of_contact / whole])
 
 
-def _from_smooth(y: Array, ln_speed: Array) -> Array:
+def _from_smooth(y: Any, ln_speed: Any) -> Any:
     """Return :data:`PARTS` by the smooth functions."""
     speed = np.exp(ln_speed)
     whole = np.exp(y[1]) * speed

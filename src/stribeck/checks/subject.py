@@ -142,4 +142,4 @@ def speed_of_film(contact: Contact, film: float) -> float:
         By the leading law of slow speed, h(0) = 0.42480 u lambda^0.6.
     """
     at_one = float(contact.replace(speed=1.0).groups.speed)
-    return (film * contact.roughness / contact.hertz.indentation / 0.42480) ** (1 / 0.6) / at_one
+    return float((film * contact.roughness / contact.hertz.indentation / 0.42480) ** (1 / 0.6) / at_one)

@@ -282,7 +282,7 @@ def _coordinates(groups: Groups) -> Array:
     """Return ln of speed, load and relative roughness, zero for the last of smooth surfaces, shape (n, 3)."""
     kappa = np.asarray(groups.relative_roughness, dtype=float)
     kappa = np.where(kappa > 0, kappa, 1.0)
-    return np.log(np.stack(np.broadcast_arrays(groups.speed, groups.load, kappa), axis=1))
+    return np.asarray(np.log(np.stack(np.broadcast_arrays(groups.speed, groups.load, kappa), axis=1)))
 
 
 def _of_values(values: Array, slopes: Array, error: float, groups: Groups, definition: Definition) -> FrictionParts:

@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -283,12 +284,12 @@ class FrictionModel:
         names = self.rule.parts(found.definition)
         parts, inputs = dict(zip(names, found.values[1:], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
 
-        def viscous(values: Array, groups: Array, others: Array) -> Array:
+        def viscous(values: Any, groups: Any, others: Any) -> Any:
             """Return the viscous friction after changes of parts, of the logarithms of speed and load, and of inputs."""
             moved = {name: part + values[i] for i, (name, part) in enumerate(parts.items())}
             taken = {name: value * np.exp(others[i]) if others[i] else value for i, (name, value) in enumerate(inputs.items())}
             speed, load = x[:, 0] * np.exp(groups[0]), x[:, 1] * np.exp(groups[1])
-            return np.asarray(self.rule.viscous(moved, speed, load, taken, found.definition))
+            return self.rule.viscous(moved, speed, load, taken, found.definition)
 
         still, no_group, no_input = np.zeros((len(names), 1)), np.zeros(3), np.zeros(len(inputs))
         contact, fluid = x[:, 3] * found.values[0], viscous(still, no_group, no_input)

@@ -231,7 +231,7 @@ def _axis(name: str, value: Any, table: InputTable | None, points: int) -> Array
 
 def _automatic_axis(diagram: Diagram, points: int) -> Array:
     """Return speeds that reach from the lowest plateau to the highest branch of the outermost rows."""
-    ends = []
+    ends: list[float] = []
     for i, j in product((0, -1), repeat=2):
         ends += diagram.ends(i, j)
     return np.geomspace(min(ends), max(ends), points)
