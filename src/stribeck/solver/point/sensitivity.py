@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from stribeck._types import Array
+from stribeck.contacts.model import ARTICLE
 from stribeck.equations.point.sensitivity import log_derivatives
+from stribeck.quantities.units import InputError
 from stribeck.solver.point.level import band_for
 from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.state import PointState
@@ -23,7 +25,17 @@ def state_derivatives(state: PointState) -> dict[str, Array]:
     -------
     dict of str to ndarray, shape (3,)
         By the names of the observables.
+
+    Raises
+    ------
+    InputError
+        If the fluid, its cavitation or the solid is not that of the article.
     """
+    if state.groups.model != ARTICLE:
+        raise InputError(
+            "derivatives of a ball are for a Newtonian fluid that does not cavitate, on a half-space; fits and sensitivities "
+            "of a ball leave other fluids, cavitation and solids out."
+        )
     pair = state.work
     assert isinstance(pair, Pair)
     level = pair.fine
