@@ -1,4 +1,4 @@
-"""Balls in sweeps, in sensitivities and regimes, in curves from the command line; and what is for cylinders alone."""
+"""Balls in sweeps, in sensitivities and regimes, in curves from the command line."""
 
 import json
 import math
@@ -57,18 +57,6 @@ def test_sensitivities_of_a_ball_are_those_of_frictions_beside_it(edge):
         ]
         assert found[name] == pytest.approx(math.log(ends[0] / ends[1]) / 0.04, abs=3e-3), name
     assert solution.contact is contact
-
-
-@pytest.mark.quick
-@pytest.mark.parametrize(
-    ("call", "what"),
-    [
-        (lambda: sb.phase_diagram(ball()), "phase_diagram"),
-    ],
-)
-def test_what_is_for_cylinders_alone_refuses_a_ball_with_a_sentence(call, what):
-    with pytest.raises(sb.InputError, match=f"{what} is for cylinders, geometry 'line'; of balls there are solve"):
-        call()
 
 
 @pytest.mark.quick

@@ -258,15 +258,6 @@ def as_groups(problem: Groups | Contact) -> tuple[Groups, Contact | None]:
     return problem, None
 
 
-def only_line(groups: Groups, what: str) -> None:
-    """Refuse a ball for what is there for cylinders alone."""
-    if groups.geometry != "line":
-        raise InputError(
-            f"{what} is for cylinders, geometry 'line'; of balls there are solve, stribeck_curve, sweep and the commands "
-            "solve, curve, regimes and sweep."
-        )
-
-
 def check_rtol(rtol: float) -> None:
     """Refuse a tolerance that is no number or out of range."""
     low, high = RTOL_RANGE
