@@ -150,7 +150,7 @@ def field(page, name):
     return page.locator(f"[data-row={name}] input.field")
 
 
-@pytest.mark.parametrize("name", [*inputs.FIELDS, *inputs.GROUP_FIELDS])
+@pytest.mark.parametrize("name", [*inputs.FIELDS["line"], *inputs.GROUP_FIELDS])
 def test_moving_a_slider_changes_the_numbers_to_what_solve_gives(open_page, name):
     page = open_page()
     before = contact_of(page)
@@ -182,7 +182,7 @@ def test_dragging_a_slider_follows_the_hand(open_page):
 
     now = at_rest(page, drag)
     place = float(slider(page, "speed").input_value())
-    low, high = np.log10([inputs.FIELDS["speed"].low, inputs.FIELDS["speed"].high])
+    low, high = np.log10([inputs.FIELDS["line"]["speed"].low, inputs.FIELDS["line"]["speed"].high])
     assert place == pytest.approx(low + 0.75 * (high - low), abs=0.15)
     assert np.log10(now.contact.speed) == pytest.approx(place, abs=0.01)
     check_numbers(page, now)

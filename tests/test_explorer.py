@@ -15,10 +15,10 @@ import pytest
 
 import stribeck as sb
 from stribeck.cli import main
-from stribeck.explorer import carried, inputs, server, table, url
+from stribeck.explorer import carried, choices, inputs, server, table, url
 from stribeck.explorer import downloads as files
 from stribeck.explorer.answer import Answerer, asymptotic_fields, round_down, round_up
-from stribeck.explorer.charts import charts
+from stribeck.explorer.charts import charts, picture
 from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
 from stribeck.explorer.history import History
@@ -32,6 +32,10 @@ def answer():
     return Answerer()(START)
 
 
+def always(part):
+    """Report that lets slow work go on."""
+
+
 def reopened(query, start=START):
     return url.decode(parse_qsl(query, keep_blank_values=True), start)
 
@@ -39,7 +43,7 @@ def reopened(query, start=START):
 # --- inputs ---
 
 
-@pytest.mark.parametrize("name", inputs.FIELDS)
+@pytest.mark.parametrize("name", inputs.FIELDS["line"])
 def test_a_slider_moves_its_quantity_to_a_number_that_can_be_read_and_nothing_else(name):
     moved = inputs.slid(START, name, inputs.position(START, name) + 0.25)
     value = getattr(moved.contact, name)
@@ -59,11 +63,11 @@ def test_a_group_moves_load_speed_and_roughness_so_that_the_other_groups_stay(na
 
 
 def test_a_slider_stops_at_its_ends_and_a_value_beyond_stands_there():
-    assert inputs.slid(START, "speed", 5.0).contact.speed == inputs.FIELDS["speed"].high
+    assert inputs.slid(START, "speed", 5.0).contact.speed == inputs.FIELDS["line"]["speed"].high
     far = inputs.typed(START, "speed", "100 m/s")
     assert far.contact.speed == 100
-    assert inputs.position(far, "speed") == math.log10(inputs.FIELDS["speed"].high)
-    assert inputs.position(inputs.typed(START, "speed", "0"), "speed") == math.log10(inputs.FIELDS["speed"].low)
+    assert inputs.position(far, "speed") == math.log10(inputs.FIELDS["line"]["speed"].high)
+    assert inputs.position(inputs.typed(START, "speed", "0"), "speed") == math.log10(inputs.FIELDS["line"]["speed"].low)
 
 
 def test_a_unit_that_is_typed_becomes_that_of_the_field():
@@ -211,7 +215,7 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(kind, tmp_path):
         shown = inputs.from_case(case)
         same_contact(shown.contact, case.contact)
         assert (shown.title, shown.rtol, shown.definition) == (case.title, case.rtol, case.definition)
-        pin = url.Pin("kept ~ once", START.contact, "published"), url.Pin("law", shown.contact, "balanced", shown.law)
+        pin = url.Pin("kept ~ once", START.contact, "published"), url.Pin("law", shown.contact, "balanced", shown.model)
         opened = reopened(url.encode(shown, pin))
         assert opened.problems == {}
         assert opened.inputs == shown and opened.pins == pin
@@ -220,7 +224,7 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(kind, tmp_path):
         same_contact(saved.contact, case.contact)
         for name in ("law", "curve", "rtol", "definition", "title", "notes", "fit"):
             assert getattr(saved, name) == getattr(case, name), name
-        assert inputs.from_case(saved).law == shown.law
+        assert inputs.from_case(saved).model == shown.model
 
 
 def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
@@ -232,25 +236,25 @@ def test_the_friction_of_a_case_with_a_law_is_shown_and_saved():
     assert answer.solution.law == "persson"
     saved = files.read_case("saved.toml", files.content("toml", files.View(answer)))
     assert sb.solve(saved.contact).friction() == expected.friction()
-    assert "Persson, for the surface with h rms 1 um" in carried.law_words(shown.law)
-    assert "holds the exponential contact law only" in answer.diagram.message
+    assert "Persson, for the surface with hurst 0.8, longest wavelength 150 um" in carried.law_words(shown.model)
+    assert answer.diagram is None  # it comes row by row when the page rests
 
 
 @pytest.mark.parametrize(
     ("query", "sentence"),
     [
-        ("law=x", "law = 'x' is not valid JSON."),
-        ("law=[1]", "must be an object of law, surface, table"),
-        ('law={"law":"table","table":{"file":"/etc/passwd"}}', "a link contains its rows instead"),
-        ('law={"law":"persson","surface":{"spectrum":"x.csv"}}', "a link contains its rows instead"),
-        ('law={"law":"hertz"}', "law = 'hertz' must be one of"),
+        ("model=x", "model = 'x' is not valid JSON."),
+        ("model=[1]", "must be an object of geometry, law, surface, table, fluid"),
+        ('model={"law":"table","table":{"file":"/etc/passwd"}}', "a link contains its rows instead"),
+        ('model={"law":"persson","surface":{"spectrum":"x.csv"}}', "a link contains its rows instead"),
+        ('model={"law":"hertz"}', "law = 'hertz' must be one of"),
         ('rest={"fit":{"free":["x"]}}', "which cannot be fitted"),
         ('rest={"points":NaN}', "is not valid JSON"),
         ("rtol=2", "rtol"),
         ("pin=x", "pin = 'x' must hold 9 numbers, the definition and a name."),
         ("pin=", "pin = '' must hold 9 numbers"),
-        ("pin=1~1~1~1~1~1~1~1~1~balanced@3~name", "names a contact law that the address does not contain"),
-        ("pinlaw=x", "is not valid JSON"),
+        ("pin=1~1~1~1~1~1~1~1~1~balanced@3~name", "names a model that the address does not contain"),
+        ("pinmodel=x", "is not valid JSON"),
     ],
 )
 def test_what_an_address_cannot_mean_is_told(query, sentence):
@@ -264,7 +268,7 @@ def test_what_no_address_can_hold_is_refused_at_load(tmp_path):
     path = tmp_path / "long.toml"
     rows = 3000
     tables = {"separation": [float(i) for i in range(rows)], "pressure": [math.exp(-0.1 * i) for i in range(rows)]}
-    contact = {"law": "table", **{name: getattr(START.contact, name) for name in inputs.FIELDS}}
+    contact = {"law": "table", **{name: getattr(START.contact, name) for name in inputs.FIELDS["line"]}}
     path.write_text(carried.toml_text({"contact": contact, "table": tables}))
     with pytest.raises(
         sb.InputError, match=r"would have .* characters, but at most 60000 are possible; most come from the contact law"
@@ -358,8 +362,8 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
     heavy = inputs.from_case(sb.load_case("examples/wiper_blade.toml"))
     model = Answerer()
     first = model(heavy)
-    assert first.curve is None and "Regime map unavailable" in first.diagram.message
-    assert model.settle(heavy) and not model.settle(heavy)
+    assert first.curve is None and first.diagram is None
+    assert model.settle(heavy, always) and not model.settle(heavy, always)
     now = model(heavy)
     assert not now.curve.stale and "solved" in now.curve.source
     steps = np.diff(np.log(now.curve.friction[heavy.definition]))
@@ -424,7 +428,8 @@ def test_a_moved_speed_sends_the_point_alone_where_nothing_else_moves(answer):
         assert set(options) == {"series"} and settings == {}
         assert [set(series) for series in options["series"]] == [{"id", "data"}]
     for name in charts.CHARTS:
-        assert applied(before[name], difference(before[name], after[name])) == after[name]
+        change = difference(before[name], after[name])
+        assert (before[name] if change is None else applied(before[name], change)) == after[name]
         assert difference(after[name], after[name]) is None
 
 
@@ -516,15 +521,17 @@ def test_the_profile_is_downloaded_in_si_units(answer):
     assert np.allclose([float(row["gap [m]"]) for row in rows], solved.gap, rtol=1e-3)
 
 
-def test_pictures_are_whole_and_hold_title_and_inputs(answer):
+def test_pictures_are_whole_and_hold_pinned_and_measured_curves(answer):
     shown = files.View(
         answer,
         [("pinned", answer.curve, 1.0)],
         tuple(read_measured("m.csv", b"speed [m/s],friction\n0.001,0.5\n", answer.inputs.contact)),
     )
-    assert files.content("png", shown).startswith(b"\x89PNG")
-    root = ElementTree.fromstring(files.content("svg", shown))
-    assert root.tag.endswith("svg")
+    for what in ("curve", "state"):
+        assert files.content(f"{what}.png", shown).startswith(b"\x89PNG")
+        assert ElementTree.fromstring(files.content(f"{what}.svg", shown)).tag.endswith("svg")
+    figure = picture.figure_of(shown, "curve")
+    assert {"pinned", "m.csv"} <= {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
 
 
 def test_a_pin_is_named_after_what_differs_from_the_start():
@@ -648,9 +655,8 @@ def test_present_point_minimum_and_measured_points_have_colours_of_their_own(ans
 
 
 def test_an_empty_map_says_why_in_its_place():
-    shown = Answerer()(inputs.typed(START, "load_group", "3"))
-    said = charts.diagram_chart(shown, LIGHT)["title"]["text"]
-    assert said == "Regime map unavailable: the lookup table covers load groups up to 1; here it is 3."
+    ball = Answerer()(choices.choose(START, "geometry", "point"))
+    assert charts.diagram_chart(ball, LIGHT)["title"]["text"].startswith("Regime map unavailable: it would take an hour")
     assert charts.diagram_chart(Answerer()(START), LIGHT)["title"]["text"] == ""
 
 

@@ -114,7 +114,7 @@ def test_it_listens_on_this_machine_alone(server):
 
 
 @pytest.mark.parametrize(
-    "query", ["pin=x", "pin=", "pinlaw=x", "law=[", "rest=1", "load=%00", "=&&=", "speed=1e999+m%2Fs", "rtol=nan"]
+    "query", ["pin=x", "pin=", "pinmodel=x", "model=[", "rest=1", "load=%00", "=&&=", "speed=1e999+m%2Fs", "rtol=nan"]
 )
 def test_no_address_brings_the_server_down(server, query):
     assert ask(server, f"/?{query}")[0] == 200

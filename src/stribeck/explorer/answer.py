@@ -1,14 +1,14 @@
 """The answer to a tab's inputs: the solved state with its fields, the curve through it and the phase diagram around it.
 
 The state is solved anew for each change, from the last one. Curve and diagram are kept until something other than the speed
-changes.
+changes; outside the atlas both are solved when the inputs rest, and those before stand there meanwhile, marked stale.
 """
 
 from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -16,12 +16,17 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.asymptotics import FORMULAS
+from stribeck.checks.subject import Subject
+from stribeck.checks.table import checks_of
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.line import LineContact
+from stribeck.contacts.model import ARTICLE
 from stribeck.curves.regime import Regime, regime_of
+from stribeck.explorer.carried import facts_of
 from stribeck.explorer.curves import (
     Curve,
     Diagram,
+    Report,
     Transition,
     axis_speeds,
     curve_from_atlas,
@@ -29,22 +34,31 @@ from stribeck.explorer.curves import (
     diagram_from_atlas,
     in_atlas,
     solved_curve,
+    solved_diagram,
     transition_marks,
 )
-from stribeck.explorer.inputs import FIELDS, Inputs
+from stribeck.explorer.inputs import Inputs
 from stribeck.quantities.units import InputError
+from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.nearby import WarmStartSolver
-from stribeck.solver.solution import Profile, Solution
-from stribeck.solver.solve import SolveError
+from stribeck.solver.point.solution import Field, PointSolution
+from stribeck.solver.point.solution import solution_of as point_solution_of
+from stribeck.solver.point.solve import solve_from
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import SolveError, solve
 
 __all__ = ["Answer", "Answerer", "AsymptoticField", "profile_reach", "round_down", "round_up", "asymptotic_fields"]
 
 RTOL = 1e-6
+PIN_RTOL = 1e-4
 MOST_KEPT = 64
 ABSENT = 0.01
 """Share of the load below which asperities, or the fluid, count as absent for the formulas without them."""
 
 FIELDS_DRAWN = ("gap", "pressure", "contact_pressure", "fluid_pressure")
+
+PLANE_REACH, PLANE_POINTS = 1.6, 49
+"""Half the side of the map of a ball [a], and points along it."""
 
 STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
 """Numbers at which axes end, times powers of ten: few, so that axes rest while a slider moves."""
@@ -83,18 +97,22 @@ class Answer:
     ----------
     inputs : Inputs
         What was asked.
-    solution : Solution
+    solution : Solution or PointSolution
         The state.
     regime : str
         Its regime.
+    outside : str
+        What stands above every number where the model does not apply; empty where it does.
     curve : Curve or None
         The curve through it, None where it cannot be solved.
-    diagram : Diagram
-        The phase diagram around it.
+    diagram : Diagram or None
+        The phase diagram around it, None where it is not solved yet.
     reach : float
         How far the profile is drawn to both sides [a].
     profile : Profile
         The fields, in Hertz units.
+    plane : Field or None
+        The fields on the plane of a ball.
     thin : tuple of AsymptoticField
         Asymptotic fields.
     speeds : tuple of float
@@ -102,12 +120,14 @@ class Answer:
     """
 
     inputs: Inputs
-    solution: Solution
+    solution: Solution | PointSolution
     regime: Regime
+    outside: str
     curve: Curve | None
-    diagram: Diagram
+    diagram: Diagram | None
     reach: float
     profile: Profile
+    plane: Field | None
     thin: tuple[AsymptoticField, ...]
     speeds: tuple[float, float]
 
@@ -117,8 +137,10 @@ class Answerer:
 
     def __init__(self) -> None:
         self._solve = WarmStartSolver(RTOL)
+        self._last: tuple[Contact, Solution | PointSolution] | None = None
         self._kept: dict[Any, Any] = {}
         self._last_solved: Curve | None = None
+        self._last_diagram: Diagram | None = None
 
     def __call__(self, inputs: Inputs) -> Answer:
         """Return the answer at once; outside the atlas with the last curve, marked stale, until :meth:`settle` solved its own.
@@ -139,44 +161,89 @@ class Answerer:
             Where the state cannot be solved.
         """
         contact, definition = inputs.contact, inputs.definition
-        if self._solve.rtol != inputs.rtol:
-            self._solve = WarmStartSolver(inputs.rtol)
-        solution = self._solve(contact)
+        solution = self._state(inputs)
         friction = solution.friction(definition=definition)
         part = friction.contact / friction.total if friction.total > 0 else 0.0
         curve, speeds = self._curve_now(contact, definition)
-        decade = decade_of_roughness(contact)
-        key = ("diagram", _key(contact.replace(roughness=1.0)), definition, speeds, decade)
-        diagram = self._keep(key, lambda: diagram_from_atlas(contact, definition, speeds, decade))
         reach = profile_reach(solution)
         x = np.linspace(-reach, reach, 241)
         nodes = solution.x[np.abs(solution.x) < reach]
         x = np.unique(np.concatenate([x, nodes[:: 1 + len(nodes) // 150]]))
+        plane = None
+        if isinstance(solution, PointSolution):
+            side = np.linspace(-PLANE_REACH, PLANE_REACH, PLANE_POINTS)
+            plane = solution.field(side, side[:, None])
         return Answer(
             inputs=inputs,
             solution=solution,
             regime=regime_of(solution.fluid_load_share, part),
+            outside=self._keep(("checks", contact, inputs.rest), lambda: self._checks(inputs, solution)),
             curve=curve,
-            diagram=diagram,
+            diagram=self._diagram_now(contact, definition, speeds),
             reach=reach,
             profile=solution.profile(x),
+            plane=plane,
             thin=tuple(asymptotic_fields(solution, reach)),
             speeds=speeds,
         )
 
-    def settle(self, inputs: Inputs) -> bool:
-        """Solve the curve of inputs outside the atlas; tell whether there is something new to show."""
+    def settle(self, inputs: Inputs, report: Report) -> bool:
+        """Solve the curve of inputs outside the atlas.
+
+        Parameters
+        ----------
+        inputs : Inputs
+            What is shown.
+        report : callable
+            Is called with the part that is done; what it raises ends the work.
+
+        Returns
+        -------
+        bool
+            Whether there is something new to show.
+        """
         contact, definition = inputs.contact, inputs.definition
         key = ("solved", _key(contact), definition)
         if in_atlas(contact) or key in self._kept:
             return False
         try:
-            self._last_solved = self._keep(key, lambda: solved_curve(contact, definition))
-        except (InputError, SolveError):
-            return False
+            self._last_solved = self._keep(key, lambda: solved_curve(contact, definition, report))
+        except (InputError, SolveError) as problem:
+            self._kept[key] = None
+            self._kept["why", _key(contact), definition] = str(problem)
         return True
 
-    def curve(self, contact: LineContact, definition: Definition, speeds: tuple[float, float]) -> Curve | None:
+    def diagrams(self, inputs: Inputs, report: Report) -> Iterator[None]:
+        """Solve the diagram of inputs outside the atlas row by row, and stop after each to show it; that of balls never."""
+        contact, definition = inputs.contact, inputs.definition
+        if in_atlas(contact) or contact.INPUTS.geometry == "point":
+            return
+        _, speeds = self._curve_now(contact, definition)
+        key = _diagram_key(contact, definition, speeds)
+        if key in self._kept and self._kept[key].part == 1.0:
+            return
+        for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report):
+            self._kept[key] = self._last_diagram = found
+            yield
+
+    def settle_checks(self, inputs: Inputs) -> bool:
+        """Make the checks that need the curve, or another one; tell whether they change what stands above the numbers."""
+        contact = inputs.contact
+        key = ("checks", contact, inputs.rest)
+        if ("all checks", *key) in self._kept:
+            return False
+        before = self._kept.get(key)
+        facts = facts_of(inputs.rest)
+        solution: Any = self._last[1] if self._last is not None and self._last[0] == contact else None
+        self._kept[key] = checks_of(Subject(contact, facts, inputs.definition, solved=solution)).first_line
+        self._kept["all checks", *key] = True
+        return bool(self._kept[key] != before)
+
+    def why_no_curve(self, inputs: Inputs) -> str:
+        """Return why a curve could not be solved; empty where it was, or was not tried."""
+        return str(self._kept.get(("why", _key(inputs.contact), inputs.definition), ""))
+
+    def curve(self, contact: Contact, definition: Definition, speeds: tuple[float, float]) -> Curve | None:
         """Return the curve of a contact between two speeds; outside the atlas the solved one, None until it is solved."""
         if not in_atlas(contact):
             found: Curve | None = self._kept.get(("solved", _key(contact), definition))
@@ -184,10 +251,41 @@ class Answerer:
         marks = self._marks(contact, definition)
         return self._keep(("curve", _key(contact), definition, speeds), lambda: curve_from_atlas(contact, speeds, marks))
 
-    def _marks(self, contact: LineContact, definition: Definition) -> tuple[Transition, ...]:
+    def _state(self, inputs: Inputs) -> Solution | PointSolution:
+        """Return the state, from the last one where that is near."""
+        contact = inputs.contact
+        if self._last is not None and self._last[0] == contact and self._last[1].rtol == inputs.rtol:
+            return self._last[1]
+        found: Any
+        if contact.INPUTS.geometry == "point":
+            last = self._last[1] if self._last is not None else None
+            if isinstance(last, PointSolution) and last.groups.law == contact.groups.law and contact.speed > 0:
+                near = solve_from(last.state, contact.groups, inputs.rtol)
+                found = point_solution_of(near, contact) if near.outcome.ok else solve(contact, rtol=inputs.rtol)
+            else:
+                found = solve(contact, rtol=inputs.rtol)
+        else:
+            if self._solve.rtol != inputs.rtol:
+                self._solve = WarmStartSolver(inputs.rtol)
+            found = self._solve(contact)
+        state: Solution | PointSolution = found
+        self._last = contact, state
+        return state
+
+    def state_of_pin(self, contact: Contact) -> Solution | PointSolution:
+        """Return the state of a contact that was pinned."""
+        found: Solution | PointSolution = self._keep(("pin", contact, contact.law), lambda: solve(contact, rtol=PIN_RTOL))
+        return found
+
+    @staticmethod
+    def _checks(inputs: Inputs, solution: Solution | PointSolution) -> str:
+        subject = Subject(inputs.contact, facts_of(inputs.rest), inputs.definition, solved=solution)  # type: ignore[arg-type]
+        return checks_of(subject, "state").first_line
+
+    def _marks(self, contact: Contact, definition: Definition) -> tuple[Transition, ...]:
         return self._keep(("marks", _key(contact), definition), lambda: transition_marks(contact, definition))
 
-    def _curve_now(self, contact: LineContact, definition: Definition) -> tuple[Curve | None, tuple[float, float]]:
+    def _curve_now(self, contact: Contact, definition: Definition) -> tuple[Curve | None, tuple[float, float]]:
         """Return the curve and the ends of its axis."""
         if in_atlas(contact):
             speeds = axis_speeds(contact, self._marks(contact, definition))
@@ -201,6 +299,17 @@ class Answerer:
         ends = [float(curve.speed[0]), float(curve.speed[-1]), *([contact.speed] if contact.speed > 0 else [])]
         return curve, (10.0 ** math.floor(math.log10(min(ends))), 10.0 ** math.ceil(math.log10(max(ends))))
 
+    def _diagram_now(self, contact: Contact, definition: Definition, speeds: tuple[float, float]) -> Diagram | None:
+        """Return the diagram; outside the atlas what is solved of it, or the last one, marked stale."""
+        key = _diagram_key(contact, definition, speeds)
+        if in_atlas(contact):
+            decade = decade_of_roughness(contact)
+            return self._keep(key, lambda: diagram_from_atlas(contact, definition, speeds, decade))
+        found: Diagram | None = self._kept.get(key)
+        if found is None and self._last_diagram is not None and contact.INPUTS.geometry == "line":
+            return replace(self._last_diagram, stale=True)
+        return found
+
     def _keep(self, key: Any, make: Callable[[], T]) -> T:
         if key not in self._kept:
             while len(self._kept) >= MOST_KEPT:
@@ -210,9 +319,14 @@ class Answerer:
         return found
 
 
-def _key(contact: LineContact) -> tuple[Any, ...]:
+def _key(contact: Contact) -> tuple[Any, ...]:
     """Return all inputs but the speed."""
-    return (contact.law, *(getattr(contact, name) for name in FIELDS if name != "speed"))
+    return (contact.replace(speed=1.0), contact.law)
+
+
+def _diagram_key(contact: Contact, definition: Definition, speeds: tuple[float, float]) -> tuple[Any, ...]:
+    """Return what a diagram depends on: all but speed and roughness, and its axes."""
+    return ("diagram", contact.replace(speed=1.0, roughness=1.0), definition, speeds, decade_of_roughness(contact))
 
 
 def round_up(value: float) -> float:
@@ -227,15 +341,17 @@ def round_down(value: float) -> float:
     return float(f"{next(step for step in STEPS[::-1] if step * power <= value * (1 + 1e-9)) * power:.6g}")
 
 
-def profile_reach(solution: Solution) -> float:
+def profile_reach(solution: BaseSolution) -> float:
     """Return how far the profile is drawn to both sides: as far as the pressures reach, to a round number of metres [a]."""
-    pressure = np.abs(solution.contact_pressure) + np.abs(solution.fluid_pressure)
-    reach = max(1.6, 1.25 * float(np.abs(solution.x[pressure > 0.02 * pressure.max()]).max(initial=0.0)))
+    reach = 1.8
+    if isinstance(solution, Solution):
+        pressure = np.abs(solution.contact_pressure) + np.abs(solution.fluid_pressure)
+        reach = max(1.6, 1.25 * float(np.abs(solution.x[pressure > 0.02 * pressure.max()]).max(initial=0.0)))
     a = 1.0 if solution.contact is None else solution.contact.hertz.half_width
     return round_up(a * reach) / a
 
 
-def asymptotic_fields(solution: Solution, reach: float) -> list[AsymptoticField]:
+def asymptotic_fields(solution: BaseSolution, reach: float) -> list[AsymptoticField]:
     """Return the asymptotic fields whose range holds the state.
 
     Parameters
@@ -252,6 +368,8 @@ def asymptotic_fields(solution: Solution, reach: float) -> list[AsymptoticField]
         than :data:`ABSENT` of the load.
     """
     groups = solution.groups
+    if groups.geometry != "line" or groups.model != ARTICLE:
+        return []
     absent = {"smooth": solution.contact_load_share, "rest": solution.fluid_load_share, "mixed": 0.0}
     found = []
     for formula in FORMULAS:

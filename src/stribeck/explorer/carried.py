@@ -1,6 +1,7 @@
-"""What a case holds beside its numbers: its contact law, and what the page carries along for the saved case.
+"""What a case holds beside its numbers: the parts of its model, and what the page carries along for the saved case.
 
-Both are kept as compact JSON, which goes into a link as it is and compares by value.
+Both are kept as compact JSON, which goes into a link as it is and compares by value.  The model is the tables of a case:
+``geometry``, ``law`` with its ``surface`` or ``table``, ``fluid``, ``cavitation``, ``motion``, ``flow_factors``, ``solid``.
 """
 
 from __future__ import annotations
@@ -8,16 +9,38 @@ from __future__ import annotations
 import functools
 import json
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from stribeck.cases.case import Case, check_case
 from stribeck.cases.law import self_contained
+from stribeck.cases.model_parts import KEYS, RHEOLOGIES, take_parts
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.quantities.inputs import INPUTS
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.geometries import CONTACTS, check_geometry
+from stribeck.fluids.description import Fluid
+from stribeck.fluids.viscosity import Roelands
+from stribeck.quantities.facts import FACTS, fact_values
+from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["check_rest", "law_of_case", "law_words", "rest_of_case", "shape_of", "toml_text"]
+__all__ = [
+    "check_rest",
+    "contact_of",
+    "facts_of",
+    "fluid_table",
+    "geometry_of",
+    "json_text",
+    "law_words",
+    "model_changes",
+    "model_of_case",
+    "model_words",
+    "rest_of_case",
+    "shape_of",
+    "tables_of",
+    "toml_text",
+]
 
 LAW_NAMES = {
     "exponential": "exponential",
@@ -27,15 +50,17 @@ LAW_NAMES = {
     "table": "a table",
 }
 
-REST = ("curve", "fit", "notes")
-"""Tables and keys of a case that the page carries along."""
+LAW_TABLES = ("law", "surface", "table")
+MODEL = ("geometry", *LAW_TABLES, *KEYS)
+REST = ("curve", "fit", "check", "notes", "errors")
+"""Tables and keys of a case that make its model, and those that the page carries along."""
 
-_NUMBERS = dict.fromkeys(INPUTS, 1.0)
+_NUMBERS = dict.fromkeys(INPUT_TABLES["line"].names, 1.0)
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
-def law_of_case(case: Case) -> str:
-    """Return the contact law of a case as JSON: its name, and its table with the numbers of the file that it names.
+def model_of_case(case: Case) -> str:
+    """Return the model of a case as JSON: its parts by name, with the numbers of files and of presets that it names.
 
     Parameters
     ----------
@@ -45,31 +70,95 @@ def law_of_case(case: Case) -> str:
     Returns
     -------
     str
-        JSON; empty for the exponential law of alpha and beta alone.
+        JSON; empty for a cylinder with the exponential law of alpha and beta alone, and a fluid that is always the same.
 
     Raises
     ------
     InputError
         If the file of a spectrum cannot be read.
     """
-    tables = self_contained(case.law, case.tables, case.path.parent, case.contact.law)
-    return "" if case.law == "exponential" and not tables else _json({"law": case.law, **tables})
+    found: dict[str, Any] = self_contained(case.law, case.tables, case.path.parent, case.contact.law)
+    if case.law != "exponential" or found:
+        found["law"] = case.law
+    if case.contact.groups.geometry != "line":
+        found["geometry"] = case.contact.groups.geometry
+    for name in KEYS:
+        # Of a ball the motion is one of its inputs.
+        if name in case.tables and (name, case.contact.groups.geometry) != ("motion", "point"):
+            given = case.tables[name]
+            found[name] = fluid_table(case.contact.fluid) if "preset" in given else given  # type: ignore[attr-defined]
+    return json_text({name: value for name, value in found.items() if value != {}})
+
+
+def tables_of(model: str) -> dict[str, Any]:
+    """Return the tables of a model, which the caller may change."""
+    return json.loads(model) if model else {}
+
+
+def geometry_of(model: str) -> Any:
+    """Return the geometry of a model, ``"line"`` or ``"point"``."""
+    return check_geometry(_object("model", model, MODEL).get("geometry", "line")) if model else "line"
+
+
+def fluid_table(fluid: Fluid) -> dict[str, Any]:
+    """Return a fluid as the table ``[fluid]``, with its numbers in SI units; empty for one that is always the same."""
+    found: dict[str, Any] = {}
+    for name, (law, needed, optional) in RHEOLOGIES.items():
+        if law is not None and isinstance(fluid.rheology, law):
+            attributes = {key: {"stress": "eyring_stress"}.get(key, key) for key in (*needed, *optional)}
+            found = {"model": name, **{key: getattr(fluid.rheology, kept) for key, kept in attributes.items()}}
+    if fluid.viscosity is not None:
+        found["pressure_viscosity"] = fluid.viscosity.pressure_coefficient  # type: ignore[attr-defined]
+        if isinstance(fluid.viscosity, Roelands):
+            references = {key: getattr(fluid.viscosity, key) for key in ("reference_pressure", "reference_viscosity")}
+            found |= {"viscosity_law": "roelands", **references}
+    return found | ({"density": "dowson-higginson"} if fluid.density is not None else {})
+
+
+def contact_of(model: str, numbers: Mapping[str, Any]) -> Contact:
+    """Return the contact of a model and of its numbers.
+
+    Parameters
+    ----------
+    model : str
+        What :func:`model_of_case` returns.
+    numbers : mapping
+        The inputs of the geometry in SI units; None for what the contact does without.
+
+    Returns
+    -------
+    Contact
+        The contact.
+
+    Raises
+    ------
+    InputError
+        If the text is no model, or the numbers do not go with it.
+    """
+    shape = shape_of(model)
+    tables = _object("model", model, MODEL) if model else {}
+    geometry = check_geometry(tables.get("geometry", "line"))
+    _, parts, problems = take_parts({name: tables[name] for name in KEYS if name in tables}, geometry)
+    if problems:
+        raise InputError("\n".join(problems))
+    table = INPUT_TABLES[geometry]
+    given = {name: value for name, value in numbers.items() if name in table.names}
+    return CONTACTS[geometry].of_kept({**given, **parts}, shape)
 
 
 def rest_of_case(case: Case) -> str:
     """Return as JSON what a case holds that the page does not show; empty where there is nothing."""
     found = {key: case.tables[key] for key in REST if case.tables.get(key)}
-    return _json(found) if found else ""
+    return json_text(found | ({"errors": case.errors} if case.errors else {}))
 
 
-@functools.lru_cache(maxsize=32)
-def shape_of(text: str) -> AsperityLaw | None:
-    """Return the contact law of its JSON; the same object for the same text.
+def shape_of(model: str) -> AsperityLaw | None:
+    """Return the contact law of a model; the same object for the same law.
 
     Parameters
     ----------
-    text : str
-        What :func:`law_of_case` returns.
+    model : str
+        What :func:`model_of_case` returns.
 
     Returns
     -------
@@ -79,17 +168,23 @@ def shape_of(text: str) -> AsperityLaw | None:
     Raises
     ------
     InputError
-        If the text is no such law.
+        If the text holds no such law.
     """
-    if not text:
+    if not model:
         return None
-    tables = _object("law", text, ("law", "surface", "table"))
+    tables = _object("model", model, MODEL)
+    return _shape(json_text({name: tables[name] for name in LAW_TABLES if name in tables}))
+
+
+@functools.lru_cache(maxsize=32)
+def _shape(text: str) -> AsperityLaw | None:
+    tables = json.loads(text) if text else {}
     if isinstance(tables.get("surface"), dict):
-        tables["surface"] = _without_files("law", tables["surface"], "spectrum") | {"shape_only": True}
+        tables["surface"] = _without_files("model", tables["surface"], "spectrum") | {"shape_only": True}
     if isinstance(tables.get("table"), dict):
-        _without_files("law", tables["table"], "file")
+        _without_files("model", tables["table"], "file")
     contact = {**_NUMBERS, "law": tables.pop("law", "exponential")}
-    return check_case({"contact": contact, **tables}, Path("law")).contact.law
+    return check_case({"contact": contact, **tables}, Path("model")).contact.law
 
 
 def check_rest(text: str) -> str:
@@ -97,23 +192,57 @@ def check_rest(text: str) -> str:
     if not text:
         return ""
     found = _object("rest", text, REST)
-    check_case({"contact": _NUMBERS, **found}, Path("rest"))
-    return _json(found) if found else ""
+    errors = found.get("errors", {})
+    if not isinstance(errors, dict) or not all(isinstance(each, float) and 0 < each <= 3 for each in errors.values()):
+        raise InputError(f"rest holds errors = {show(errors)}, which are no relative errors of inputs.")
+    check_case({"contact": _NUMBERS, **{key: value for key, value in found.items() if key != "errors"}}, Path("rest"))
+    return json_text(found)
 
 
-def law_words(text: str) -> str:
-    """Return the name of a contact law, and what its shape comes from."""
-    law: dict[str, Any] = json.loads(text) if text else {"law": "exponential"}
-    name = LAW_NAMES[law["law"]]
-    if "table" in law:
-        return f"{name} of {len(law['table']['separation'])} rows"
-    surface = law.get("surface")
+@functools.lru_cache(maxsize=32)
+def facts_of(rest: str) -> dict[str, float]:
+    """Return the facts of the table ``[check]`` in what the page carries along, in SI units."""
+    given = json.loads(rest).get("check", {}) if rest else {}
+    return fact_values({name: value for name, value in given.items() if name in FACTS})
+
+
+def law_words(model: str) -> str:
+    """Return the name of the contact law, and what its shape comes from."""
+    tables = tables_of(model)
+    name = LAW_NAMES[tables.get("law", "exponential")]
+    if "table" in tables:
+        return f"{name} of {len(tables['table']['separation'])} rows"
+    surface = tables.get("surface")
     if surface is None:
         return name
     if "wavenumber" in surface:
         return f"{name}, for a spectrum of {len(surface['wavenumber'])} rows"
-    values = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in surface.items())
+    values = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in surface.items() if key != "h_rms")
     return f"{name}, for the surface with {values}"
+
+
+def model_words(model: str) -> list[str]:
+    """Return a line for each part of the model that is not that of the article."""
+    tables = tables_of(model)
+    lines = [f"contact law: {law_words(model)}"]
+    for name in KEYS:
+        if name in tables:
+            values = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in tables[name].items())
+            lines.append(f"{name.replace('_', ' ')}: {values}")
+    return lines
+
+
+def model_changes(model: str, start: str) -> list[str]:
+    """Return in words the parts in which a model differs from another."""
+    one, two = tables_of(model), tables_of(start)
+    found = []
+    for name in MODEL:
+        if name not in ("surface", "table") and one.get(name) != two.get(name):
+            value = one.get(name, "none")
+            if isinstance(value, dict):
+                value = " ".join(str(each) for each in value.values())
+            found.append({"point": "ball", "line": "cylinder"}.get(value, f"{name.replace('_', ' ')} {value}"))
+    return found
 
 
 def toml_text(tables: dict[str, Any], path: tuple[str, ...] = ()) -> str:
@@ -174,5 +303,6 @@ def _object(name: str, text: str, known: tuple[str, ...]) -> dict[str, Any]:
     return found
 
 
-def _json(value: Any) -> str:
-    return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+def json_text(value: Any) -> str:
+    """Return an object as compact JSON; empty for an empty one."""
+    return "" if not value else json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False)

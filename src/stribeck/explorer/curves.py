@@ -1,12 +1,12 @@
 """Friction along the speed and the regimes around it: curve, transitions and phase diagram of a contact.
 
-All are read off the atlas; outside it the curve is solved.
+All are read off the atlas where it holds; else the curve is solved, and the diagram row by row.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,12 +14,13 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import table_for
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition
-from stribeck.contacts.line import Groups, LineContact
+from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
-from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.curves.stribeck_curve import StribeckCurve, stribeck_curve
+from stribeck.quantities.units import InputError
 from stribeck.regimes.phase_from_atlas import transition_speeds
-from stribeck.solver.nearby import WarmStartSolver
 from stribeck.solver.solve import SolveError
 
 __all__ = [
@@ -30,20 +31,27 @@ __all__ = [
     "curve_from_atlas",
     "decade_of_roughness",
     "diagram_from_atlas",
+    "hersey_scale",
     "in_atlas",
     "solved_curve",
+    "solved_diagram",
     "transition_marks",
 ]
 
 POINTS = 121
-SOLVED_POINTS = 41
 ROWS = 31
-"""Points of a curve, of one that is solved, and roughnesses of a diagram."""
-
+"""Points of a curve, and roughnesses of a diagram."""
 
 SOLVED_RTOL = 1e-4
-AROUND, AROUND_POINTS = 2.0, 13
-"""Factor of the speed around a solved minimum within which the curve has more points, and how many."""
+
+SOLVED_POINTS = {"line": 200, "point": 15}
+"""Points of curves that are solved."""
+
+ROW_POINTS, ROW_STEP = 25, 3
+"""Points of a row of a diagram that is solved, and of how many rows one is."""
+
+Report = Callable[[float], object]
+"""Is called with the part that is done; what it raises ends the work."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +91,8 @@ class Curve:
         Where it comes from, with its error.
     stale : bool
         Whether it belongs to inputs before the present ones.
+    solved : StribeckCurve or None
+        The solved curve that it shows; None off the atlas.
     """
 
     speed: Array
@@ -91,6 +101,7 @@ class Curve:
     transitions: tuple[Transition, ...]
     source: str
     stale: bool = False
+    solved: StribeckCurve | None = None
 
     def transition(self, name: str) -> Transition | None:
         """Return the transition of a name, or None."""
@@ -110,6 +121,10 @@ class Diagram:
         zero, infinite or nan where there are none [m/s].
     message : str
         Why there is no diagram, or empty.
+    stale : bool
+        Whether it belongs to inputs before the present ones.
+    part : float
+        How much of its rows is there [-].
     """
 
     roughness: Array
@@ -117,19 +132,26 @@ class Diagram:
     hydrodynamic: Array
     minimum: Array
     message: str = ""
+    stale: bool = False
+    part: float = 1.0
 
 
-def _speed_group(contact: LineContact) -> float:
+def hersey_scale(contact: Contact) -> float:
+    """Return the Hersey number at 1 m/s."""
+    return contact.replace(speed=1.0).hersey_number
+
+
+def _speed_group(contact: Contact) -> float:
     """Return the speed group at 1 m/s."""
     return float(contact.replace(speed=1.0).groups.speed)
 
 
-def in_atlas(contact: LineContact) -> bool:
+def in_atlas(contact: Contact) -> bool:
     """Return whether the atlas covers the contact law, the load and the roughness of a contact."""
     return bool(atlas.covers(replace(contact.groups, speed=0.0)))
 
 
-def transition_marks(contact: LineContact, definition: Definition) -> tuple[Transition, ...]:
+def transition_marks(contact: Contact, definition: Definition) -> tuple[Transition, ...]:
     """Return the transitions along the speed, ascending, from the atlas."""
     if contact.roughness == 0 or contact.boundary_friction == 0:
         return ()
@@ -143,7 +165,7 @@ def transition_marks(contact: LineContact, definition: Definition) -> tuple[Tran
     return tuple(sorted((mark for mark in marks if 0 < mark.speed < math.inf), key=lambda mark: mark.speed))
 
 
-def axis_speeds(contact: LineContact, marks: Sequence[Transition]) -> tuple[float, float]:
+def axis_speeds(contact: Contact, marks: Sequence[Transition]) -> tuple[float, float]:
     """Return whole decades of speed that hold the contact and its transitions, with room on both sides [m/s]."""
     unit = _speed_group(contact)
     places = [mark.speed for mark in marks] or [1e-8 / unit, 1.0 / unit]
@@ -156,7 +178,7 @@ def axis_speeds(contact: LineContact, marks: Sequence[Transition]) -> tuple[floa
     return max(low, lowest), min(high, highest)
 
 
-def curve_from_atlas(contact: LineContact, speeds: tuple[float, float], marks: tuple[Transition, ...]) -> Curve:
+def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple[Transition, ...]) -> Curve:
     """Return a curve read off the atlas."""
     groups, unit = contact.groups, _speed_group(contact)
     boundary_friction, beta = contact.boundary_friction, contact.beta
@@ -168,33 +190,124 @@ def curve_from_atlas(contact: LineContact, speeds: tuple[float, float], marks: t
     return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(row.error)}")
 
 
-def solved_curve(contact: LineContact, definition: Definition) -> Curve:
-    """Return a curve of solved states, with the transitions located on them."""
-    found = stribeck_curve(contact, points=SOLVED_POINTS, rtol=SOLVED_RTOL, definition=definition)
+def solved_curve(contact: Contact, definition: Definition, report: Report) -> Curve:
+    """Return a curve of solved states, with the transitions located on them.
+
+    Parameters
+    ----------
+    contact : Contact
+        The contact.
+    definition : {"balanced", "published"}
+        By which minimum and transitions go.
+    report : callable
+        Is called with the part that is done; what it raises ends the work.
+
+    Returns
+    -------
+    Curve
+        The curve; that of a ball between its points by a monotone interpolation of the logarithms.
+
+    Raises
+    ------
+    InputError, SolveError
+        Where it cannot be solved.
+    """
+    geometry = contact.INPUTS.geometry
+    points = SOLVED_POINTS[geometry]
+    found = stribeck_curve(
+        contact, points=points, rtol=SOLVED_RTOL, definition=definition, on_point=lambda done, of: report(done / of)
+    )
     if len(found) < 2:
         raise SolveError(found.outcome, None, found.outcome.value)
-    states = dict(zip(map(float, found.values), found.solutions, strict=True))
-    if found.minimum is not None:
-        # Straight lines between the points of the curve would end in a kink where friction turns.
-        solve = WarmStartSolver(SOLVED_RTOL)
-        for speed in found.minimum.value * np.geomspace(1 / AROUND, AROUND, AROUND_POINTS):
-            if found.values[0] < speed < found.values[-1]:
-                states[float(speed)] = solve(contact.replace(speed=float(speed)))
-    speeds = np.array(sorted(states))
-    parts = {kind: [states[float(speed)].friction(definition=kind) for speed in speeds] for kind in DEFINITIONS}
-    friction = {kind: np.array([part.total for part in parts[kind]]) for kind in DEFINITIONS}
+    speed = np.asarray(found.values)
+    friction = {kind: found.friction(definition=kind) for kind in DEFINITIONS}
+    contact_part = np.asarray(friction[definition].contact)
+    totals: dict[Definition, Array] = {kind: np.asarray(friction[kind]) for kind in DEFINITIONS}
+    source = f"solved; estimated error {_power(found.error_estimate)}"
+    if geometry == "point":
+        source += f"; at {len(speed)} speeds, smooth in between"
+        dense = np.unique(np.concatenate([np.geomspace(speed[0], speed[-1], POINTS), speed]))
+        totals = {kind: _between(speed, values, dense) for kind, values in totals.items()}
+        contact_part, speed = _between(speed, contact_part, dense), dense
+    return Curve(speed, totals, contact_part, _marks_of(found), source, solved=found)
+
+
+def _between(speed: Array, values: Array, at: Array) -> Array:
+    """Return positive values between those at some speeds."""
+    from scipy.interpolate import PchipInterpolator
+
+    tiny = 1e-300
+    return np.exp(PchipInterpolator(np.log(speed), np.log(np.maximum(values, tiny)))(np.log(at)))
+
+
+def _marks_of(found: StribeckCurve) -> tuple[Transition, ...]:
+    """Return where the regimes of a solved curve end."""
     names = {
         f"{BOUNDARY_FLUID_SHARE:.0%} of the load": "boundary",
         f"{HYDRODYNAMIC_CONTACT_SHARE:.0%} of the friction": "hydrodynamic",
     }
+    minimum = found.minimum
     marks = []
     for mark in found.transitions:
         known = next((name for end, name in names.items() if mark.name.endswith(end)), "")
-        name = "minimum" if mark is found.minimum else known
+        name = "minimum" if mark is minimum else known
         if name and (name != "boundary" or " 5%" in mark.name):
             marks.append(Transition(name, mark.value, math.nan))
-    source = f"solved, outside the lookup table; estimated error {_power(found.error_estimate)}"
-    return Curve(speeds, friction, np.array([part.contact for part in parts[definition]]), tuple(marks), source)
+    return tuple(marks)
+
+
+def solved_diagram(
+    contact: Contact, definition: Definition, speeds: tuple[float, float], decade: int, report: Report
+) -> Iterator[Diagram]:
+    """Give the diagram at the load of a contact as its rows are solved, those beside the contact first.
+
+    Parameters
+    ----------
+    contact : Contact
+        The contact.
+    definition : {"balanced", "published"}
+        By which the regimes go.
+    speeds : tuple of float
+        Ends of its axis of speeds [m/s].
+    decade : int
+        Power of ten at which the axis of roughness begins.
+    report : callable
+        Is called between states; what it raises ends the work.
+
+    Yields
+    ------
+    Diagram
+        With nan in the rows that are still missing.
+    """
+    roughness = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)[::ROW_STEP]
+    lines = np.full((3, len(roughness)), math.nan)
+    own = contact.roughness or roughness[0]
+    order = sorted(range(len(roughness)), key=lambda i: abs(math.log(roughness[i] / own)))
+    for number, i in enumerate(order):
+        try:
+            lines[:, i] = _row(contact.replace(roughness=float(roughness[i])), definition, speeds, report)
+        except (SolveError, InputError):
+            pass  # its row stays empty
+        yield Diagram(roughness, lines[0].copy(), lines[1].copy(), lines[2].copy(), part=(number + 1) / len(order))
+
+
+def _row(contact: Contact, definition: Definition, speeds: tuple[float, float], report: Report) -> tuple[float, float, float]:
+    """Return the speeds at which boundary lubrication ends, hydrodynamic begins, and friction is at its minimum."""
+    found = stribeck_curve(
+        contact,
+        speed=speeds,
+        points=ROW_POINTS,
+        rtol=SOLVED_RTOL,
+        definition=definition,
+        on_point=lambda done, of: report(done / of),
+    )
+    marks = {mark.name: mark.speed for mark in _marks_of(found)}
+    slow = found.regimes[0]
+    ends = found.values[-1] >= 0.99 * speeds[1]
+    beyond = math.inf if ends else math.nan
+    boundary = marks.get("boundary", 0.0 if slow != "boundary" else beyond)
+    hydrodynamic = marks.get("hydrodynamic", 0.0 if slow == "hydrodynamic" else beyond)
+    return boundary, hydrodynamic, marks.get("minimum", math.nan)
 
 
 def _power(error: float) -> str:
@@ -203,34 +316,23 @@ def _power(error: float) -> str:
     return f"{mantissa}e{int(exponent)}"
 
 
-def decade_of_roughness(contact: LineContact) -> int:
+def decade_of_roughness(contact: Contact) -> int:
     """Return the power of ten at which the diagram's axis of roughness begins; it covers three decades."""
     if contact.roughness == 0:
         return -8
     return math.floor(math.log10(contact.roughness) - 1.0 + 1e-9)
 
 
-def diagram_from_atlas(contact: LineContact, definition: Definition, speeds: tuple[float, float], decade: int) -> Diagram:
-    """Return the diagram at the load of a contact over three decades of roughness, or why there is none."""
+def diagram_from_atlas(contact: Contact, definition: Definition, speeds: tuple[float, float], decade: int) -> Diagram:
+    """Return the diagram at the load of a contact over three decades of roughness, off the atlas."""
     roughness = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)
-    none = np.full(ROWS, math.nan)
-    load, unit = float(contact.groups.load), _speed_group(contact)
-    row = atlas.for_groups(contact.groups)
-    if row is None:
-        message = "Regime map unavailable: no lookup table holds this contact law."
-        return Diagram(roughness, none, none, none, message)
-    lowest, highest = row.box["load"]
-    message = ""
-    if not lowest <= load <= highest:
-        bound = f"up to {highest:g}" if load > highest else f"from {lowest:g}"
-        message = f"Regime map unavailable: the lookup table covers load groups {bound}; here it is {load:.3g}."
-    if message:
-        return Diagram(roughness, none, none, none, message)
+    groups, unit, row = contact.groups, _speed_group(contact), table_for(contact.groups)
     h = roughness * float(contact.replace(roughness=1.0).groups.roughness)
     low, high = row.box["relative_roughness"]
-    inside = np.clip(h, low * load, high * load)
+    scale = float(groups.load) ** groups.scaling.roughness_exponent
+    inside = np.clip(h, low * scale, high * scale)
     ends = (max(speeds[0] * unit, row.box["speed"][0]), min(speeds[1] * unit, row.box["speed"][1]))
-    rows = replace(contact.groups, roughness=inside)
+    rows = replace(groups, roughness=inside)
     found = transition_speeds(rows, contact.boundary_friction, contact.beta, definition, ends, narrowings=1)
     boundary, hydrodynamic, minimum = (
         np.where(inside == h, line / unit, math.nan) for line in (found.boundary, found.hydrodynamic, found.minimum)

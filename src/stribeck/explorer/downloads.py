@@ -13,21 +13,24 @@ from pathlib import Path
 from typing import Any
 
 from stribeck.cases.case import Case, check_case, parse_toml
-from stribeck.contacts.friction import DEFINITIONS
+from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.explorer.answer import Answer
-from stribeck.explorer.carried import law_words, toml_text
-from stribeck.explorer.curves import Curve
-from stribeck.explorer.inputs import FIELDS, Inputs, exact_text
+from stribeck.explorer.carried import model_changes, model_words, tables_of, toml_text
+from stribeck.explorer.curves import Curve, hersey_scale
+from stribeck.explorer.inputs import Inputs, exact_text
 from stribeck.explorer.measured import Measured
 from stribeck.quantities.units import InputError, show
+from stribeck.solver.base_solution import BaseSolution
 
 __all__ = ["KINDS", "View", "case_text", "content", "name_of", "pin_name", "read_case", "shown_name"]
 
 LONGEST_NAME = 80
 
 KINDS = {
-    "Picture (PNG)": "png",
-    "Picture (SVG)": "svg",
+    "Picture of the curve (PNG)": "curve.png",
+    "Picture of the curve (SVG)": "curve.svg",
+    "Picture of the fields (PNG)": "state.png",
+    "Picture of the fields (SVG)": "state.svg",
     "Curves (CSV)": "csv",
     "Gap and pressure (CSV)": "profile.csv",
     "Case file of this state (TOML)": "toml",
@@ -47,11 +50,14 @@ class View:
         Pinned curves: name, curve, Hersey number at 1 m/s.
     measured : tuple of Measured
         Measured curves.
+    states : sequence of (str, BaseSolution, str)
+        The states of the pinned contacts: name, state, definition of friction.
     """
 
     answer: Answer
     pins: Sequence[tuple[str, Curve, float]] = ()
     measured: tuple[Measured, ...] = ()
+    states: Sequence[tuple[str, BaseSolution, Definition]] = ()
 
 
 def read_case(name: str, content: bytes) -> Case:
@@ -97,16 +103,18 @@ def shown_name(name: str) -> str:
 def name_of(kind: str, title: str) -> str:
     """Return the name of a file: the headline in plain letters, and the ending."""
     stem = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40] or "stribeck"
-    return f"{stem}.{kind}" if kind != "profile.csv" else f"{stem}-profile.csv"
+    return f"{stem}-{kind}" if "." in kind else f"{stem}.{kind}"
 
 
 def pin_name(inputs: Inputs, start: Inputs, taken: Sequence[str]) -> str:
     """Return what a pinned curve is called: the inputs in which it differs from those at the start."""
     changed = [
-        f"{FIELDS[name].label.lower()} {exact_text(inputs, name).replace('*', '·')}"
-        for name in FIELDS
-        if name != "speed" and getattr(inputs.contact, name) != getattr(start.contact, name)
+        f"{shown.label.lower()} {exact_text(inputs, name).replace('*', '·') or 'none'}"
+        for name, shown in inputs.fields.items()
+        if name != "speed" and getattr(inputs.contact, name) != getattr(start.contact, name, None)
     ]
+    if inputs.model != start.model:
+        changed = [*(f"{each}" for each in model_changes(inputs.model, start.model)), *changed]
     name = ", ".join(changed[:3]) or "start"
     if inputs.definition != start.definition:
         name += f", {inputs.definition}"
@@ -137,10 +145,11 @@ def content(kind: str, shown: View) -> bytes:
     MissingExtraError
         If a picture is wanted and matplotlib is not installed.
     """
-    if kind in ("png", "svg"):
+    what, _, ending = kind.partition(".")
+    if ending in ("png", "svg"):
         from stribeck.explorer.charts.picture import picture
 
-        return picture(shown, kind)
+        return picture(shown, what, ending)
     text = {"toml": case_text, "csv": curves_text, "profile.csv": profile_text}[kind]
     return text(shown).encode()
 
@@ -148,34 +157,37 @@ def content(kind: str, shown: View) -> bytes:
 def case_text(shown: View) -> str:
     """Return the case file that holds what is shown, and all that the page carries along."""
     inputs, curve = shown.answer.inputs, shown.answer.curve
-    law = json.loads(inputs.law) if inputs.law else {}
+    model = tables_of(inputs.model)
     rest = json.loads(inputs.rest) if inputs.rest else {}
-    contact: dict[str, Any] = {}
-    for name, field in FIELDS.items():
-        text = exact_text(inputs, name)
-        contact[name] = text if field.units else float(text)
-    if "law" in law:
-        contact["law"] = law["law"]
+    errors = rest.pop("errors", {})
+    contact: dict[str, Any] = {name: model.pop(name) for name in ("geometry", "law") if name in model}
+    for name, field in inputs.fields.items():
+        kept, of = ("entrainment_speed", 0.5) if name == "speed" and _rolls(inputs) else (name, 1.0)
+        text = exact_text(inputs, name, of)
+        if text:
+            error = f" +- {100 * errors[name]!r} %" if name in errors else ""
+            contact[kept] = f"{text}{error}" if field.units or error else float(text)
     tables: dict[str, Any] = {"title": inputs.title} if inputs.title else {}
-    tables |= {"notes": rest["notes"]} if "notes" in rest else {}
+    tables |= {"notes": rest.pop("notes")} if "notes" in rest else {}
     tables["contact"] = contact
-    if "surface" in law:
-        tables["surface"] = {"shape_only": True, **law["surface"]}  # alpha, beta and roughness stand in [contact]
-    tables |= {"table": law["table"]} if "table" in law else {}
-    if "curve" in rest:
-        tables["curve"] = rest["curve"]
-    elif curve is not None and not curve.stale:
+    if "surface" in model:
+        model["surface"] = {"shape_only": True, **model["surface"]}  # alpha, beta and roughness stand in [contact]
+    tables |= model
+    if "curve" not in rest and curve is not None and not curve.stale:
         ends = [float(curve.speed[0]), float(curve.speed[-1])]
         tables["curve"] = {"over": "speed", "range": ends, "points": len(curve.speed)}
-    tables["solver"] = {"rtol": inputs.rtol, "definition": inputs.definition}
-    tables |= {"fit": rest["fit"]} if "fit" in rest else {}
-    return toml_text(tables)
+    return toml_text(tables | rest | {"solver": {"rtol": inputs.rtol, "definition": inputs.definition}})
+
+
+def _rolls(inputs: Inputs) -> bool:
+    """Return whether a case says the speed by the mean of both surfaces: that of a ball and a disc that both move."""
+    return inputs.table.geometry == "point" and inputs.contact.slide_to_roll != 2  # type: ignore[attr-defined]
 
 
 def curves_text(shown: View) -> str:
     """Return the curve, the pinned and the measured ones as CSV, one below the other."""
     inputs = shown.answer.inputs
-    hersey = inputs.contact.viscosity / inputs.contact.load
+    hersey = hersey_scale(inputs.contact)
     curve = shown.answer.curve
     curves = [] if curve is None or curve.stale else [(inputs.title or "present", curve, hersey)]
     file = io.StringIO()
@@ -225,8 +237,8 @@ def _head(shown: View) -> str:
     lines = [
         f"title: {inputs.title}",
         f"source: stribeck {version('stribeck')}",
-        *(f"{name}: {exact_text(inputs, name)}" for name in FIELDS),
-        f"contact law: {law_words(inputs.law)}",
+        *(f"{name}: {text}" for name in inputs.fields if (text := exact_text(inputs, name))),
+        *model_words(inputs.model),
         f"definition: {inputs.definition}",
         f"state: rtol {solution.rtol:g}, estimated error {solution.error_estimate:.1e}",
         *(f"note: {note}" for note in solution.notes),

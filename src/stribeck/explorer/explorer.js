@@ -1,5 +1,7 @@
 // Shows one answer: what changed in the charts, the fields and the numbers. Returning tells the server that it is drawn.
 window.explorerFrame = (frame) => {
+  document.body.dataset.geometry = frame.geometry;
+  document.body.classList.remove("working");
   for (const [id, html] of frame.html) document.getElementById(id).innerHTML = html;
   for (const [id, options, settings] of frame.charts) getElement(id)?.chart?.setOption(options, settings);
   for (const [id, now] of frame.knobs) getElement(id)?.show(now);
@@ -7,6 +9,12 @@ window.explorerFrame = (frame) => {
   window.explorerUnits = frame.units;
   if (frame.moved) getElement(frame.moved)?.free();
   return true;
+};
+
+// The answer takes longer than a moment: what stands there is that of the contact before.
+window.explorerWorking = (moved) => {
+  document.body.classList.add("working");
+  if (moved) getElement(moved)?.free();
 };
 
 // What belongs to the contact before is pale until its own is there.

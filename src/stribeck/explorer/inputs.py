@@ -15,10 +15,12 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from stribeck.cases.case import Case
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.line import LineContact
-from stribeck.explorer.carried import law_of_case, rest_of_case, shape_of
-from stribeck.quantities.inputs import INPUTS, QUANTITIES, quantity
+from stribeck.contacts.geometries import CONTACTS
+from stribeck.contacts.groups import Geometry
+from stribeck.explorer.carried import contact_of, model_of_case, rest_of_case, tables_of
+from stribeck.quantities.inputs import INPUT_TABLES, Input, InputTable, quantity
 from stribeck.quantities.units import DIMENSIONS, InputError, format_si, read_number, show, to_si
 
 __all__ = [
@@ -30,11 +32,15 @@ __all__ = [
     "exact_text",
     "from_case",
     "in_unit",
+    "NAMES",
     "number_text",
     "position",
+    "read_field",
     "slid",
     "typed",
+    "units_of",
     "value_of",
+    "with_model",
 ]
 
 Abscissa = Literal["speed", "hersey"]
@@ -54,6 +60,8 @@ class Field:
         Ends of its slider, which is logarithmic [SI].
     units : tuple of str
         Units to choose from; empty for a bare number.
+    optional : bool
+        Whether its field may be empty.
     """
 
     label: str
@@ -61,6 +69,7 @@ class Field:
     low: float
     high: float
     units: tuple[str, ...] = ()
+    optional: bool = False
 
 
 FRICTION = "boundary_friction"
@@ -78,18 +87,26 @@ def _html(symbol: str) -> str:
 MOST_CHANGED = ("speed", "load", "viscosity", "roughness")
 """The inputs that one changes most, which stand first."""
 
-FIELDS = {
-    name: Field(row.label[0].upper() + row.label[1:], _html(row.symbol), *row.usual, row.units)
-    for name, row in ((name, QUANTITIES[name]) for name in dict.fromkeys((*MOST_CHANGED, *INPUTS)))
+
+def _field(row: Input) -> Field:
+    return Field(row.label[0].upper() + row.label[1:], _html(row.symbol), *row.usual, row.units, row.optional)
+
+
+FIELDS: dict[str, dict[str, Field]] = {
+    geometry: {name: _field(table.quantities[name]) for name in dict.fromkeys((*MOST_CHANGED, *table.names))}
+    for geometry, table in INPUT_TABLES.items()
 }
-"""The inputs of a contact, those first that one changes most."""
+"""The inputs of the contact of each geometry, those first that one changes most."""
 
 GROUP_FIELDS = {
     "speed_group": Field("Speed group", "λ", 1e-12, 1e4),
-    "load_group": Field("Load group", "F", 1e-5, 10.0),
-    "roughness_group": Field("Roughness group", "h\u0304<sub>rms</sub>", 1e-9, 10.0),
+    "load_group": Field("Load group", "F", 1e-6, 1e4),
+    "roughness_group": Field("Roughness group", "h\u0304<sub>rms</sub>", 1e-9, 1e3),
 }
 """The groups: moving one moves speed, load and roughness so that the other two stay."""
+
+NAMES = tuple(dict.fromkeys(name for fields in FIELDS.values() for name in fields))
+"""The inputs of all geometries."""
 
 DIGITS = 3
 """Digits to which a slider rounds, so that what it chose can be read and typed."""
@@ -101,7 +118,7 @@ class Inputs:
 
     Attributes
     ----------
-    contact : LineContact
+    contact : Contact
         The contact.
     units : mapping of str to str
         The unit of each field that has one.
@@ -113,18 +130,32 @@ class Inputs:
         Headline.
     rtol : float
         Relative tolerance of the states.
-    law, rest : str
-        The contact law of the contact, and what the page carries along, as in :mod:`stribeck.explorer.carried`.
+    model, rest : str
+        The model of the contact, and what the page carries along, as in :mod:`stribeck.explorer.carried`.
     """
 
-    contact: LineContact
+    contact: Contact
     units: Mapping[str, str] = field(default_factory=dict)
     definition: Definition = "balanced"
     abscissa: Abscissa = "speed"
     title: str = ""
     rtol: float = 1e-6
-    law: str = ""
+    model: str = ""
     rest: str = ""
+
+    @property
+    def table(self) -> InputTable:
+        """The table of its inputs."""
+        return self.contact.INPUTS
+
+    @property
+    def fields(self) -> dict[str, Field]:
+        """Its fields by name."""
+        return FIELDS[self.table.geometry]
+
+    def shown_as(self, name: str) -> Field:
+        """Return how a quantity or a group is shown."""
+        return GROUP_FIELDS.get(name) or self.fields[name]
 
 
 def from_case(case: Case) -> Inputs:
@@ -145,14 +176,49 @@ def from_case(case: Case) -> Inputs:
     InputError
         If the case holds something that the page cannot show.
     """
-    if not isinstance(case.contact, LineContact):
-        raise InputError("the page shows cylinders; solve this ball with stribeck solve, curve or regimes.")
-    law = law_of_case(case)
-    contact = case.contact.replace(law=shape_of(law))
+    model = model_of_case(case)
+    numbers = {name: getattr(case.contact, name) for name in case.contact.INPUTS.names}
+    contact = contact_of(model, numbers)
     check_friction(FRICTION, getattr(contact, FRICTION))
     return Inputs(
-        contact, units_of(contact), case.definition, title=case.title, rtol=case.rtol, law=law, rest=rest_of_case(case)
+        contact, units_of(contact), case.definition, title=case.title, rtol=case.rtol, model=model, rest=rest_of_case(case)
     )
+
+
+def with_model(inputs: Inputs, model: str, **numbers: float | None) -> Inputs:
+    """Return the inputs with another model, and with some of their numbers changed.
+
+    Parameters
+    ----------
+    inputs : Inputs
+        Those before.
+    model : str
+        The model, as in :mod:`stribeck.explorer.carried`.
+    **numbers : float or None
+        Inputs in SI units.
+
+    Returns
+    -------
+    Inputs
+        Those after; between a cylinder and a ball the load changes so that the Hertz pressure stays.
+
+    Raises
+    ------
+    InputError
+        If the numbers do not go with the model.
+    """
+    geometry: Geometry = tables_of(model).get("geometry", "line")
+    before = inputs.contact
+    table = INPUT_TABLES[geometry]
+    kept = {name: getattr(before, name) for name in table.names if name in before.INPUTS.names}
+    if geometry != before.INPUTS.geometry:
+        R, E, p = before.radius, before.modulus, before.hertz.pressure
+        kept["load"] = math.pi**3 * p**3 * R**2 / (6 * E**2) if geometry == "point" else math.pi * R * p**2 / E
+    contact = contact_of(model, kept | numbers)
+    units = units_of(contact) | {name: unit for name, unit in inputs.units.items() if name != "load" or "load" in kept}
+    if geometry != before.INPUTS.geometry:
+        units["load"] = units_of(contact)["load"]
+    return replace(inputs, contact=contact, model=model, units={name: units[name] for name in units_of(contact)})
 
 
 def check_friction(name: str, value: float) -> None:
@@ -164,21 +230,25 @@ def check_friction(name: str, value: float) -> None:
         )
 
 
-def units_of(contact: LineContact) -> dict[str, str]:
+def units_of(contact: Contact) -> dict[str, str]:
     """Return for each field with a unit the one in which its value reads best."""
     found = {}
-    for name, shown in FIELDS.items():
+    table = contact.INPUTS
+    for name, shown in FIELDS[table.geometry].items():
         if shown.units:
-            _, _, unit = format_si(getattr(contact, name), QUANTITIES[name].dimension).partition(" ")
-            found[name] = unit
+            value = getattr(contact, name)
+            found[name] = shown.units[0]
+            if value is not None:
+                _, _, found[name] = format_si(value, table.quantities[name].dimension).partition(" ")
     return found
 
 
 def value_of(inputs: Inputs, name: str) -> float:
-    """Return a quantity in SI units, or a group."""
+    """Return a quantity in SI units, or a group; infinite for what the contact does without."""
     if name in GROUP_FIELDS:
         return float(getattr(inputs.contact.groups, name.removesuffix("_group")))
-    return float(getattr(inputs.contact, name))
+    value = getattr(inputs.contact, name)
+    return math.inf if value is None else float(value)
 
 
 def typed(inputs: Inputs, name: str, text: str) -> Inputs:
@@ -203,85 +273,120 @@ def typed(inputs: Inputs, name: str, text: str) -> Inputs:
     InputError
         The sentence that the command line prints for such a value.
     """
-    text = _with_point(name, text.strip())
     if name in GROUP_FIELDS:
-        return _with_group(inputs, name, read_number(name.removesuffix("_group"), text))
-    if not FIELDS[name].units:
-        contact = inputs.contact.replace(**{name: _bare(text)})
+        return _with_group(inputs, name, read_number(name.removesuffix("_group"), _with_point(name, text.strip())))
+    value, unit = read_field(inputs, name, text)
+    units = {**inputs.units, name: unit} if unit else inputs.units
+    return replace(inputs, contact=inputs.contact.replace(**{name: value}), units=units)
+
+
+def read_field(inputs: Inputs, name: str, text: str) -> tuple[float | None, str]:
+    """Return the value in SI units of what was typed into a field, and its unit.
+
+    Parameters
+    ----------
+    inputs : Inputs
+        Those before, in whose unit a bare number is.
+    name : str
+        Key of :data:`FIELDS`.
+    text : str
+        What was typed.
+
+    Returns
+    -------
+    float or None
+        The value; None for an empty field that may be empty.
+    str
+        The unit; empty for a bare number.
+
+    Raises
+    ------
+    InputError
+        As :func:`typed`.
+    """
+    text, shown, table = _with_point(name, text.strip()), inputs.fields[name], inputs.table
+    if not text and shown.optional:
+        return table.quantities[name].default, inputs.units.get(name, "")
+    if not shown.units:
+        value = quantity(name, _bare(text), table)
         if name == FRICTION:
-            check_friction(name, getattr(contact, name))
-        return replace(inputs, contact=contact)
+            check_friction(name, value)
+        return value, ""
     unit = inputs.units[name]
     if isinstance(_bare(text), float):
         text = f"{text} {unit}"
     try:
-        value = quantity(name, text)
+        value = quantity(name, text, table)
     except InputError as problem:
-        si = DIMENSIONS[QUANTITIES[name].dimension].unit
+        si = DIMENSIONS[table.quantities[name].dimension].unit
         said = str(problem)
         if said.endswith(f"or a bare number in {si}."):
             said = f"{said.removesuffix(f'{si}.')}{unit}."
         raise InputError(said) from None
-    unit = re.sub(r"^[-+\N{MINUS SIGN}0-9.]+([eE][-+]?[0-9]+)?\s*", "", text)
-    return replace(inputs, contact=inputs.contact.replace(**{name: value}), units={**inputs.units, name: unit})
+    return value, re.sub(r"^[-+\N{MINUS SIGN}0-9.]+([eE][-+]?[0-9]+)?\s*", "", text)
 
 
 def slid(inputs: Inputs, name: str, place: float) -> Inputs:
     """Return the inputs after a slider was moved to ``place``, the logarithm to base ten of its value in SI units."""
-    shown = GROUP_FIELDS.get(name) or FIELDS[name]
-    factor = _unit_factor(name, inputs.units[name]) if shown.units else 1.0
+    shown = inputs.shown_as(name)
+    factor = _factor(inputs, name)
     value = float(f"{min(max(10.0**place, shown.low), shown.high) / factor:.{DIGITS}g}")
     if name in GROUP_FIELDS:
         return _with_group(inputs, name, value)
     if shown.units:
         # By way of text, so that it is the number which typing it would give.
-        value = quantity(name, f"{value!r} {inputs.units[name]}")
+        value = quantity(name, f"{value!r} {inputs.units[name]}", inputs.table)
     return replace(inputs, contact=inputs.contact.replace(**{name: value}))
 
 
 def in_unit(inputs: Inputs, name: str, unit: str) -> Inputs:
     """Return the inputs with a field shown in another unit, its value kept."""
-    _unit_factor(name, unit)
+    _unit_factor(inputs.table.quantities[name].dimension, unit)
     return replace(inputs, units={**inputs.units, name: unit})
 
 
 def position(inputs: Inputs, name: str) -> float:
     """Return where the slider of a quantity stands: the logarithm to base ten of its value, at the ends where it is beyond."""
-    shown = GROUP_FIELDS.get(name) or FIELDS[name]
+    shown = inputs.shown_as(name)
     return math.log10(min(max(value_of(inputs, name), shown.low), shown.high))
 
 
 def number_text(inputs: Inputs, name: str, digits: int = 4) -> str:
     """Return the number that stands in a field, in its unit."""
-    return f"{value_of(inputs, name) / _factor(inputs, name):.{digits}g}"
+    value = value_of(inputs, name)
+    return "" if math.isinf(value) else f"{value / _factor(inputs, name):.{digits}g}"
 
 
-def exact_text(inputs: Inputs, name: str) -> str:
-    """Return the shortest text that gives back the very value, with its unit."""
-    value = float(getattr(inputs.contact, name))
+def exact_text(inputs: Inputs, name: str, of: float = 1.0) -> str:
+    """Return the shortest text that gives back the very value times ``of``, with its unit; empty for what is not there."""
+    kept = getattr(inputs.contact, name)
+    if kept is None:
+        return ""
+    value = of * float(kept)
     unit = inputs.units.get(name, "")
     if not unit:
         return repr(value)
+    dimension = inputs.table.quantities[name].dimension
     # Through exact numbers, because the quotient of two doubles may not lead back in any number of digits.
-    quotient = Fraction(value) / Fraction(repr(_unit_factor(name, unit)))
+    quotient = Fraction(value) / Fraction(repr(_unit_factor(dimension, unit)))
     for digits in range(3, 30):
         number = Context(prec=digits).divide(quotient.numerator, quotient.denominator).normalize()
         text = f"{number:f} {unit}" if -6 < number.adjusted() < 16 else f"{number} {unit}"
-        if quantity(name, text) == value:
+        if to_si(text, dimension, name) == value:
             return text
-    return f"{value!r} {DIMENSIONS[QUANTITIES[name].dimension].unit}"
+    return f"{value!r} {DIMENSIONS[dimension].unit}"
 
 
 _COMMA = re.compile(r"([-+\N{MINUS SIGN}]?[0-9]{0,40}),([0-9]{1,40})((?:[eE][-+]?[0-9]+)?(?:\s.*|[^0-9.,].*)?)", re.DOTALL)
 
 
 def _with_group(inputs: Inputs, name: str, value: float) -> Inputs:
-    contact = inputs.contact
+    contact, moved = inputs.contact, ("load", "speed", "roughness")
     change: dict[str, Any] = {name.removesuffix("_group"): value}
     groups = replace(contact.groups, **change)
-    kept = [input_name for input_name in INPUTS if input_name not in ("load", "speed", "roughness")]
-    moved = LineContact.from_groups(groups, **{key: getattr(contact, key) for key in kept})
-    return replace(inputs, contact=moved)
+    kept = {key: getattr(contact, key) for key in inputs.table.names if key not in moved}
+    found = CONTACTS[inputs.table.geometry].from_groups(groups, **kept)  # type: ignore[index, attr-defined]
+    return replace(inputs, contact=contact.replace(**{key: getattr(found, key) for key in moved}))
 
 
 def _with_point(name: str, text: str) -> str:
@@ -306,9 +411,9 @@ def _bare(text: str) -> float | str:
 
 def _factor(inputs: Inputs, name: str) -> float:
     unit = inputs.units.get(name)
-    return 1.0 if unit is None else _unit_factor(name, unit)
+    return 1.0 if unit is None else _unit_factor(inputs.table.quantities[name].dimension, unit)
 
 
 @functools.lru_cache(maxsize=1000)
-def _unit_factor(name: str, unit: str) -> float:
-    return to_si(f"1 {unit}", QUANTITIES[name].dimension, name)
+def _unit_factor(dimension: str, unit: str) -> float:
+    return to_si(f"1 {unit}", dimension, "unit")

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from stribeck._types import Array
-from stribeck.contacts.line import LineContact
-from stribeck.fits.measurements import read_measurements
+from stribeck.contacts.contact import Contact
+from stribeck.explorer.inputs import Inputs
+from stribeck.fits.fit import fit
+from stribeck.fits.measurements import Measurements, read_measurements
+from stribeck.quantities.inputs import si_text
 from stribeck.quantities.units import InputError
 
-__all__ = ["Measured", "read_measured"]
+__all__ = ["Fitted", "Measured", "fit_measured", "read_measured"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,14 +31,66 @@ class Measured:
         Sliding speed, ascending [m/s].
     friction : ndarray, shape (n,)
         Friction coefficient [-].
+    source : Measurements
+        All that its file holds.
     """
 
     name: str
     speed: Array
     friction: Array
+    source: Measurements
 
 
-def read_measured(name: str, content: bytes, contact: LineContact) -> list[Measured]:
+@dataclass(frozen=True)
+class Fitted:
+    """What a fit gave.
+
+    Attributes
+    ----------
+    inputs : Inputs
+        Those with the fitted values.
+    words : str
+        The values with their errors, in a sentence.
+    """
+
+    inputs: Inputs
+    words: str
+
+
+def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]) -> Fitted:
+    """Fit inputs to the measured curves of a file: those that the case names under ``[fit]``, or the usual ones.
+
+    Parameters
+    ----------
+    now : Inputs
+        Where the fit begins.
+    measured : Measured
+        One of the curves.
+    on_step : callable
+        Is called as the work goes on; what it raises ends it.
+
+    Returns
+    -------
+    Fitted
+        Inputs and words.
+
+    Raises
+    ------
+    InputError, SolveError
+        As :func:`stribeck.fit`.
+    """
+    settings = json.loads(now.rest).get("fit", {}) if now.rest else {}
+    found = fit(measured.source, now.contact, free=settings.get("free"), intervals=False, on_step=on_step)
+    values = {each.name: each.value for each in found.inputs if each.name in now.fields and not each.is_factor}
+    contact = now.contact.replace(**values)
+    after = replace(now, contact=contact, units=now.units)
+    words = ", ".join(
+        f"{now.fields[name].label.lower()} {si_text(value, name, 3, now.table)}" for name, value in values.items()
+    )
+    return Fitted(after, f"Fitted to {measured.name}: {words}. Undo brings back the values before; intervals: stribeck fit.")
+
+
+def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]:
     r"""Return the measured curves of a file, over the speed.
 
     .. math:: U = \frac{(\eta U)}{\eta}, \qquad U = \mathrm{Hs} \, \frac{F_N}{\eta}
@@ -44,7 +101,7 @@ def read_measured(name: str, content: bytes, contact: LineContact) -> list[Measu
         Name of the file, for sentences.
     content : bytes
         A table as :func:`stribeck.measurements.read_measurements` reads it.
-    contact : LineContact
+    contact : Contact
         Whose viscosity and load hold where the file has viscosity times speed or the Hersey number, and does not give them.
 
     Returns
@@ -70,5 +127,5 @@ def read_measured(name: str, content: bytes, contact: LineContact) -> list[Measu
         factor = {"speed": 1.0, "speed_viscosity": 1 / viscosity, "hersey_number": load / viscosity}[data.abscissa]
         mine = data.curve == k
         label = name if len(data.curves) == 1 else f"{name}: {curve}"
-        found.append(Measured(label, data.values[mine] * factor, data.friction[mine]))
+        found.append(Measured(label, data.values[mine] * factor, data.friction[mine], data))
     return found

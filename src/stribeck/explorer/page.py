@@ -13,19 +13,20 @@ from typing import Any
 from nicegui import ui
 from nicegui.json import dumps
 
+from stribeck.explorer import choices, inputs, table
 from stribeck.explorer import downloads as files
-from stribeck.explorer import inputs, table
 from stribeck.explorer.answer import Answer
-from stribeck.explorer.carried import law_words
 from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
+from stribeck.explorer.choices import CHOICES
 from stribeck.explorer.downloads import View
-from stribeck.explorer.inputs import FIELDS, GROUP_FIELDS, Inputs
+from stribeck.explorer.drawing import drawing
+from stribeck.explorer.inputs import GROUP_FIELDS, NAMES, Inputs
 from stribeck.explorer.measured import Measured
 from stribeck.explorer.url import Pin
 
-__all__ = ["Page"]
+__all__ = ["UPDATING", "Page"]
 
 UPDATING = "Updating ..."
 """What stands where something is still being computed."""
@@ -43,25 +44,52 @@ class Slider(ui.element, component="slider.js"):
     Parameters
     ----------
     name : str
-        Key of :data:`FIELDS` or :data:`GROUP_FIELDS`.
+        Name of an input or of a group.
     start : dict
         What it shows first, as of :func:`knob_state`.
     """
 
     def __init__(self, name: str, start: dict[str, Any]) -> None:
         super().__init__()
-        shown = GROUP_FIELDS.get(name) or FIELDS[name]
-        self._props |= {"name": name, "label": shown.label, "symbol": shown.symbol, "start": start}
-        self._props |= {"low": math.log10(shown.low), "high": math.log10(shown.high)}
+        self._props |= {"name": name, "start": start}
         self.classes("knob-box")
 
 
+class ChoiceRow(ui.element, component="choice.js"):
+    """A list to choose from, and fields for what the choice needs.
+
+    Parameters
+    ----------
+    name : str
+        Key of :data:`CHOICES`.
+    start : dict
+        What it shows first, as of :func:`stribeck.explorer.choices.state_of`.
+    """
+
+    def __init__(self, name: str, start: dict[str, Any]) -> None:
+        super().__init__()
+        self._props |= {"name": name, "label": CHOICES[name].label, "start": start}
+
+
 def knob_state(now: Inputs, name: str) -> dict[str, Any]:
-    """Return what the knob of a quantity shows."""
-    unit = now.units.get(name, "")
-    units = list(dict.fromkeys((*FIELDS[name].units, unit))) if name in FIELDS and unit else []
-    place = round(inputs.position(now, name), 4)
-    return {"text": inputs.number_text(now, name), "unit": unit, "units": units, "place": place}
+    """Return what a field, or a list, shows."""
+    if name in CHOICES:
+        return choices.state_of(now, name)
+    if name not in GROUP_FIELDS and name not in now.fields:
+        empty = {"label": "", "symbol": "", "low": 0, "high": 1, "text": "", "unit": "", "units": [], "place": 0}
+        return {"hidden": True, **empty}
+    field, unit = now.shown_as(name), now.units.get(name, "")
+    return {
+        "hidden": False,
+        "label": field.label,
+        "symbol": field.symbol,
+        "low": math.log10(field.low),
+        "high": math.log10(field.high),
+        "text": inputs.number_text(now, name),
+        "unit": unit,
+        "units": list(dict.fromkeys((*field.units, unit))) if unit else [],
+        "place": round(inputs.position(now, name), 4),
+    }
 
 
 class Page:
@@ -78,10 +106,11 @@ class Page:
         self.client_name = dumps(self.client.id)
         self.ways_of: Inputs | None = None
         self.moved: int | None = None
-        self.knobs: dict[str, Slider] = {}
+        self.knobs: dict[str, Slider | ChoiceRow] = {}
         self.charts: dict[str, ui.echart] = {}
         self.toggles: dict[str, ui.toggle] = {}
         self.shown: dict[str, Any] = {}
+        self.progress = ""
         self.dark = ui.dark_mode(None)
         self.palette = LIGHT
         self.build(now)
@@ -97,11 +126,20 @@ class Page:
             with ui.element("div").classes("middle"):
                 with ui.element("section").classes("card friction").props('aria-label="Stribeck curve"'):
                     self.build_friction(now)
+                    self.comparison = ui.html("", sanitize=False).classes("comparison")
                 with ui.element("section").classes("card fields").props('aria-label="Gap and pressure"'):
                     ui.html("<h2>Gap and pressure along the contact</h2>", sanitize=False)
                     with ui.element("div").classes("pair"):
                         self.chart("gap", "Gap along the contact")
                         self.chart("pressure", "Contact and fluid pressure along the contact")
+                    with ui.element("div").classes("of-ball"):
+                        ui.html("<h2>Film on the plane of the contact</h2>", sanitize=False)
+                        self.chart("plane", "Film of the ball on the plane of the contact")
+                with ui.element("section").classes("card model").props('aria-label="Model"'):
+                    ui.html("<h2>Model</h2>", sanitize=False)
+                    with ui.element("div").classes("rows"):
+                        for name in list(CHOICES)[1:]:
+                            self.knobs[name] = ChoiceRow(name, knob_state(now, name))
             with ui.element("div").classes("side"):
                 with ui.element("section").classes("card numbers").props('aria-label="Numbers"'):
                     self.status = ui.label().classes("status").props('role="status"')
@@ -143,10 +181,12 @@ class Page:
 
     def build_controls(self, now: Inputs) -> None:
         """Make fields and sliders of the contact and of the groups."""
-        ui.html("<h2>Contact</h2>", sanitize=False)
-        for name in FIELDS:
+        ui.html("<h2>Contact <span class='caption'>drawing not to scale</span></h2>", sanitize=False)
+        self.drawing = ui.html("", sanitize=False).classes("drawing")
+        first = next(iter(CHOICES))
+        self.knobs[first] = ChoiceRow(first, knob_state(now, first))
+        for name in NAMES:
             self.knobs[name] = Slider(name, knob_state(now, name))
-        self.law = ui.html("", sanitize=False).classes("caption law")
         ui.html("<h2>Dimensionless groups</h2>", sanitize=False)
         for name in GROUP_FIELDS:
             self.knobs[name] = Slider(name, knob_state(now, name))
@@ -165,7 +205,10 @@ class Page:
                     toggle = ui.toggle(options, value=getattr(now, name))
                     toggle.props(f'no-caps unelevated dense aria-label="{name}"')
                     self.toggles[name] = toggle
-        self.chips = ui.element("div").classes("chips")
+        with ui.element("div").classes("below"):
+            self.chips = ui.element("div").classes("chips")
+            self.fit_button = button("Fit", "insights", "Fit dry friction and roughness to the measured curve")
+            self.fit_button.set_visibility(False)
         self.chart("friction", "Friction over speed")
 
     def chart(self, name: str, label: str) -> None:
@@ -199,7 +242,7 @@ class Page:
 
     def mark(self, name: str, text: str, sentence: str) -> None:
         """Mark a field with a sentence; what has no field goes to the line above the numbers."""
-        if name in self.knobs:
+        if isinstance(self.knobs.get(name), Slider | ChoiceRow):
             self.knobs[name].run_method("complain", text, sentence)
         else:
             self.status.text = sentence
@@ -251,20 +294,25 @@ class Page:
             bare = options | {"series": [series | {"data": []} for series in options["series"]]}
             self.charts[name].options.update(bare)
             self.shown[f"chart-{name}"] = data_only(bare)
-        for element, content in self.words(seen.answer):
+        for element, content in self.words(seen):
             element.content = content
         self.shown |= {name: knob_state(now, name) for name in self.knobs}
 
-    def words(self, answer: Answer) -> list[tuple[ui.html, str]]:
+    def words(self, seen: View) -> list[tuple[ui.html, str]]:
         """Return the numbers, and the lines that go with the charts."""
+        answer = seen.answer
         waits = answer.curve is None or answer.curve.stale
-        source = UPDATING if answer.curve is None or waits else answer.curve.source
+        source = (self.progress or UPDATING) if waits or answer.curve is None else answer.curve.source
         load = f"{float(answer.inputs.contact.groups.load):.3g}"
         return [
             (self.numbers, table.numbers_html(answer, table.numbers(answer))),
-            (self.source, source),
-            (self.law, f"Contact law: {escape(law_words(answer.inputs.law))}"),
-            (self.diagram_head, f"<h2>Regimes <span class='caption'>at this load (group {load})</span></h2>"),
+            (self.source, escape(source)),
+            (self.drawing, drawing(answer)),
+            (self.comparison, table.comparison_html(answer, seen.states)),
+            (
+                self.diagram_head,
+                f"<h2>Regimes <span class='caption'>at this load (group {load}){_rows_words(answer)}</span></h2>",
+            ),
         ]
 
     def show_margins(self, content: str, now: Inputs) -> None:
@@ -276,16 +324,31 @@ class Page:
     def ways_words(self, now: Inputs) -> str:
         """Return what stands beside the margins: whether they belong to what is shown."""
         shown = self.ways_of
-        same = shown is not None and (shown.contact, shown.definition) == (now.contact, now.definition)
+        same = shown is not None and (shown.contact, shown.definition, shown.model) == (now.contact, now.definition, now.model)
         return "" if same else UPDATING
+
+    def show_working(self) -> None:
+        """Mark what is shown as that of the contact before, while the next one is being solved."""
+        moved, self.moved = self.moved, None
+        self.client.run_javascript(f"explorerWorking({dumps(moved)})")
+
+    def show_progress(self) -> None:
+        """Tell how far the curve is."""
+        words = self.shown[self.source.html_id] = escape(self.progress or UPDATING)
+        self.client.run_javascript(f"document.getElementById({dumps(self.source.html_id)}).innerHTML = {dumps(words)}")
+
+    def show_fit(self, there: bool) -> None:
+        """Offer a fit where there is something measured."""
+        self.fit_button.set_visibility(there)
 
     async def draw(self, now: Inputs, seen: View) -> None:
         """Send what changed, and wait until the browser has drawn it."""
         frame: dict[str, Any] = {"html": [], "charts": [], "knobs": [], "moved": self.moved}
         frame["waits"] = self.ways_words(now)
         frame["units"] = {}
+        frame["geometry"] = now.table.geometry
         self.moved = None
-        for element, content in self.words(seen.answer):
+        for element, content in self.words(seen):
             if self.shown.get(element.html_id) != content:
                 self.shown[element.html_id] = content
                 frame["html"].append([element.html_id, content])
@@ -305,6 +368,14 @@ class Page:
             await self.client.run_javascript(f"return explorerFrame({dumps(frame)})", timeout=PATIENCE)
         except TimeoutError:  # a tab in the background answers when it is looked at
             pass
+
+
+def _rows_words(answer: Answer) -> str:
+    """Return how much of the diagram is solved."""
+    diagram = answer.diagram
+    if diagram is None or diagram.stale:
+        return "" if answer.inputs.table.geometry == "point" else f": {UPDATING}"
+    return "" if diagram.part == 1 else f": {100 * diagram.part:.0f} % solved"
 
 
 def button(label: str, icon: str, tooltip: str) -> ui.button:

@@ -13,7 +13,7 @@ import sys
 import threading
 from typing import Any, Literal
 
-from stribeck.contacts.line import LineContact
+from stribeck.contacts.contact import Contact
 from stribeck.explorer.downloads import read_case
 from stribeck.explorer.inputs import from_case
 from stribeck.explorer.measured import read_measured
@@ -31,7 +31,7 @@ MOST_MEMORY = 4_000_000_000
 """Bytes that the program may address, where the system can limit it."""
 
 
-def read_file(kind: Kind, name: str, content: bytes, contact: LineContact, seconds: float = LONGEST_TIME) -> Any:
+def read_file(kind: Kind, name: str, content: bytes, contact: Contact, seconds: float = LONGEST_TIME) -> Any:
     """Return what a file holds.
 
     Parameters
@@ -42,7 +42,7 @@ def read_file(kind: Kind, name: str, content: bytes, contact: LineContact, secon
         Its name, for sentences.
     content : bytes
         Its content.
-    contact : LineContact
+    contact : Contact
         The contact over which measured curves are drawn.
     seconds : float
         Time after which it is given up.

@@ -1,9 +1,9 @@
 // A quantity: its name, a field, its unit and a slider. Native elements, so that keyboard, phone and screen reader know them.
 // One change is on its way to the server at a time; while it is, only the last value is kept.
 export default {
-  props: { name: String, label: String, symbol: String, low: Number, high: Number, start: Object },
+  props: { name: String, start: Object },
   template: `
-    <div class="knob" :class="{wrong: sentence}" :data-row="name">
+    <div class="knob" v-show="!hidden" :class="{wrong: sentence}" :data-row="name">
       <label class="name" :for="'field-' + name">{{ label }}<i v-html="symbol"></i></label>
       <input class="field" type="text" :id="'field-' + name" :name="name" v-model="text" autocomplete="off" spellcheck="false"
         :aria-invalid="sentence ? 'true' : 'false'" :aria-describedby="'sentence-' + name"
@@ -47,11 +47,9 @@ export default {
     },
     // The server's view of this quantity; a slider that is being moved stays in the hand that moves it.
     show(now) {
-      this.given = this.text = now.text;
-      this.sentence = "";
-      this.unit = now.unit;
-      this.units = now.units;
-      if (!this.held && this.next === null) this.place = now.place;
+      const { place, ...rest } = now;
+      Object.assign(this, rest, { given: now.text, sentence: "" });
+      if (!this.held && this.next === null) this.place = place;
     },
     complain(text, sentence) {
       this.text = text;

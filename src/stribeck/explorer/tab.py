@@ -18,16 +18,16 @@ from typing import Any
 
 from nicegui import background_tasks, events, ui
 
+from stribeck.explorer import choices, inputs, table, url
 from stribeck.explorer import downloads as files
-from stribeck.explorer import inputs, table, url
 from stribeck.explorer.answer import Answer, Answerer
 from stribeck.explorer.charts.palette import LIGHT
-from stribeck.explorer.curves import Curve
+from stribeck.explorer.curves import Curve, hersey_scale
 from stribeck.explorer.downloads import View
 from stribeck.explorer.history import History
 from stribeck.explorer.inputs import Inputs
-from stribeck.explorer.measured import Measured
-from stribeck.explorer.page import Page
+from stribeck.explorer.measured import Measured, fit_measured
+from stribeck.explorer.page import UPDATING, Page
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.serving.tidy import tidy_soon
 from stribeck.explorer.url import Pin
@@ -37,6 +37,9 @@ from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.solver.solve import SolveError
 
 __all__ = ["TABS", "Tab", "opening"]
+
+MOMENT = 0.15
+"""Seconds after which an answer that is not there leaves what is shown marked."""
 
 REST = 0.4
 """Seconds after the last change from which what takes longer is done."""
@@ -88,7 +91,7 @@ def curves_of(model: Answerer, pins: Sequence[Pin], answer: Answer) -> list[tupl
     for pin in pins:
         curve = model.curve(pin.contact, pin.definition, answer.speeds)
         if curve is not None:
-            found.append((pin.name, curve, pin.contact.viscosity / pin.contact.load))
+            found.append((pin.name, curve, hersey_scale(pin.contact)))
     return found
 
 
@@ -139,6 +142,8 @@ class Tab:
         self.start = start
         self.measured: list[Measured] = []
         self.model = Answerer()
+        self.states: list[Any] = list(shown.states)
+        self.said = ""
         self.asked = False
         self.working = False
         self.resting: asyncio.Task[Any] | None = None
@@ -155,14 +160,20 @@ class Tab:
     def connect(self) -> None:
         """Let the elements of the page call what the user means by them."""
         page = self.page
-        for name, knob in page.knobs.items():
+        for name in (*inputs.NAMES, *inputs.GROUP_FIELDS):
+            knob = page.knobs[name]
             knob.on("slide", lambda event, name=name: self.slide(name, event.args))
             knob.on("commit", lambda event, name=name: self.commit(name, event.args))
             knob.on("unit", lambda event, name=name: self.choose_unit(name, event.args))
+        for name in choices.CHOICES:
+            knob = page.knobs[name]
+            knob.on("pick", lambda event, name=name: self.pick(name, event.args))
+            knob.on("commit", lambda event, name=name: self.detail(name, event.args))
         for name, toggle in page.toggles.items():
             toggle.on_value_change(lambda event, name=name: self.choose(name, event.value))
         page.client.on_delete(self.close)
         page.pin_button.on("click", self.pin)
+        page.fit_button.on("click", self.fit)
         page.theme_button.on("click", self.toggle_theme)
         for name, way in (("undo", -1), ("redo", 1)):
             page.history[name].on("click", lambda way=way: self.step(way))
@@ -182,6 +193,15 @@ class Tab:
     def choose_unit(self, name: str, unit: Any) -> None:
         """Show a field in another unit."""
         self.attempt(name, str(unit), lambda: inputs.in_unit(self.inputs, name, str(unit)))
+
+    def pick(self, name: str, value: Any) -> None:
+        """Choose a part of the model."""
+        self.attempt(name, "", lambda: choices.choose(self.inputs, name, str(value)))
+
+    def detail(self, name: str, given: Any) -> None:
+        """Take the text of a field of a part of the model."""
+        key, text = map(str, given)
+        self.attempt(name, key, lambda: choices.typed_detail(self.inputs, name, key, text))
 
     def choose(self, name: str, value: str) -> None:
         """Take the definition of friction, or what the curve is drawn over."""
@@ -208,7 +228,7 @@ class Tab:
         """Undo or redo."""
         found = self.history.step(way, self.inputs)
         if found is not None:
-            if (found.title, found.law) != (self.inputs.title, self.inputs.law):
+            if found.title != self.inputs.title:
                 self.page.show_title(found)
             self.change(found)
         self.page.show_ways(self.history.ways)
@@ -239,7 +259,7 @@ class Tab:
             ui.notify(f"Up to {url.MOST_PINS} curves can be pinned; remove one first.")
             return
         name = files.pin_name(self.inputs, self.start, [pin.name for pin in self.pins])
-        self.pins.append(Pin(name, self.inputs.contact, self.inputs.definition, self.inputs.law))
+        self.pins.append(Pin(name, self.inputs.contact, self.inputs.definition, self.inputs.model))
         self.show_chips()
         self.ask()
 
@@ -252,6 +272,7 @@ class Tab:
     def show_chips(self) -> None:
         """List the pinned and the measured curves."""
         self.page.show_chips(self.pins, self.measured, self.unpin, self.forget)
+        self.page.show_fit(bool(self.measured))
 
     def forget(self, found: Measured) -> None:
         """Drop a measured curve."""
@@ -276,6 +297,26 @@ class Tab:
                 self.measured = [*self.measured, *found][-MOST_MEASURED:]
                 self.show_chips()
                 self.ask()
+
+    async def fit(self) -> None:
+        """Fit the inputs to the measured curves of the last file; undo brings back those before."""
+        now, last = self.inputs, self.measured[-1]
+        self.page.status.text = f"Fitting to {last.name} ..."
+
+        def step(*_: Any) -> None:
+            if self.closed or self.inputs is not now:
+                raise Superseded
+
+        try:
+            fitted = await self.run(SLOW, fit_measured, now, last, step)
+        except Superseded:
+            self.page.status.text = "The fit was given up, as the inputs changed."
+        except (InputError, SolveError) as problem:
+            self.page.status.text = f"No fit: {without_rtol(str(problem))}"
+        else:
+            with self.page.client:
+                self.change(fitted.inputs)
+                self.said = fitted.words
 
     async def content(self, kind: str) -> bytes | None:
         """Return a file of what is shown, or None after saying why there is none."""
@@ -309,13 +350,13 @@ class Tab:
                 self.asked = False
                 now = self.inputs
                 try:
-                    self.answer, self.pinned = await self.run(LIVE, self.compute, now, tuple(self.pins))
+                    await self.answered(now)
                 except (InputError, SolveError) as problem:
                     self.page.status.text = f"{without_rtol(str(problem))} The last picture is kept."
                 except Exception as problem:  # a page that silently no longer follows would be worse
                     self.page.status.text = f"Internal error ({problem!r}). The last picture is kept."
                 else:
-                    self.page.status.text = ""
+                    self.page.status.text, self.said = self.said, ""
                 await self.page.draw(self.inputs, self.seen())
         finally:
             self.working = False
@@ -326,14 +367,30 @@ class Tab:
         """Return what a function gives, computed in a thread."""
         return await asyncio.get_running_loop().run_in_executor(pool, function, *arguments)
 
-    def compute(self, now: Inputs, pins: Sequence[Pin]) -> tuple[Answer, list[tuple[str, Curve, float]]]:
-        """Return the answer, and the pinned curves as far as they are known, over the speeds of its axis."""
+    async def answered(self, now: Inputs) -> None:
+        """Compute the answer; where that takes longer than a moment, mark what is shown."""
+        work = asyncio.ensure_future(self.run(LIVE, self.compute, now, tuple(self.pins)))
+        done, _ = await asyncio.wait({work}, timeout=MOMENT)
+        if not done:
+            self.page.show_working()
+        self.answer, self.pinned, self.states = await work
+
+    def compute(self, now: Inputs, pins: Sequence[Pin]) -> tuple[Answer, list[Any], list[Any]]:
+        """Return the answer, the pinned curves as far as they are known over the speeds of its axis, and their states."""
         answer = self.model(now)
-        return answer, curves_of(self.model, pins, answer)
+        states = [(pin.name, self.model.state_of_pin(pin.contact), pin.definition) for pin in pins]
+        return answer, curves_of(self.model, pins, answer), states
 
     def seen(self) -> View:
         """Return the answer, and the curves that are shown with it."""
-        return View(self.answer, self.pinned, tuple(self.measured))
+        return View(self.answer, self.pinned, tuple(self.measured), self.states)
+
+    async def refresh(self, now: Inputs) -> None:
+        """Show what has been solved since for the inputs that are shown."""
+        if self.inputs is now and not self.working and not self.closed:
+            self.answer, self.pinned, self.states = await self.run(LIVE, self.compute, now, tuple(self.pins))
+            if self.inputs is now:
+                await self.page.draw(now, self.seen())
 
     # --- when the sliders rest ---
 
@@ -346,19 +403,50 @@ class Tab:
         self.resting = background_tasks.create(self.settle(), name="explorer rests")
 
     async def settle(self) -> None:
-        """Put the state into the address; solve the curve outside the atlas and the margins in all inputs."""
-        await asyncio.sleep(REST)
+        """Solve the curve outside the atlas at once; at rest put the state into the address and do what takes longer."""
         now = self.inputs
+        report = self.reporter(now)
         with self.page.client:
-            self.page.show_address(f"?{url.encode(now, self.pins)}")
-            self.history.rest(now)
-            self.page.show_ways(self.history.ways)
-            if await self.run(SLOW, self.model.settle, now) and self.inputs is now:
-                self.ask()
+            try:
+                curve = asyncio.ensure_future(self.run(SLOW, self.model.settle, now, report))
+                curve.add_done_callback(lambda task: task.cancelled() or task.exception())
+                began = asyncio.get_running_loop().time()
+                done, _ = await asyncio.wait({curve}, timeout=REST)
+                if done and curve.result():
+                    await self.refresh(now)
+                await asyncio.sleep(max(0.0, began + REST - asyncio.get_running_loop().time()))
+                self.page.show_address(f"?{url.encode(now, self.pins)}")
+                self.history.rest(now)
+                self.page.show_ways(self.history.ways)
+                if not done:
+                    while not curve.done():
+                        self.page.show_progress()
+                        await asyncio.wait({curve}, timeout=REST)
+                    if curve.result():
+                        await self.refresh(now)
+                self.page.progress = self.model.why_no_curve(now)
+                if self.page.progress:
+                    self.page.show_progress()
+                rows = self.model.diagrams(now, report)
+                while await self.run(SLOW, next, rows, False) is not False:
+                    await self.refresh(now)
+                found = await self.run(SLOW, self.ways, now)
+                if found is not None and self.inputs is now:
+                    self.page.show_margins(found if isinstance(found, str) else table.margins_html(found), now)
+                if await self.run(SLOW, self.model.settle_checks, now):
+                    await self.refresh(now)
+            except Superseded:
                 return
-            found = await self.run(SLOW, self.ways, now)
-            if found is not None and self.inputs is now:
-                self.page.show_margins(found if isinstance(found, str) else table.margins_html(found), now)
+
+    def reporter(self, now: Inputs) -> Callable[[float], None]:
+        """Return what slow work reports to: it ends where the inputs have changed."""
+
+        def report(part: float) -> None:
+            if self.inputs is not now or self.closed:
+                raise Superseded
+            self.page.progress = f"{UPDATING} {100 * part:.0f} %"
+
+        return report
 
     def ways(self, now: Inputs) -> RegimeMargins | str | None:
         """Return the margins of a contact, the reason why there are none, or None where it is no longer shown."""
@@ -368,6 +456,8 @@ class Tab:
                 raise Superseded
 
         try:
+            if now.table.geometry == "point":
+                return '<p class="note">Distances of a ball take many minutes; see stribeck regimes.</p>'
             return regime_margins(now.contact, definition=now.definition, on_point=go_on)
         except Superseded:
             return None

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
+from stribeck.contacts.friction import Definition
+from stribeck.curves.regime import regime_of
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import Transition
-from stribeck.quantities.inputs import QUANTITIES
-from stribeck.quantities.outputs import ROWS
+from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.units import format_si
 from stribeck.regimes.margins import RegimeMargins
+from stribeck.solver.base_solution import BaseSolution
 
-__all__ = ["Row", "margins_html", "numbers", "numbers_html"]
+__all__ = ["Row", "comparison_html", "margins_html", "numbers", "numbers_html"]
 
 MOST_DIGITS = 4
+
+HERSEY = {"line": "Hersey number ηU/F<sub>N</sub>", "point": "Hersey number ηUR/F<sub>N</sub>"}
 
 
 @dataclass(frozen=True)
@@ -70,16 +74,18 @@ def numbers(answer: Answer) -> list[Row]:
     if chosen.total > 0:
         part = chosen.contact / chosen.total
         rows.append(_share("contact_friction_share", "Friction from asperities", part, chosen.error / chosen.total))
-    for each in (each for each in ROWS[::-1] if each.error == "absolute"):
+    observed = solution.outputs.rows
+    for each in (each for each in observed[::-1] if each.error == "absolute"):
         rows.append(_share(each.name, each.label.capitalize(), getattr(solution, each.name), errors[each.name]))
-    for each in (each for each in ROWS if each.film and each.scale == "gap"):
-        film, error = getattr(solution, each.name) * scales.indentation, errors[each.name]
+    film_errors = errors | {"minimum_gap": getattr(solution, "minimum_gap_error", errors.get("minimum_gap", math.nan))}
+    for each in (each for each in observed if each.film and each.scale == "gap"):
+        film, error = getattr(solution, each.name) * scales.indentation, film_errors.get(each.name, math.nan)
         rows.append(_row(each.film, each.label.capitalize(), film, abs(film) * error, "length"))
     ratio = solution.lambda_ratio
     rows.append(
-        _row("lambda_ratio", "Lambda ratio h<sub>min</sub>/h<sub>rms</sub>", ratio, abs(ratio) * errors["minimum_gap"])
+        _row("lambda_ratio", "Lambda ratio h<sub>min</sub>/h<sub>rms</sub>", ratio, abs(ratio) * film_errors["minimum_gap"])
     )
-    rows.append(_row("hersey_number", "Hersey number ηU/F<sub>N</sub>", contact.hersey_number, 0.0))
+    rows.append(_row("hersey_number", HERSEY[contact.INPUTS.geometry], contact.hersey_number, 0.0))
     rows += _transition_rows(answer)
     return rows
 
@@ -96,7 +102,8 @@ def _transition_rows(answer: Answer) -> list[Row]:
         mark = None if answer.curve is None else answer.curve.transition(name)
         key = f"speed_factor_{name}"
         if mark is None:
-            rows.append(Row(key, label, math.nan, math.nan, "none", ""))
+            waits = answer.curve is None or answer.curve.stale
+            rows.append(Row(key, label, math.nan, math.nan, "not solved yet" if waits else "none", ""))
             continue
         text = format_si(mark.speed, "speed").replace("*", "·")
         speed = answer.inputs.contact.speed
@@ -127,12 +134,16 @@ def _row(key: str, label: str, value: float, error: float, dimension: str = "num
         return Row(key, label, value, 0.0, "∞ (smooth)", "")
     number, _, unit = format_si(value, dimension, _count(value, error)).replace("*", "·").partition(" ")
     scale = float(number) / value if unit and value else 1.0
+    if math.isnan(error):
+        return Row(key, label, value, error, f"{number} {unit}".rstrip(), "")
     shown = f"± {_small(error * abs(scale))} {unit}".rstrip() if error > 0 else "from the inputs"
     return Row(key, label, value, error, f"{number} {unit}".rstrip(), shown)
 
 
 def _count(value: float, error: float) -> int:
     """Return how many digits of a value its error leaves, at most :data:`MOST_DIGITS`."""
+    if math.isnan(error):
+        return 3
     if error <= 0 or value == 0:
         return 5
     return max(1, min(MOST_DIGITS, math.floor(math.log10(abs(value) / error)) + 1))
@@ -160,14 +171,17 @@ def numbers_html(answer: Answer, rows: Sequence[Row]) -> str:
         HTML without text of the user.
     """
     solution = answer.solution
+    applies = f'<p class="outside" data-key="outside" data-value="">{escape(answer.outside)}</p>' if answer.outside else ""
+    notes = [note for note in solution.notes if not answer.outside or note not in answer.outside]
     return "".join(
         [
+            applies,
             f'<div class="regime {answer.regime}" data-key="regime" data-value="{answer.regime}">{answer.regime}'
             f"<small>{_regime_words(answer)}</small></div>",
             "<table>",
             *(_line(row) for row in rows),
             "</table>",
-            _notes([*solution.notes, answer.diagram.message]),
+            _notes(notes),
         ]
     )
 
@@ -192,6 +206,53 @@ def _notes(notes: Iterable[str]) -> str:
     return "".join(f'<p class="note">{escape(note)}</p>' for note in notes if note)
 
 
+def comparison_html(answer: Answer, states: Sequence[tuple[str, BaseSolution, Definition]]) -> str:
+    """Return the numbers of the pinned contacts beside those of the present one; empty where nothing is pinned.
+
+    Parameters
+    ----------
+    answer : Answer
+        What is shown.
+    states : sequence of (str, BaseSolution, str)
+        Name, state and definition of friction of each pinned contact.
+
+    Returns
+    -------
+    str
+        A table with a column for each contact.
+    """
+    if not states:
+        return ""
+    columns = [("present", answer.solution, answer.inputs.definition), *states]
+    lines = ["<table><tr><td></td>", *(f'<th scope="col">{escape(name)}</th>' for name, _, _ in columns), "</tr>"]
+    for label, value in COMPARED.items():
+        cells = "".join(f"<td>{escape(value(state, definition))}</td>" for _, state, definition in columns)
+        lines.append(f'<tr><th scope="row">{label}</th>{cells}</tr>')
+    return "".join([*lines, "</table>"])
+
+
+def _film(state: BaseSolution, gap: float) -> str:
+    assert state.contact is not None
+    return format_si(gap * state.contact.hertz.indentation, "length", 3)
+
+
+def _regime(state: BaseSolution, definition: Definition) -> str:
+    friction = state.friction(definition=definition)
+    return regime_of(state.fluid_load_share, friction.contact / friction.total if friction.total > 0 else 0.0)
+
+
+COMPARED: dict[str, Callable[[BaseSolution, Definition], str]] = {
+    "Regime": _regime,
+    "Friction µ": lambda state, definition: f"{state.friction(definition=definition).total:.3g}",
+    "Central film": lambda state, _: _film(state, state.central_gap),
+    "Minimum film": lambda state, _: _film(state, state.minimum_gap),
+    "Lambda ratio": lambda state, _: f"{state.lambda_ratio:.3g}",
+    "Load on the fluid": lambda state, _: f"{100 * state.fluid_load_share:.3g} %",
+    "Hersey number": lambda state, _: f"{state.hersey_number:.3g}",
+}
+"""What is compared, and its text."""
+
+
 def margins_html(margins: RegimeMargins) -> str:
     """Return the way to the next regimes in each input as HTML.
 
@@ -214,7 +275,7 @@ def margins_html(margins: RegimeMargins) -> str:
             if mark is None:
                 lines.append("<td>not reachable</td>")
                 continue
-            value = format_si(mark.value, QUANTITIES[margin.name].dimension).replace("*", "·")
+            value = format_si(mark.value, INPUT_TABLES[margins.geometry].quantities[margin.name].dimension).replace("*", "·")
             factor = f"{_times(mark.factor)} " if 0 < mark.factor < math.inf else ""
             lines.append(f'<td data-value="{mark.factor!r}">{factor}<small>({escape(value)})</small></td>')
         lines.append("</tr>")

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from typing import Any, get_args
 from urllib.parse import quote, urlencode
 
-from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.line import LineContact
-from stribeck.explorer.carried import check_rest, shape_of
-from stribeck.explorer.inputs import FIELDS, Abscissa, Inputs, exact_text, typed
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import DEFINITIONS, Definition, check_definition
+from stribeck.explorer.carried import check_rest, contact_of, geometry_of, json_text
+from stribeck.explorer.inputs import FIELDS, NAMES, Abscissa, Inputs, exact_text, read_field, with_model
 from stribeck.quantities.units import InputError, read_number, show
 from stribeck.solver.solve import check_rtol
 
@@ -31,18 +31,18 @@ class Pin:
     ----------
     name : str
         What it is called.
-    contact : LineContact
+    contact : Contact
         Its contact.
     definition : {"balanced", "published"}
         Its friction.
-    law : str
-        Its contact law, as in :mod:`stribeck.explorer.carried`.
+    model : str
+        Its model, as in :mod:`stribeck.explorer.carried`.
     """
 
     name: str
-    contact: LineContact
+    contact: Contact
     definition: Definition
-    law: str = ""
+    model: str = ""
 
 
 @dataclass(frozen=True)
@@ -79,16 +79,17 @@ def encode(inputs: Inputs, pins: Sequence[Pin] = ()) -> str:
     str
         The keys of a case file with their values, ``definition``, ``abscissa``, ``title`` and a ``pin`` for each pinned curve.
     """
-    items = [(name, exact_text(inputs, name)) for name in FIELDS]
-    items += [("definition", inputs.definition), ("abscissa", inputs.abscissa), ("rtol", repr(inputs.rtol))]
     # Empty ones too: whoever opens the link may have started with a case that has them.
-    items += [(name, getattr(inputs, name)) for name in ("title", "law", "rest")]
-    laws = list(dict.fromkeys(pin.law for pin in pins if pin.law))
-    items += [("pinlaw", law) for law in laws]
+    items = [(name, getattr(inputs, name)) for name in ("model", "title", "rest")]
+    items += [(name, exact_text(inputs, name)) for name in inputs.fields]
+    items += [("definition", inputs.definition), ("abscissa", inputs.abscissa), ("rtol", repr(inputs.rtol))]
+    models = list(dict.fromkeys(pin.model for pin in pins if pin.model))
+    items += [("pinmodel", model) for model in models]
     for pin in pins:
-        values = [repr(float(getattr(pin.contact, name))) for name in FIELDS]
-        law = f"@{laws.index(pin.law)}" if pin.law else ""
-        items.append(("pin", SEPARATOR.join([*values, pin.definition + law, pin.name])))
+        values = [getattr(pin.contact, name) for name in FIELDS[pin.contact.INPUTS.geometry]]
+        texts = ["" if value is None else repr(float(value)) for value in values]
+        model = f"@{models.index(pin.model)}" if pin.model else ""
+        items.append(("pin", SEPARATOR.join([*texts, pin.definition + model, pin.name])))
     return urlencode(items, safe=",:/*", quote_via=quote)
 
 
@@ -109,8 +110,8 @@ def check_length(inputs: Inputs, pins: Sequence[Pin] = ()) -> None:
     """
     length = len(encode(inputs, pins))
     if length > LONGEST:
-        parts = {"the title": inputs.title, "the contact law": inputs.law, "notes and [fit]": inputs.rest}
-        parts["the pinned curves"] = "".join(pin.law for pin in pins)
+        parts = {"the title": inputs.title, "the contact law": inputs.model, "notes and [fit]": inputs.rest}
+        parts["the pinned curves"] = "".join(pin.model for pin in pins)
         most = max(parts, key=lambda name: len(parts[name]))
         raise InputError(
             f"the address of this state would have {length} characters, but at most {LONGEST} are "
@@ -134,40 +135,55 @@ def decode(items: Iterable[tuple[str, str]], start: Inputs) -> Opened:
     Opened
         Inputs, pins, and a sentence for each value that cannot be used.
     """
-    inputs, pins, laws = start, [], []
+    given = list(items)
     problems: dict[str, tuple[str, str]] = {}
-    for key, text in items:
+    pins: list[Pin] = []
+    models: list[str] = []
+    numbers: dict[str, Any] = {}
+    inputs, model = start, dict(given).get("model", start.model)
+    try:
+        if geometry_of(model) != start.table.geometry:
+            inputs = with_model(start, json_text({"geometry": geometry_of(model)}))
+    except InputError as problem:
+        problems["model"], model = (model, str(problem)), start.model
+    for key, text in given:
         try:
-            if key == "pinlaw":
-                shape_of(text)
-                laws.append(text)
+            if key in NAMES:
+                if key not in inputs.fields:
+                    raise InputError(f"{key} = {show(text)}: {inputs.table.contact} has no such input.")
+                numbers[key], unit = read_field(inputs, key, text)
+                inputs = replace(inputs, units={**inputs.units, key: unit}) if unit else inputs
+            elif key == "pinmodel":
+                geometry_of(text)
+                models.append(text)
             elif key == "pin":
-                pins.append(_pin(text, laws))
-            else:
+                pins.append(_pin(text, models))
+            elif key != "model":
                 inputs = _changed(inputs, key, text)
         except InputError as problem:
             problems[key] = (text, str(problem))
+    try:
+        # All together: some alone may not go with what the start has.
+        inputs = with_model(inputs, model, **numbers) if numbers or model != inputs.model else inputs
+    except InputError as problem:
+        problems["state" if model == start.model else "model"] = (model, str(problem))
     return Opened(inputs, tuple(pins[:MOST_PINS]), problems)
 
 
 def _changed(inputs: Inputs, key: str, text: str) -> Inputs:
-    if key in FIELDS:
-        return typed(inputs, key, text)
     if key == "definition":
         return replace(inputs, definition=check_definition(text))
     if key == "abscissa":
         return replace(inputs, abscissa=_abscissa(text))
     if key == "title":
         return replace(inputs, title=text)
-    if key == "law":
-        return replace(inputs, contact=inputs.contact.replace(law=shape_of(text)), law=text)
     if key == "rest":
         return replace(inputs, rest=check_rest(text))
     if key == "rtol":
         rtol = read_number("rtol", text)
         check_rtol(rtol)
         return replace(inputs, rtol=rtol)
-    known = ", ".join([*FIELDS, "definition", "abscissa", "rtol", "title", "law", "rest", "pinlaw", "pin"])
+    known = ", ".join([*NAMES, "definition", "abscissa", "rtol", "title", "model", "rest", "pinmodel", "pin"])
     raise InputError(f"{show(key)[1:-1]} = {show(text)} is not a known key; known are {known}.")
 
 
@@ -178,19 +194,21 @@ def _abscissa(text: str) -> Abscissa:
     raise InputError(f"abscissa = {show(text)}; it must be 'speed' or 'hersey'.")
 
 
-def _pin(text: str, laws: Sequence[str]) -> Pin:
-    parts = text.split(SEPARATOR, len(FIELDS) + 1)
-    if len(parts) != len(FIELDS) + 2:
-        raise InputError(f"pin = {show(text)} must hold {len(FIELDS)} numbers, the definition and a name.")
-    *values, kind, name = parts
+def _pin(text: str, models: Sequence[str]) -> Pin:
+    kind = next((part for part in text.split(SEPARATOR) if part.partition("@")[0] in DEFINITIONS), "")
+    definition, mark, number = kind.partition("@")
+    if mark and number not in map(str, range(len(models))):
+        raise InputError(f"in pin, {show(kind)} names a model that the address does not contain.")
+    model = models[int(number)] if mark else ""
+    names = FIELDS[geometry_of(model)]
+    parts = text.split(SEPARATOR, len(names) + 1)
+    if len(parts) != len(names) + 2:
+        raise InputError(f"pin = {show(text)} must hold {len(names)} numbers, the definition and a name.")
+    *values, _, name = parts
     numbers: dict[str, Any] = {}
-    for key, value in zip(FIELDS, values, strict=True):
+    for key, value in zip(names, values, strict=True):
         try:
-            numbers[key] = float(value)
+            numbers[key] = float(value) if value else None
         except ValueError:
             raise InputError(f"in pin, {key} = {show(value)} is not a number.") from None
-    definition, mark, number = kind.partition("@")
-    if mark and number not in map(str, range(len(laws))):
-        raise InputError(f"in pin, {show(kind)} names a contact law that the address does not contain.")
-    law = laws[int(number)] if mark else ""
-    return Pin(name, LineContact(**numbers, law=shape_of(law)), check_definition(definition), law)
+    return Pin(name, contact_of(model, numbers), check_definition(definition), model)

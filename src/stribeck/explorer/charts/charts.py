@@ -12,13 +12,13 @@ from stribeck.contacts.friction import Definition
 from stribeck.explorer.answer import Answer, round_down, round_up
 from stribeck.explorer.charts.echarts import Options, chart, legend, line, linear_axis, log_axis, marker, pairs, with_unit
 from stribeck.explorer.charts.palette import PIN_DASHES, Palette
-from stribeck.explorer.curves import Curve
+from stribeck.explorer.curves import Curve, decade_of_roughness, hersey_scale
 from stribeck.explorer.measured import Measured
 from stribeck.quantities.units import DIMENSIONS, format_si
 
 __all__ = ["CHARTS", "all_charts"]
 
-CHARTS = ("friction", "gap", "pressure", "diagram")
+CHARTS = ("friction", "gap", "pressure", "plane", "diagram")
 
 POLYGON = """(params, api) => {
   const points = [];
@@ -53,6 +53,7 @@ def all_charts(
         "friction": friction_chart(answer, pins, measured, palette),
         "gap": gap_chart(answer, palette),
         "pressure": pressure_chart(answer, palette),
+        "plane": plane_chart(answer, palette),
         "diagram": diagram_chart(answer, palette),
     }
 
@@ -63,12 +64,12 @@ def friction_chart(
     """Return friction over the speed or the Hersey number, with the present point, pins and measured curves."""
     inputs, curve = answer.inputs, answer.curve
     contact = inputs.contact
-    hersey = contact.viscosity / contact.load
+    hersey = hersey_scale(contact)
     scale = 1.0 if inputs.abscissa == "speed" else hersey
     ends = answer.speeds[0] * scale, answer.speeds[1] * scale
     chosen = inputs.definition
     other: Definition = "balanced" if chosen == "published" else "published"
-    names = {"balanced": "friction, balanced", "published": "friction as published"}
+    names = {"balanced": "balanced", "published": "as published"}
     series: list[Options] = []
     heights: list[float] = []
     if curve is not None:
@@ -175,16 +176,71 @@ def pressure_chart(answer: Answer, palette: Palette) -> Options:
     return options | {"legend": legend(palette, [s["name"] for s in series])}
 
 
+def plane_chart(answer: Answer, palette: Palette) -> Options:
+    """Return the film of a ball on its plane as colours, on a logarithmic scale; nothing for a cylinder."""
+    plane = answer.plane
+    a = answer.inputs.contact.hertz.half_width
+    side = np.zeros(1) if plane is None else np.asarray(plane.x[0]) * a
+    unit, name = _unit(max(abs(float(side[0])), 1e-9), "length")
+    places = [f"{value / unit:.3g}" for value in side]
+    gap = np.ones((1, 1)) if plane is None else np.maximum(plane.gap, 1e-300) * answer.inputs.contact.hertz.indentation
+    low, high = float(gap.min()), 20 * float(gap[len(gap) // 2, len(gap) // 2])
+    film, film_name = _unit(low, "length")
+    values = np.round(np.log10(np.clip(gap, low, high) / film), 3)
+    data = [] if plane is None else [[i, j, float(value)] for (j, i), value in np.ndenumerate(values)]
+    axis = {
+        "type": "category",
+        "data": places,
+        "axisLabel": {"color": palette.grey, "fontSize": 11, "interval": 11},
+        "axisTick": {"show": False},
+        "splitLine": {"show": False},
+        "nameLocation": "middle",
+        "nameTextStyle": {"color": palette.grey, "fontSize": 12},
+    }
+    options = chart(
+        palette,
+        axis | {"name": f"position x ({name}); fluid enters left", "nameGap": 26},
+        axis | {"name": f"position y ({name})", "nameGap": 36},
+        [{"id": "film", "name": "film", "type": "heatmap", "data": data, "progressive": 0, "emphasis": {"disabled": True}}],
+    )
+    scale = {
+        "type": "continuous",
+        "min": float(values.min()),
+        "max": float(values.max()) + 1e-3,
+        "calculable": False,
+        "orient": "horizontal",
+        "left": 50,
+        "bottom": 0,
+        "itemHeight": 150,
+        "itemWidth": 11,
+        "text": [format_si(high, "length", 3), format_si(low, "length", 3)],
+        "textStyle": {"color": palette.grey, "fontSize": 11},
+        "inRange": {"color": ["#fde725", "#5ec962", "#21918c", "#3b528b", "#440154"]},
+    }
+    # Whole pixels for each place, or seams show between them.
+    grid = {"left": 50, "top": 8, "width": 6 * len(side), "height": 6 * len(side)}
+    tip = {"trigger": "item", ":formatter": FILM_TIP.replace("UNIT", film_name), "confine": True}
+    return options | {"visualMap": scale, "grid": grid, "tooltip": options["tooltip"] | tip}
+
+
+FILM_TIP = "p => 'film ' + Number(Math.pow(10, p.data[2]).toPrecision(3)) + ' UNIT'"
+
+
 def diagram_chart(answer: Answer, palette: Palette) -> Options:
     """Return the regimes over speed and roughness at the present load, with the present point and the path of the speed."""
     diagram, contact = answer.diagram, answer.inputs.contact
     low, high = answer.speeds
-    roughness = 1e6 * diagram.roughness
-    known = ~np.isnan(diagram.boundary)
-    begin = np.clip(diagram.hydrodynamic, low, high)
-    end = np.minimum(np.clip(diagram.boundary, low, high), begin)
     series: list[Options] = []
-    if known.any() and not diagram.message:
+    decade = decade_of_roughness(contact)
+    roughness = np.array([10.0 ** (decade + 6), 10.0 ** (decade + 9)])
+    message = diagram.message if diagram is not None else WITHOUT_MAP[contact.INPUTS.geometry]
+    lines = np.empty((3, 0)) if diagram is None else np.stack([diagram.boundary, diagram.hydrodynamic, diagram.minimum])
+    known = ~np.isnan(lines[:2]).any(axis=0)
+    if diagram is not None:
+        roughness = 1e6 * diagram.roughness
+    begin = np.clip(lines[1], low, high)
+    end = np.minimum(np.clip(lines[0], low, high), begin)
+    if known.sum() > 1 and diagram is not None and not message:
         rows = roughness[known]
         left, right = np.full(len(rows), low), np.full(len(rows), high)
         b, h = end[known], begin[known]
@@ -211,9 +267,15 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
         series.append(line("end", "boundary ends", np.where(inside, b, np.nan), rows, palette.contact, 1.8, [7, 3]))
         inside = (h > low) & (h < high)
         series.append(line("begin", "hydrodynamic begins", np.where(inside, h, np.nan), rows, palette.fluid, 1.8))
-        lowest = diagram.minimum[known]
+        lowest = lines[2, known]
         lowest = np.where((lowest > low) & (lowest < high), lowest, np.nan)
         series.append(line("minimum", "minimum friction", lowest, rows, palette.mark, 1.6, [2, 3]))
+        if diagram.stale:
+            for old in series:
+                old["itemStyle" if old["type"] == "custom" else "lineStyle"] = {
+                    **old.get("itemStyle" if old["type"] == "custom" else "lineStyle", {}),
+                    "opacity": 0.25,
+                }
     height = min(max(1e6 * contact.roughness, float(roughness[0])), float(roughness[-1]))
     series.append(line("path", "changing speed", np.array([low, high]), np.full(2, height), palette.grey, 1.0, [4, 4]))
     series.append(marker("point", [min(max(contact.speed, low), high), height], palette))
@@ -221,9 +283,16 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
     y = log_axis("roughness (µm)", float(roughness[0]), float(roughness[-1]), palette)
     options = chart(palette, x, y, series)
     listed = ["boundary ends", "hydrodynamic begins", "minimum friction"]
-    why = {"text": diagram.message, "left": "center", "top": "middle", "textStyle": _words(palette)}
+    why = {"text": message, "left": "center", "top": "middle", "textStyle": _words(palette)}
     names = [name for name in listed if any(s["name"] == name for s in series)]
     return options | {"title": why, "legend": legend(palette, names)}
+
+
+WITHOUT_MAP = {
+    "line": "",
+    "point": "Regime map unavailable: it would take an hour to solve for a ball, and no lookup table holds this one.",
+}
+"""What stands in the place of a map that is not there: nothing where it is being solved."""
 
 
 def _words(palette: Palette) -> Options:

@@ -35,11 +35,15 @@ FONT = "Roboto, system-ui, sans-serif"
 
 POWER = """value => {
   const e = Math.round(Math.log10(value));
-  if (Math.abs(value / Math.pow(10, e) - 1) > 1e-6) return Number(value.toPrecision(2)).toString();
-  if (e >= -2 && e <= 3) return String(Number(Math.pow(10, e).toPrecision(1)));
-  return '10' + String(e).replace(/./g, c => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]);
+  const raised = n => '10' + String(n).replace(/./g, c => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]);
+  if (Math.abs(value / Math.pow(10, e) - 1) > 1e-6) {
+    const low = Math.floor(Math.log10(value));
+    const part = Number((value / Math.pow(10, low)).toPrecision(2));
+    return low >= -2 && low <= 2 ? String(Number(value.toPrecision(2))) : part + '·' + raised(low);
+  }
+  return e === 0 ? '1' : e === 1 ? '10' : raised(e);
 }"""
-"""Labels of logarithmic axes: 0.01 to 1000 as such, powers of ten beyond."""
+"""Labels of logarithmic axes: powers of ten, all in one style."""
 
 PRECISION = "value => typeof value === 'number' ? Number(value.toPrecision(4)).toString() : value"
 

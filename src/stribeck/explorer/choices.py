@@ -1,0 +1,308 @@
+"""What of the model is chosen from a list: geometry, contact law, fluid, cavitation, motion, flow factors, solid.
+
+Each row is a table of a case and one of its keys; what keys a choice needs is taken from the readers of cases.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from stribeck.cases.law import LAWS, law_of_file
+from stribeck.cases.model_parts import DENSITIES, RHEOLOGIES, VISCOSITY_LAWS, take_parts
+from stribeck.explorer.carried import LAW_NAMES, fluid_table, json_text, tables_of
+from stribeck.explorer.inputs import Inputs, exact_text, with_model
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.presets import PRESETS
+from stribeck.quantities.units import InputError
+
+__all__ = ["CHOICES", "Choice", "choose", "state_of", "typed_detail"]
+
+Keys = tuple[tuple[str, ...], tuple[str, ...]]
+"""Keys that a choice needs, and those that it may have."""
+
+NONE: Keys = ((), ())
+
+RTOL = {"line": 1e-6, "point": 1e-4}
+"""Tolerance of the states where the geometry is chosen on the page."""
+
+TYPICAL: dict[str, Any] = {
+    "relaxation_time": "1 ms",
+    "exponent": 0.5,
+    "stress": "5 MPa",
+    "pressure_viscosity": "15 1/GPa",
+    "slide_to_roll": 0.5,
+    "layer_thickness": "2 mm",
+    "hurst": 0.8,
+    "longest_wavelength": "150 um",
+    "shortest_wavelength": "1.5 um",
+}
+"""What a key that is needed has at first."""
+
+WORDS = {
+    "slide_to_roll": "slide-to-roll ratio",
+    "poisson_ratio": "Poisson's ratio",
+    "pressure": "cavity pressure",
+    "hurst": "Hurst exponent",
+    "pressure_viscosity": "pressure coefficient",
+}
+"""What keys are called where that is not the key itself."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One list to choose from.
+
+    Attributes
+    ----------
+    name : str
+        Its name on the page.
+    label : str
+        What is chosen.
+    table : str
+        The table of the case; empty for a key at the top of the model.
+    key : str
+        The key that is chosen; empty where the table alone is the choice.
+    options : mapping
+        What can be chosen, its words, and the keys that it has; the first is that of the article.
+    """
+
+    name: str
+    label: str
+    table: str
+    key: str
+    options: Mapping[str, tuple[str, Keys]]
+
+    @property
+    def first(self) -> str:
+        """What holds where nothing is chosen."""
+        return next(iter(self.options))
+
+
+REFERENCES = ("reference_pressure", "reference_viscosity")
+SURFACE: Keys = (("hurst", "longest_wavelength", "shortest_wavelength"), ("roll_off_wavelength", "gamma"))
+
+CHOICES = {
+    each.name: each
+    for each in (
+        Choice("geometry", "Geometry", "", "geometry", {"line": ("cylinder on flat", NONE), "point": ("ball on flat", NONE)}),
+        Choice(
+            "law", "Contact law", "", "law", {law: (LAW_NAMES[law], SURFACE if law == "persson" else NONE) for law in LAWS}
+        ),
+        Choice(
+            "preset", "Fluid preset", "", "", {"": ("choose ...", NONE)} | {k: (p.label, NONE) for k, p in PRESETS.items()}
+        ),
+        Choice("fluid", "Fluid", "fluid", "model", {name: (name, row[1:]) for name, row in RHEOLOGIES.items()}),
+        Choice(
+            "viscosity_law",
+            "Viscosity under pressure",
+            "fluid",
+            "viscosity_law",
+            {
+                name: (name, (("pressure_viscosity",), REFERENCES if name == "roelands" else ()) if i else NONE)
+                for i, name in enumerate(VISCOSITY_LAWS)
+            },
+        ),
+        Choice("density", "Density", "fluid", "density", {name: (name, NONE) for name in DENSITIES}),
+        Choice(
+            "cavitation",
+            "Cavitation",
+            "cavitation",
+            "model",
+            {str(each): (str(each), ((), ("pressure",)) if each == "reform" else NONE) for each in Cavitation},
+        ),
+        Choice(
+            "motion",
+            "Motion",
+            "motion",
+            "",
+            {"sliding": ("one surface at rest", NONE), "rolling": ("both surfaces move", (("slide_to_roll",), ()))},
+        ),
+        Choice(
+            "flow_factors",
+            "Flow factors",
+            "flow_factors",
+            "model",
+            {"none": ("none", NONE), "effective-medium": ("effective medium", NONE), "patir-cheng": ("Patir and Cheng", NONE)},
+        ),
+        Choice(
+            "solid",
+            "Soft body",
+            "solid",
+            "",
+            {"half-space": ("half-space", NONE), "layer": ("bonded layer", (("layer_thickness",), ("poisson_ratio",)))},
+        ),
+    )
+}
+"""The rows, in the order of the page."""
+
+
+def _where(choice: Choice) -> str:
+    """Return the table in which the keys of a choice stand."""
+    return "surface" if choice.name == "law" else choice.table
+
+
+def chosen(choice: Choice, tables: Mapping[str, Any]) -> str:
+    """Return what is chosen in the tables of a model."""
+    if not choice.key:
+        return list(choice.options)[choice.table in tables] if choice.table else choice.first
+    given = tables.get(choice.table, {}) if choice.table else tables
+    if choice.name == "viscosity_law" and "pressure_viscosity" in given:
+        return str(given.get(choice.key, "barus"))
+    return str(given.get(choice.key, choice.first))
+
+
+def offered(choice: Choice, tables: Mapping[str, Any]) -> bool:
+    """Return whether contacts of the geometry of these tables can have the choice at all."""
+    geometry = tables.get("geometry", "line")
+    if geometry == "line" or not choice.table:
+        return True
+    last = list(choice.options)[-1]
+    table = {choice.key: last} if choice.key else {}
+    table |= {key: TYPICAL[key] for key in choice.options[last][1][0]}
+    # Of a ball the slide-to-roll ratio is one of its inputs.
+    return choice.table != "motion" and _taken(choice.table, table, geometry)
+
+
+def _taken(name: str, table: dict[str, Any], geometry: str) -> bool:
+    return not take_parts({name: table}, geometry)[2]
+
+
+def state_of(now: Inputs, name: str) -> dict[str, Any]:
+    """Return what a row shows.
+
+    Parameters
+    ----------
+    now : Inputs
+        What is shown.
+    name : str
+        Key of :data:`CHOICES`.
+
+    Returns
+    -------
+    dict
+        ``hidden``, the chosen ``value``, ``options`` as pairs of value and words, and ``details``: the keys of what is chosen
+        with their words and texts.
+    """
+    choice, tables = CHOICES[name], tables_of(now.model)
+    value = chosen(choice, tables)
+    given = tables.get(_where(choice), {})
+    needed, optional = choice.options[value][1]
+    keys = (*needed, *optional)
+    if name == "law" and keys:
+        # A measured spectrum has no numbers to change; others keep those with which they came.
+        own = [key for key in given if key not in ("h_rms", "wavenumber", "density", "title")]
+        keys = () if "wavenumber" in given else tuple(dict.fromkeys((*own, *(() if "q0" in given else keys))))
+    details = [[key, WORDS.get(key, key.replace("_", " ")), str(given.get(key, ""))] for key in keys]
+    # A table of a contact law comes from a file only.
+    options = [[key, words] for key, (words, _) in choice.options.items() if key != "table" or value == "table"]
+    if name == "preset" and not offered(CHOICES["fluid"], tables):
+        options = [each for each in options if not each[0] or not fluid_table(PRESETS[each[0]]().fluid)]
+    return {"hidden": not offered(choice, tables), "value": value, "options": options, "details": details}
+
+
+def choose(now: Inputs, name: str, value: str) -> Inputs:
+    """Return the inputs after something was chosen; what it needs has typical values.
+
+    Parameters
+    ----------
+    now : Inputs
+        Those before.
+    name : str
+        Key of :data:`CHOICES`.
+    value : str
+        Key of its options.
+
+    Returns
+    -------
+    Inputs
+        Those after.
+
+    Raises
+    ------
+    InputError
+        If it cannot be chosen, or does not go with the rest.
+    """
+    choice, tables = CHOICES[name], tables_of(now.model)
+    if value not in choice.options:
+        raise InputError(f"{name} = {value!r} must be one of {', '.join(map(repr, choice.options))}.")
+    if name == "preset":
+        if not value:
+            return now
+        liquid = PRESETS[value]()
+        tables["fluid"] = fluid_table(liquid.fluid)
+        return _with(now, tables, viscosity=liquid.viscosity)
+    old, where = chosen(choice, tables), _where(choice)
+    if name == "law":
+        for each in ("surface", "table"):
+            tables.pop(each, None)
+        if value == "persson":
+            tables["surface"] = {key: TYPICAL[key] for key in SURFACE[0]}
+            return _of_surface(now, tables | {"law": value})
+        return _with(now, {**tables, "law": value})
+    if name == "geometry":
+        # Of a ball the slide-to-roll ratio is one of its inputs; its states take longer.
+        motion = tables.pop("motion", {})
+        return replace(_with(now, {**tables, name: value}, **motion), rtol=RTOL[value])
+    table = dict(tables.get(where, {}))
+    for key in (*choice.options[old][1][0], *choice.options[old][1][1]):
+        table.pop(key, None)
+    table |= {key: TYPICAL[key] for key in choice.options[value][1][0]}
+    if choice.key:
+        table[choice.key] = value
+        if value == choice.first:
+            del table[choice.key]
+    return _with(now, {**tables, where: table})
+
+
+def typed_detail(now: Inputs, name: str, key: str, text: str) -> Inputs:
+    """Return the inputs after ``text`` was typed for a key of a choice.
+
+    Parameters
+    ----------
+    now : Inputs
+        Those before.
+    name : str
+        Key of :data:`CHOICES`.
+    key : str
+        One of the keys of what is chosen.
+    text : str
+        A number, or one with a unit; empty takes an optional key away.
+
+    Returns
+    -------
+    Inputs
+        Those after; alpha, beta and roughness follow a surface.
+
+    Raises
+    ------
+    InputError
+        The sentence about such a value in a case.
+    """
+    choice, tables = CHOICES[name], tables_of(now.model)
+    where, text = _where(choice), text.strip()
+    table = {each: value for each, value in tables.get(where, {}).items() if each != key}
+    if text:
+        try:
+            table[key] = float(text)
+        except ValueError:
+            table[key] = text
+    elif key in choice.options[chosen(choice, tables)][1][0]:
+        raise InputError(f"{key} is missing, which this choice needs; add {key} = {TYPICAL[key]}.")
+    tables[where] = table
+    return _of_surface(now, tables) if where == "surface" else _with(now, tables)
+
+
+def _of_surface(now: Inputs, tables: dict[str, Any]) -> Inputs:
+    """Return the inputs on the surface of these tables with the present roughness, alpha and beta being those of it."""
+    tables["surface"] = tables["surface"] | {"h_rms": exact_text(now, "roughness")}
+    found = law_of_file(tables["law"], {}, {"surface": tables["surface"]}, Path())
+    return _with(now, tables, alpha=found.coefficients["alpha"], beta=found.coefficients["beta"])
+
+
+def _with(now: Inputs, tables: Mapping[str, Any], **numbers: float) -> Inputs:
+    """Return the inputs with the tables of another model, of which nothing is kept that is as in the article."""
+    kept = {name: value for name, value in tables.items() if value and value not in ("line", "exponential")}
+    return with_model(now, json_text(kept), **numbers)
