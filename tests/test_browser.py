@@ -19,7 +19,8 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.explorer import inputs, server, url
+from stribeck.explorer import server
+from stribeck.explorer.asked import inputs, url
 
 pytestmark = pytest.mark.browser
 

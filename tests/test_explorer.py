@@ -15,14 +15,16 @@ import pytest
 
 import stribeck as sb
 from stribeck.cli import main
-from stribeck.explorer import carried, choices, inputs, server, table, url
 from stribeck.explorer import downloads as files
+from stribeck.explorer import server, table
 from stribeck.explorer.answer import Answerer, asymptotic_fields, round_down, round_up
+from stribeck.explorer.asked import carried, choices, inputs, url
+from stribeck.explorer.asked.history import History
 from stribeck.explorer.charts import charts, picture
+from stribeck.explorer.charts.drawing import drawing
 from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
-from stribeck.explorer.history import History
-from stribeck.explorer.measured import read_measured
+from stribeck.explorer.measured import fit_measured, read_measured
 
 START = server.example()
 
@@ -172,12 +174,37 @@ def some_case(random, kind, folder):
         tables["solver"] = {"rtol": float(10 ** random.uniform(-9, -4)), "definition": "balanced"}
     if random.random() < 0.7:
         tables["fit"] = FIT
+    if random.random() < 0.5:
+        contact["viscosity"] = f"{contact['viscosity']!r} Pa*s +- 20 %"
+    if random.random() < 0.5:
+        tables["check"] = {"loss_tangent": 0.1, "layer_thickness": "3 mm"}
+    if random.random() < 0.3:
+        # A ball: the load is a force, and the motion one of its inputs.
+        contact |= {"geometry": "point", "load": f"{random.uniform(0.01, 2)!r} N", "wetted_radius": "40 mm"}
+        ratio = float(random.uniform(0.1, 1.9))
+        contact |= {"slide_to_roll": ratio, "entrainment_speed": contact.pop("speed")} if random.random() < 0.5 else {}
+        tables.pop("curve", None)
+    else:
+        tables |= {name: table for name, table in PARTS[random.integers(len(PARTS))].items()}
+        if "preset" in tables.get("fluid", {}):
+            del contact["viscosity"]
     title = random.choice(["", "a & b = ü #1", "x" * 200, 'two\nlines "quoted" \\ \x7f'])
     path = folder / "some case.toml"
     head = {"title": str(title), "notes": "first\nsecond # no comment"} if title else {}
     path.write_text(carried.toml_text({**head, "contact": contact, **tables}), encoding="utf-8")
     return path
 
+
+PARTS = [
+    {},
+    {"fluid": {"preset": "saliva"}, "cavitation": {"model": "exit"}},
+    {"fluid": {"preset": "pao-6"}, "solid": {"layer_thickness": "2 mm", "poisson_ratio": 0.4}},
+    {"fluid": {"model": "carreau", "relaxation_time": "1 ms", "exponent": 0.6}, "motion": {"slide_to_roll": 0.3}},
+    {"fluid": {"model": "eyring", "stress": "5 MPa", "density": "dowson-higginson"}},
+    {"fluid": {"pressure_viscosity": "1.5 1/GPa", "viscosity_law": "roelands"}, "motion": {"slide_to_roll": 0}},
+    {"cavitation": {"model": "reform", "pressure": "-0.1 MPa"}, "flow_factors": {"model": "effective-medium"}},
+    {"flow_factors": {"model": "patir-cheng", "gamma": 3}, "solid": {"layer_thickness": 1e-3}},
+]
 
 KINDS = [
     ("exponential", None),
@@ -210,12 +237,13 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(kind, tmp_path):
     rows = "\n".join(f"{q!r}, {c!r}" for q, c in [(1e4, 1e-20), (1e5, 9e-22), (1e6, 8e-25), (1e7, 1e-28)])
     (tmp_path / "spectrum.csv").write_text(f"wavenumber [1/m], density [m^4]\n{rows}\n")
     (tmp_path / "law.csv").write_text("separation, pressure\n0, 1\n1, 0.4\n2, 0.1\n4.5, 1e-3\n")
-    for _ in range(2 if kind[1] in SURFACES else 10):  # the law of a spectrum takes half a second
+    for _ in range(1 if kind[1] in SURFACES else 12):  # the law of a spectrum takes half a second
         case = sb.load_case(some_case(random, kind, tmp_path))
         shown = inputs.from_case(case)
         same_contact(shown.contact, case.contact)
         assert (shown.title, shown.rtol, shown.definition) == (case.title, case.rtol, case.definition)
         pin = url.Pin("kept ~ once", START.contact, "published"), url.Pin("law", shown.contact, "balanced", shown.model)
+        assert all(name in shown.model for name in case.tables if name in carried.MODEL)
         opened = reopened(url.encode(shown, pin))
         assert opened.problems == {}
         assert opened.inputs == shown and opened.pins == pin
@@ -224,6 +252,7 @@ def test_all_that_a_case_holds_goes_through_link_and_saved_case(kind, tmp_path):
         same_contact(saved.contact, case.contact)
         for name in ("law", "curve", "rtol", "definition", "title", "notes", "fit"):
             assert getattr(saved, name) == getattr(case, name), name
+        assert saved.facts == case.facts and saved.errors == pytest.approx(case.errors)
         assert inputs.from_case(saved).model == shown.model
 
 
@@ -288,6 +317,132 @@ def test_an_uploaded_case_that_names_a_file_says_what_to_do(tmp_path):
 def test_odd_names_of_uploads_become_plain_ones(name, shown):
     assert files.shown_name(name) == shown
     assert len(files.shown_name(300 * "x" + ".csv")) <= 80 and files.shown_name(300 * "x" + ".csv").endswith("xxx.csv")
+
+
+# --- the parts of the model ---
+
+BALL = choices.choose(START, "geometry", "point")
+
+
+def test_a_cylinder_becomes_a_ball_of_the_same_pressure_and_back():
+    assert isinstance(BALL.contact, sb.PointContact) and set(BALL.fields) == set(sb.PointContact.INPUTS.names)
+    assert BALL.contact.hertz.pressure == pytest.approx(START.contact.hertz.pressure, rel=1e-12)
+    back = choices.choose(BALL, "geometry", "line")
+    assert back.contact.load == pytest.approx(START.contact.load, rel=1e-12) and back.model == ""
+    assert back.contact.replace(load=START.contact.load) == START.contact
+
+
+@pytest.mark.parametrize("name", inputs.GROUP_FIELDS)
+def test_a_group_of_a_ball_moves_alone(name):
+    moved = inputs.slid(BALL, name, inputs.position(BALL, name) - 0.5)
+    for other in inputs.GROUP_FIELDS:
+        wanted = inputs.value_of(BALL, other) * (10**-0.5 if other == name else 1.0)
+        assert inputs.value_of(moved, other) == pytest.approx(wanted, rel=5e-3 if other == name else 1e-12)
+
+
+def test_what_a_ball_may_do_without_is_an_empty_field():
+    wet = inputs.typed(BALL, "wetted_radius", "30")
+    assert wet.contact.wetted_radius == 0.03 and inputs.number_text(wet, "wetted_radius") == "30"
+    dry = inputs.typed(wet, "wetted_radius", "")
+    assert dry.contact.wetted_radius is None and inputs.number_text(dry, "wetted_radius") == ""
+    assert reopened(url.encode(dry), wet).inputs == dry
+
+
+@pytest.mark.parametrize("name", choices.CHOICES)
+def test_every_choice_makes_a_contact_that_link_and_saved_case_keep(name):
+    for value in choices.CHOICES[name].options:
+        if value in ("table", ""):
+            continue
+        shown = choices.choose(START, name, value)
+        assert choices.state_of(shown, name)["value"] == ("" if name == "preset" else value)
+        assert reopened(url.encode(shown)).inputs == shown
+        saved = files.read_case("saved.toml", files.content("toml", files.View(SimpleNamespace(inputs=shown, curve=None))))
+        same_contact(saved.contact, shown.contact)
+        assert choices.choose(shown, name, choices.CHOICES[name].first).model in ("", shown.model)
+
+
+def test_a_preset_is_a_viscosity_and_a_fluid():
+    shown = choices.choose(START, "preset", "pao-6")
+    assert shown.contact.viscosity == 0.0252 and shown.contact.fluid == sb.fluids.PRESETS["pao-6"]().fluid
+    shown = choices.choose(shown, "preset", "water")
+    assert shown.contact.fluid == sb.fluids.Fluid() and shown.model == ""
+
+
+def test_alpha_and_beta_follow_a_surface_whose_numbers_are_typed():
+    shown = choices.choose(START, "law", "persson")
+    longer = choices.typed_detail(shown, "law", "longest_wavelength", "300 um")
+    surface = sb.surfaces.RoughSurface(
+        h_rms=1e-6, hurst=0.8, longest_wavelength="300 um", shortest_wavelength="1.5 um"
+    ).law.coefficients
+    assert longer.contact.beta == pytest.approx(surface["beta"], rel=1e-9) != shown.contact.beta
+    assert longer.contact.alpha == pytest.approx(surface["alpha"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "text", "sentence"),
+    [
+        ("solid", "layer_thickness", "2 s", "thickness = '2 s' is a time"),
+        ("solid", "layer_thickness", "", "layer_thickness is missing, which this choice needs; add layer_thickness = 2 mm."),
+        ("solid", "poisson_ratio", "0.7", "poisson_ratio"),
+        ("law", "hurst", "3", "hurst"),
+    ],
+)
+def test_an_impossible_detail_is_refused_with_the_sentence_of_a_case(name, key, text, sentence):
+    start = choices.choose(START, name, {"solid": "layer", "law": "persson"}[name])
+    with pytest.raises(sb.InputError, match=sentence):
+        choices.typed_detail(start, name, key, text)
+
+
+def test_a_fluid_that_balls_do_not_have_is_refused_at_the_geometry():
+    shown = choices.choose(START, "cavitation", "reform")
+    if choices.state_of(BALL, "cavitation")["hidden"]:
+        with pytest.raises(sb.InputError, match="cavitation"):
+            choices.choose(shown, "geometry", "point")
+
+
+def test_the_drawing_follows_layer_motion_and_roughness():
+    def drawn(shown):
+        return drawing(Answerer()(shown))
+
+    plain = drawn(START)
+    assert ElementTree.fromstring(plain).get("aria-label").endswith("not to scale") and 'class="rigid"' not in plain
+    assert 'class="rigid"' in drawn(choices.choose(START, "solid", "layer"))
+    assert drawn(choices.choose(START, "motion", "rolling")).count('class="arrow"') == plain.count('class="arrow"') + 1
+    assert drawn(inputs.typed(START, "roughness", "0.1 um")) != plain
+
+
+# --- whether the model applies ---
+
+
+def test_what_is_outside_the_model_stands_above_every_number():
+    steel = inputs.typed(inputs.typed(START, "modulus", "100 GPa"), "load", "100 kN/m")
+    shown = Answerer()(steel)
+    expected = sb.check(steel.contact)
+    assert not expected.applies and shown.outside and shown.outside.split(". ")[0] in expected.first_line
+    html = table.numbers_html(shown, table.numbers(shown))
+    assert html.startswith('<p class="outside"') and html.index("outside") < html.index('data-key="friction_balanced"')
+    assert Answerer()(START).outside == ""
+
+
+def test_pinned_contacts_stand_beside_the_present_one(answer):
+    assert table.comparison_html(answer, ()) == ""
+    html = table.comparison_html(answer, [("half", sb.solve(START.contact.replace(load=15)), "balanced")])
+    rows = ElementTree.fromstring(html).findall("tr")
+    assert [cell.text for cell in rows[0][1:]] == ["present", "half"]
+    friction = sb.solve(START.contact.replace(load=15)).friction(definition="balanced").total
+    assert [row[2].text for row in rows if row[0].text == "Friction µ"] == [f"{friction:.3g}"]
+
+
+def test_a_measured_curve_is_fitted_and_the_inputs_follow():
+    truth = START.contact.replace(roughness=1.4e-6, boundary_friction=0.5)
+    speeds = np.geomspace(1e-4, 0.1, 12)
+    curve = sb.stribeck_curve(truth, speed=speeds, method="atlas")
+    rows = "\n".join(f"{speed!r},{mu!r}" for speed, mu in zip(speeds.tolist(), curve.friction.tolist(), strict=True))
+    [measured] = read_measured("m.csv", f"speed [m/s],friction\n{rows}\n".encode(), START.contact)
+    fitted = fit_measured(START, measured, lambda *_: None)
+    assert fitted.inputs.contact.roughness == pytest.approx(1.4e-6, rel=1e-3)
+    assert fitted.inputs.contact.boundary_friction == pytest.approx(0.5, rel=1e-3)
+    assert "roughness 1.4 µm" in fitted.words
 
 
 # --- addresses ---

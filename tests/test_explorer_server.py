@@ -176,7 +176,8 @@ def test_of_pages_that_no_browser_takes_few_are_kept():
 
 
 def test_a_page_opens_with_the_pinned_curves_of_its_address():
-    from stribeck.explorer import server, tab, url
+    from stribeck.explorer import server, tab
+    from stribeck.explorer.asked import url
 
     start = server.example()
     query = [("pin", dict(parse_qsl(url.encode(start, [url.Pin("kept", start.contact, "balanced")])))["pin"])]

@@ -15,9 +15,9 @@ from typing import Any
 from stribeck.cases.case import Case, check_case, parse_toml
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.explorer.answer import Answer
-from stribeck.explorer.carried import model_changes, model_words, tables_of, toml_text
+from stribeck.explorer.asked.carried import model_changes, model_words, tables_of, toml_text
+from stribeck.explorer.asked.inputs import Inputs, exact_text
 from stribeck.explorer.curves import Curve, hersey_scale
-from stribeck.explorer.inputs import Inputs, exact_text
 from stribeck.explorer.measured import Measured
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import BaseSolution

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.explorer.inputs import Inputs
+from stribeck.explorer.asked.inputs import Inputs
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.inputs import si_text

@@ -13,18 +13,19 @@ from typing import Any
 from nicegui import ui
 from nicegui.json import dumps
 
-from stribeck.explorer import choices, inputs, table
 from stribeck.explorer import downloads as files
+from stribeck.explorer import table
 from stribeck.explorer.answer import Answer
+from stribeck.explorer.asked import choices, inputs
+from stribeck.explorer.asked.choices import CHOICES
+from stribeck.explorer.asked.inputs import GROUP_FIELDS, NAMES, Inputs
+from stribeck.explorer.asked.url import Pin
 from stribeck.explorer.charts import charts
+from stribeck.explorer.charts.drawing import drawing
 from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
-from stribeck.explorer.choices import CHOICES
 from stribeck.explorer.downloads import View
-from stribeck.explorer.drawing import drawing
-from stribeck.explorer.inputs import GROUP_FIELDS, NAMES, Inputs
 from stribeck.explorer.measured import Measured
-from stribeck.explorer.url import Pin
 
 __all__ = ["UPDATING", "Page"]
 
@@ -63,7 +64,7 @@ class ChoiceRow(ui.element, component="choice.js"):
     name : str
         Key of :data:`CHOICES`.
     start : dict
-        What it shows first, as of :func:`stribeck.explorer.choices.state_of`.
+        What it shows first, as of :func:`stribeck.explorer.asked.choices.state_of`.
     """
 
     def __init__(self, name: str, start: dict[str, Any]) -> None:

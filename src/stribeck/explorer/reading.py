@@ -14,10 +14,10 @@ import threading
 from typing import Any, Literal
 
 from stribeck.contacts.contact import Contact
+from stribeck.explorer.asked.inputs import from_case
+from stribeck.explorer.asked.url import check_length
 from stribeck.explorer.downloads import read_case
-from stribeck.explorer.inputs import from_case
 from stribeck.explorer.measured import read_measured
-from stribeck.explorer.url import check_length
 from stribeck.quantities.units import InputError
 
 __all__ = ["LONGEST_TIME", "read_file"]

@@ -18,19 +18,20 @@ from typing import Any
 
 from nicegui import background_tasks, events, ui
 
-from stribeck.explorer import choices, inputs, table, url
 from stribeck.explorer import downloads as files
+from stribeck.explorer import table
 from stribeck.explorer.answer import Answer, Answerer
+from stribeck.explorer.asked import choices, inputs, url
+from stribeck.explorer.asked.history import History
+from stribeck.explorer.asked.inputs import Inputs
+from stribeck.explorer.asked.url import Pin
 from stribeck.explorer.charts.palette import LIGHT
 from stribeck.explorer.curves import Curve, hersey_scale
 from stribeck.explorer.downloads import View
-from stribeck.explorer.history import History
-from stribeck.explorer.inputs import Inputs
 from stribeck.explorer.measured import Measured, fit_measured
 from stribeck.explorer.page import UPDATING, Page
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.serving.tidy import tidy_soon
-from stribeck.explorer.url import Pin
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
 from stribeck.regimes.margins import RegimeMargins, regime_margins

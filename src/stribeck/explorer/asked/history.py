@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stribeck.explorer.inputs import Inputs
+from stribeck.explorer.asked.inputs import Inputs
 
 __all__ = ["History"]
 

@@ -12,8 +12,8 @@ from typing import Any
 
 from stribeck.cases.law import LAWS, law_of_file
 from stribeck.cases.model_parts import DENSITIES, RHEOLOGIES, VISCOSITY_LAWS, take_parts
-from stribeck.explorer.carried import LAW_NAMES, fluid_table, json_text, tables_of
-from stribeck.explorer.inputs import Inputs, exact_text, with_model
+from stribeck.explorer.asked.carried import LAW_NAMES, fluid_table, json_text, tables_of
+from stribeck.explorer.asked.inputs import Inputs, exact_text, with_model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.units import InputError
