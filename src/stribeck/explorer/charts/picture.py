@@ -62,7 +62,7 @@ def figure_of(shown: View, what: str) -> Any:
     figure = found.plot()
     axes = figure.axes[0]
     for i, (name, pinned, hersey) in enumerate(shown.pins):
-        style = {"color": LIGHT.pins[i % 6], "ls": (0, PIN_DASHES[i % 6])}
+        style: Any = {"color": LIGHT.pins[i % 6], "ls": (0, PIN_DASHES[i % 6])}
         axes.plot(pinned.speed * hersey, pinned.friction[inputs.definition], lw=1.4, label=name, **style)
     for each in shown.measured:
         places = each.speed * hersey_scale(inputs.contact)
