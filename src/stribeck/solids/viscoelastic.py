@@ -212,13 +212,19 @@ def creep_of_relaxation(times: tuple[float, ...], moduli: tuple[float, ...]) -> 
 def memory(mesh: Mesh, deborah: float) -> Array:
     """Return the matrix from nodal p to the nodal q with ``De q' + q = p``, zero far upstream.
 
-    Upstream of the panels q is p there, to De over their reach; downstream of them it decays to p.
+    On the panel through infinity q is smooth, but for what decays downstream of the others.
     """
     n, panels, rule = mesh.order, mesh.panels - 1, reference(mesh.order)
     found = np.zeros((mesh.size, mesh.size))
     tail = slice(panels * n, mesh.size)
+    t = mesh.local[-1]
+    # With p = t**2 pi: dp/dx = -t**2 d(t**2 pi)/dt.
+    slope = -2 * np.diag(t) - (t**4)[:, None] * _nodal_derivative(n) / mesh.half_widths[-1] / t**2
+    far = np.linalg.inv(np.eye(n) + deborah * slope)
+    at_left = (rule.left_end / t**2) @ far / mesh.edges[-1] ** 2
+    at_right = (rule.left_end[::-1] / t**2) @ far / mesh.edges[-1] ** 2
     carry = np.zeros(mesh.size)
-    carry[tail] = rule.left_end  # p at the left edge, seen from the panel through infinity
+    carry[tail] = at_left  # q at the left edge, seen from the panel through infinity
     for k in range(panels):
         here = slice(k * n, (k + 1) * n)
         ratio = mesh.half_widths[k] / deborah
@@ -228,9 +234,9 @@ def memory(mesh: Mesh, deborah: float) -> Array:
         gained = -rule.weights @ found[here]
         gained[here] += rule.weights
         carry = carry + ratio * gained
-    found[tail, tail] = np.eye(n)
-    beyond = np.flatnonzero(mesh.local[-1] > 0) + panels * n
-    carry[tail] -= rule.left_end[::-1]
+    found[tail, tail] = far
+    beyond = np.flatnonzero(t > 0) + panels * n
+    carry[tail] -= at_right
     found[beyond] += np.outer(np.exp(-(mesh.nodes[beyond] - mesh.edges[-1]) / deborah), carry)
     return found
 

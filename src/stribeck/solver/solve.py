@@ -50,6 +50,9 @@ COARSER = (1e-2, 1e-3, 1e-4, 1e-5)
 MIN_ESTIMATE = 0.03
 """Part of the tolerance below which no error is stated, as estimates so small are not sure."""
 
+MIN_ESTIMATE_OF_OTHERS = 0.2
+"""The same of films that end, other fluids and flow factors, whose kinks finer nodes see in part only."""
+
 SURE_ESTIMATE = 1e-10
 """Error from which estimates are sure also where the tolerance is smaller."""
 
@@ -291,9 +294,10 @@ def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: f
     raise SolveError(point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}{untested(groups)}")
 
 
-def minimum_estimate(rtol: float) -> float:
-    """Return the smallest error that is stated for a tolerance."""
-    return max(MIN_ESTIMATE * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
+def minimum_estimate(rtol: float, of_article: bool = True) -> float:
+    """Return the smallest error that is stated for a tolerance, with the model of the article or another."""
+    least = MIN_ESTIMATE if of_article else MIN_ESTIMATE_OF_OTHERS
+    return max(least * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
 
 
 def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> Solution | None:
@@ -320,7 +324,7 @@ def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> So
         rtol=rtol,
         law=state.equations.law.name,
         observables=values,
-        relative_errors=np.maximum(estimate.relative, minimum_estimate(rtol)),
+        relative_errors=np.maximum(estimate.relative, minimum_estimate(rtol, state.equations.operators.is_article)),
         minimum_position_error=estimate.minimum_position,
         rounding_floor=estimate.floor,
         mesh=state.mesh,

@@ -43,6 +43,8 @@ __all__ = ["path_to_model"]
 ORDER = 10
 MESH_TOLERANCE = 1e-3
 NEWTON_TOLERANCE = 1e-5
+FINER = (12, 1e-5)
+"""Nodes a panel and tolerance of the mesh where coarse ones lead nowhere."""
 MOST_STEPS = 100
 
 LOOKED_AT = 4001
@@ -279,10 +281,10 @@ def _extended(path: Path[State], state: State) -> Path[State]:
     return replace(path, coordinates=(*path.coordinates, path.coordinates[-1]), states=(*path.states, state))
 
 
-def _coarse(groups: Groups, guess: Guess) -> State | None:
+def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
     """Return a coarse state from a guess, or None."""
     try:
-        mesh = mesh_for(guess, groups, contact_law(groups), ORDER, MESH_TOLERANCE)
+        mesh = mesh_for(guess, groups, contact_law(groups), order, tolerance)
     except MeshTooLargeError:
         return None
     return solve_state(groups, Operators(mesh, groups.model), guess, NEWTON_TOLERANCE, MOST_STEPS)
@@ -343,21 +345,33 @@ def _seen_from_exit(state: State) -> SeenFrom:
 
 
 def _blended(groups: Groups, path: Path[State], start: State) -> Path[State]:
-    """Return the path on which fluid and solid change into those of the groups."""
-    model = start.groups.model
-    own = groups.model
+    """Return the path on which fluid and solid change into those of the groups, the quickest way that leads there."""
+    own, plain = groups.model, start.groups.model
 
-    def correct(part: float, history: Sequence[tuple[float, State]]) -> State | None:
-        film: Film = own.film
-        solid: Solid = own.solid
-        if part < 1.0:
-            film = cast(Film, BlendedFilm(own.film, part)) if own.film != model.film else film
-            solid = cast(Solid, BlendedSolid(own.solid, part)) if own.solid != model.solid else solid
-        here = replace(groups, model=replace(model, film=film, solid=solid))
-        return _coarse(here, extrapolate(history, part) if history else start)
+    def blend(part: float) -> Film:
+        return cast(Film, BlendedFilm(own.film, part)) if own.film != plain.film else own.film
 
-    found = march(correct, 0.0, 1.0, BLENDING, history=[(0.0, start)])
-    if not found.outcome.ok:
-        return found
-    settled = _settled(found.states[-1].groups, found.states[-1])
-    return found if settled is None else _extended(found, settled)
+    ways = [(blend, ORDER, MESH_TOLERANCE), (own.film.milder, ORDER, MESH_TOLERANCE), (own.film.milder, *FINER)]
+    found = path
+    for film_at, order, tolerance in ways:
+
+        def correct(
+            part: float,
+            history: Sequence[tuple[float, State]],
+            film_at: Callable[[float], Film] = film_at,
+            order: int = order,
+            tolerance: float = tolerance,
+        ) -> State | None:
+            film: Film = own.film
+            solid: Solid = own.solid
+            if part < 1.0:
+                film = film_at(part)
+                solid = cast(Solid, BlendedSolid(own.solid, part)) if own.solid != plain.solid else solid
+            here = replace(groups, model=replace(plain, film=film, solid=solid))
+            return _coarse(here, extrapolate(history, part) if history else start, order, tolerance)
+
+        found = march(correct, 0.0, 1.0, BLENDING, history=[(0.0, start)])
+        if found.outcome.ok:
+            settled = _settled(found.states[-1].groups, found.states[-1])
+            return found if settled is None else _extended(found, settled)
+    return found
