@@ -1,6 +1,6 @@
 """Lubricated rough contacts, cylinder or ball: from a data sheet to a converged Stribeck curve."""
 
-from importlib import import_module as _import_module
+from stribeck.quantities.lazy import lazy_names as _lazy_names
 
 _PACKAGES = ("asymptotics", "atlas", "fluids", "solids", "surfaces")
 _HOMES = {
@@ -41,7 +41,7 @@ _HOMES = {
     "uncertainty.propagate": ("propagate",),
     "uncertainty.result": ("Spread", "Uncertainty"),
 }
-__all__ = sorted([*_PACKAGES, *(name for names in _HOMES.values() for name in names)])
+__all__, _find, __dir__ = _lazy_names(__name__, _HOMES, _PACKAGES)
 
 
 def __getattr__(name: str) -> object:
@@ -50,14 +50,4 @@ def __getattr__(name: str) -> object:
         from importlib.metadata import version
 
         return version("stribeck")
-    if name in _PACKAGES:
-        return _import_module(f"stribeck.{name}")
-    for module, names in _HOMES.items():
-        if name in names:
-            found = globals()[name] = getattr(_import_module(f"stribeck.{module}"), name)
-            return found
-    raise AttributeError(f"module 'stribeck' has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return __all__
+    return _find(name)

@@ -12,6 +12,7 @@ from stribeck._types import Array
 from stribeck.batches.order import coordinates
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups, Physics
+from stribeck.contacts.model import ARTICLE
 from stribeck.numerics.continuation import Steps, march
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
@@ -66,7 +67,7 @@ def solve_in_order(
     states : ndarray, shape (n, 3)
         Speed, load and roughness group of each.
     physics : Physics
-        Contact law, geometry and model of all.
+        Contact law, geometry and model of all; other models than the article's are those of the contacts.
     rtol : float
         Relative tolerance of each state.
     on_state : callable
@@ -141,7 +142,12 @@ class _Chain:
 
     def groups(self, i: int) -> Groups:
         """Return the groups of the i-th state."""
-        return Groups(*self.states[i].tolist(), **self.physics)
+        return Groups(*self.states[i].tolist(), **self.physics_of(i))
+
+    def physics_of(self, i: int) -> Physics:
+        """Return what the i-th state has beside its groups: in Hertz units a fluid in SI units is another at each load."""
+        contact = None if self.physics["model"] == ARTICLE else self.contact_of(i)
+        return self.physics if contact is None else contact.groups.physics
 
     @one_blas_thread
     def run(self) -> None:
@@ -154,7 +160,8 @@ class _Chain:
                 self.on_state(first, Ended(solution.outcome, solution))
                 first += 1
                 continue
-            finished, failed = self._follow(first, _Polyline(self.states[first : _end(self.states, first)], self.physics))
+            here = range(first, _end(self.states, first))
+            finished, failed = self._follow(first, _Polyline(self.states[here], [self.physics_of(i) for i in here]))
             first += finished
             if finished == 0:
                 self.on_state(first, failed)
@@ -223,7 +230,7 @@ def _end(groups: Array, first: int) -> int:
 class _Polyline:
     """The way from state to state, straight in the logarithms of the groups that are not zero."""
 
-    def __init__(self, groups: Array, physics: Physics) -> None:
+    def __init__(self, groups: Array, physics: Sequence[Physics]) -> None:
         self.groups, self.physics = groups, physics
         self.z = np.log(np.where(groups > 0, groups, 1.0))
         steps = np.diff(self.z, axis=0)
@@ -260,8 +267,8 @@ class _Polyline:
         """Return the groups at ``s``, exactly those of a state where it is one."""
         i = int(np.searchsorted(self.knots, s))
         if i < len(self) and self.knots[i] == s:
-            return Groups(*self.groups[i].tolist(), **self.physics)
+            return Groups(*self.groups[i].tolist(), **self.physics[i])
         k = self._step(s)
         part = (s - self.knots[k]) / (self.knots[k + 1] - self.knots[k])
         here = np.exp((1 - part) * self.z[k] + part * self.z[k + 1])
-        return Groups(*np.where(self.groups[k] > 0, here, 0.0).tolist(), **self.physics)
+        return Groups(*np.where(self.groups[k] > 0, here, 0.0).tolist(), **self.physics[k + 1])

@@ -94,8 +94,8 @@ class LineContact(WithParts, Contact):
 
     Notes
     -----
-    Where both surfaces move, films and load shares are those of :math:`U = u_1 + u_2`; friction is that of pure sliding at
-    :math:`U`, as the shear of the fluid at another sliding speed :math:`u_1 - u_2` is not modelled.
+    Where both surfaces move, films of Newtonian fluids and load shares are those of :math:`U = u_1 + u_2`, and friction is
+    that of the sliding speed :math:`u_1 - u_2`, by ``slide_to_roll``.
 
     ``modulus`` always holds :math:`E^*` afterwards; ``youngs_modulus`` and ``poisson_ratio`` are not kept.  Inputs as data
     sheets have them (``shore_a``, ``ra``, ``kinematic_viscosity`` ...) may take the place of others: docs/data_sheet.md.

@@ -128,6 +128,11 @@ class Parts:
         """
         if self is DEFAULT or self == DEFAULT:
             return ARTICLE
+        if self.solid is not None and self.slide < -1 and getattr(self.solid, "uses_speed", False):
+            raise InputError(
+                f"slide_to_roll = {self.slide_to_roll:g} on a {self.solid.name}: below -2 the substrate moves against the "
+                "flow, and its memory with it; give -2 or more, or an elastic solid."
+            )
         film = self.fluid.at(units, self.slide, self.flow_factors)
         solid: Solid = HalfPlane() if self.solid is None else self.solid.scaled(length, 0.5 * (1 + self.slide) * speed)
         return Model(film, self.cavitation, solid, self.cavity_pressure / units.pressure)

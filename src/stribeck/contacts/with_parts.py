@@ -10,11 +10,13 @@ import numpy as np
 
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import ARTICLE
 from stribeck.contacts.parts import NAMES, Parts
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.laws import FilmUnits
 from stribeck.quantities.units import InputError
 
-__all__ = ["check_solid", "hertz_units", "with_parts"]
+__all__ = ["check_solid", "hertz_units", "part_attributes", "with_parts"]
 
 Problem = TypeVar("Problem")
 
@@ -53,6 +55,41 @@ def with_parts(problem: Problem, **given: Any) -> Problem:
             raise InputError(f"{', '.join(given)}: balls have the fluid and the solid of the article only; leave them out.")
         return replace(problem, model=Parts(**given).model(hertz_units(problem)))
     return problem
+
+
+def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str, float | str]:
+    """Return fluid, cavitation, flow factors, solid and motion with their numbers, for outputs; nothing of the article's.
+
+    Parameters
+    ----------
+    groups : Groups
+        The groups, whose model has its numbers in Hertz units.
+    contact : LineContact or PointContact, optional
+        Their contact, where there is one, whose numbers are in SI units.
+
+    Returns
+    -------
+    dict
+        By name, the numbers of a law after the name of what it is, as ``fluid_exponent``.
+    """
+    model, parts = groups.model, getattr(contact, "parts", None)
+    if model == ARTICLE:
+        return {}
+    if parts is None:
+        film = model.film
+        laws: dict[str, Any] = {"fluid": film, "solid": model.solid}
+        slide_to_roll, cavity_pressure = 2 * film.slide, model.cavity_pressure
+    else:
+        laws = {"fluid": parts.fluid, "flow_factors": parts.flow_factors, "solid": parts.solid}
+        slide_to_roll, cavity_pressure = parts.slide_to_roll, parts.cavity_pressure
+    found: dict[str, float | str] = {}
+    for what, law in laws.items():
+        if law is not None:
+            found |= {what: law.name, **{f"{what}_{name}": value for name, value in law.parameters.items()}}
+    found["cavitation"] = model.cavitation.value
+    if model.cavitation is Cavitation.REFORM:
+        found["cavity_pressure"] = cavity_pressure
+    return found | {"slide_to_roll": slide_to_roll}
 
 
 def hertz_units(groups: Groups) -> FilmUnits:

@@ -10,6 +10,7 @@ import numpy as np
 
 from stribeck.contact_laws.law import WithArea, law_attributes
 from stribeck.contacts.friction import DEFINITIONS
+from stribeck.contacts.with_parts import part_attributes
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.outputs import AREA, GROUPS, OUTPUT_TABLES
@@ -82,7 +83,8 @@ def _columns(curve: StribeckCurve) -> dict[str, tuple[Any, str, str]]:
             "friction coefficient of smooth surfaces by the law of the hydrodynamic branch",
         ),
     }
-    for name, (unit, label) in OUTPUT_TABLES[curve.groups.geometry].listed.items():
+    table = curve.solutions[0].outputs if len(curve) else OUTPUT_TABLES[curve.groups.geometry]
+    for name, (unit, label) in table.listed.items():
         columns[name] = (curve.observable(name), unit, label)
     for name in GROUPS:
         columns[f"{name}_group"] = (np.asarray(getattr(curve.groups, name)), "1", f"{name} group")
@@ -125,6 +127,7 @@ def _attributes(curve: StribeckCurve, title: str) -> dict[str, Any]:
         "geometry": curve.groups.geometry,
         "definition": curve.definition,
         **law_attributes(curve.law, bool(len(curve)) and curve.solutions[0].law == "smooth"),
+        **part_attributes(curve.groups, curve.contact),
         "rtol": curve.rtol,
         "error_estimate": curve.error_estimate,
         "boundary_friction": curve.boundary_friction,

@@ -1,6 +1,6 @@
 """Solids: the deflection of a surface under a pressure."""
 
-from importlib import import_module as _import_module
+from stribeck.quantities.lazy import lazy_names as _lazy_names
 
 _HOMES = {
     "half_plane": ("HalfPlane",),
@@ -8,17 +8,4 @@ _HOMES = {
     "two_bodies": ("TwoBodies",),
     "viscoelastic": ("Prony", "StandardLinearSolid", "hysteresis_friction"),
 }
-__all__ = sorted(name for names in _HOMES.values() for name in names)
-
-
-def __getattr__(name: str) -> object:
-    """Import a public name on its first use."""
-    for module, names in _HOMES.items():
-        if name in names:
-            found = globals()[name] = getattr(_import_module(f"stribeck.solids.{module}"), name)
-            return found
-    raise AttributeError(f"module 'stribeck.solids' has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return __all__
+__all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES)

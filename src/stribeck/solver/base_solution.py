@@ -16,6 +16,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_definition, coefficients
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import Regime, regime_of
+from stribeck.contacts.with_parts import part_attributes
 from stribeck.files.results import Exported
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
@@ -265,6 +266,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
             "geometry": self.groups.geometry,
             "contact_law": self.law,
             "contact_law_parameters": self.law_parameters,
+            **part_attributes(self.groups, self.contact),
         }
         result |= {row.name: getattr(self, row.name) for row in self.outputs.rows if row.listed}
         result["hersey_number"] = self.hersey_number

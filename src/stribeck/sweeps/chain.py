@@ -12,6 +12,7 @@ from stribeck.batches.chain import Ended, solve_in_order
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import CONTACTS
 from stribeck.contacts.groups import Groups, Physics
+from stribeck.contacts.parts import DEFAULT, Parts
 from stribeck.solver.solve import describe
 from stribeck.sweeps.columns import ERROR, failed_row, row_of
 
@@ -37,7 +38,9 @@ class Chain:
     rtol : float
         Relative tolerance of each state.
     physics : Physics
-        Contact law, geometry and model of all.
+        Contact law and geometry of all, and the model of the first.
+    parts : Parts
+        Fluid, cavitation, flow factors, solid and motion of all contacts.
     """
 
     rows: tuple[int, ...]
@@ -46,6 +49,7 @@ class Chain:
     si: bool
     rtol: float
     physics: Physics
+    parts: Parts = DEFAULT
 
     def contact(self, i: int) -> Contact | None:
         """Return the contact of the i-th state, where it has one."""
@@ -53,7 +57,7 @@ class Chain:
             return None
         kind = CONTACTS[self.physics["geometry"]]
         kept = {name: self.inputs[name][i] for name in kind.INPUTS.names if name in self.inputs}
-        return kind.of_kept(kept, self.physics["law"])
+        return kind.of_kept(kept if self.parts is DEFAULT else {**kept, "parts": self.parts}, self.physics["law"])
 
     def coefficients(self, i: int) -> tuple[float, float]:
         """Return boundary_friction and beta of the i-th state."""

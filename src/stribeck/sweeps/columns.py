@@ -13,7 +13,7 @@ from stribeck.contacts.friction import DEFINITIONS
 from stribeck.contacts.groups import Physics
 from stribeck.quantities.inputs import InputTable, unit_of
 from stribeck.quantities.outcome import Outcome
-from stribeck.quantities.outputs import AREA, OUTPUT_TABLES
+from stribeck.quantities.outputs import AREA, ENDING, OUTPUT_TABLES
 from stribeck.solver.base_solution import BaseSolution, si_films
 
 __all__ = ["OUTCOMES", "columns_of", "failed_row", "input_columns", "row_of"]
@@ -33,14 +33,16 @@ def columns_of(si: bool, physics: Physics) -> dict[str, tuple[str, str]]:
     si : bool
         Whether the states are contacts in SI units, so that films have lengths.
     physics : Physics
-        Geometry of the states, and their contact law: one that knows its spectrum has the real area of contact.
+        Geometry of the states, how their films end, and their contact law: one that knows its spectrum has the real area of
+        contact.
 
     Returns
     -------
     dict of str to tuple
         By name; the last is the outcome, as a place in :data:`OUTCOMES`.
     """
-    table = OUTPUT_TABLES[physics["geometry"]]
+    line = physics["geometry"] == "line"
+    table = ENDING[physics["model"].cavitation] if line else OUTPUT_TABLES[physics["geometry"]]
     found = dict(table.listed)
     for name in table.names:
         if name in table.listed:

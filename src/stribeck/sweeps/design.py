@@ -27,9 +27,12 @@ from stribeck.cases.case import (
     surface_table,
 )
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, TABLES_OF, Law
+from stribeck.cases.model_parts import take_parts
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.geometries import CONTACTS
 from stribeck.contacts.groups import Geometry, Groups, Physics
+from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.parts import DEFAULT, Parts
 from stribeck.quantities.hints import advice_on
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable, check_alternatives, quantity
 from stribeck.quantities.units import InputError, show
@@ -73,7 +76,9 @@ class SweepDesign:
     law : {"exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table"}
         Name of the contact law.
     physics : Physics
-        What the states have in common beside their groups: the law itself, geometry and model.
+        What the states have in common beside their groups: the law itself and the geometry; the model is that of the first.
+    parts : Parts
+        Fluid, cavitation, flow factors, solid and motion of all contacts.
     """
 
     path: Path
@@ -88,6 +93,7 @@ class SweepDesign:
     rtol: float
     law: Law
     physics: Physics = field(repr=False)
+    parts: Parts = field(default=DEFAULT, repr=False)
 
     @property
     def contact_law(self) -> AsperityLaw | None:
@@ -106,9 +112,11 @@ class SweepDesign:
             settings.append(self.physics["geometry"])
         if self.contact_law is not None:
             settings += [repr(self.contact_law), self.contact_law.parameters]
-        parts = [json.dumps(settings).encode(), self.groups.tobytes()]
-        parts += [self.inputs[name].tobytes() for name in sorted(self.inputs)]
-        return hashlib.sha256(b"".join(parts)).hexdigest()
+        if self.parts != DEFAULT:
+            settings.append(repr(self.parts))
+        content = [json.dumps(settings).encode(), self.groups.tobytes()]
+        content += [self.inputs[name].tobytes() for name in sorted(self.inputs)]
+        return hashlib.sha256(b"".join(content)).hexdigest()
 
 
 def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
@@ -119,7 +127,8 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
     path : str or path-like
         A TOML file: a table ``[contact]`` (as in a case file) or ``[groups]`` (``speed``, ``load``, ``roughness``,
         ``boundary_friction``, ``beta``) with what stays fixed, a table ``[vary]`` with what does not, and where wanted
-        ``[design]`` (``kind``, ``points``, ``seed``), ``[solver]`` (``rtol``), ``title`` and ``notes``.
+        ``[design]`` (``kind``, ``points``, ``seed``), ``[solver]`` (``rtol``), ``title`` and ``notes``; beside ``[contact]``
+        of a cylinder the tables of fluid, cavitation, motion, flow factors and solid of case files.
 
     Returns
     -------
@@ -152,6 +161,13 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         problems.append(f"[{'contact' if 'contact' in table else 'groups'}] {problem}")
     known = INPUT_TABLES[geometry]
     model = _model(geometry)
+    table, parts, wrong = take_parts(table, geometry)
+    problems += wrong
+    if parts and ("groups" in table or geometry != "line"):
+        problems.append(
+            f"{', '.join(parts)}: sweeps have other fluids, solids and motions for cylinders in SI units; give [contact] in "
+            "the place of [groups], or leave the table out."
+        )
     raw_vary = table.get("vary")
     if "contact" in table and "groups" in table:
         problems.append("the tables [contact] and [groups] are both given; give SI inputs or groups.")
@@ -192,7 +208,7 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         return None
     varying = points_of(checked["design"]["kind"], axes, checked["design"]["points"] or 0, checked["design"]["seed"] or 0)
     try:
-        inputs, groups = _contacts(fixed, varying, geometry) if si else _groups(fixed, varying)
+        inputs, groups, model = _contacts(fixed, varying, geometry, parts) if si else (*_groups(fixed, varying), ARTICLE)
     except InputError as problem:
         problems.append(str(problem))
         return None
@@ -208,7 +224,8 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
         si=si,
         rtol=checked["solver"]["rtol"],
         law=law,
-        physics=Groups(1.0, 1.0, 1.0, law=shape, geometry=geometry).physics,
+        physics=Groups(1.0, 1.0, 1.0, law=shape, geometry=geometry, model=model).physics,
+        parts=Parts(**parts) if parts else DEFAULT,
     )
 
 
@@ -377,19 +394,22 @@ def _group(name: str, value: Any) -> float:
     return float(getattr(Groups(**{**dict.fromkeys(GROUPS, 1.0), name: value}), name))
 
 
-def _contacts(fixed: dict[str, Any], varying: dict[str, Array], geometry: Geometry) -> tuple[dict[str, Array], Array]:
-    """Return inputs and groups of contacts, each of which is checked."""
+def _contacts(
+    fixed: dict[str, Any], varying: dict[str, Array], geometry: Geometry, parts: dict[str, Any]
+) -> tuple[dict[str, Array], Array, Model]:
+    """Return inputs and groups of contacts, each of which is checked, and the model of the first."""
     contacts = []
     for i, values in enumerate(zip(*(column.tolist() for column in varying.values()), strict=True)):
         try:
-            contacts.append(CONTACTS[geometry](**fixed, **dict(zip(varying, values, strict=True))))
+            contacts.append(CONTACTS[geometry](**fixed, **dict(zip(varying, values, strict=True)), **parts))
         except InputError as problem:
             raise InputError(f"state {i}: {problem}") from None
     inputs = {name: np.array([dict(contact.inputs())[name] for contact in contacts]) for name, _ in contacts[0].inputs()}
     for name in (row.name for row in INPUT_TABLES[geometry].rows if row.derived):
         if name in varying or name in fixed:
             inputs[name] = varying.get(name, np.full(len(contacts), fixed.get(name, math.nan)))
-    return inputs, np.array([[getattr(contact.groups, name) for name in GROUPS] for contact in contacts])
+    groups = np.array([[getattr(contact.groups, name) for name in GROUPS] for contact in contacts])
+    return inputs, groups, contacts[0].groups.model
 
 
 def _groups(fixed: dict[str, float], varying: dict[str, Array]) -> tuple[dict[str, Array], Array]:

@@ -193,7 +193,8 @@ class _Run:
             if len(left):
                 groups = tuple((speed, load, roughness) for speed, load, roughness in self.plan.groups[left].tolist())
                 inputs = {name: tuple(column[left].tolist()) for name, column in self.plan.inputs.items()}
-                found.append(Chain(tuple(left.tolist()), groups, inputs, self.plan.si, self.plan.rtol, self.plan.physics))
+                plan = self.plan
+                found.append(Chain(tuple(left.tolist()), groups, inputs, plan.si, plan.rtol, plan.physics, plan.parts))
         return found
 
     def _finished(self, states: int, failed: int) -> None:

@@ -13,6 +13,7 @@ from stribeck.checks.check import Checks
 from stribeck.cli.reports.words import Sensitivities, contact_part, hersey_of, part_error, regime_now, strongest
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.with_parts import part_attributes
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import unit_of
@@ -101,7 +102,7 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str], checks: C
     dict
         Ready for :func:`dump`.
     """
-    names = tuple(OUTPUT_TABLES[curve.groups.geometry].listed)
+    names = tuple((curve.solutions[0].outputs if len(curve) else OUTPUT_TABLES[curve.groups.geometry]).listed)
     return {
         **checks_json(checks),
         "title": title,
@@ -110,6 +111,7 @@ def curve_json(curve: StribeckCurve, title: str, files: Sequence[str], checks: C
         "unit": "1" if curve.contact is None else unit_of(curve.over, curve.contact.INPUTS),
         "definition": curve.definition,
         **law_json(curve.law),
+        "model": part_attributes(curve.groups, curve.contact),
         "rtol": curve.rtol,
         "boundary_friction": curve.boundary_friction,
         "beta": curve.beta,
@@ -194,6 +196,7 @@ def regimes_json(
         "sensitivities": sensitivities,
         "moves_friction_most": strongest(sensitivities),
         **law_json(solution.groups.law),
+        "model": part_attributes(solution.groups, solution.contact),
         "inputs": _inputs(solution.contact),
         "units": _units(solution.contact),
         "error_estimate": max(solution.error_estimate, curve.error_estimate),

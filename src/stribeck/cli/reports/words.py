@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, Friction
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.with_parts import part_attributes
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import ROWS
@@ -126,6 +127,15 @@ def print_head(
     say(console, f"Groups: {', '.join(constant)}.")
     if groups.law is not None:
         say(console, law_sentence(groups.law))
+    parts = part_attributes(groups, contact)
+    if parts:
+        say(console, f"Model: {_numbers(parts)}{'' if contact is not None else ' (Hertz units)'}.")
+
+
+def _numbers(parameters: Mapping[str, float | str]) -> str:
+    """Return names and values in words."""
+    said = ((name.replace("_", " "), value) for name, value in parameters.items())
+    return ", ".join(f"{name} {value if isinstance(value, str) else f'{value:.4g}'}" for name, value in said)
 
 
 def law_sentence(law: AsperityLaw) -> str:
@@ -141,10 +151,7 @@ def law_sentence(law: AsperityLaw) -> str:
     str
         Such as ``"Contact law: persson (alpha 2.09, beta 0.0143)."``
     """
-    numbers = ", ".join(
-        f"{name.replace('_', ' ')} {value if isinstance(value, str) else f'{value:.4g}'}"
-        for name, value in law.parameters.items()
-    )
+    numbers = _numbers(law.parameters)
     return f"Contact law: {law.name}{f' ({numbers})' if numbers else ''}."
 
 

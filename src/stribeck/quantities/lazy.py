@@ -1,0 +1,44 @@
+"""Public names of a package that are imported on their first use."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
+
+__all__ = ["lazy_names"]
+
+
+def lazy_names(
+    package: str, homes: Mapping[str, Sequence[str]], packages: Sequence[str] = ()
+) -> tuple[list[str], Callable[[str], object], Callable[[], list[str]]]:
+    """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package whose public names live in its modules.
+
+    Parameters
+    ----------
+    package : str
+        Its full name.
+    homes : mapping of str to sequence of str
+        Module, seen from the package, and its public names.
+    packages : sequence of str
+        Packages in it that are public themselves.
+
+    Returns
+    -------
+    tuple
+        All three; a name is an attribute of the package once it was asked for.
+    """
+    modules = {name: module for module, names in homes.items() for name in names}
+    public = sorted([*packages, *modules])
+
+    def find(name: str) -> object:
+        """Import a public name on its first use."""
+        if name in packages:
+            return import_module(f"{package}.{name}")
+        if name not in modules:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        found = getattr(import_module(f"{package}.{modules[name]}"), name)
+        setattr(sys.modules[package], name, found)
+        return found
+
+    return public, find, lambda: public

@@ -1,0 +1,97 @@
+"""Sweeps over cylinders with another fluid, cavitation, solid and motion."""
+
+import numpy as np
+import pytest
+from sweep_files import write
+
+import stribeck as sb
+
+TEXT = """
+[contact]
+radius = "10 mm"
+modulus = "2.1 MPa"
+viscosity = "50 mPa*s"
+roughness = "1 um"
+alpha = 2.0
+beta = 0.06
+boundary_friction = 0.8
+
+[vary]
+load = ["20 N/m", "50 N/m"]
+speed = ["5 mm/s", "20 mm/s"]
+
+[fluid]
+model = "carreau"
+relaxation_time = "1 ms"
+exponent = 0.5
+
+[cavitation]
+model = "exit"
+
+[motion]
+slide_to_roll = 1.0
+
+[solid]
+layer_thickness = "5 mm"
+"""
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    """Return the dataset of the sweep, and its store."""
+    folder = tmp_path_factory.mktemp("sweep")
+    sweep = sb.sweep(write(folder, TEXT), folder / "store")
+    assert sweep.outcomes == {"CONVERGED": 4}
+    return sweep.to_dataset(), folder
+
+
+def test_each_state_is_that_of_a_contact_with_the_same_parts(found):
+    table, _ = found
+    for i in range(4):
+        contact = sb.LineContact(
+            radius="10 mm",
+            modulus="2.1 MPa",
+            viscosity="50 mPa*s",
+            roughness="1 um",
+            alpha=2.0,
+            beta=0.06,
+            boundary_friction=0.8,
+            load=float(table["load"][i]),
+            speed=float(table["speed"][i]),
+            fluid=sb.fluids.Carreau("1 ms", 0.5),
+            cavitation="exit",
+            slide_to_roll=1.0,
+            solid=sb.solids.Layer("5 mm"),
+        )
+        alone = sb.solve(contact)
+        for name in ("central_gap", "contact_load_share", "exit_position"):
+            assert float(table[name][i]) == pytest.approx(getattr(alone, name), rel=3e-6)
+        assert float(table["film_exit_position"][i]) == pytest.approx(alone.exit_position * contact.hertz.half_width, rel=3e-6)
+        assert float(table["friction_balanced"][i]) == pytest.approx(alone.friction().total, rel=3e-6)
+
+
+@pytest.mark.quick
+def test_another_fluid_is_another_sweep(found):
+    _, folder = found
+    with pytest.raises(sb.InputError, match="contains a different sweep"):
+        sb.sweep(write(folder, TEXT.replace('"1 ms"', '"2 ms"'), "other.toml"), folder / "store")
+
+
+@pytest.mark.quick
+def test_groups_with_a_fluid_are_refused(tmp_path):
+    text = "[groups]\nload = 0.1\nroughness = 1e-3\n[vary]\nspeed = [1e-3, 1e-4]\n[cavitation]\nmodel = 'exit'\n"
+    with pytest.raises(sb.InputError, match="for cylinders in SI units; give \\[contact\\]"):
+        sb.load_sweep(write(tmp_path, text))
+
+
+@pytest.mark.quick
+def test_what_is_wrong_with_a_table_is_told_with_its_name(tmp_path):
+    with pytest.raises(sb.InputError, match="\\[fluid\\] exponent"):
+        sb.sweep(write(tmp_path, TEXT.replace("exponent = 0.5", "exponent = 2.5")), tmp_path / "store")
+
+
+def test_films_that_form_anew_have_the_columns_of_both_ends(tmp_path):
+    text = TEXT.replace('model = "exit"', 'model = "reform"\npressure = "-1 kPa"').replace('"5 mm/s", ', "")
+    table = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset()
+    assert np.isfinite(table["exit_position"].values).all()
+    assert (table["reformation_position"].values > table["exit_position"].values).all()
