@@ -277,5 +277,5 @@ def cavitation_notes(contact: Contact | None, fluid_pressure: Array, consequence
     # In MPa throughout, so that the notes of a curve differ by their numbers alone.
     return (
         f"Behind the contact the fluid pressure falls {suction / 1e6:.3g} MPa below the ambient, more than one atmosphere: "
-        f"at atmospheric pressure the film cavitates there, which is not modelled. {consequence}",
+        f"at atmospheric pressure the film cavitates there; cavitation = 'exit' or 'reform' models that. {consequence}",
     )

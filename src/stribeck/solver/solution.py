@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -217,6 +217,18 @@ class Solution(BaseSolution):
         """Return the gap at a coordinate of the mesh, but for what is smooth in its inverse."""
         exit, dilation = self.origin
         return np.asarray(self.groups.model.solid.far_gap(dilation * xi) + exit * dilation * xi)
+
+    @property
+    def hysteresis_friction(self) -> float:
+        """Friction by the losses of a viscoelastic solid over the slope a/R [-], beside :meth:`friction`; else zero."""
+        solid = self.groups.model.solid
+        if not getattr(solid, "uses_speed", False):
+            return 0.0
+        from stribeck.solids.viscoelastic import hysteresis_friction
+
+        dilation = self.origin[1]
+        mesh = replace(self.mesh, edges=dilation * self.mesh.edges, scale=dilation * self.mesh.scale)
+        return hysteresis_friction(mesh, solid, self._pressures[0] + self._pressures[1])
 
     def to_si(self, x: Array | None = None) -> Profile:
         """Return the fields in SI units: positions and gaps in m, pressures in Pa.
