@@ -10,7 +10,9 @@ from numpy.polynomial import chebyshev as reference
 import stribeck as sb
 from stribeck.atlas import grid as atlas_grid
 from stribeck.atlas import table as atlas_table
-from stribeck.atlas.tables import TABLES
+from stribeck.atlas.tables import REFERENCE_SPECTRUM, TABLES
+from stribeck.contact_laws.persson import persson_law
+from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.contacts.model import Model
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.evidence import atlas_build
@@ -132,6 +134,71 @@ def test_the_dry_contact_is_that_of_hertz():
     state = sb.solve(groups)
     assert [function(groups) for function in FUNCTIONS[:6]] == [getattr(state, name) for name in NAMES]
     assert sb.atlas.friction(groups, boundary_friction=0.3) == 0.3
+
+
+# --- other tables ---
+
+
+def of_law(row, speed, load, kappa):
+    """Return the groups of states of a table."""
+    law = None if row.law == "exponential" else persson_law(SelfAffine(**REFERENCE_SPECTRUM))
+    return sb.Groups(speed, load, kappa * load, law=law, geometry=row.geometry, model=row.model)
+
+
+@pytest.mark.parametrize("row", TABLES[1:], ids=lambda row: row.name)
+def test_another_table_is_within_its_stated_error_of_states_it_was_not_made_from(row):
+    rng = np.random.default_rng(77)
+    speed, load, kappa = (np.exp(rng.uniform(*np.log(ends), 400)) for ends in row.box.values())
+    groups = of_law(row, speed, load, kappa)
+    share = sb.atlas.contact_load_share(groups)
+    chosen = np.nonzero((share > 0.01) & (share < 0.99))[0][:8]
+    errors = []
+    for i in chosen:
+        one = of_law(row, speed[i], load[i], kappa[i])
+        state = sb.solve(one, rtol=1e-5)
+        for definition in DEFINITIONS:
+            for beta in (1.0, 0.01):
+                errors.append(sb.atlas.friction(one, 1.0, beta, definition) / state.friction(1.0, beta, definition).total - 1)
+        assert sb.atlas.central_gap(one) == pytest.approx(state.central_gap, rel=3 * row.error)
+        assert sb.atlas.offset(one) == pytest.approx(state.offset, abs=row.error)
+    assert np.abs(errors).max() < row.error
+    assert np.median(np.abs(errors)) < 1e-4
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("row", TABLES[1:], ids=lambda row: row.name)
+def test_derivatives_of_another_table_agree_with_differences(row):
+    rng = np.random.default_rng(31)
+    inner = [(math.log(low) + 0.1, math.log(high) - 0.1) for low, high in row.box.values()]
+    speed, load, kappa = (np.exp(rng.uniform(*ends, 300)) for ends in inner)
+    at = np.log([speed, load, kappa * load])
+    like = of_law(row, 1.0, 1.0, 1.0).physics
+    exact = sb.atlas.friction_derivatives(sb.Groups(*np.exp(at), **like), 0.9, 0.3)
+    friction = sb.atlas.friction(sb.Groups(*np.exp(at), **like), 0.9, 0.3)
+    for axis, step in enumerate(np.eye(3) * 1e-5):
+        ahead, behind = (sb.atlas.friction(sb.Groups(*np.exp(at + s * step[:, None]), **like), 0.9, 0.3) for s in (1, -1))
+        error = np.abs((ahead - behind) / 2e-5 - exact[axis]) / (friction + np.abs(exact[axis]))
+        assert np.quantile(error, 0.98) < 1e-6
+
+
+@pytest.mark.quick
+def test_a_table_of_persson_serves_its_spectrum_and_refuses_others():
+    law = persson_law(SelfAffine(**REFERENCE_SPECTRUM))
+    groups, higher = (sb.Groups(1e-4, 5.0, 0.05, law=each) for each in (law, law.scaled(3e-6)))
+    assert sb.atlas.for_groups(higher).name == "line-persson"
+    assert sb.atlas.friction(higher) == pytest.approx(sb.atlas.friction(groups), rel=1e-9)
+    other = sb.Groups(1e-4, 5.0, 0.05, law=persson_law(SelfAffine(**(REFERENCE_SPECTRUM | {"q1": 1.02e6}))))
+    assert sb.atlas.for_groups(other) is None
+    with pytest.raises(sb.InputError, match="one shape of the spectrum"):
+        sb.atlas.friction(other)
+
+
+def test_seals_with_the_law_of_persson_are_read_off_their_table():
+    seal = sb.load_case(Path(__file__).parents[1] / "examples" / "rod_seal.toml").contact
+    read = sb.stribeck_curve(seal, speed=(1e-3, 1.0), points=5, method="atlas")
+    solved = sb.stribeck_curve(seal, speed=(1e-3, 1.0), points=5, rtol=1e-5)
+    assert read.table.name == "line-persson"
+    assert (np.abs(read.friction - solved.friction) < read.friction_error).all()
 
 
 # --- derivatives ---

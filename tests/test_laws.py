@@ -292,9 +292,11 @@ def test_a_phase_diagram_is_made_with_a_law():
 
 def test_atlas_and_formulas_refuse_another_law_in_one_sentence():
     groups = sb.Groups(1e-5, 0.1, 1e-4, law=sb.GreenwoodWilliamson())
-    with pytest.raises(sb.InputError, match="exponential contact law, not of greenwood-williamson; use the solver"):
+    with pytest.raises(
+        sb.InputError, match="exponential and persson contact law, not of greenwood-williamson; use the solver"
+    ):
         sb.atlas.friction(groups)
-    with pytest.raises(sb.InputError, match="exponential contact law, not of greenwood-williamson"):
+    with pytest.raises(sb.InputError, match="and persson contact law, not of greenwood-williamson"):
         sb.stribeck_curve(groups, speed=(1e-5, 1e-3), points=3, method="atlas")
     with pytest.raises(sb.InputError, match="exponential contact law, not for greenwood-williamson; use solve"):
         sb.asymptotics.boundary.gap(groups, 0.0)

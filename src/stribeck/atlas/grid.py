@@ -24,7 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stribeck._types import Array, Indices
+from stribeck._types import Array, Flags, Indices
 
 MIN_LOAD = 1e-6
 """Minimum load group of the atlas."""
@@ -165,6 +165,11 @@ class Grid:
         return self.heaviest * math.exp(-log_load / self.load_factor)
 
     @property
+    def has_rest(self) -> Flags:
+        """For each region whether it begins at rest."""
+        return np.array([region.has_rest for region in self.regions])
+
+    @property
     def pieces(self) -> int:
         """Pieces in roughness and load; each has :data:`SEGMENTS` blocks."""
         return sum(math.prod(region.pieces) for region in self.regions)
@@ -186,6 +191,12 @@ class Grid:
 
 LINE_EXPONENTIAL = Grid(REGIONS)
 """Cylinder, exponential law, full film."""
+
+LINE_PERSSON = Grid(
+    (Region((1e-3, 1.0), (0.0, math.log(2e3)), (2, 2), (6, 6), (6, 9, 7, 8, 9, 9), 8.0),),
+    heaviest=20.0,
+)
+"""Cylinder, Persson's law, full film: L = ln(20/load), as nothing closes where the law goes on to full contact."""
 
 
 def chebyshev(x: Array, terms: int) -> Array:

@@ -42,9 +42,6 @@ __all__ = [
     "viscous_friction",
 ]
 
-HEAVY_REGION = 1
-"""Number of the region of heavy loads on nearly smooth surfaces, which does not begin at rest."""
-
 ODDS, CENTRAL, MINIMUM, FLUX, DEFLECTION = (
     TABULATED.index(name) for name in ("log_odds", "central_gap", "minimum_gap", "flux_gap", "deflection")
 )
@@ -409,7 +406,7 @@ def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> t
         log_speed = np.log(speed)
     log_load = grid.log_load(load)
     inside = np.where(kappa > 0, np.clip(kappa, *box["relative_roughness"]), 0.0)
-    closing = (speed == 0) & (inside > 0) & (grid.region_at(log_load, inside) == HEAVY_REGION)
+    closing = (speed == 0) & (inside > 0) & ~grid.has_rest[grid.region_at(log_load, inside)]
     if FLUX in functions and closing.any():
         raise InputError(
             f"load has the value {load[closing][0]:g} at speed 0; there, at relative roughness below {NEARLY_SMOOTH:g}, the "

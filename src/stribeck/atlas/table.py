@@ -134,6 +134,8 @@ class Table:
         Smooth films along the logarithm of the speed, without the first function.
     about : dict
         Where the table comes from.
+    law : ndarray, shape (2, n)
+        Separations, and the logarithms of the pressures of its contact law there; empty for the exponential one.
     """
 
     grid: Grid
@@ -141,6 +143,7 @@ class Table:
     blocks: tuple[Block | None, ...]
     film: Array
     about: dict[str, Any]
+    law: Array = field(default_factory=lambda: np.empty((2, 0)))
 
     def ends(self, region: int, k: Array, y: Array) -> Array:
         """Return the logarithms of the speeds at which segments end, shape (6, states), at the coordinates of a region."""
@@ -272,7 +275,9 @@ class Table:
                 slopes[0, row] += np.where(early, power, 0.0)
 
 
-def pack(breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dict[str, Any]) -> dict[str, Any]:
+def pack(
+    breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dict[str, Any], law: Array | None = None
+) -> dict[str, Any]:
     """Return the arrays of the file for dense blocks, in whole units of :data:`STEP`."""
     joined = np.concatenate([np.ascontiguousarray(np.moveaxis(block, 3, 0)).ravel() for block in blocks])
     return {
@@ -280,6 +285,7 @@ def pack(breaks: tuple[Array, ...], blocks: list[Array], film: Array, about: dic
         "blocks": np.round(joined / STEP).astype(np.int32),
         "film": film,
         "about": np.array(json.dumps(about)),
+        "law": np.empty((2, 0)) if law is None else law,
     }
 
 
@@ -287,6 +293,7 @@ def unpack(grid: Grid, data: Any) -> Table:
     """Return the table of the arrays of a file."""
     about = json.loads(str(data["about"]))
     functions = len(about["functions"])
+    law = data["law"] if "law" in data else np.empty((2, 0))
     flat, position = data["blocks"] * STEP, 0
     blocks: list[Block | None] = []
     for region in grid.regions:
@@ -297,7 +304,7 @@ def unpack(grid: Grid, data: Any) -> Table:
                 dense = np.moveaxis(flat[position : position + size].reshape(shape), 0, 3)
                 blocks.append(Block.of(dense) if count else None)
                 position += size
-    return Table(grid, tuple(data["breaks"]), tuple(blocks), data["film"], about)
+    return Table(grid, tuple(data["breaks"]), tuple(blocks), data["film"], about, law)
 
 
 def solver_sources() -> list[str]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
 from stribeck._types import Flags
-from stribeck.atlas.grid import LINE_EXPONENTIAL, MIN_LOAD, MIN_SPEED, Grid
+from stribeck.atlas.grid import LINE_EXPONENTIAL, LINE_PERSSON, MIN_LOAD, MIN_SPEED, Grid
 from stribeck.atlas.table import FAR, FUNCTIONS, Table, load_table
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry, Groups
@@ -22,8 +23,11 @@ Box = dict[str, tuple[float, float]]
 BOX: Box = {"speed": (MIN_SPEED, 1e6), "load": (MIN_LOAD, 1.0), "relative_roughness": (1e-6, 1e2)}
 """Smallest and largest groups of the first table, beside speed 0, at rest, and roughness 0, smooth."""
 
-REFERENCE_SPECTRUM = {"h_rms": 1e-6, "q0": 1e4, "q1": 1e7, "hurst": 0.8}
+REFERENCE_SPECTRUM = {"h_rms": 1e-6, "q0": 1e4, "q1": 1e6, "hurst": 0.8}
 """The surface of the tables of Persson's law."""
+
+SAME_LAW = 1e-4
+"""Largest difference of ln Phi of a law from that of its table: about so much of the friction."""
 
 SLACK = 1e-12
 """Relative excess over an end of a box that is rounding."""
@@ -87,8 +91,10 @@ class TableRow:
         return groups.geometry == self.geometry and groups.model == self.model
 
     def is_of_law(self, law: AsperityLaw | None) -> bool:
-        """Return whether a contact law is that of the table."""
-        return LAWS[self.law](law)
+        """Return whether a contact law is that of the table, of Persson's within :data:`SAME_LAW`."""
+        if self.law == "exponential":
+            return is_exponential(law)
+        return law is not None and law.name == self.law and _departure(self.file, self.grid, law) < SAME_LAW  # type: ignore[arg-type]
 
     def covers(self, groups: Groups) -> Flags:
         """Return which states lie in the box, whatever their law and model."""
@@ -100,10 +106,26 @@ class TableRow:
         return found
 
 
-LAWS = {"exponential": is_exponential}
-"""Whether a law is the one of a table, by the name of that."""
+@lru_cache(maxsize=128)
+def _departure(file: str, grid: Grid, law: AsperityLaw) -> float:
+    """Return the largest difference of ln Phi between a law and that of a table."""
+    separation, log_pressure = load_table(file, grid).law
+    return float(np.abs(law.log_pressure(separation) - log_pressure).max())
 
-TABLES = (TableRow("line-exponential", "line", "exponential", Cavitation.NONE, BOX, 1e-4, "atlas.npz", LINE_EXPONENTIAL),)
+
+TABLES = (
+    TableRow("line-exponential", "line", "exponential", Cavitation.NONE, BOX, 1e-4, "atlas.npz", LINE_EXPONENTIAL),
+    TableRow(
+        "line-persson",
+        "line",
+        "persson",
+        Cavitation.NONE,
+        {"speed": (MIN_SPEED, 1e6), "load": (1e-2, 20.0), "relative_roughness": (1e-3, 1.0)},
+        1e-3,
+        "line_persson.npz",
+        LINE_PERSSON,
+    ),
+)
 """The tables; the first that holds answers."""
 
 
@@ -166,6 +188,11 @@ def table_for(groups: Groups) -> TableRow:
         )
     laws = " and ".join(row.law for row in of_model)
     assert groups.law is not None
+    if any(row.law == groups.law.name for row in of_model):
+        raise InputError(
+            f"the atlas covers the contact law {groups.law.name} of one shape of the spectrum, self-affine with a Hurst "
+            "exponent of 0.8 over two decades, and this law is of another; use the solver."
+        )
     raise InputError(f"the atlas covers states of the {laws} contact law, not of {groups.law.name}; use the solver.")
 
 

@@ -36,7 +36,7 @@ from stribeck.atlas.grid import (
 )
 from stribeck.atlas.table import STEP, pack, solver_hash
 from stribeck.atlas.tables import TABLES, TableRow
-from stribeck.evidence.atlas_states import PLANS, Plan, coarse_breaks, solved
+from stribeck.evidence.atlas_states import PLANS, Plan, coarse_breaks, law_of, solved
 
 NEGLIGIBLE = 2e-8
 """Coefficients up to which a polynomial is left out."""
@@ -202,7 +202,7 @@ def build(row: TableRow, target: Path, folder: Path, workers: int) -> None:
         "unit": STEP,
     }
     target.parent.mkdir(exist_ok=True)
-    np.savez_compressed(target, **pack(breaks, blocks, film, about))
+    np.savez_compressed(target, **pack(breaks, blocks, film, about, law_of(row)))
     print(f"{target.name}: {target.stat().st_size / 1e6:.2f} MB, {about['states']} states, {time.monotonic() - begun:.0f} s")
 
 

@@ -24,6 +24,10 @@ GAPS = (0.5, 2.0, 6.5, 30.0)
 of its own to go by."""
 
 
+SEPARATIONS = np.geomspace(1e-4, 60.0, 600)
+"""Separations at which the law of a table is kept."""
+
+
 @dataclass(frozen=True)
 class Plan:
     """How the states of a table are solved.
@@ -50,6 +54,7 @@ class Plan:
 
 PLANS = {
     "line-exponential": Plan(),
+    "line-persson": Plan(1e-5, 1e-3, 1e-6, (5, 4), 0.5, (4, 16)),
 }
 """The tables by their names."""
 
@@ -58,6 +63,11 @@ PLANS = {
 def reference_law() -> AsperityLaw:
     """Return the law of Persson's tables."""
     return persson_law(SelfAffine(**REFERENCE_SPECTRUM))
+
+
+def law_of(row: TableRow) -> Array | None:
+    """Return separations and logarithms of the pressures of the law of a table; None for the exponential one."""
+    return None if row.law == "exponential" else np.stack([SEPARATIONS, reference_law().log_pressure(SEPARATIONS)])
 
 
 def groups_of(row: TableRow, speed: float, load: float, kappa: float) -> Groups:
@@ -71,9 +81,11 @@ def solved(row: TableRow, log_speeds: Array, log_load: float, kappa: float, rtol
     """Return the tabulated functions along ascending speeds, shape (speeds, functions)."""
     load = row.grid.load_at(log_load)
     curve = stribeck_curve(groups_of(row, 1.0, load, kappa), speed=np.exp(log_speeds), rtol=rtol)
-    if len(curve) != len(log_speeds):
-        raise RuntimeError(f"load {load:.6g}, relative roughness {kappa:.6g}: {curve.outcome.value}")
-    return tabulated(row, [s.observables for s in curve.solutions], log_speeds, load)
+    states = dict(zip(np.log(curve.values).round(9).tolist(), curve.solutions, strict=True))
+    for s in log_speeds.tolist():
+        if round(s, 9) not in states:  # lost from its neighbours: from cold, and finer
+            states[round(s, 9)] = solve(groups_of(row, math.exp(s), load, kappa), rtol=0.1 * rtol)
+    return tabulated(row, [states[round(s, 9)].observables for s in log_speeds.tolist()], log_speeds, load)
 
 
 def tabulated(row: TableRow, observed: list[object], log_speeds: Array, load: float) -> Array:
