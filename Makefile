@@ -132,12 +132,13 @@ notebooks: $(DOCS)
 validity: $(READY)
 	$(ONE_THREAD) $(BIN)/python docs/validity.py
 
-# The lines that are finished are kept in build/atlas, so that an interrupted build goes on.
+# The lines that are finished are kept in build/atlas, so that an interrupted build goes on. TABLE=line-persson makes another.
+TABLE = line-exponential
 atlas: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_build
+	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_build $(TABLE)
 
 certificate: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_certificate
+	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_certificate $(TABLE)
 
 clean:
 	rm -rf $(VENV) $(VENV)-lowest $(VENV)-newest build dist curve.nc curve.png curve.csv .pytest_cache .mypy_cache .ruff_cache .hypothesis

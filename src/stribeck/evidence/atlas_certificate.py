@@ -1,4 +1,4 @@
-"""How wrong the atlas is: against states solved from cold that its table was not made from.
+"""How wrong a table of the atlas is: against states solved from cold that it was not made from.
 
 ``make certificate`` (``python -m stribeck.evidence.atlas_certificate``) prints the tables of docs/atlas.md and draws its map.
 """
@@ -8,17 +8,21 @@ from __future__ import annotations
 import argparse
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
-from stribeck.contacts.line import Groups
+from stribeck.atlas.tables import TABLES, Box, TableRow
+from stribeck.contacts.groups import Groups
+from stribeck.evidence.atlas_states import groups_of
+from stribeck.quantities.outputs import NAMES
 from stribeck.solver.solve import solve
 
-RTOL = 1e-7
-"""Tolerance of the states that judge, as far as double precision gives it."""
+RTOL = {"line-exponential": 1e-7}
+"""Tolerance of the states that judge, as far as double precision gives it; 1e-6 for other tables."""
 
 MIN_SHARE = 1e-9
 """Contact share from which its relative error counts; so small a part of the load is felt nowhere else."""
@@ -54,10 +58,12 @@ QUANTITIES = (
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """Errors of the atlas on random states.
+    """Errors of a table on random states.
 
     Attributes
     ----------
+    box : dict
+        Its box.
     speed, load, relative_roughness : ndarray, shape (n,)
         The states.
     contact_share : ndarray, shape (n,)
@@ -66,6 +72,7 @@ class Certificate:
         Relative errors; nan where a load share is too small to count.
     """
 
+    box: Box
     speed: Array
     load: Array
     relative_roughness: Array
@@ -84,41 +91,47 @@ class Certificate:
         return np.asarray(self.errors[:, first : first + len(FILMS)].max(axis=1))
 
 
-def random_states(states: int, seed: int, mixed: bool = False) -> tuple[Array, Array, Array]:
-    """Return speeds, loads and relative roughnesses, evenly distributed in their logarithms over the box of the atlas.
+def random_states(row: TableRow, states: int, seed: int, mixed: bool = False) -> tuple[Array, Array, Array]:
+    """Return speeds, loads and relative roughnesses, evenly distributed in their logarithms over the box of a table.
 
-    Where ``mixed``, only states on which by the atlas fluid and asperities both carry at least :data:`SHARED`.
+    Where ``mixed``, only states on which by the table fluid and asperities both carry at least :data:`SHARED`.
     """
     rng = np.random.default_rng(seed)
     drawn = TRIES * states if mixed else states
-    speed, load, kappa = (np.exp(rng.uniform(np.log(ends[0]), np.log(ends[1]), drawn)) for ends in atlas.BOX.values())
+    speed, load, kappa = (np.exp(rng.uniform(np.log(ends[0]), np.log(ends[1]), drawn)) for ends in row.box.values())
     if mixed:
-        share = np.asarray(atlas.contact_load_share(Groups(speed, load, kappa * load)))
+        share = np.asarray(atlas.contact_load_share(states_of(row, speed, load, kappa)))
         kept = np.nonzero((share > SHARED) & (share < 1 - SHARED))[0][:states]
         speed, load, kappa = speed[kept], load[kept], kappa[kept]
     return speed, load, kappa
 
 
-def solved(state: tuple[float, float, float]) -> Array:
-    """Return the observables of speed, load and relative roughness from cold."""
-    speed, load, kappa = state
-    return np.asarray(solve(Groups(speed, load, kappa * load), rtol=RTOL, on_failure="return").observables.array())
+def states_of(row: TableRow, speed: Array, load: Array, kappa: Array) -> Groups:
+    """Return the groups of many states of a table."""
+    return Groups(speed, load, kappa * load, **groups_of(row, 1.0, 1.0, 1.0).physics)
 
 
-def certify(states: int, seed: int, workers: int = 1, mixed: bool = False) -> Certificate:
-    """Solve random states and compare the atlas with them, see :func:`random_states`."""
-    drawn = random_states(states, seed, mixed)
+def solved(name: str, state: tuple[float, float, float]) -> Array:
+    """Return the observables of speed, load and relative roughness from cold, as far as all films have them."""
+    row = next(row for row in TABLES if row.name == name)
+    found = solve(groups_of(row, *state), rtol=RTOL.get(name, 1e-6), on_failure="return").observables
+    return np.array([getattr(found, observable) for observable in NAMES])
+
+
+def certify(states: int, seed: int, workers: int = 1, mixed: bool = False, row: TableRow = TABLES[0]) -> Certificate:
+    """Solve random states and compare a table with them, see :func:`random_states`."""
+    drawn, work = random_states(row, states, seed, mixed), partial(solved, row.name)
     if workers > 1:
         with ProcessPoolExecutor(workers) as pool:
-            observed = np.array(list(pool.map(solved, zip(*drawn, strict=True), chunksize=20)))
+            observed = np.array(list(pool.map(work, zip(*drawn, strict=True), chunksize=20)))
     else:
-        observed = np.array([solved(state) for state in zip(*drawn, strict=True)])
-    return compare(*drawn, observed)
+        observed = np.array([work(state) for state in zip(*drawn, strict=True)])
+    return compare(*drawn, observed, row)
 
 
-def compare(speed: Array, load: Array, kappa: Array, observed: Array) -> Certificate:
-    """Return the errors of the atlas on solved states."""
-    groups = Groups(speed, load, kappa * load)
+def compare(speed: Array, load: Array, kappa: Array, observed: Array, row: TableRow = TABLES[0]) -> Certificate:
+    """Return the errors of a table on solved states."""
+    groups = states_of(row, speed, load, kappa)
     contact, fluid, central, minimum, flux, offset, published, balanced = observed.T
     viscous = {"published": published, "balanced": balanced}
     found = [
@@ -135,7 +148,7 @@ def compare(speed: Array, load: Array, kappa: Array, observed: Array) -> Certifi
     contact_counts = np.where(contact > MIN_SHARE, contact, np.nan)
     fluid_counts = np.where(fluid > MIN_FLUID, fluid, np.nan)
     found += [atlas.contact_load_share(groups) / contact_counts, atlas.fluid_load_share(groups) / fluid_counts]
-    return Certificate(speed, load, kappa, contact, np.abs(np.stack(found, axis=1) - 1))
+    return Certificate(row.box, speed, load, kappa, contact, np.abs(np.stack(found, axis=1) - 1))
 
 
 def table(certificate: Certificate) -> str:
@@ -143,7 +156,7 @@ def table(certificate: Certificate) -> str:
     lines = ["| relative error | median | 99 % within | worst | where: speed, load, kappa |", "|---|---|---|---|---|"]
     for name, errors in zip(QUANTITIES, certificate.errors.T, strict=True):
         worst = int(np.nanargmax(errors))
-        where = ", ".join(f"{getattr(certificate, axis)[worst]:.2g}" for axis in atlas.BOX)
+        where = ", ".join(f"{getattr(certificate, axis)[worst]:.2g}" for axis in certificate.box)
         numbers = f"{np.nanmedian(errors):.1e} | {np.nanquantile(errors, 0.99):.1e} | {errors[worst]:.1e}"
         lines.append(f"| {name.replace('_', ' ')} | {numbers} | {where} |")
     return "\n".join(lines)
@@ -160,7 +173,7 @@ def draw(certificate: Certificate, path: Path) -> None:
     for row, (name, errors) in zip(panels, (("friction", certificate.friction), ("film", certificate.film)), strict=True):
         for axes, across in zip(row, ("speed", "load"), strict=True):
             x = np.log10(getattr(certificate, across))
-            bins = [np.log10(np.geomspace(*atlas.BOX[side], 25)) for side in (across, "relative_roughness")]
+            bins = [np.log10(np.geomspace(*certificate.box[side], 25)) for side in (across, "relative_roughness")]
             place = tuple(np.clip(np.digitize(v, b) - 1, 0, 23) for v, b in zip((x, kappa), bins, strict=True))
             worst = np.zeros((24, 24))
             np.maximum.at(worst, place, np.maximum(errors, 1e-16))
@@ -175,17 +188,20 @@ def draw(certificate: Certificate, path: Path) -> None:
 
 def main() -> None:
     """Print the tables and draw the map."""
-    parser = argparse.ArgumentParser(description="Compare the atlas with random states solved from cold.")
+    rows = {row.name: row for row in TABLES}
+    parser = argparse.ArgumentParser(description="Compare a table of the atlas with random states solved from cold.")
+    parser.add_argument("name", nargs="?", default=TABLES[0].name, choices=list(rows))
     parser.add_argument("--states", type=int, default=5000)
     parser.add_argument("--seed", type=int, default=271828)
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--map", type=Path, default=Path("docs") / "images" / "atlas_error.png")
+    parser.add_argument("--map", type=Path, help="a picture of the worst errors, as docs/images/atlas_error.png")
     arguments = parser.parse_args()
-    certificate = certify(arguments.states, arguments.seed, arguments.workers)
+    certificate = certify(arguments.states, arguments.seed, arguments.workers, row=rows[arguments.name])
     print(f"{arguments.states} states\n\n{table(certificate)}", flush=True)
-    mixed = certify(arguments.states, arguments.seed + 1, arguments.workers, mixed=True)
+    mixed = certify(arguments.states, arguments.seed + 1, arguments.workers, True, rows[arguments.name])
     print(f"\n{arguments.states} states, both load shares above {SHARED:.0%}\n\n{table(mixed)}")
-    draw(certificate, arguments.map)
+    if arguments.map is not None:
+        draw(certificate, arguments.map)
 
 
 if __name__ == "__main__":
