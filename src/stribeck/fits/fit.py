@@ -1,9 +1,8 @@
 """Inputs of a contact from measured friction curves: values, intervals, and what the data do not say.
 
-Least squares on the logarithms of the inputs with analytic derivatives.  With the exponential law they run on
-:mod:`stribeck.atlas`, whose friction is within 2.4e-5 of the solver's, and are then finished on solved states; with
-other laws all states are solved.  Those of balls run on a lattice of solved states, made where the search goes, and are
-finished on solved curves.
+Least squares on the logarithms of the inputs with analytic derivatives.  With a law that it holds they run on
+:mod:`stribeck.atlas` and are then finished on solved states; with other laws all states are solved.  Those of balls run on a
+lattice of solved states, made where the search goes, and are finished on solved curves.
 """
 
 from __future__ import annotations
