@@ -514,7 +514,7 @@ def test_the_curve_and_its_transitions_are_those_of_the_solver(answer):
 
 
 def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marked_stale():
-    heavy = inputs.from_case(sb.load_case("examples/wiper_blade.toml"))
+    heavy = inputs.from_case(sb.load_case("examples/nitrile_seal.toml"))
     model = Answerer()
     first = model(heavy)
     assert first.curve is None and first.diagram is None
