@@ -180,6 +180,10 @@ def test_a_keyword_that_is_misspelled_is_answered_with_the_nearest(state):
         (lambda: sb.stribeck_curve(CONTACT, pionts=5), "did you mean points"),
         (lambda: state.friction(bta=1), "did you mean beta"),
         (lambda: CONTACT.replace(viscositty=1), "did you mean viscosity"),
+        (lambda: sb.sweep("sweep.toml", "store", worker=2), "did you mean workers"),
+        (lambda: sb.compare(noisy(seed=1), CONTACT, lawss={}), "did you mean laws"),
+        (lambda: sb.explain(CONTACT, defintion="balanced"), "did you mean definition"),
+        (lambda: sb.new_case(geometri="line"), "did you mean geometry"),
         (lambda: sb.solve(CONTACT, zzz=1), "it takes problem, rtol, law, on_failure"),
     ):
         with pytest.raises((TypeError, sb.InputError), match=said):

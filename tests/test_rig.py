@@ -91,6 +91,11 @@ def test_sliding_speed_and_both_surface_speeds_become_their_sum(read):
     assert both.values == pytest.approx(SPEEDS) and "'Ball speed [m/s]' + 'Disc speed [m/s]'" in both.taken
     slid = read("\n".join([header.replace("Ball speed", "A").replace("Disc speed", "B"), *rows]))
     assert slid.values == pytest.approx(SPEEDS) and "2 x 'Sliding speed [m/s]' / 'SRR [%]'" in slid.taken
+    rolled = "\n".join(
+        ["Rolling Speed (mm/s);Sliding Speed (mm/s);Traction Coeff (-)"]
+        + [f"{500 * u};{250 * u};{mu}" for u, mu in zip(SPEEDS, FRICTIONS, strict=True)]
+    )
+    assert read(rolled).values == pytest.approx(SPEEDS) and "2 x 'Rolling Speed (mm/s)'" in read(rolled).taken
     alone = "\n".join(["Sliding speed [m/s];COF", *(f"{u};{mu}" for u, mu in zip(SPEEDS, FRICTIONS, strict=True))])
     assert read(alone).values == pytest.approx(SPEEDS)  # one surface at rest
 

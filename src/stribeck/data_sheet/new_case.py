@@ -9,6 +9,7 @@ from stribeck.contacts.groups import Geometry
 from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.facts import ROWS as FACTS
 from stribeck.quantities.inputs import INPUT_TABLES, Input
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import DIMENSIONS, format_si
 
 __all__ = ["new_case"]
@@ -42,6 +43,7 @@ definition = "balanced"
 """
 
 
+@answers_typos
 def new_case(geometry: Geometry = "line") -> str:
     """Return the text of a case file with every key, a typical value, its unit and its usual range.
 

@@ -15,6 +15,7 @@ from stribeck.data_sheet.content import Content, content_of
 from stribeck.data_sheet.picture import draw_report
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write, check_writable
 from stribeck.fits.measurements import Measurements
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["ENDINGS", "write_report"]
@@ -25,6 +26,7 @@ PAGE, COLUMNS, ROWS = (8.27, 11.69), 104, 78
 """Of the PDF: A4 [inch], letters on a line, lines on a page."""
 
 
+@answers_typos
 def write_report(
     case: PathLike | Case,
     path: PathLike,

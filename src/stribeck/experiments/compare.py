@@ -19,6 +19,7 @@ from stribeck.files.writing import PathLike
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.result import Fit
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solve import SolveError
 
@@ -119,6 +120,7 @@ class Comparison:
         return {"laws": laws, "failed": self.failed, "sentence": self.sentence, "caveats": list(CAVEATS)}
 
 
+@answers_typos
 def compare(
     data: PathLike | Measurements,
     case: PathLike | Case | Contact,

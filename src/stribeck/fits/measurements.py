@@ -17,8 +17,9 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.text_table import MISSING, TextTable, number_of, read_table
-from stribeck.fits.rig import MADE_SPEED, RIG, Row, average_repeats, prepared
+from stribeck.fits.rig import MADE_SPEED, PATTERNS, RIG, Row, average_repeats, prepared
 from stribeck.quantities.inputs import ROWS, quantity
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Measurements", "read_measurements"]
@@ -33,7 +34,10 @@ WORDS = {
     "speed": {"speed", "velocity", "sliding speed", "sliding velocity", "u", "v"},
     "speed_viscosity": {"eta u", "etau", "speed viscosity", "viscosity speed", "viscosity times speed"},
     "hersey_number": {"hersey", "hersey number"},
-    "friction": {"friction", "friction coefficient", "coefficient of friction", "cof", "mu", "µ", "μ"},
+    "friction": {
+        *("friction", "friction coefficient", "coefficient of friction", "cof", "mu", "µ", "μ"),
+        *("friction coeff", "traction coeff", "traction coefficient"),
+    },
     "error": {"error", "friction error", "mu error", "uncertainty", "standard error", "standard deviation", "std", "sigma"},
     "curve": {"curve", "series", "sample"},
 } | {
@@ -103,6 +107,7 @@ class Measurements:
         return len(self.friction)
 
 
+@answers_typos
 def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None = None) -> Measurements:
     """Read measured friction curves from a text file.
 
@@ -365,8 +370,10 @@ def _has(table: TextTable, settings: FitSettings, meaning: str) -> bool:
     if any(each in settings.columns for each in wanted):
         return True
     words = {_plain(_split(name)[0]) for name in table.header if not _declared_for_rig(name, settings)}
-    ratio = any(word in ("srr", "slide roll ratio", "slide to roll ratio") for word in words)
-    sliding = {"sliding speed", "sliding velocity"} if ratio else set()
+    # Beside these a sliding speed is the difference of the surface speeds, and the speed their sum.
+    rolling = [PATTERNS[each] for each in ("slide_to_roll", "entrainment_speed", "surface_speeds")]
+    rolls = any(re.fullmatch(pattern, word) for pattern in rolling for word in words)
+    sliding = {"sliding speed", "sliding velocity"} if rolls else set()
     return any(words & (WORDS[each] - sliding) for each in wanted)
 
 

@@ -6,9 +6,26 @@ import difflib
 import inspect
 import re
 from collections.abc import Callable
-from typing import Any
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
 
-__all__ = ["with_nearest"]
+__all__ = ["answers_typos", "with_nearest"]
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def answers_typos(function: Callable[P, R]) -> Callable[P, R]:
+    """Return a function that answers a misspelled argument with the nearest name."""
+
+    @wraps(function)
+    def called(*args: P.args, **kwargs: P.kwargs) -> R:
+        try:
+            return function(*args, **kwargs)
+        except TypeError as problem:
+            raise with_nearest(problem, function) from None
+
+    return called
 
 
 def with_nearest(problem: TypeError, function: Callable[..., Any]) -> TypeError:

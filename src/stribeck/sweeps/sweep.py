@@ -14,6 +14,7 @@ import numpy as np
 
 from stribeck.batches.order import chains_of
 from stribeck.files.writing import PathLike
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
 from stribeck.sweeps.chain import Chain
 from stribeck.sweeps.dataset import Sweep
@@ -59,6 +60,7 @@ class SweepProgress:
     seconds_left: float
 
 
+@answers_typos
 def sweep(
     design: SweepDesign | PathLike,
     out: PathLike,

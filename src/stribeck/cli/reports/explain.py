@@ -18,6 +18,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.curves.result import StribeckCurve
 from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
 from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.solver.solution import Solution
@@ -119,6 +120,7 @@ def print_words(console: Console, found: Regimes, case: sb.Case) -> None:
     print_conversions(console, case)
 
 
+@answers_typos
 def explain(problem: Contact | sb.Case, *, rtol: float = 1e-6, definition: Definition = "balanced") -> Explanation:
     """Explain the regime of a contact: what carries the load, how far the next regimes are, what moves its friction.
 
