@@ -386,6 +386,9 @@ def test_the_plane_shows_regions_solved_lines_and_formulas(plot, which, request,
     np.testing.assert_allclose(y, dataset.roughness * (1 if which == "diagram" else 1e6))
     assert drawn["minimum of friction"].get_linestyle() == "-"
     assert drawn["our formulas"].get_linestyle() == "--"
+    ax = type(figure)().subplots()
+    plot.plot_phase_diagram(dataset, ax=ax, load=float(dataset["load"][1]))
+    assert len(ax.lines) == len(axes.lines) and ax.get_xlabel() == axes.get_xlabel()
 
 
 def test_the_regions_are_those_of_the_states(plot, diagram):

@@ -190,6 +190,19 @@ def test_a_keyword_that_is_misspelled_is_answered_with_the_nearest(state):
             call()
 
 
+def test_what_is_measured_or_checked_shows_itself_in_a_screen():
+    examples = Path(__file__).parents[1] / "examples"
+    surface = sb.surfaces.analyse(sb.surfaces.read_topography(examples / "cylinder_profile.csv"))
+    measured = sb.read_measurements(examples / "pdms_measured.csv")
+    for each in (surface, surface.measured, measured, sb.check(CONTACT)):
+        assert len(repr(each).splitlines()) < 25 and len(repr(each)) < 2500 and "<table" in each._repr_html_()
+    assert "friction: 42 values, 0." in repr(measured) and "wavenumber: " in repr(surface.measured)
+    ax = pytest.importorskip("matplotlib.figure").Figure().subplots()
+    surface.plot(ax=ax)
+    assert ax.lines and "height" in ax.get_ylabel()
+    assert sb.check(CONTACT)["shear rate"].texts[1] != "inf 1/s"
+
+
 def test_every_result_writes_its_dataset_and_refuses_a_table_of_more_than_one_dimension(state, tmp_path):
     xarray = pytest.importorskip("xarray")
     fit = sb.fit(noisy(seed=5_417), CONTACT, free=["boundary_friction"])

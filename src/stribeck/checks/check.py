@@ -52,7 +52,7 @@ class Check:
         return number_text(self.value, self.unit), number_text(self.limit, self.unit)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Checks:
     """The checks of one contact.
 
@@ -157,6 +157,8 @@ class Checks:
         said = [each.sentence for each in self.checks if each.verdict != "fine"]
         return "\n".join([self.headline, "", *lines, *([""] if said else []), *said])
 
+    __repr__ = __str__
+
     def _repr_html_(self) -> str:
         """Return the table for notebooks."""
         rows = "".join(
@@ -203,6 +205,8 @@ def number_text(value: float, unit: str) -> str:
     """
     from stribeck.quantities.units import DIMENSIONS, format_si
 
+    if value == math.inf:
+        return "unlimited"
     kind = next((name for name, each in DIMENSIONS.items() if unit and each.unit == unit), None)
     if kind is None or not math.isfinite(value):
         return f"{value:.3g} {unit}".rstrip()

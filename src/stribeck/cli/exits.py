@@ -45,7 +45,7 @@ class OutputError(Exception):
 
 
 class _Stdout(io.FileIO):
-    """Stdout that tells its own errors from those of files."""
+    """Stdout that distinguishes its own errors from those of files."""
 
     def write(self, content: Any, /) -> int:
         """Write bytes."""
@@ -58,7 +58,7 @@ class _Stdout(io.FileIO):
 
 
 def prepare_streams() -> None:
-    """Give a process of our own streams that are open, take any letter, and tell what is wrong with stdout.
+    """Give a process of our own streams that are open, take any letter, and say what is wrong with stdout.
 
     If stdout is closed, text for it then fails as on a full disk, and is not lost without a word.  Otherwise the first file
     that is opened would take its number, and get the text of libraries.

@@ -33,7 +33,7 @@ def next_command(
     json: Flag = False,
     force: Flag = False,
 ) -> int:
-    """Fit measured friction and tell what to measure next: the runs that shrink the intervals most for their cost.
+    """Fit measured friction and report which runs to measure next: those that shrink the intervals most for their cost.
 
     Example: stribeck next examples/pdms_measured.csv examples/pdms_fit.toml --count 5 --plot next.png
 
@@ -80,7 +80,7 @@ def next_command(
 
 
 def compare_command(data: DataFile = None, case: CaseFile = None, /, *, json: Flag = False) -> int:
-    """Fit measured friction with several contact laws, and tell which the data prefer and by how much.
+    """Fit measured friction with several contact laws and report which the data prefer, and by how much.
 
     Example: stribeck compare examples/pdms_measured.csv examples/pdms_fit.toml
 

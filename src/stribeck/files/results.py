@@ -12,14 +12,45 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
 
-__all__ = ["Exported"]
+__all__ = ["Drawn", "Exported"]
 
 
-class Exported:
-    """A result that writes and draws itself, from its ``to_dataset`` and its ``_draw``."""
+class Drawn:
+    """A result that draws itself, by its ``_draw``."""
+
+    _draw: Callable[..., Figure]
+
+    def plot(self, path: PathLike | None = None, *, ax: Any = None, force: bool = False, **options: Any) -> Figure:
+        """Draw the result.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw the main panel into, in place of a new figure.
+        force : bool
+            Whether an existing file is replaced; otherwise it is kept and the call refused.
+        **options
+            What this picture alone takes: ``title`` of most, ``colours="interference"`` of a ball.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure; needs the extra ``plot``.
+
+        Raises
+        ------
+        InputError
+            If there is nothing to draw, or the file cannot be written, or exists and ``force`` is not given.
+        """
+        return self._draw(path, ax=ax, force=force, **options)
+
+
+class Exported(Drawn):
+    """A result that draws itself and writes its ``to_dataset``."""
 
     to_dataset: Callable[..., xarray.Dataset]
-    _draw: Callable[..., Figure]
 
     def to_netcdf(self, path: PathLike, *, force: bool = False, **sampling: Any) -> None:
         """Write the dataset as NetCDF.
@@ -56,29 +87,3 @@ class Exported:
             If the file cannot be written, or exists and ``force`` is not given.
         """
         write_csv(self.to_dataset(), path, force=force)
-
-    def plot(self, path: PathLike | None = None, *, ax: Any = None, force: bool = False, **options: Any) -> Figure:
-        """Draw the result.
-
-        Parameters
-        ----------
-        path : str or path-like, optional
-            Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
-        ax : matplotlib.axes.Axes, optional
-            Axes to draw the main panel into, in place of a new figure.
-        force : bool
-            Whether an existing file is replaced; otherwise it is kept and the call refused.
-        **options
-            What this picture alone takes: ``title`` of most, ``colours="interference"`` of a ball.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure; needs the extra ``plot``.
-
-        Raises
-        ------
-        InputError
-            If there is nothing to draw, or the file cannot be written, or exists and ``force`` is not given.
-        """
-        return self._draw(path, ax=ax, force=force, **options)

@@ -20,6 +20,7 @@ from stribeck.files.text_table import MISSING, TextTable, number_of, read_table
 from stribeck.fits.rig import MADE_SPEED, PATTERNS, RIG, Row, average_repeats, prepared
 from stribeck.quantities.inputs import ROWS, quantity
 from stribeck.quantities.keywords import answers_typos
+from stribeck.quantities.results import Shown
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Measurements", "read_measurements"]
@@ -57,8 +58,8 @@ _FORCE = re.compile(r"force|kraft|\(m?N\)|\[m?N\]", re.IGNORECASE)
 _HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 
 
-@dataclass(frozen=True, eq=False)
-class Measurements:
+@dataclass(frozen=True, eq=False, repr=False)
+class Measurements(Shown):
     """Measured friction in SI units, each curve in order of increasing speed.
 
     Attributes

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import html
+import inspect
+import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 import numpy as np
 
-__all__ = ["ByValue", "Card", "Shown", "same"]
+__all__ = ["ByValue", "Card", "Shown", "brief", "same"]
 
 
 @dataclass(frozen=True)
@@ -32,10 +34,12 @@ class Card:
 
 
 class Shown:
-    """A result that shows a :class:`Card`: lines in a terminal, a table in a notebook."""
+    """A result that shows a :class:`Card`: lines in a terminal, a table in a notebook; by default its fields in short."""
 
     def _card(self) -> Card:
-        raise NotImplementedError
+        said = (inspect.getdoc(type(self)) or "").partition("\n")[0]
+        named = [each.name for each in fields(self) if each.name != "notes"]  # type: ignore[arg-type]
+        return Card(said, [(name, brief(getattr(self, name))) for name in named], getattr(self, "notes", ()))
 
     def __repr__(self) -> str:
         """Return the card as lines of text."""
@@ -47,6 +51,19 @@ class Shown:
     def _repr_html_(self) -> str:
         """Return the card as a table."""
         return card_html(type(self).__name__, self._card())
+
+
+def brief(value: Any) -> str:
+    """Return a value in less than a line: numbers with four digits, arrays by their size and range."""
+    if isinstance(value, np.ndarray):
+        shape = " x ".join(map(str, value.shape)) or "1"
+        finite = value[np.isfinite(value)] if value.dtype.kind in "fi" else value[:0]
+        return f"{shape} values" + (f", {finite.min():.4g} to {finite.max():.4g}" if finite.size else "")
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if is_dataclass(value) and not isinstance(value, type):
+        return type(value).__name__
+    return textwrap.shorten(value if isinstance(value, str) else repr(value), 90, placeholder=" ...")
 
 
 def card_html(kind: str, card: Card) -> str:

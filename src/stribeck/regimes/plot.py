@@ -23,6 +23,7 @@ from stribeck.files.pictures import (
     MARK,
     TINTS,
     add_legend,
+    figure_of,
     finish_figure,
     footer_lines,
     new_figure,
@@ -75,7 +76,13 @@ SURFACES = ("speed_at_5_percent_fluid", "speed_at_10_percent_contact_friction")
 
 
 def plot_phase_diagram(
-    dataset: xarray.Dataset, path: PathLike | None = None, *, load: float | None = None, force: bool = False, title: str = ""
+    dataset: xarray.Dataset,
+    path: PathLike | None = None,
+    *,
+    ax: Axes | None = None,
+    load: float | None = None,
+    force: bool = False,
+    title: str = "",
 ) -> Figure:
     """Draw the regimes over speed and roughness at one load.
 
@@ -85,6 +92,8 @@ def plot_phase_diagram(
         From :func:`stribeck.regimes.phase_diagram`, in groups or in SI units.
     path : str or path-like, optional
         Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw into, in place of a new figure.
     load : float, optional
         The load, of which the nearest in the dataset is drawn; the first if not given.
     force : bool
@@ -104,6 +113,10 @@ def plot_phase_diagram(
     MissingExtraError
         If matplotlib is not installed.
     """
+    if ax is not None:
+        figure = figure_of(ax)
+        draw_phase_diagram(ax, dataset, load)
+        return finish_figure(figure, path, force)
     plane = _plane(dataset, load)
     # An empty line leaves room for the third row of the legend.
     footer = [("", GREY), *_footer(dataset, [float(plane["load"])])]

@@ -15,6 +15,8 @@ import numpy as np
 
 from stribeck.contact_laws.persson import GAMMA, PerssonLaw, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
+from stribeck.files.results import Drawn
+from stribeck.quantities.results import Shown
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.surfaces.departures import Departures, departure_notes, departures
 from stribeck.surfaces.detrend import Form, Trend, detrended
@@ -27,8 +29,8 @@ from stribeck.surfaces.topography import Topography
 __all__ = ["Surface", "analyse"]
 
 
-@dataclass(frozen=True, eq=False)
-class Surface:
+@dataclass(frozen=True, eq=False, repr=False)
+class Surface(Drawn, Shown):
     """What a scan says of a surface.
 
     Attributes
@@ -65,6 +67,11 @@ class Surface:
     height_with_spikes: float
     window: Window = "hann"
     notes: tuple[str, ...] = field(default=())
+
+    def _draw(self, path: Any, **options: Any) -> Any:
+        from stribeck.surfaces.plot import plot_surface
+
+        return plot_surface(self, path, **options)
 
     @property
     def rms_height(self) -> float:

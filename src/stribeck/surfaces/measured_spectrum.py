@@ -23,6 +23,7 @@ import numpy as np
 
 from stribeck._types import Array, Flags
 from stribeck.contact_laws.spectrum import SelfAffine
+from stribeck.quantities.results import Shown
 from stribeck.quantities.units import InputError, show
 from stribeck.surfaces.topography import Topography
 
@@ -46,8 +47,8 @@ ENDLESS = 14.0
 """Upper end of the integral along a line; the rest is below exp(-14 (1 + 2 H)) of it."""
 
 
-@dataclass(frozen=True, eq=False)
-class MeasuredSpectrum:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeasuredSpectrum(Shown):
     r"""Power spectrum of a scan, averaged over rings of wave numbers.
 
     Attributes

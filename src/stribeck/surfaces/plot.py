@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, PICTURES
-from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
+from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, figure_of, finish_figure
+from stribeck.files.writing import MissingExtraError, PathLike
 from stribeck.quantities.units import DIMENSIONS, format_si
 from stribeck.surfaces.analysis import Surface
 
@@ -26,7 +26,9 @@ MOST_PIXELS = 1024
 """Largest number of points along a side of the map that is drawn."""
 
 
-def plot_surface(surface: Surface, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
+def plot_surface(
+    surface: Surface, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+) -> Figure:
     """Draw the heights of a surface, its spectrum with the fit, and its contact law.
 
     Parameters
@@ -35,6 +37,8 @@ def plot_surface(surface: Surface, path: PathLike | None = None, *, force: bool 
         The surface.
     path : str or path-like, optional
         Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw the heights into, in place of a new figure.
     force : bool
         Whether an existing file is replaced; otherwise it is kept.
     title : str
@@ -52,6 +56,10 @@ def plot_surface(surface: Surface, path: PathLike | None = None, *, force: bool 
     MissingExtraError
         If matplotlib is not installed.
     """
+    if ax is not None:
+        figure = figure_of(ax)
+        _draw_heights(figure, ax, surface)
+        return finish_figure(figure, path, force)
     try:
         from matplotlib.figure import Figure
     except ImportError:
@@ -66,10 +74,7 @@ def plot_surface(surface: Surface, path: PathLike | None = None, *, force: bool 
     for axes in (spectrum, law):
         axes.legend(fontsize=8, frameon=False, loc="lower left")
     _footer(figure, surface)
-    if path is not None:
-        with atomic_write(path, PICTURES, force=force) as temporary:
-            figure.savefig(temporary)
-    return figure
+    return finish_figure(figure, path, force)
 
 
 def _draw_heights(figure: Figure, axes: Axes, surface: Surface) -> None:
