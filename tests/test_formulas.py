@@ -104,11 +104,17 @@ def in_box(formula, groups):
 
 
 @cache
+def drawn():
+    """Return the random states of which each formula takes those in its range."""
+    rng = np.random.default_rng(SEED)
+    found = {name: np.exp(rng.uniform(*np.log(ends), 400_000)) for name, ends in SPAN.items()}
+    return sb.Groups(found["speed"], found["load"], found["load"] * found["relative_roughness"])
+
+
+@cache
 def states(formula):
     """Return random states in the range of a formula, the same for formulas of the same range."""
-    rng = np.random.default_rng(SEED)
-    drawn = {name: np.exp(rng.uniform(*np.log(ends), 400_000)) for name, ends in SPAN.items()}
-    many = sb.Groups(drawn["speed"], drawn["load"], drawn["load"] * drawn["relative_roughness"])
+    many = drawn()
     inside = np.nonzero(formula.valid(many) & in_box(formula, many))[0]
     wanted = LANDMARK_STATES if formula.predicts.startswith(("speed_at", "friction_at", "separation_at")) else STATES
     assert len(inside) >= wanted, "no states in range: widen SPAN"
