@@ -133,7 +133,7 @@ class Formula(Generic[Arguments]):
     function : callable
         The formula without any check of its range.
     predicts : str
-        What the solver is asked for to judge it: a key of :data:`stribeck.evidence.formulas.MEASURED`.
+        What it is compared with in a solved state: a key of :data:`stribeck.evidence.formulas.MEASURED`.
     plane : {"smooth", "rest", "mixed"}
         Whether it is about the smooth contact (roughness 0, whatever the groups say), the contact at rest (speed 0), or both.
     limits : tuple of Limit
@@ -149,7 +149,7 @@ class Formula(Generic[Arguments]):
     steps : tuple of float
         Values of ``small`` at which they do.
     interval : callable or None
-        For a field, ``interval(groups)`` returns the positions [a] between which it is judged.
+        For a field, ``interval(groups)`` returns the positions [a] between which it is compared with the solver.
     source : str
         Where it comes from.
     geometry : {"line", "point"}

@@ -1,6 +1,6 @@
 """Case files: a TOML file of quantities with units becomes a checked :class:`Case`.
 
-Everything that is wrong with a file is told in one go, a sentence for each problem, with the path, the table
+Everything that is wrong with a file is reported at once, a sentence for each problem, with the path, the table
 and the key. What a quantity may be is not written here but in :mod:`stribeck.quantities.inputs`.
 """
 
@@ -108,7 +108,7 @@ class Case:
     conversions : tuple of str
         What was made of inputs as data sheets have them, one sentence each.
     tables : dict
-        All tables and keys of the file as they stand there.
+        All tables and keys of the file as written.
     """
 
     path: Path
@@ -238,7 +238,7 @@ def geometry_of(tables: dict[str, Any]) -> tuple[Geometry, dict[str, Any]]:
     Parameters
     ----------
     tables : dict
-        The tables as they stand in the file.
+        The tables as written in the file.
 
     Returns
     -------

@@ -62,7 +62,7 @@ def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], d
     Parameters
     ----------
     tables : dict
-        The tables of a file as they stand there.
+        The tables of a file as written.
     geometry : {"line", "point"}
         The geometry of the contact.
 

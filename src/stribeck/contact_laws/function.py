@@ -70,7 +70,7 @@ class FunctionLaw:
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """None that could be told of a function."""
+        """None: a function has no parameters to print."""
         return {}
 
     def notes(self, separation: float) -> tuple[str, ...]:

@@ -45,7 +45,7 @@ class Spectrum(ByValue):
 
     Notes
     -----
-    Moments are exact for the table; how well the table stands for a surface is not judged here.
+    Moments are exact for the table; how well the table represents a surface is not checked here.
     Source: [Persson05], with its normalisation of C.
 
     Examples

@@ -175,7 +175,7 @@ def read_two_columns(
     Returns
     -------
     ndarray, shape (n, 2)
-        The numbers as they stand.
+        The numbers as written.
     tuple of float or None
         The SI values of the units, if it has any.
 

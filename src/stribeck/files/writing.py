@@ -1,4 +1,4 @@
-"""Files of results: judged before the work, written whole or not at all."""
+"""Files of results: checked before the work, written whole or not at all."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 r"""How a scan departs from the theory's surface, which is isotropic and Gaussian, and from sizes that instruments have.
 
-The texture is told by the second angular harmonic of the spectrum over its ring,
+The texture is read off the second angular harmonic of the spectrum over its ring,
 
 .. math:: A = \frac{\langle C\, e^{2 i \theta} \rangle}{\langle C \rangle}
 
@@ -27,7 +27,7 @@ STRETCHED = 1.5
 """Aspect ratio of features above which a note says that the surface is anisotropic."""
 
 MOST_STRETCHED = 1e4
-"""Largest aspect ratio that is told from a groove without end."""
+"""Largest aspect ratio that can be distinguished from an endless groove."""
 
 SKEWED = 0.3
 """Skewness above which a note says that the heights are not Gaussian, if it is also 3 standard errors."""

@@ -71,7 +71,7 @@ class Form:
         Notes
         -----
         The curvature is a sum of heights with weights w, so its variance is that of the roughness under their transform.
-        Roughness longer than the scan cannot be told from curvature and is not in this error.
+        Roughness longer than the scan cannot be distinguished from curvature and is not in this error.
         """
         if self.radius is None:
             return None

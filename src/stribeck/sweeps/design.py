@@ -1,6 +1,6 @@
 """Sweep files: a TOML file that says what varies becomes a checked :class:`SweepDesign`, all states of which are possible.
 
-As with case files, everything that is wrong is told in one go, a sentence for each problem that names the key.
+As with case files, everything that is wrong is reported at once, a sentence for each problem that names the key.
 """
 
 import functools

@@ -78,7 +78,8 @@ def gap(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    Judged against the largest gap within two half-widths; the error is of order kappa, with logarithms, or lambda**(3/5).
+    The error is relative to the largest gap within two half-widths; it is of order kappa,
+    with logarithms, or lambda**(3/5).
 
     Source: [BP] Eq. (Hertz).
     """

@@ -60,7 +60,7 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
 
     Notes
     -----
-    Judged up to 0.9 of the half-width; the edge has a layer of width kappa**(2/3).
+    Compared with the solver up to 0.9 of the half-width; the edge has a layer of width kappa**(2/3).
 
     Source: [BP] Eq. (central_region_contact).  The second term is ours: the pressure :math:`-\kappa (1 - x^2)^{-1/2}` of next
     order, whose elastic gap is the first term.
@@ -151,7 +151,8 @@ def gap_small_indentation(groups: Groups, x: Value, terms: int = 1) -> Value:
 
     Notes
     -----
-    Judged up to three standard deviations of the pressure, :math:`3 \kappa^{1/2}`.  The second term is right at x = 0.
+    Compared with the solver up to three standard deviations of the pressure, :math:`3 \kappa^{1/2}`.
+    The second term is right at x = 0.
 
     Source: [BP] Eq. (separation_small_indentation); the second term is ours.
     """

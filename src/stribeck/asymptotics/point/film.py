@@ -160,7 +160,7 @@ def gap_slow(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    Judged up to 0.8 of the radius; inlet and outlet are :math:`\lambda^{2/5}` wide.
+    Compared with the solver up to 0.8 of the radius; inlet and outlet are :math:`\lambda^{2/5}` wide.
 
     Source: ours, see the module.
     """

@@ -96,7 +96,8 @@ def gap(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    Judged against the largest gap within two radii; the error is of order kappa, with logarithms, or lambda**(3/5).
+    The error is relative to the largest gap within two radii; it is of order kappa,
+    with logarithms, or lambda**(3/5).
 
     Source: Johnson (1985), Section 3.4.
     """

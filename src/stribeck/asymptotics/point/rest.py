@@ -45,7 +45,7 @@ RULE = np.polynomial.legendre.leggauss(40)
 """Gauss rule of the correction of the pressure; good to rounding."""
 
 WIDTHS = 5.0
-"""Distance from the edge, in widths of its layer, to which the fields are judged."""
+"""Distance from the edge, in widths of its layer, to which the fields are compared with the solver."""
 
 
 def _smoother(relative_roughness: float) -> Groups:
@@ -98,7 +98,7 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
 
     Notes
     -----
-    Judged up to 0.9 of the radius; the edge has a layer of width kappa**(2/3).
+    Compared with the solver up to 0.9 of the radius; the edge has a layer of width kappa**(2/3).
 
     Source: ours, see the module.
     """
@@ -208,7 +208,7 @@ def edge_gap(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    H is the layer of the line, :func:`stribeck.asymptotics.smooth.edge_layer.layer`.  Judged within 5 widths of the edge.
+    H is the layer of the line, :func:`stribeck.asymptotics.smooth.edge_layer.layer`.  Compared within 5 widths of the edge.
 
     Source: ours, see the module.
     """
@@ -244,7 +244,7 @@ def edge_contact_pressure(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    Judged within 5 widths of the edge.
+    Compared with the solver within 5 widths of the edge.
 
     Source: ours, see the module.
     """

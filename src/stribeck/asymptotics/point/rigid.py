@@ -100,8 +100,8 @@ def fluid_pressure(groups: Groups, x: Value) -> Value:
 
     Notes
     -----
-    Judged within three of its widths, :math:`h_0^{1/2}`.  The part even in x, which carries the load, is smaller by
-    :math:`\lambda/h_0^2`.
+    Compared with the solver within three of its widths, :math:`h_0^{1/2}`.  The part even in x, which carries
+    the load, is smaller by :math:`\lambda/h_0^2`.
 
     Source: ours, see the module; far away it is :math:`-\tfrac45 \lambda x/r^4`.
     """

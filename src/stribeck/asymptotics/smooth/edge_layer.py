@@ -39,7 +39,7 @@ LOAD = 0.5 * np.pi
 
 RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-6, 1e-2))
 WIDTHS = 5.0
-"""Distance from the edge, in widths of the layer, to which the fields are judged."""
+"""Distance from the edge, in widths of the layer, to which the fields are compared with the solver."""
 
 
 def _rough(roughness: float) -> Groups:

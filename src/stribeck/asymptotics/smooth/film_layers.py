@@ -34,7 +34,7 @@ from stribeck.numerics.threads import one_blas_thread
 
 RANGE = (Limit("speed", 1e-10, 1e-3),)
 WIDTHS = 5.0
-"""Distance from the edge, in widths of the layer, to which the fields are judged."""
+"""Distance from the edge, in widths of the layer, to which the fields are compared with the solver."""
 STEPS = (1e-5, 1e-6, 1e-7, 1e-8)
 
 

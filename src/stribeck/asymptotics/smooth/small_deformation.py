@@ -24,7 +24,7 @@ def _at_inverse_speed(inverse: float) -> Groups:
 
 
 def _four_widths(groups: Groups) -> tuple[float, float]:
-    """Return where the fields are judged: four widths of the pressure to both sides."""
+    """Return where the fields are compared with the solver: four widths of the pressure to both sides."""
     half = 4 * float(np.sqrt(central_gap_small.function(groups)))
     return -half, half
 
