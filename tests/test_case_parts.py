@@ -122,8 +122,10 @@ def test_all_problems_are_told_at_once():
 
 
 @pytest.mark.quick
-def test_a_ball_has_motion_only():
+def test_a_ball_has_the_tables_of_a_cylinder():
     ball = {**CONTACT, "geometry": "point", "load": "50 mN"}
     assert case_of(ball, motion={"slide_to_roll": 0.5}).contact.slide_to_roll == 0.5
-    with pytest.raises(sb.InputError, match=r"\[cavitation\] a ball has"):
-        case_of(ball, cavitation={"model": "exit"})
+    torn = case_of(ball, cavitation={"model": "exit"}).contact
+    assert torn.cavitation == "exit"
+    assert torn.groups.model.cavitation == "exit"
+    assert torn.replace(load="40 mN").cavitation == "exit"

@@ -90,8 +90,6 @@ def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], d
             unknown = [key for key in table if key not in KEYS[name]]
             if unknown:
                 raise InputError("\n".join(_unknown(key, table[key], KEYS[name]) for key in unknown))
-            if geometry == "point" and name != "motion":
-                raise InputError("a ball has the fluid and the solid of the article only; leave the table out.")
             parts |= read(table, rest.get("contact"))
         except InputError as problem:
             problems += [f"[{name}] {line}" for line in str(problem).split("\n")]

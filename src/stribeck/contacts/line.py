@@ -10,16 +10,14 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.contact import Contact, HertzScales
+from stribeck.contacts.contact import HertzScales
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE
-from stribeck.contacts.parts import DEFAULT, NAMES, Parts, WithParts, signature_with_parts
-from stribeck.fluids.laws import FilmUnits
+from stribeck.contacts.parts import DEFAULT, Parts, WithParts, signature_with_parts
 from stribeck.quantities.inputs import LINE, InputTable, quantity, refuse_former, signature_of
 from stribeck.quantities.units import InputError
 
@@ -27,7 +25,7 @@ __all__ = ["Groups", "HertzScales", "InputError", "LineContact"]
 
 
 @dataclass(frozen=True, init=False)
-class LineContact(WithParts, Contact):
+class LineContact(WithParts):
     r"""A rigid rough cylinder sliding on a lubricated elastic half-space, in SI units.
 
     Every quantity is text with a unit (``"10 mm"``) or a bare number in SI units; floats in SI are kept.
@@ -117,14 +115,6 @@ class LineContact(WithParts, Contact):
     INPUTS: ClassVar[InputTable] = LINE
     __signature__: ClassVar[inspect.Signature] = signature_with_parts(signature_of(LINE))
 
-    def _keep(self, law: AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
-        parts: Parts = inputs.get("parts", DEFAULT)
-        object.__setattr__(self, "parts", DEFAULT)
-        super()._keep(law, {name: value for name, value in inputs.items() if name not in NAMES and name != "parts"})
-        given = {name: inputs[name] for name in NAMES & inputs.keys()}
-        object.__setattr__(self, "parts", Parts(**{**parts.items(), **given}) if given else parts)
-        _ = self.groups.model
-
     @property
     def groups(self) -> Groups:
         """The dimensionless groups, see :class:`Groups`."""
@@ -139,17 +129,9 @@ class LineContact(WithParts, Contact):
         )
 
     @property
-    def film_units(self) -> FilmUnits:
-        """What makes the numbers of its fluid dimensionless."""
-        hertz = self.hertz
-        return FilmUnits(
-            pressure=hertz.pressure,
-            time=6 * self.viscosity / hertz.pressure * (hertz.half_width / hertz.indentation),
-            gap=hertz.indentation,
-            viscosity=self.viscosity,
-            decay_length=self.roughness / self.alpha,
-            alpha=self.alpha,
-        )
+    def slide_to_roll(self) -> float:
+        """Ratio of the sliding speed to the mean of the surface speeds [-]."""
+        return self.parts.slide_to_roll
 
     @property
     def hertz(self) -> HertzScales:

@@ -7,9 +7,12 @@ that the equations see.
 from __future__ import annotations
 
 import inspect
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+from stribeck.contact_laws.law import AsperityLaw
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
@@ -138,10 +141,32 @@ class Parts:
         return Model(film, self.cavitation, solid, self.cavity_pressure / units.pressure)
 
 
-class WithParts:
+class WithParts(Contact):
     """A contact that has parts, each of them by its name."""
 
     parts: Parts
+
+    def _keep(self, law: AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
+        names = NAMES - set(self.INPUTS.names)
+        parts: Parts = inputs.get("parts", DEFAULT)
+        object.__setattr__(self, "parts", DEFAULT)
+        super()._keep(law, {name: value for name, value in inputs.items() if name not in names and name != "parts"})
+        given = {name: inputs[name] for name in names & inputs.keys()}
+        object.__setattr__(self, "parts", Parts(**{**parts.items(), **given}) if given else parts)
+        _ = self.groups.model
+
+    @property
+    def film_units(self) -> FilmUnits:
+        """What makes the numbers of its fluid dimensionless."""
+        hertz = self.hertz
+        return FilmUnits(
+            pressure=hertz.pressure,
+            time=6 * self.viscosity / hertz.pressure * (hertz.half_width / hertz.indentation),
+            gap=hertz.indentation,
+            viscosity=self.viscosity,
+            decay_length=self.roughness / self.alpha,
+            alpha=self.alpha,
+        )
 
     @property
     def fluid(self) -> Fluid:
@@ -168,15 +193,10 @@ class WithParts:
         """The soft body; None is a half-space."""
         return self.parts.solid
 
-    @property
-    def slide_to_roll(self) -> float:
-        """Ratio of the sliding speed to the mean of the surface speeds [-]."""
-        return self.parts.slide_to_roll
-
 
 def signature_with_parts(signature: inspect.Signature) -> inspect.Signature:
-    """Return the signature of a contact with the parts as further keywords."""
-    parts = list(inspect.signature(Parts.__init__).parameters.values())[1:]
+    """Return the signature of a contact with the parts that are no inputs of it as further keywords."""
+    parts = [each for each in list(inspect.signature(Parts.__init__).parameters.values())[1:] if each.name not in signature.parameters]
     keywords = [each.replace(kind=inspect.Parameter.KEYWORD_ONLY, annotation=inspect.Parameter.empty) for each in parts]
     return signature.replace(parameters=[*signature.parameters.values(), *keywords])
 

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import inspect
 import math
-from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Self
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, NamedTuple, Self
 
 from stribeck.contact_laws.law import AsperityLaw
-from stribeck.contacts.contact import Contact, HertzScales
+from stribeck.contacts.contact import HertzScales
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.parts import DEFAULT, Parts, WithParts, signature_with_parts
 from stribeck.quantities.inputs import POINT, InputTable, quantity, refuse_former, signature_of
 from stribeck.quantities.units import InputError, format_si, show
 
@@ -40,7 +42,7 @@ class HamrockDowsonNumbers(NamedTuple):
 
 
 @dataclass(frozen=True, init=False)
-class PointContact(Contact):
+class PointContact(WithParts):
     r"""A rough ball on a lubricated elastic half-space, in SI units: what a ball-on-disc tribometer has.
 
     Every quantity is text with a unit (``"9.5 mm"``) or a bare number in SI units; floats in SI are kept.
@@ -85,6 +87,8 @@ class PointContact(Contact):
         Poisson ratio of the other body [-].
     law : AsperityLaw, optional
         Contact law :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
+    fluid, cavitation, cavity_pressure, flow_factors, solid : object, optional
+        As in :class:`stribeck.LineContact`; those that a ball does not have are refused by :func:`stribeck.solve`.
 
     Attributes
     ----------
@@ -122,13 +126,14 @@ class PointContact(Contact):
 
     slide_to_roll: float
     wetted_radius: float | None
+    parts: Parts = field(repr=False)
 
     INPUTS: ClassVar[InputTable] = POINT
     WIDTH: ClassVar[str] = "Hertz radius"
-    __signature__: ClassVar[inspect.Signature] = signature_of(POINT)
+    __signature__: ClassVar[inspect.Signature] = signature_with_parts(signature_of(POINT))
 
     @refuse_former
-    def __init__(self, *, law: AsperityLaw | None = None, **inputs: str | float | None) -> None:
+    def __init__(self, *, law: AsperityLaw | None = None, **inputs: Any) -> None:
         speed, ratio = inputs.get("speed"), inputs.get("slide_to_roll")
         if speed is not None and ratio is not None and quantity("slide_to_roll", ratio, POINT) != PURE_SLIDING:
             raise InputError(
@@ -147,7 +152,14 @@ class PointContact(Contact):
             roughness=4 / math.pi**2 * (self.roughness / R) / self.alpha / self.beta / self.beta,
             law=self.law,
             geometry="point",
+            model=self._model(),
         )
+
+    def _model(self) -> Model:
+        if self.parts is DEFAULT or self.parts == DEFAULT:
+            return ARTICLE
+        moving = Parts(**{**self.parts.items(), "slide_to_roll": self.slide_to_roll})
+        return moving.model(self.film_units, self.hertz.half_width, self.speed)
 
     @property
     def hertz(self) -> HertzScales:

@@ -33,7 +33,7 @@ def with_parts(problem: Problem, **given: Any) -> Problem:
 
     Returns
     -------
-    LineContact or Groups
+    LineContact, PointContact or Groups
         The contact with these parts in the place of its own, the groups with these and else those of the article.
 
     Raises
@@ -51,8 +51,6 @@ def with_parts(problem: Problem, **given: Any) -> Problem:
     if given and isinstance(problem, Contact):
         return problem.replace(**given)
     if given and isinstance(problem, Groups):
-        if problem.geometry != "line":
-            raise InputError(f"{', '.join(given)}: balls have the fluid and the solid of the article only; leave them out.")
         return replace(problem, model=Parts(**given).model(hertz_units(problem)))
     return problem
 

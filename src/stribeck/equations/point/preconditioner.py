@@ -78,13 +78,19 @@ class Coupling:
         of_pressure = np.matmul(transposed * linear.radial_of_pressure[:, :, None, :], derivative)
         of_gap = transposed * linear.radial_of_gap[:, :, None, :] - of_pressure * mesh.scattered(slope)[:, :, None, :]
         tangential = linear.angular_of_gap - wide * (mesh.angular_derivative @ slope)
+        value = np.zeros_like(wide)
+        if linear.of_value is not None:
+            by_value, value = linear.of_value
+            of_pressure = of_pressure + transposed * by_value[:, :, None, :]
+            of_gap = of_gap - transposed * (by_value * mesh.scattered(slope))[:, :, None, :]
+            tangential = tangential - value * slope
         self.rates = rates(mesh.modes) / mesh.rim
         # The contact pressure at the rim is nil but for the softest laws; its mode is taken for the first.
         rim_of_gap = linear.rim_of_gap - linear.rim_of_pressure * slope[:, -1] * self.rates[0]
         cosines, sines = mesh.cosines, mesh.sines
         self.radial_p, self.radial_h = _sums(cosines, of_pressure, -1.0), _sums(cosines, of_gap, -1.0)
         self.ring_p, self.ring_s = _sums(cosines, wide, -1.0), _sums(cosines, wide * slope, -1.0)
-        self.ring_h = _sums(sines, tangential, 1.0)
+        self.ring_h, self.ring_v = _sums(sines, tangential, 1.0), _sums(sines, value, 1.0)
         self.rim_p, self.rim_h = _sums(cosines, linear.rim_of_pressure, -1.0), _sums(cosines, rim_of_gap, -1.0)
 
     def _of_gap(self, m: int, k: int) -> Array:
@@ -111,6 +117,8 @@ class Coupling:
                 blocks[:, own, own] += local_p[:, panel]
             orders = 0.5 * k * np.array(reached)[:, None]
             blocks[:, diagonal, diagonal] += orders * (self.ring_p[d] - self.ring_p[s])
+            m = np.array(reached)[:, None]
+            blocks[:, diagonal, diagonal] -= 0.5 * m * (self.ring_v[s] + np.sign(m - k) * self.ring_v[d])
             blocks[:, -1, -1] += 0.5 * self.rates[k] * (self.rim_p[d] + self.rim_p[s])
             yield reached, blocks
 

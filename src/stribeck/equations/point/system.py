@@ -26,6 +26,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.cut_off import FULL, FarFilm
 from stribeck.equations.point.far_field import particular, rates
+from stribeck.equations.point.films import PLAIN, PlaneFilm
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.solids.half_space import deflection_by_mode, deflections_from_beyond, tilt_from_beyond
 
@@ -91,11 +92,12 @@ class Unknowns:
 
 @dataclass(frozen=True, eq=False)
 class Equations:
-    """The discretised problem for one speed and one contact law."""
+    """The discretised problem for one speed, one contact law and one film."""
 
     operators: Operators
     speed: float
     law: ContactLaw
+    film: PlaneFilm = PLAIN
 
     far: ClassVar[FarFilm] = FULL
 
@@ -124,14 +126,13 @@ class Equations:
         """Return the weak residual of Reynolds' equation, R_2."""
         mesh, speed = self.operators.mesh, self.speed
         cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
-        wide = h**3
+        wide, carried = self.film.flow(h, p)[:2]
         weight, angle = _weights(mesh)
-        radial = weight * (mesh.scattered(wide) * mesh.radial_derivative(p) - speed * cos[..., None] * mesh.scattered(h))
-        tangential = (angle / mesh.radii) * wide * (mesh.angular_derivative @ p) + speed * angle * sin * h
+        radial = weight * (mesh.scattered(wide) * mesh.radial_derivative(p) - speed * cos[..., None] * mesh.scattered(carried))
+        tangential = (angle / mesh.radii) * wide * (mesh.angular_derivative @ p) + speed * angle * sin * carried
         found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ tangential
-        h_x, p_x, x = h[:, -1], p[:, -1], mesh.rim
-        part = np.pi / mesh.modes
-        found[:, -1] += part * (speed * x * cos[:, 0] * h_x - h_x**3 * x * self.rim_slope(p_x, offset))
+        x, part = mesh.rim, np.pi / mesh.modes
+        found[:, -1] += part * x * (speed * cos[:, 0] * carried[:, -1] - wide[:, -1] * self.rim_slope(p[:, -1], offset))
         return found
 
     def rim_slope(self, p: Array, offset: float) -> Array:
@@ -161,20 +162,36 @@ class Linear:
         cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
         weight, angle = _weights(mesh)
         self.contact_slope = equations.law.slope(h, equations.law.pressure(h))
-        wide, wider = h**3, 3 * h**2
-        self.radial_of_pressure = weight * mesh.scattered(wide)
-        self.radial_of_gap = weight * (mesh.scattered(wider) * mesh.radial_derivative(y.fluid) - speed * cos[..., None])
-        self.angular_of_pressure = (angle / mesh.radii) * wide
-        self.angular_of_gap = (angle / mesh.radii) * wider * (mesh.angular_derivative @ y.fluid) + speed * angle * sin
-        x, h_x, part = mesh.rim, h[:, -1], np.pi / mesh.modes
-        self.rim_of_pressure = -part * x * h_x**3
-        self.rim_of_gap = part * x * (speed * cos[:, 0] - 3 * h_x**2 * equations.rim_slope(y.fluid[:, -1], y.offset))
+        flow = equations.film.flow(h, y.fluid)
+        in_radius, in_angle = mesh.radial_derivative(y.fluid), (mesh.angular_derivative @ y.fluid) / mesh.radii
+
+        def moves(mobility: Array, carried: Array) -> tuple[Array, Array]:
+            """Return what changes of mobility and of what is carried do to the flow along the radius and across it."""
+            along = mesh.scattered(mobility) * in_radius - speed * cos[..., None] * mesh.scattered(carried)
+            return weight * along, angle * (mobility * in_angle + speed * sin * carried)
+
+        self.radial_of_pressure = weight * mesh.scattered(flow.mobility)
+        self.angular_of_pressure = (angle / mesh.radii) * flow.mobility
+        self.radial_of_gap, self.angular_of_gap = moves(flow.mobility_by_gap, flow.carried_by_gap)
+        self.of_value: tuple[Array, Array] | None = None
+        """What the pressure itself does, along the radius and across it, beside its gradient; None for nothing."""
+        if flow.mobility_by_pressure is not None and flow.carried_by_pressure is not None:
+            self.of_value = moves(flow.mobility_by_pressure, flow.carried_by_pressure)
+        # At the rim the film is that at ambient pressure.
+        x, part = mesh.rim, np.pi / mesh.modes
+        slope = equations.rim_slope(y.fluid[:, -1], y.offset)
+        self.rim_of_pressure = -part * x * flow.mobility[:, -1]
+        at_rim = speed * cos[:, 0] * flow.carried_by_gap[:, -1] - flow.mobility_by_gap[:, -1] * slope
+        self.rim_of_gap = part * x * at_rim
 
     def flow(self, dp: Array, dh: Array) -> Array:
         """Return the change of R_2 under changes of fluid pressure and gap at the nodes."""
         mesh = self.equations.operators.mesh
         radial = self.radial_of_pressure * mesh.radial_derivative(dp) + self.radial_of_gap * mesh.scattered(dh)
         angular = self.angular_of_pressure * (mesh.angular_derivative @ dp) + self.angular_of_gap * dh
+        if self.of_value is not None:
+            radial += self.of_value[0] * mesh.scattered(dp)
+            angular += self.of_value[1] * dp
         found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ angular
         rates_at_rim = self.equations.rim_rates(self.y.offset)
         found[:, -1] += self.rim_of_pressure * (rates_at_rim @ dp[:, -1]) + self.rim_of_gap * dh[:, -1]

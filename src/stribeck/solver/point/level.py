@@ -11,6 +11,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.point.cavitation import CavitatedEquations, iterate_cavitated
+from stribeck.equations.point.films import plane_of
 from stribeck.equations.point.iteration import Iterated, iterate
 from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, operators_of
 from stribeck.equations.point.system import Equations, Unknowns
@@ -98,7 +99,7 @@ def solve_level(
         raise MeshTooLargeError
     operators = operators_of(resolution)
     kind, iteration = PROBLEMS[resolution.model.cavitation]
-    equations = kind(operators, speed, law)
+    equations = kind(operators, speed, law, plane_of(resolution.model.film.at(speed)))
     guess = moved(start, start_mesh, operators.mesh)
     if kept is not None and kept.shape != guess.gap.shape:
         kept = None

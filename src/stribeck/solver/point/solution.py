@@ -11,10 +11,11 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import friction_integral
+from stribeck.contacts.cut_off import FAR, friction_integral
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.point import PURE_SLIDING, PointContact
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import BaseSolution, Profile
@@ -28,6 +29,13 @@ __all__ = ["Field", "PointObservables", "PointSolution", "solution_of"]
 
 NEAR_EDGE = 5.0
 """Radius of the disc of liquid over the Hertz radius below which a note says that friction is coarse."""
+
+WAKE = (
+    "The film ends at ambient pressure; streaks of liquid that touch both walls fill the part h_e/h of the wake. A dry wake "
+    "takes 0.35 lambda ln(X/a) from the friction integral, a full one adds 0.48 lambda ln(X/a), X being where the liquid ends; "
+    "without wetted_radius that is the X of a ball whose film does not break."
+)
+"""What a user has to know of the friction of a film that breaks."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +94,7 @@ class PointObservables:
         """Return those of a state, and of the contact's motion and liquid."""
         values = {name: float(state.values[name]) for name in OBSERVABLES}
         if not isinstance(contact, PointContact):
-            return cls(**values, _groups=state.groups)
+            return cls(**values, _groups=state.groups, _slide_to_roll=2.0 * state.groups.model.film.slide)
         wetted = None if contact.wetted_radius is None else contact.wetted_radius / contact.hertz.half_width
         return cls(**values, _groups=state.groups, _slide_to_roll=contact.slide_to_roll, _wetted_radius=wetted)
 
@@ -99,7 +107,8 @@ class PointObservables:
         """
         parts = {name: getattr(self, name) for name in ("J_couette", "J_poiseuille", "J_pcx")}
         wetted = math.inf if self._wetted_radius is None else self._wetted_radius
-        return float(friction_integral(parts, float(self._groups.speed), slope, self._slide_to_roll, wetted, definition))
+        speed, far = float(self._groups.speed), FAR[self._groups.model.cavitation]
+        return float(friction_integral(parts, speed, slope, self._slide_to_roll, wetted, definition, far))
 
     def viscous_friction(self, beta: float, definition: Definition = "balanced") -> float:
         r"""Return the viscous friction coefficient.
@@ -202,7 +211,8 @@ class PointSolution(BaseSolution):
     def identity_error(self) -> float:
         r"""What is left of the identity of the friction integrals, over the largest of them [-].
 
-        .. math:: J^\mathrm{balanced} - J^\mathrm{published} - J^{p_c x} + \tfrac25 \pi \lambda = 0
+        .. math:: J^\mathrm{balanced} - J^\mathrm{published} - J^{p_c x} + c \lambda = 0, \quad
+            c = \tfrac25 \pi, \text{ or } 0.63702 \text{ where the film breaks}
         """
         values = self.state.values
         largest = max(abs(values["J_balanced"]), abs(values["J_published"]), abs(values["J_pcx"]))
@@ -240,7 +250,7 @@ class PointSolution(BaseSolution):
 
     @property
     def fluid_pressure(self) -> Array:
-        """Fluid pressure at :attr:`x` on the middle line [p_Hz]; negative behind the contact, where nothing cavitates."""
+        """Fluid pressure at :attr:`x` on the middle line [p_Hz]; negative behind the contact unless the film breaks there."""
         return self._middle.fluid_pressure
 
     @property
@@ -394,7 +404,9 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
     if not state.outcome.ok:
         return shape_notes(contact)
     notes = [*shape_notes(contact), *law_notes(groups, contact, values)]
-    if contact is not None and groups.speed > 0:
+    if groups.model.cavitation is Cavitation.EXIT and groups.speed > 0:
+        notes.append(WAKE)
+    elif contact is not None and groups.speed > 0:
         notes += cavitation_notes(
             contact,
             state.nodal_fluid_pressure,

@@ -17,6 +17,7 @@ from stribeck.contacts.cut_off import FAR
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.dry import dry_contact, hertz_gap
+from stribeck.equations.point.films import PLANES, is_isotropic
 from stribeck.equations.point.iteration import Iterated
 from stribeck.equations.point.mesh_choice import fits, operators_of, resolution
 from stribeck.equations.point.observables import identity_error
@@ -158,12 +159,19 @@ def check_model(model: Model) -> None:
             f"cavitation = {str(model.cavitation)!r}: of a ball the film ends at ambient pressure, 'exit', or does not break, "
             "'none'; a cavity at another pressure is not modelled."
         )
-    plain = replace(ARTICLE, cavitation=model.cavitation, film=replace(Newtonian(), slide=model.film.slide))
-    if model != plain:
+    if type(model.film) not in PLANES:
         raise InputError(
-            "the groups have another fluid or solid; a ball is solved with a Newtonian fluid of constant viscosity on a "
-            "half-space."
+            f"fluid = {model.film.name}: of a ball the viscosity may depend on the pressure, not on the shear rate; films and "
+            "friction of a thinning fluid lie between those of its highest and its lowest viscosity."
         )
+    assert isinstance(model.film, Newtonian)
+    if not is_isotropic(model.film.flow):
+        raise InputError(
+            f"flow_factors = {model.film.flow.name}: of a ball they must be those of isotropic roughness, gamma = 1, without "
+            "friction factors."
+        )
+    if model.solid != ARTICLE.solid:
+        raise InputError(f"solid = {model.solid.name}: of a ball the soft body is a half-space.")
 
 
 def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0) -> PointState:
