@@ -81,7 +81,7 @@ class CavitatedEquations(Equations):
     def rim_rates(self, offset: float) -> Array:
         """Return the derivative of :meth:`rim_slope` by the pressure, shape (angles, angles)."""
         mesh = self.operators.mesh
-        first, slope = particular(np.array([mesh.rim]), offset, 1.0)
+        first, slope = particular(np.array([mesh.rim]), offset, 1.0, bulge=self.operators.bulge)
         return np.eye(mesh.modes) * float(slope[0] / first[0])
 
     def shear_missing(self, y: Unknowns) -> float:

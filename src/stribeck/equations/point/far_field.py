@@ -29,12 +29,14 @@ POINTS = 40
 """Gauss points of the integrals from the rim to infinity."""
 
 
-def particular(r: Array, offset: float, speed: float, far: FarFilm = FULL) -> tuple[Array, Array]:
+def particular(
+    r: Array, offset: float, speed: float, far: FarFilm = FULL, bulge: float = DEFLECTION
+) -> tuple[Array, Array]:
     """Return the factor of cos(theta) in the first part, and its derivative in r."""
     rigid = offset + 0.5 * r * r
-    bent = 1.0 - 16.0 * DEFLECTION / r**3
+    bent = 1.0 - 16.0 * bulge / r**3
     base = -0.25 * far.pressure * speed * r / rigid**2
-    slope = base * (1.0 / r - 2.0 * r / rigid) * bent + base * 48.0 * DEFLECTION / r**4
+    slope = base * (1.0 / r - 2.0 * r / rigid) * bent + base * 48.0 * bulge / r**4
     return np.asarray(base * bent), np.asarray(slope)
 
 
@@ -43,7 +45,9 @@ def rates(modes: int) -> Array:
     return np.asarray(-3.0 - np.sqrt(9.0 + np.arange(modes) ** 2))
 
 
-def tails(rim: float, offset: float, speed: float, pressure: float, far: FarFilm = FULL) -> tuple[float, float, float]:
+def tails(
+    rim: float, offset: float, speed: float, pressure: float, far: FarFilm = FULL, bulge: float = DEFLECTION
+) -> tuple[float, float, float]:
     """Return what lies beyond the rim of shear, pressure flow and moment, less the logarithms at infinity.
 
     ``pressure`` is the factor of cos(theta) in the film pressure at the rim.
@@ -52,9 +56,9 @@ def tails(rim: float, offset: float, speed: float, pressure: float, far: FarFilm
     u, w = 0.5 * (t + 1.0), 0.5 * w
     r = rim / u
     ring = rim / u**2 * w * r
-    h = offset + 0.5 * r * r + DEFLECTION / r
-    f, slope = particular(r, offset, speed, far)
-    decaying = (pressure - float(particular(np.array([rim]), offset, speed, far)[0][0])) * (r / rim) ** rates(2)[1]
+    h = offset + 0.5 * r * r + bulge / r
+    f, slope = particular(r, offset, speed, far, bulge)
+    decaying = (pressure - float(particular(np.array([rim]), offset, speed, far, bulge)[0][0])) * (r / rim) ** rates(2)[1]
     f, slope = f + decaying, slope + decaying * rates(2)[1] / r
     log, strength = math.log(rim), far.pressure * speed
     couette = 0.5 * far.couette * speed * (float((ring * (1.0 / h - 2.0 / r**2)).sum()) - 2.0 * log)

@@ -21,6 +21,7 @@ from stribeck.equations.point.system import Operators
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
+from stribeck.solids.plane import BODIES
 
 EDGE = 0.6
 """Width of the smallest panel over that of the edge layer."""
@@ -33,6 +34,9 @@ REACH = 50.0
 
 FAR_PANELS = 2
 """Panels in ln r beyond twice the scale."""
+
+FAR_WIDTH, FAR_GROWTH = 4.0, 0.6
+"""Width of the far panels over the widest panel that a body allows near the contact, and over their radius: the larger one."""
 
 MOST_BYTES = 700_000_000
 """Memory that operators and preconditioner of a mesh may take."""
@@ -98,7 +102,13 @@ class Resolution:
         near, far = np.concatenate([[0.0], inner[::-1], outer[1:]]), np.geomspace(2.0, REACH, FAR_PANELS + 1)
         scale = 2.0**self.doublings
         near = np.unique(np.concatenate([near * scale, [r for r in self.splits if 0.0 < r < 2.0 * scale]]))
-        return PolarMesh(np.concatenate([near, far * scale]), near.size, self.degree, self.modes)
+        widest = BODIES[type(self.model.solid)].widest_panel(self.model.solid)
+        while (wide := np.flatnonzero(np.diff(near) > widest)).size:
+            near = np.sort(np.append(near, 0.5 * (near[wide] + near[wide + 1])))
+        far = far * scale
+        while (wide := np.flatnonzero(np.diff(far) > np.maximum(FAR_WIDTH * widest, FAR_GROWTH * far[:-1]))).size:
+            far = np.sort(np.append(far, np.sqrt(far[wide] * far[wide + 1])))
+        return PolarMesh(np.concatenate([near, far]), near.size, self.degree, self.modes)
 
     def coarser(self) -> Resolution:
         """Return the resolution whose results tell the error of this one's: coarser in radius and in angle."""
@@ -190,7 +200,7 @@ def operators_of(found: Resolution) -> Operators:
         if found in _kept:
             _kept.move_to_end(found)
             return _kept[found]
-        operators = Operators(found.mesh)
+        operators = Operators(found.mesh, found.model.solid)
         _kept[found] = operators
         while len(_kept) > 1 and sum(_size(one) for one in _kept.values()) > KEPT_BYTES:
             _kept.popitem(last=False)

@@ -62,7 +62,7 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
     poiseuille = 0.5 * float(radial.sum() - tangential.sum())
     of_fluid, of_contact = float((moment * p).sum()), float((moment * contact).sum())
     at_rim = float(mesh.to_modes[1] @ p[:, -1])
-    beyond = tails(mesh.rim, y.offset, speed, at_rim, equations.far)
+    beyond = tails(mesh.rim, y.offset, speed, at_rim, equations.far, equations.operators.bulge)
     couette, poiseuille, of_fluid = couette + beyond[0], poiseuille + beyond[1], of_fluid + beyond[2]
     return {
         "J_couette": couette,

@@ -25,10 +25,13 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.cut_off import FULL, FarFilm
-from stribeck.equations.point.far_field import particular, rates
+from stribeck.equations.point.far_field import DEFLECTION, particular, rates
 from stribeck.equations.point.films import PLAIN, PlaneFilm
 from stribeck.numerics.fourier_panels import PolarMesh
-from stribeck.solids.half_space import deflection_by_mode, deflections_from_beyond, tilt_from_beyond
+from stribeck.solids.half_plane import HalfPlane
+from stribeck.solids.half_space import deflections_from_beyond, tilt_from_beyond
+from stribeck.solids.plane import BODIES
+from stribeck.solids.solid import Solid
 
 LOAD = 2.0 * np.pi / 3.0
 """Load in Hertz units: the integral of the pressure."""
@@ -39,6 +42,12 @@ class Operators:
     """What the equations need of a mesh; made once and kept for all states that share it."""
 
     mesh: PolarMesh
+    solid: Solid = HalfPlane()
+
+    @property
+    def bulge(self) -> float:
+        """The deflection under the load, far away, times the distance."""
+        return DEFLECTION * BODIES[type(self.solid)].reaches
 
     @cached_property
     def deflection(self) -> Array:
@@ -46,15 +55,16 @@ class Operators:
 
         Beyond the rim the film pressure falls as r**-3, in the first mode: that tilts the surface within.
         """
-        found = deflection_by_mode(self.mesh)
+        body = BODIES[type(self.solid)]
+        found = body.deflection(self.mesh, self.solid)
         if self.mesh.modes > 1:
-            found[1, :, -1] += tilt_from_beyond(self.mesh, -3.0)
+            found[1, :, -1] += body.reaches * tilt_from_beyond(self.mesh, -3.0)
         return found
 
     @cached_property
     def deflection_from_beyond(self) -> Array:
         """Deflection by mode under a pressure that falls as r**-3 beyond the rim, shape (modes, rings)."""
-        return deflections_from_beyond(self.mesh, -3.0, self.mesh.modes)
+        return BODIES[type(self.solid)].reaches * deflections_from_beyond(self.mesh, -3.0, self.mesh.modes)
 
     @cached_property
     def parabola(self) -> Array:
@@ -138,7 +148,7 @@ class Equations:
     def rim_slope(self, p: Array, offset: float) -> Array:
         """Return the radial derivative of the film pressure at the rim, p being that pressure."""
         mesh = self.operators.mesh
-        first, slope = particular(np.array([mesh.rim]), offset, self.speed)
+        first, slope = particular(np.array([mesh.rim]), offset, self.speed, bulge=self.operators.bulge)
         cos = np.cos(mesh.angles)
         return np.asarray(self.operators.rim_rates @ (p - first * cos) + slope * cos)
 

@@ -26,6 +26,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
+from stribeck.solids.plane import BODIES
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.point.cavitated import follow_cavitated, held, refine_cavitated, tolerance_of
 from stribeck.solver.point.level import Level
@@ -38,6 +39,9 @@ RTOL_RANGE = (1e-8, 1e-2)
 
 AT_REST_DEGREES = (10, 12, 14, 16, 18, 20)
 """Degrees of the panels for contacts at rest, whose problem is one-dimensional."""
+
+THINNEST = 0.2
+"""Thickness of layers over the Hertz radius from which balls are solved on them."""
 
 SMALLEST_ESTIMATE = 0.01
 """Smallest error that is stated, over the tolerance."""
@@ -161,8 +165,7 @@ def check_model(model: Model) -> None:
         )
     if type(model.film) not in PLANES:
         raise InputError(
-            f"fluid = {model.film.name}: of a ball the viscosity may depend on the pressure, not on the shear rate; films and "
-            "friction of a thinning fluid lie between those of its highest and its lowest viscosity."
+            f"fluid = {model.film.name}: of a ball the viscosity may depend on the pressure, not on the shear rate."
         )
     assert isinstance(model.film, Newtonian)
     if not is_isotropic(model.film.flow):
@@ -170,8 +173,14 @@ def check_model(model: Model) -> None:
             f"flow_factors = {model.film.flow.name}: of a ball they must be those of isotropic roughness, gamma = 1, without "
             "friction factors."
         )
-    if model.solid != ARTICLE.solid:
-        raise InputError(f"solid = {model.solid.name}: of a ball the soft body is a half-space.")
+    if type(model.solid) not in BODIES:
+        raise InputError(f"solid = {model.solid.name}: of a ball the soft body is a half-space or a bonded layer.")
+    thickness = getattr(model.solid, "thickness", math.inf)
+    if thickness < THINNEST:
+        raise InputError(
+            f"the layer is {thickness:.3g} times as thick as the Hertz radius of the half-space; of a ball the ratio must be "
+            f"{THINNEST:g} or more."
+        )
 
 
 def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0) -> PointState:
@@ -236,12 +245,12 @@ def _nowhere(x: Array, y: Array) -> PointFields:
 def _at_rest(groups: Groups, rtol: float) -> PointState:
     """Return the dry contact: a problem of one dimension, refined in the degree alone."""
     base, shift = with_positive_gap(groups)
-    law = contact_law(base)
+    law, model = contact_law(base), replace(ARTICLE, solid=groups.model.solid)
     coarse: Level | None = None
     outcome = Outcome.REFINEMENT_LIMIT
     found: Pair | None = None
     for degree in AT_REST_DEGREES:
-        fine = _dry_level(law, degree, newton_tolerance(rtol))
+        fine = _dry_level(law, degree, newton_tolerance(rtol), model)
         if not fine.outcome.ok:
             return _failed(groups, rtol, fine.outcome)
         if coarse is not None:
@@ -253,8 +262,8 @@ def _at_rest(groups: Groups, rtol: float) -> PointState:
     return _state(groups, rtol, replace(found, outcome=outcome), shift)
 
 
-def _dry_level(law: ContactLaw, degree: int, tolerance: float, halvings: int | None = None) -> Level:
-    found = resolution(0.0, law, degree, 2)
+def _dry_level(law: ContactLaw, degree: int, tolerance: float, model: Model, halvings: int | None = None) -> Level:
+    found = resolution(0.0, law, degree, 2, model)
     found = found if halvings is None else replace(found, halvings=halvings)
     operators = operators_of(found)
     dry = dry_contact(operators, law, tolerance)
@@ -264,6 +273,11 @@ def _dry_level(law: ContactLaw, degree: int, tolerance: float, halvings: int | N
 
 def _hertz(groups: Groups, rtol: float) -> PointState:
     """Return the closed form of the dry, smooth contact."""
+    if groups.model.solid != ARTICLE.solid:
+        raise InputError(
+            f"speed and roughness are zero on a {groups.model.solid.name}: the dry contact of a smooth ball is known in closed "
+            "form on the half-space alone; give a small speed or roughness."
+        )
     law = contact_law(groups)
     found = resolution(1e-8, law, 10, 2)
     mesh = operators_of(found).mesh

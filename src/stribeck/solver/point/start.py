@@ -50,6 +50,9 @@ FAST, SLOW = 30.0, 1e-3
 MOST_ROUNDS = 8
 """Times that the panels of a first guess are split."""
 
+MILDER = Steps(0.5, 0.5, 1e-3, order=2, aim=3.0)
+"""Steps along the part of what a fluid does."""
+
 LONGEST_PATH = 60
 """States on a path after which it is given up."""
 
@@ -132,7 +135,7 @@ def first_guess(found: Resolution, speed: float, law: ContactLaw, lift: float = 
 def first_state(speed: float, law: ContactLaw, model: Model = ARTICLE) -> Level | Outcome:
     """Return a coarse state at a speed, or why there is none."""
     last: Outcome = Outcome.STALLED
-    for path in (_direct, _upward, _downward):
+    for path in (_direct, _upward, _downward, _milder):
         try:
             for level in path(speed, law, model):
                 if level.outcome.ok:
@@ -162,6 +165,28 @@ def _upward(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
 def _downward(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     """Yield the same from fast."""
     yield from _path(max(FAST, 2.0 * speed), speed, law, model)
+
+
+def _milder(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
+    """Yield the state at the end of the path from a Newtonian fluid between smooth walls to the film of the model."""
+    if model.film == ARTICLE.film:
+        return
+    here = resolution(speed, law, DEGREE, first_modes(speed, law), model)
+
+    def correct(part: float, history: Sequence[tuple[float, Level]]) -> Level | None:
+        if not history:
+            plain = first_state(speed, law, replace(model, film=ARTICLE.film))
+            return plain if isinstance(plain, Level) else None
+        weights = extrapolation_weights([at for at, _ in history], part)
+        on = replace(here, splits=history[-1][1].resolution.splits, model=replace(model, film=model.film.milder(part)))
+        mesh = operators_of(on).mesh
+        guess = extrapolated(weights, [level for _, level in history], mesh)
+        return solve_level(on, speed, law, guess, mesh, TOLERANCE, max_steps=12)
+
+    found = march(correct, 0.0, 1.0, MILDER)
+    if found.outcome.ok:
+        last = found.states[-1]
+        yield replace(last, resolution=replace(last.resolution, model=model))
 
 
 def _path(begin: float, end: float, law: ContactLaw, model: Model) -> Iterator[Level]:

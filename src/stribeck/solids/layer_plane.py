@@ -1,0 +1,80 @@
+r"""Deflection of a bonded layer under a pressure on a disc, mode by mode in the angle.
+
+.. math::
+
+    K(r) = \frac{2}{\pi^2} \left[\frac1r + \frac1d \, k_s\left(\frac rd\right)\right], \qquad
+    k_s(\xi) = \int_0^\infty [S(x) - 1] \, J_0(x \xi) \, dx
+
+in Hertz units, with S of :mod:`stribeck.solids.layer`: under a normal pressure the layer knows the size of the wave vector
+alone.  The first part is the half-space, the second is smooth and integrated at the nodes.  K falls exponentially, so that
+:math:`k_s = -1/\xi` beyond 24 thicknesses.
+
+Source: the kernel by Hankel's transform; the plane-strain solution as in solids/layer.py.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.special import j0
+
+from stribeck._types import Array
+from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.solids.half_space import deflection_by_mode
+from stribeck.solids.layer import REACH, TABLE, WIDEST_PANEL, Layer, transfer
+
+__all__ = ["layer_by_mode", "smooth_kernel"]
+
+LARGEST_WAVE = 40.0
+"""Wave number times thickness beyond which S is one to rounding."""
+
+ANGLES_PER_MODE = 4
+"""Points around a ring over the number of modes."""
+
+
+@lru_cache(maxsize=16)
+def _table(poisson_ratio: float) -> Array:
+    """Chebyshev coefficients of k_s over ``0 <= xi <= REACH``."""
+    nodes, weights = np.polynomial.legendre.leggauss(1200)
+    q, weights = 0.5 * LARGEST_WAVE * (1 + nodes), 0.5 * LARGEST_WAVE * weights
+    xi = 0.5 * REACH * (1 + np.cos(np.pi * (np.arange(TABLE) + 0.5) / TABLE))
+    values = j0(np.outer(xi, q)) @ (weights * (transfer(q, poisson_ratio) - 1))
+    return np.asarray(chebyshev.chebfit(2 * xi / REACH - 1, values, TABLE - 1))
+
+
+def smooth_kernel(xi: Array, poisson_ratio: float) -> Array:
+    """Return k_s at distances of xi thicknesses."""
+    near = np.minimum(xi, REACH)
+    inside = chebyshev.chebval(2 * near / REACH - 1, _table(poisson_ratio))
+    return np.where(xi < REACH, inside, -1.0 / np.maximum(xi, REACH))
+
+
+def layer_by_mode(mesh: PolarMesh, layer: Layer) -> Array:
+    """Return the matrices from the nodal pressures of each angular mode to its deflection, shape (modes, rings, rings).
+
+    Panels on which pressure acts must not be much wider than the layer is thick: on panels wider than three thicknesses, far
+    out, the layer acts as springs side by side, :math:`\\tfrac4\\pi d (1 - 2 \\nu)/(2 (1 - \\nu)^2)` [u_Hz per p_Hz].
+    """
+    d, nu, r = layer.thickness, layer.poisson_ratio, mesh.radii
+    found = deflection_by_mode(mesh)
+    half_widths = 0.5 * np.diff(mesh.edges)
+    wide = half_widths > WIDEST_PANEL * d
+    first_wide = int(np.argmax(wide)) if wide.any() else mesh.panels
+    last = mesh.rings if first_wide == mesh.panels else int(mesh.of_panel[first_wide, 0]) + 1
+    # The angle must resolve the layer on the largest ring of sources.
+    count = max(64, ANGLES_PER_MODE * mesh.modes, int(8 * r[last - 1] / d))
+    angle = 2 * np.pi * np.arange(count // 2 + 1) / (2 * (count // 2))
+    weights = np.full(angle.size, 2.0)
+    weights[[0, -1]] = 1.0
+    waves = np.cos(np.outer(np.arange(mesh.modes), angle)) * weights * (np.pi / (count // 2))
+    for i in range(mesh.rings):
+        distance = np.sqrt(np.maximum(r[i] ** 2 + r[:last, None] ** 2 - 2 * r[i] * r[:last, None] * np.cos(angle), 0.0)) / d
+        by_mode = smooth_kernel(distance, nu) @ waves.T  # the integral over a turn, by mode
+        found[:, i, :last] += (2 / np.pi**2 / d) * by_mode.T * (mesh.ring_weights * r)[:last]
+    springs = 4 / np.pi * d * (1 - 2 * nu) / (2 * (1 - nu) ** 2)
+    far = np.arange(last, mesh.rings)
+    found[:, :, far] = 0.0
+    found[:, far, far] = springs
+    return found

@@ -1,0 +1,55 @@
+"""The soft bodies that a ball is pressed on, by their kind: half-space and bonded layer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from stribeck._types import Array
+from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.solids.half_plane import HalfPlane
+from stribeck.solids.half_space import deflection_by_mode
+from stribeck.solids.layer import Layer
+from stribeck.solids.layer_plane import layer_by_mode
+
+__all__ = ["BODIES", "PlaneBody"]
+
+
+@dataclass(frozen=True)
+class PlaneBody:
+    """What meshes and equations of a ball ask of a kind of body.
+
+    Attributes
+    ----------
+    deflection : callable
+        ``deflection(mesh, solid)`` gives the matrices from pressures to deflections by angular mode.
+    widest_panel : callable
+        Largest width of the panels near the contact for a solid [a].
+    reaches : float
+        One if the deflection falls as 1/r far away, as that of a half-space; zero if it falls faster.
+    """
+
+    deflection: Callable[[PolarMesh, Any], Array]
+    widest_panel: Callable[[Any], float]
+    reaches: float
+
+
+def _half_space(mesh: PolarMesh, solid: HalfPlane) -> Array:
+    return deflection_by_mode(mesh)
+
+
+def _any(solid: HalfPlane) -> float:
+    return math.inf
+
+
+def _thickness(solid: Layer) -> float:
+    return solid.thickness
+
+
+BODIES: dict[type, PlaneBody] = {
+    HalfPlane: PlaneBody(_half_space, _any, 1.0),
+    Layer: PlaneBody(layer_by_mode, _thickness, 0.0),
+}
+"""By the kind of the solid of the model, whose half-plane is the half-space here."""
