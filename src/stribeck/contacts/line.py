@@ -13,7 +13,6 @@ import math
 from dataclasses import dataclass, field
 from typing import ClassVar, Self
 
-from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import HertzScales
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE

@@ -196,7 +196,11 @@ class WithParts(Contact):
 
 def signature_with_parts(signature: inspect.Signature) -> inspect.Signature:
     """Return the signature of a contact with the parts that are no inputs of it as further keywords."""
-    parts = [each for each in list(inspect.signature(Parts.__init__).parameters.values())[1:] if each.name not in signature.parameters]
+    parts = [
+        each
+        for each in list(inspect.signature(Parts.__init__).parameters.values())[1:]
+        if each.name not in signature.parameters
+    ]
     keywords = [each.replace(kind=inspect.Parameter.KEYWORD_ONLY, annotation=inspect.Parameter.empty) for each in parts]
     return signature.replace(parameters=[*signature.parameters.values(), *keywords])
 

@@ -59,6 +59,7 @@ class CavitatedEquations(Equations):
     """The discretised problem of a film that ends at ambient pressure."""
 
     far: ClassVar[FarFilm] = CAVITATED
+    least: ClassVar[float] = 0.0
 
     @property
     def load_row(self) -> Array:

@@ -29,9 +29,7 @@ POINTS = 40
 """Gauss points of the integrals from the rim to infinity."""
 
 
-def particular(
-    r: Array, offset: float, speed: float, far: FarFilm = FULL, bulge: float = DEFLECTION
-) -> tuple[Array, Array]:
+def particular(r: Array, offset: float, speed: float, far: FarFilm = FULL, bulge: float = DEFLECTION) -> tuple[Array, Array]:
     """Return the factor of cos(theta) in the first part, and its derivative in r."""
     rigid = offset + 0.5 * r * r
     bent = 1.0 - 16.0 * bulge / r**3

@@ -9,8 +9,9 @@ in Hertz units, with viscosity, density and flow factors as functions of pressur
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -108,5 +109,5 @@ def plane_of(film: Film) -> PlaneFilm:
     return PLAIN if isinstance(film, Newtonian) and film.is_plain else PLANES[type(film)](film)
 
 
-PLANES = {Newtonian: NewtonianPlane}
+PLANES: dict[type, Callable[[Any], PlaneFilm]] = {Newtonian: NewtonianPlane}
 """The flow in the plane, by the kind of film."""

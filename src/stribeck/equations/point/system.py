@@ -110,6 +110,8 @@ class Equations:
     film: PlaneFilm = PLAIN
 
     far: ClassVar[FarFilm] = FULL
+    least: ClassVar[float] = -np.inf
+    """The lowest film pressure."""
 
     @property
     def load_row(self) -> Array:

@@ -32,8 +32,8 @@ NEAR_EDGE = 5.0
 
 WAKE = (
     "The film ends at ambient pressure; streaks of liquid that touch both walls fill the part h_e/h of the wake. A dry wake "
-    "takes 0.35 lambda ln(X/a) from the friction integral, a full one adds 0.48 lambda ln(X/a), X being where the liquid ends; "
-    "without wetted_radius that is the X of a ball whose film does not break."
+    "takes 0.35 lambda ln(X/a) from the friction integral, a full one adds 0.48 lambda ln(X/a), X being where the liquid "
+    "ends; without wetted_radius that is the X of a ball whose film does not break."
 )
 """What a user has to know of the friction of a film that breaks."""
 

@@ -226,7 +226,7 @@ def fields_at(level: Level, shift: float, x: Array, y: Array) -> PointFields:
     shape, fluid = mesh.interpolate(nodal, x * inside, y * inside)
     gap = (np.exp(shape) if unknowns.gap.min() > 0 else shape) * (1.0 + r * r)
     contact = level.equations.law.pressure(gap)
-    return PointFields(gap + shift, contact, fluid * inside**3)
+    return PointFields(gap + shift, contact, np.maximum(fluid, level.equations.least) * inside**3)
 
 
 def _failed(groups: Groups, rtol: float, outcome: Outcome) -> PointState:
@@ -275,8 +275,8 @@ def _hertz(groups: Groups, rtol: float) -> PointState:
     """Return the closed form of the dry, smooth contact."""
     if groups.model.solid != ARTICLE.solid:
         raise InputError(
-            f"speed and roughness are zero on a {groups.model.solid.name}: the dry contact of a smooth ball is known in closed "
-            "form on the half-space alone; give a small speed or roughness."
+            f"speed and roughness are zero on a {groups.model.solid.name}: the dry contact of a smooth ball is known in "
+            "closed form on the half-space alone; give a small speed or roughness."
         )
     law = contact_law(groups)
     found = resolution(1e-8, law, 10, 2)
