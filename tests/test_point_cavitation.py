@@ -12,6 +12,7 @@ from stribeck.equations.point.wake import rupture_line, shear_missing
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.units import InputError
+from stribeck.solids.half_space import deflections_from_beyond
 from stribeck.solver.point.solve import solve_cold, solve_from
 
 EXIT = Model(cavitation=Cavitation.EXIT)
@@ -73,7 +74,7 @@ def test_far_away_pressure_and_friction_are_those_of_the_angular_law():
     right = 2 * np.cos(angle)
     right[0] = 0.0
     g = np.linalg.solve(matrix, right)
-    assert abs(g[1]) < 2 * step**2  # the slope at the line
+    assert g[1] / step**2 == pytest.approx(np.cos(RUPTURE), abs=0.02)  # without a slope at the line
     product = g * np.cos(angle)
     moment = 2 * step * (product.sum() - 0.5 * product[-1])
     assert CAVITATED.poiseuille == pytest.approx(-2 * moment, rel=3e-5)
@@ -81,6 +82,14 @@ def test_far_away_pressure_and_friction_are_those_of_the_angular_law():
     wake = np.linspace(0, RUPTURE, 2001)
     wet = float(((10 / 9 * np.sin(wake) ** 2)[1:-1]).sum() + 5 / 9 * math.sin(RUPTURE) ** 2) * (wake[1] - wake[0])
     assert CAVITATED.couette == pytest.approx(2 / 3 * (math.pi - RUPTURE + wet), rel=1e-6)
+
+
+@pytest.mark.quick
+def test_the_pressure_beyond_the_rim_deflects_the_middle_as_its_integral_says():
+    mesh = PolarMesh(np.array([0.0, 1e-3, 1.0, 2.0, 6.0]), 3, 8, 4)
+    found = deflections_from_beyond(mesh, -3.0, 4)
+    assert found[0, 0] == pytest.approx(2 / math.pi * 6.0, rel=1e-6)
+    assert np.abs(found[1:, 0]).max() < 1e-3
 
 
 @pytest.mark.quick
