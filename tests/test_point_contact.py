@@ -168,7 +168,7 @@ def test_a_ball_travels_to_other_processes():
 def test_the_signature_of_a_ball_names_every_input():
     parts = ["fluid", "cavitation", "cavity_pressure", "flow_factors", "solid"]
     assert list(inspect.signature(sb.PointContact).parameters) == [*POINT.quantities, "law", *parts]
-    assert {field.name for field in dataclasses.fields(sb.PointContact)} == {*POINT.names, "law"}
+    assert {field.name for field in dataclasses.fields(sb.PointContact)} == {*POINT.names, "law", "parts"}
 
 
 CASE = """
