@@ -11,6 +11,7 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.batches.inputs import Contacts
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.cut_off import FAR, FULL
 from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
@@ -105,7 +106,7 @@ class BatchSolution(Exported, Shown, ByValue):
         self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
     ) -> FrictionArray:
         rule, groups, definition = RULES[self.groups.geometry], self.groups, check_definition(definition)
-        inputs = {"beta": self._coefficient("beta", beta)}
+        inputs = {"beta": self._coefficient("beta", beta), "far": FAR.get(groups.model.cavitation, FULL)}
         for name, of in rule.inputs.items():
             inputs.setdefault(name, self._each(of))
         mu0 = rule.rubbing(groups, inputs) * self._coefficient("boundary_friction", boundary_friction)

@@ -20,7 +20,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import friction_integral
+from stribeck.contacts.cut_off import FULL, friction_integral
 from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.scaling import SCALINGS
@@ -111,7 +111,9 @@ def _line_scale(parts: Values, speed: Any) -> dict[str, Any]:
 def _ball_viscous(parts: Values, speed: Any, load: Any, inputs: Values, definition: Definition) -> Any:
     scaling = SCALINGS["point"]
     slope = scaling.slope_factor * inputs["beta"] * load**scaling.pressure_exponent
-    J = friction_integral(parts, speed, slope, inputs["slide_to_roll"], inputs["wetted_radius"], definition)
+    J = friction_integral(
+        parts, speed, slope, inputs["slide_to_roll"], inputs["wetted_radius"], definition, inputs.get("far", FULL)
+    )
     return 1.5 / math.pi * slope * J
 
 
