@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from stribeck._types import Array
 from stribeck.numerics.fourier_panels import PolarMesh
 
 STEPS = 12
 """Newton steps towards a minimum."""
+
+SETTLED = 1e-7
+"""Length of a step over the spacing of nodes from which the next would change the value by its square only: nothing."""
 
 CANDIDATES = 3
 """Nodes from which it is sought: the lowest of those that are lower than their neighbours."""
@@ -60,39 +63,47 @@ def centre(mesh: PolarMesh, h: Array) -> Minimum:
 def _descend(mesh: PolarMesh, coefficients: Array, radius: float, angle: float, on_axis: bool) -> Minimum:
     """Return the minimum near a node, by Newton steps that may cross into neighbouring panels."""
     orders = np.arange(mesh.modes, dtype=np.float64)
-    best = Minimum(np.inf, radius, angle)
+    best, here, fields = Minimum(np.inf, radius, angle), -1, coefficients
     for _ in range(STEPS):
-        value, slope, curvature = _jet(mesh, coefficients, orders, radius, angle)
+        panel = min(max(int(mesh.edges.searchsorted(radius, side="right")) - 1, 0), mesh.panels - 1)
+        if panel != here:
+            here, fields = panel, _derivatives(mesh, coefficients, panel)
+        value, slope, curvature = _jet(mesh, fields, orders, panel, radius, angle)
         if value < best.gap:
             best = Minimum(float(value), float(radius), float(angle))
-        panel = int(np.clip(np.searchsorted(mesh.edges, radius, side="right") - 1, 0, mesh.panels - 1))
         limits = np.array([0.3 * (mesh.edges[panel + 1] - mesh.edges[panel]), np.pi / mesh.modes])
         if on_axis:
             slope[1], curvature[0, 1], curvature[1, 0], curvature[1, 1] = 0.0, 0.0, 0.0, 1.0
         scaled = limits[:, None] * curvature * limits
         eigenvalues, vectors = np.linalg.eigh(scaled)
         downhill = vectors @ ((vectors.T @ (slope * limits)) / np.maximum(np.abs(eigenvalues), 1e-14 * abs(value)))
-        step = -limits * downhill / max(1.0, float(np.abs(downhill).max()))
-        radius = radius + step[0]
-        angle = angle + step[1]
+        length = float(np.abs(downhill).max())
+        if length < SETTLED:
+            break
+        step = -limits * downhill / max(1.0, length)
+        radius = float(radius + step[0])
+        angle = float(angle + step[1])
         if radius < 0.0:
-            radius, angle = -radius, np.pi - angle
+            radius, angle = -radius, math.pi - angle
         radius = min(radius, mesh.rim)
-        angle = float(np.arccos(np.cos(angle)))
+        angle = math.acos(math.cos(angle))
     return best
 
 
-def _jet(mesh: PolarMesh, coefficients: Array, orders: Array, radius: float, angle: float) -> tuple[float, Array, Array]:
+def _derivatives(mesh: PolarMesh, coefficients: Array, panel: int) -> Array:
+    """Return a field and its first two derivatives in the coordinate of a panel at its nodes, shape (3, modes, degree + 1)."""
+    half, derivative = mesh.spans[1][panel], mesh.rule(panel).derivative.T
+    field = coefficients[:, mesh.of_panel[panel]]
+    first = field @ derivative / half
+    return np.stack([field, first, first @ derivative / half])
+
+
+def _jet(mesh: PolarMesh, fields: Array, orders: Array, panel: int, radius: float, angle: float) -> tuple[float, Array, Array]:
     """Return value, gradient and Hessian of the interpolated field in radius and angle."""
-    panel = int(np.clip(np.searchsorted(mesh.edges, radius, side="right") - 1, 0, mesh.panels - 1))
     middle, half = mesh.spans[0][panel], mesh.spans[1][panel]
-    rule = mesh.rule(panel)
     in_log = panel >= mesh.log_from
-    t = ((np.log(radius) if in_log else radius) - middle) / half
-    series = rule.to_legendre @ coefficients[:, mesh.of_panel[panel]].T
-    f = legendre.legval(t, series)
-    f_t = legendre.legval(t, legendre.legder(series)) / half
-    f_tt = legendre.legval(t, legendre.legder(series, 2)) / half**2
+    t = ((math.log(radius) if in_log else radius) - middle) / half
+    f, f_t, f_tt = fields @ mesh.rule(panel).interpolation(np.array([t]))[0]
     if in_log:
         f_t, f_tt = f_t / radius, (f_tt - f_t) / radius**2
     c, s = np.cos(orders * angle), np.sin(orders * angle)
