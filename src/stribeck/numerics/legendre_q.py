@@ -18,8 +18,9 @@ from stribeck._types import Array
 UPWARD = 1.5
 """Largest product of the highest degree and ln(r/s) at which the upward recurrence keeps its digits."""
 
-DECAY = 19.0
-"""Half the number of natural decades by which Miller's start lies below the highest degree wanted: e**-38."""
+DECAY = 14.0
+"""Half the number of natural decades by which Miller's start lies below the highest degree wanted: e**-28 of its own error,
+which is 1e-4 or less."""
 
 
 def ring_functions(radius: Array, source: Array, difference: Array, count: int) -> Array:
@@ -75,10 +76,16 @@ def _upward(chi: Array, first: Array, second: Array, count: int) -> Array:
 def _downward(chi: Array, first: Array, count: int, beyond: int) -> Array:
     """Return the functions by the recurrence from ``beyond`` the last, as ratios, so that nothing overflows."""
     q = np.empty((count, chi.size))
-    ratio = np.zeros_like(chi)  # Q of degree m + 1/2 over that of m - 1/2
-    for m in range(count + beyond, 0, -1):
-        ratio = (m - 0.5) / (2 * m * chi - (m + 0.5) * ratio)
+    m = count + beyond + 1
+    # Where the ratio of two neighbours does not change with the degree.
+    ratio = (m - 0.5) / (m * chi + np.sqrt((m * chi) ** 2 - (m - 0.5) * (m + 0.5)))
+    twice, below = 2.0 * chi, np.empty_like(chi)
+    for m in range(count + beyond, 0, -1):  # ratio: Q of degree m + 1/2 over that of m - 1/2
+        np.multiply(twice, m, out=below)
+        ratio *= m + 0.5
+        below -= ratio
+        np.divide(m - 0.5, below, out=ratio)
         if m < count:
             q[m] = ratio
     q[0] = first
-    return np.asarray(np.cumprod(q, axis=0))
+    return np.asarray(np.cumprod(q, axis=0, out=q))

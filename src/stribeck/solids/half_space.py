@@ -21,11 +21,12 @@ from stribeck._types import Array
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.numerics.legendre_q import ring_functions
 
-FAR_POINTS = 24
-"""Gauss points on a panel for far targets."""
+FAR_DISTANCE, FAR_POINTS = 1.35, 24
+"""Distance from its centre, in half-widths, from which a target is far from a panel, and Gauss points for it: the kernel
+leaves rho**-35 of them beside a polynomial of degree 12, 1e-12."""
 
-FAR_DISTANCE = 1.35
-"""Distance from its centre, in half-widths, from which a target is far from a panel: rho**(-2 FAR_POINTS) = 1e-17."""
+FARTHER_DISTANCE, FARTHER_POINTS = 2.8, 16
+"""The same for targets that are far enough for fewer points."""
 
 NEAR_POINTS = 40
 """Gauss points on each part of a near panel."""
@@ -71,9 +72,10 @@ def deflection_by_mode(mesh: PolarMesh, modes: int | None = None, targets: Array
     for panel in range(mesh.panels):
         far_out = panel >= mesh.log_from
         place = ((np.log(radii) if far_out else radii) - centre[panel]) / half[panel]
-        near = np.abs(place) < FAR_DISTANCE
+        kind = np.searchsorted((FAR_DISTANCE, FARTHER_DISTANCE), np.abs(place), side="right")
         columns = mesh.of_panel[panel]
-        for group, points in ((np.flatnonzero(~near), _far_points), (np.flatnonzero(near), _near_points)):
+        for which, points in enumerate((_near_points, _far_points, _farther_points)):
+            group = np.flatnonzero(kind == which)
             if group.size == 0:
                 continue
             t, difference, weights = points(mesh, panel, radii[group], place[group])
@@ -111,9 +113,15 @@ def deflections_from_beyond(mesh: PolarMesh, power: float, modes: int) -> Array:
     return np.asarray((4.0 / np.pi**2 * kernel * np.sqrt(sources / radius)) @ weights)
 
 
-def _far_points(mesh: PolarMesh, panel: int, radii: Array, place: Array) -> tuple[Array, Array, Array]:
+def _farther_points(mesh: PolarMesh, panel: int, radii: Array, place: Array) -> tuple[Array, Array, Array]:
+    return _far_points(mesh, panel, radii, place, FARTHER_POINTS)
+
+
+def _far_points(
+    mesh: PolarMesh, panel: int, radii: Array, place: Array, count: int = FAR_POINTS
+) -> tuple[Array, Array, Array]:
     """Return where the points lie on the panel, how far from the targets, and the weights over r."""
-    t, w = _gauss(FAR_POINTS)
+    t, w = _gauss(count)
     centre, half = mesh.spans[0][panel], mesh.spans[1][panel]
     r = centre + half * t
     weights = half * w

@@ -26,7 +26,7 @@ from stribeck.quantities.outcome import Outcome
 MAX_KRYLOV = 60
 """Steps of GMRES for one step of Newton's iteration."""
 
-WORN, WORN_NEAR = 6, 16
+WORN, WORN_NEAR = 12, 16
 """Steps of GMRES from which the next Newton step makes its own preconditioner: far from the solution, and near it."""
 
 NEAR = 0.03
@@ -35,7 +35,7 @@ NEAR = 0.03
 SMALLEST_PART = 1e-6
 """A step damped below this part of Newton's makes no progress."""
 
-LINEAR = 1e-2
+LINEAR = 3e-2
 """Relative error of a Newton step that GMRES may leave."""
 
 ACCEPTED = 0.1
@@ -79,6 +79,15 @@ def step_size(law: ContactLaw, h: Array, dh: Array, load_scale: float = 1.0) -> 
         weight = np.minimum(1.0, law.pressure(h) / load_scale)
         size = np.maximum(size, weight * np.abs(dh) / law.local_decay_length(h))
     return float(size.max())
+
+
+def distance(equations: Equations, y: Unknowns, preconditioner: BandedModes) -> float:
+    """Return about the size of the Newton step from unknowns: that by the preconditioner of a neighbour."""
+    with np.errstate(all="ignore"):
+        residual, linear = equations.residual(y), Linear(equations, y)
+        step = linear.changes(preconditioner(linear.right(residual)), residual[0])
+        size = step_size(equations.law, y.gap, step.gap)
+    return size if math.isfinite(size) else math.inf
 
 
 def iterate(
@@ -179,7 +188,7 @@ def _solved(linear: Linear, preconditioner: BandedModes, right: Array, shape: Ar
     residual of the residual tells, and is a correction of its own.
     """
     law, h = linear.equations.law, linear.y.gap
-    x, rest, steps, tolerance = np.zeros_like(right), right, 0, 0.1 * wanted
+    x, rest, steps, tolerance = np.zeros_like(right), right, 0, wanted
     while True:
         solved = gmres(linear.product, preconditioner, rest, tolerance, most - steps)
         x, steps = x + solved.x, steps + solved.steps

@@ -12,7 +12,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.point.cavitation import CavitatedEquations, iterate_cavitated
 from stribeck.equations.point.films import plane_of
-from stribeck.equations.point.iteration import Iterated, iterate
+from stribeck.equations.point.iteration import Iterated, distance, iterate
 from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, operators_of
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
@@ -86,8 +86,11 @@ def solve_level(
     kept: Any = None,
     max_steps: int = 40,
     largest: float = MOST_BYTES,
+    predicted: Unknowns | None = None,
 ) -> Level:
     """Return the state of one speed and law on a mesh, from unknowns on that or another mesh.
+
+    Where there is a preconditioner, the start is the better one of these unknowns and those ``predicted`` on the mesh.
 
     Raises
     ------
@@ -103,6 +106,8 @@ def solve_level(
     guess = moved(start, start_mesh, operators.mesh)
     if kept is not None and kept.shape != guess.gap.shape:
         kept = None
+    if predicted is not None and kept is not None:
+        guess = min((guess, predicted), key=lambda y: distance(equations, y, kept))
     return Level(resolution, equations, iteration(equations, guess, tolerance, band, kept, max_steps))
 
 

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from stribeck.contacts.groups import Groups
+from stribeck.numerics.continuation import extrapolation_weights
 from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState
 
 __all__ = ["NeighbourSolver", "next_state", "without_factors"]
+
+ORDER = 2
+"""Degree of the polynomial that predicts a state from those around it."""
+
+LARGEST_WEIGHTS = 8.0
+"""Sum of the weights of a prediction beyond which it is not worth having."""
 
 REACH = 3.5
 """Distance of logarithms within which a neighbour is a start worth having."""
@@ -26,11 +33,16 @@ def without_factors(state: PointState) -> PointState:
     return replace(state, work=replace(pair, coarse=coarse, fine=fine))
 
 
-def next_state(start: PointState | None, groups: Groups, rtol: float) -> PointState:
-    """Return the state of ``groups`` from a neighbour, or from cold without one or where that is lost."""
+def next_state(
+    start: PointState | None, groups: Groups, rtol: float, line: Sequence[tuple[float, PointState]] = ()
+) -> PointState:
+    """Return the state of ``groups`` from a neighbour, or from cold without one or where that is lost.
+
+    ``line`` has states, and the weights with which they predict this one.
+    """
     if start is None:
         return solve_cold(groups, rtol)
-    state = solve_from(start, groups, rtol)
+    state = solve_from(start, groups, rtol, line)
     if state.outcome.ok:
         return state
     cold = solve_cold(groups, rtol)
@@ -57,7 +69,7 @@ class NeighbourSolver:
         """Return the state at ``s``, with its outcome where it failed."""
         if s in self.states:
             return self.states[s]
-        state = next_state(self._start(s), self.groups_at(s), self.rtol)
+        state = next_state(self._start(s), self.groups_at(s), self.rtol, self._line(s))
         if state.outcome.ok:
             self._last = s, state
             self.states[s] = without_factors(state)
@@ -72,3 +84,15 @@ class NeighbourSolver:
         if self._last is not None and abs(self._last[0] - s) <= 1.01 * distance:
             return self._last[1]
         return state
+
+    def _line(self, s: float) -> list[tuple[float, PointState]]:
+        """Return the nearest states that move, and the weights with which they predict another."""
+        moving = [c for c, state in self.states.items() if isinstance(state.work, Pair)]
+        near = sorted((abs(c - s), c) for c in moving if abs(c - s) <= REACH)
+        places = [c for _, c in near[: ORDER + 1]]
+        if len(places) < 2:
+            return []
+        weights = extrapolation_weights(places, s).tolist()
+        if sum(abs(weight) for weight in weights) > LARGEST_WEIGHTS:
+            return []
+        return [(weight, self.states[c]) for weight, c in zip(weights, places, strict=True)]

@@ -7,6 +7,7 @@ finer one, and by how much its observables differ from those of the coarser one 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,14 +20,24 @@ from stribeck.equations.point.mesh_choice import (
     MeshTooLargeError,
     Resolution,
     bytes_of,
+    fits,
     layout,
+    resolution,
     split_where_poor,
 )
 from stribeck.equations.point.observables import identity_error, observables
 from stribeck.equations.point.system import Unknowns
-from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.point.level import Level, band_for, moved, solve_level
+from stribeck.solver.point.level import Level, band_for, extrapolated, moved, solve_level
+
+WASTE = 0.03
+"""Estimated error over the tolerance below which a neighbour's mesh is tested for being finer than it need be."""
+
+SAVED = 0.4
+"""Memory of a leaner mesh over that of the neighbour below which it is worth its operators."""
+
+AHEAD = 0.2
+"""Speed over that of the state for which panels are made along a path to slower ones."""
 
 PART = 0.35
 """Stated error over the difference between the two meshes: the finer one is better by more than that."""
@@ -40,14 +51,17 @@ CENTRAL = 0.5
 UNSEEN, UNSEEN_RADIAL = 5.0, 0.5
 """Stated error of the minimum film over the last coefficients of its series in the angle, and in the radius."""
 
-MINIMUM_SLACK = 100.0
-"""Tolerance of the minimum film over that of the other observables."""
+MINIMUM_SLACK, PATH_SLACK = 100.0, 1000.0
+"""Tolerance of the minimum film over that of the other observables: of a cold state, and along a path."""
 
 PANEL_RATE = 1.49
 """Logarithm by which one degree more reduces the error of a pressure that has a square root at one panel's distance."""
 
 SIDE_LOBES = 7.5
 """Number of modes over the width of the edge to the power -0.675 that resolves the minimum film of smooth contacts to 1e-4."""
+
+FINER_DEGREE, FINER_MODES = 2, 1.4
+"""By how much the finer mesh of two has a higher degree, and how many times as many modes."""
 
 MOST_DEGREE, MOST_MODES = 18, 160
 MOST_ROUNDS = 6
@@ -80,6 +94,10 @@ class Pair:
     def minimum(self) -> float:
         """Relative error of the minimum film."""
         return self.errors["minimum_gap"] / self.scales["minimum_gap"]
+
+    def holds(self, rtol: float, slack: float) -> bool:
+        """Return whether the errors hold a tolerance, that of the minimum film one that is larger by ``slack``."""
+        return self.total <= rtol and self.minimum <= slack * rtol
 
 
 def modal_amplitudes(level: Level) -> Array:
@@ -166,54 +184,57 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     )
 
 
-def first_resolution(level: Level, rtol: float, band: int) -> Resolution:
-    """Return the finer of the two meshes to begin with."""
+def first_resolution(level: Level, rtol: float, band: int, slack: float, ahead: float = 1.0) -> Resolution:
+    """Return the finer of the two meshes to begin with, for speeds down to ``ahead`` times that of the level."""
     film = float(level.unknowns.gap[:, 0].mean())
     carried = min(1.0, float(level.contact_pressure[:, 0].mean()))
     scale = min(1.0, film + 0.3 * carried)
-    degree = 1 + math.ceil(math.log(0.25 / (rtol * scale)) / PANEL_RATE)
-    modes = max(1.4 * modes_for(level, 0.7 * math.sqrt(rtol)), modes_for(level, 0.5 * MINIMUM_SLACK * rtol / UNSEEN), 8)
+    degree = math.ceil(math.log(0.25 / (rtol * scale)) / PANEL_RATE)
+    modes = max(1.4 * modes_for(level, 0.7 * math.sqrt(rtol)), modes_for(level, 0.5 * slack * rtol / UNSEEN), 8)
     if level.contact_pressure.max() < 1e-3:
-        width = layout(level.equations.speed, level.equations.law)[0] / EDGE
-        modes = max(modes, SIDE_LOBES * width**-0.675 * math.log(MINIMUM_SLACK * rtol) / math.log(1e-4))
+        width = layout(ahead * level.equations.speed, level.equations.law)[0] / EDGE
+        modes = max(modes, SIDE_LOBES * width**-0.675 * math.log(slack * rtol) / math.log(1e-4))
     degree = min(MOST_DEGREE, max(7, degree))
     return affordable(replace(level.resolution, degree=degree, modes=2 * math.ceil(0.5 * modes)), band)
 
 
-def refine(speed: float, law: ContactLaw, guess: Level, rtol: float) -> Pair | Outcome:
-    """Return a state on two meshes whose estimated error holds a tolerance, or the best that was found."""
+def refine(
+    speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair | None = None, slack: float = MINIMUM_SLACK
+) -> Pair | Outcome:
+    """Return a state on two meshes whose estimated error holds a tolerance, or the best that was found.
+
+    ``known`` is the state with a larger error.
+    """
     band = band_for(speed, law)
     tolerance = newton_tolerance(rtol)
-    best: Pair | None = None
+    best = known
+    coarse: Level | None = None
     try:
+        if known is None:
+            guess = split(guess, speed, law)
+            wanted = first_resolution(guess, rtol, band, slack)
+        else:
+            wanted, coarse = next_meshes(known, rtol, band, slack)
         for _ in range(MOST_ROUNDS):
-            better = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
-            if better == guess.resolution:
-                break
-            on_more = solve_level(better, speed, law, guess.unknowns, guess.mesh, 1e-4)
-            if not on_more.outcome.ok:
-                break
-            guess = on_more
-        wanted = first_resolution(guess, rtol, band)
-        for _ in range(MOST_ROUNDS):
-            coarse = solve_level(wanted.coarser(), speed, law, guess.unknowns, guess.mesh, tolerance)
+            if coarse is None:
+                coarse = solve_level(wanted.coarser(), speed, law, guess.unknowns, guess.mesh, tolerance)
+                guess = coarse if best is None else guess
             if not coarse.outcome.ok:
                 return coarse.outcome if best is None else best
             if bytes_of(wanted, band) > LARGE:
                 coarse = replace(coarse, iterated=replace(coarse.iterated, preconditioner=None))
-            closer = coarse if best is None else guess
-            fine = solve_level(wanted, speed, law, closer.unknowns, closer.mesh, tolerance)
+            fine = solve_level(wanted, speed, law, guess.unknowns, guess.mesh, tolerance)
             if not fine.outcome.ok:
                 return fine.outcome if best is None else best
             pair = pair_of(coarse, fine)
             if best is None or pair.total < best.total or best.total <= rtol:
                 best = pair
-            if pair.total <= rtol and pair.minimum <= MINIMUM_SLACK * rtol:
+            if pair.holds(rtol, slack):
                 return pair
-            following = finer(pair, rtol, band)
-            if following == wanted:
+            before, guess = wanted, fine
+            wanted, coarse = next_meshes(pair, rtol, band, slack)
+            if wanted.degree <= before.degree and wanted.modes <= before.modes:
                 break
-            guess, wanted = fine, following
     except MeshTooLargeError:
         pass
     if best is None:
@@ -221,12 +242,35 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float) -> Pair | O
     return best if best.total <= rtol else replace(best, outcome=Outcome.REFINEMENT_LIMIT)
 
 
+def split(guess: Level, speed: float, law: ContactLaw) -> Level:
+    """Return a state on panels that are halved where they resolve its pressures poorly."""
+    for _ in range(MOST_ROUNDS):
+        better = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
+        if better == guess.resolution:
+            break
+        on_more = solve_level(better, speed, law, guess.unknowns, guess.mesh, 1e-4)
+        if not on_more.outcome.ok:
+            break
+        guess = on_more
+    return guess
+
+
+def next_meshes(pair: Pair, rtol: float, band: int, slack: float) -> tuple[Resolution, Level | None]:
+    """Return the next mesh, and the state on the one that it is compared with, if that is solved already."""
+    now, wanted = pair.fine.resolution, finer(pair, rtol, band, slack)
+    nested = replace(now, degree=now.degree + FINER_DEGREE, modes=2 * math.ceil(0.5 * FINER_MODES * now.modes))
+    enough = wanted.degree <= nested.degree <= MOST_DEGREE and wanted.modes <= 1.1 * nested.modes <= 1.1 * MOST_MODES
+    if wanted != now and enough and bytes_of(nested, band) <= MOST_BYTES:
+        return nested, pair.fine
+    return wanted, None
+
+
 def newton_tolerance(rtol: float) -> float:
     """Return the relative error of the gap that Newton's iteration may leave."""
     return max(1e-11, 1e-2 * rtol)
 
 
-def finer(pair: Pair, rtol: float, band: int) -> Resolution:
+def finer(pair: Pair, rtol: float, band: int, slack: float) -> Resolution:
     """Return the next mesh: more modes where their amplitudes tell the error, else a higher degree."""
     now, fine = pair.fine.resolution, pair.fine
     modes, degree = now.modes, now.degree
@@ -237,8 +281,8 @@ def finer(pair: Pair, rtol: float, band: int) -> Resolution:
             modes = max(math.ceil(1.2 * modes), modes_for(fine, 0.3 * rtol**0.5))
         if amplitude**2 < 0.3 * pair.total:
             degree += max(1, min(4, math.ceil(more / PANEL_RATE)))
-    if pair.minimum > MINIMUM_SLACK * rtol:
-        allowed = MINIMUM_SLACK * rtol
+    allowed = slack * rtol
+    if pair.minimum > allowed:
         if UNSEEN_RADIAL * legendre_tail(fine) > 0.3 * allowed:
             degree += 2
         if UNSEEN * float(modal_amplitudes(fine)[-2:].max()) > 0.3 * allowed or degree == now.degree:
@@ -251,36 +295,57 @@ def affordable(wanted: Resolution, band: int) -> Resolution:
     """Return a resolution with as many of its modes as memory and :data:`MOST_MODES` allow."""
     wanted = replace(wanted, modes=min(wanted.modes, MOST_MODES))
     while bytes_of(wanted, band) > MOST_BYTES and wanted.modes > 16:
-        wanted = replace(wanted, modes=2 * (wanted.modes * 9 // 20))
+        wanted = replace(wanted, modes=2 * ((wanted.modes - 1) // 2))
     return wanted
 
 
 def follow(
-    speed: float,
-    law: ContactLaw,
-    neighbour: Pair,
-    rtol: float,
-    start: Unknowns | None = None,
-    start_mesh: PolarMesh | None = None,
+    speed: float, law: ContactLaw, neighbour: Pair, rtol: float, line: Sequence[tuple[float, Pair]] = ()
 ) -> Pair | None:
-    """Return the state of a neighbour's meshes at other groups, or None where it does not come from there."""
+    """Return the state of a neighbour's meshes at other groups, or None where it does not come from there.
+
+    ``line`` has the weights of neighbours whose sum predicts the state; the meshes change where those of the neighbour
+    do not fit.
+    """
     tolerance = newton_tolerance(rtol)
-    old_coarse, old_fine = neighbour.coarse, neighbour.fine
-    first = old_coarse.unknowns if start is None else start
-    mesh = old_coarse.mesh if start_mesh is None else start_mesh
-    coarse = solve_level(
-        old_coarse.resolution, speed, law, first, mesh, tolerance, old_coarse.iterated.preconditioner, max_steps=12
+    wanted, keeps = meshes_for(speed, law, neighbour, rtol)
+    kept_coarse, kept_fine = (
+        (level.iterated.preconditioner if keeps else None) for level in (neighbour.coarse, neighbour.fine)
     )
+    known = neighbour.coarse if keeps else neighbour.fine
+    rough = neighbour.coarse.resolution if keeps else wanted.coarser()
+    predicted = None
+    if line and keeps:
+        predicted = extrapolated([w for w, _ in line], [pair.coarse for _, pair in line], known.mesh)
+    coarse = solve_level(rough, speed, law, known.unknowns, known.mesh, tolerance, kept_coarse, 12, predicted=predicted)
     if not coarse.outcome.ok:
         return None
-    # What the finer mesh had beyond the coarser one, the neighbour tells.
-    carried = moved(coarse.unknowns, coarse.mesh, old_fine.mesh)
-    known = moved(old_coarse.unknowns, old_coarse.mesh, old_fine.mesh)
-    guess = Unknowns(
-        carried.gap * (old_fine.unknowns.gap / known.gap),
-        carried.fluid + (old_fine.unknowns.fluid - known.fluid),
-        carried.offset + (old_fine.unknowns.offset - known.offset),
-    )
-    kept = old_fine.iterated.preconditioner
-    fine = solve_level(old_fine.resolution, speed, law, guess, old_fine.mesh, tolerance, kept, max_steps=12)
+    guess, mesh = coarse.unknowns, coarse.mesh
+    if keeps:  # what the finer mesh had beyond the coarser one, the neighbour tells
+        mesh = neighbour.fine.mesh
+        carried, at_fine = moved(guess, coarse.mesh, mesh), neighbour.fine.unknowns
+        before = moved(known.unknowns, known.mesh, mesh)
+        guess = Unknowns(
+            carried.gap * (at_fine.gap / before.gap),
+            carried.fluid + (at_fine.fluid - before.fluid),
+            carried.offset + (at_fine.offset - before.offset),
+        )
+    fine = solve_level(wanted, speed, law, guess, mesh, tolerance, kept_fine, max_steps=12)
     return pair_of(coarse, fine) if fine.outcome.ok else None
+
+
+def meshes_for(speed: float, law: ContactLaw, neighbour: Pair, rtol: float) -> tuple[Resolution, bool]:
+    """Return the finer mesh for a state beside a neighbour, and whether it is that of the neighbour."""
+    now, fine = neighbour.fine.resolution, neighbour.fine
+    band = band_for(speed, law)
+    # What is made for states on the way serves longer.
+    ahead = AHEAD * speed if speed < fine.equations.speed else speed
+    wasteful = neighbour.total < WASTE * rtol and neighbour.minimum < WASTE * PATH_SLACK * rtol
+    if fits(now, speed, law) and not wasteful:
+        return now, True
+    leaner = first_resolution(fine, rtol, band, PATH_SLACK, ahead / fine.equations.speed)
+    if fits(now, speed, law):
+        saved = bytes_of(leaner, band) < SAVED * bytes_of(now, band)
+        return (leaner, False) if saved else (now, True)
+    found = resolution(ahead, law, leaner.degree, leaner.modes)
+    return replace(found, splits=now.splits if found.doublings == now.doublings else ()), False

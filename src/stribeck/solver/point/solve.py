@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +18,7 @@ from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.dry import dry_contact, hertz_gap
 from stribeck.equations.point.films import PLANES, is_isotropic
 from stribeck.equations.point.iteration import Iterated
-from stribeck.equations.point.mesh_choice import fits, operators_of, resolution
+from stribeck.equations.point.mesh_choice import MeshTooLargeError, operators_of, resolution
 from stribeck.equations.point.observables import identity_error
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
@@ -30,7 +29,7 @@ from stribeck.solids.plane import BODIES
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.point.cavitated import follow_cavitated, held, refine_cavitated, tolerance_of
 from stribeck.solver.point.level import Level
-from stribeck.solver.point.refinement import Pair, follow, newton_tolerance, pair_of, refine
+from stribeck.solver.point.refinement import Pair, follow, holds_along_path, newton_tolerance, pair_of, refine
 from stribeck.solver.point.start import first_state
 from stribeck.solver.point.state import OBSERVABLES, PointFields, PointState
 
@@ -81,7 +80,9 @@ def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
     return _state(groups, rtol, ending.refine(speed, law, first, rtol))
 
 
-def solve_from(neighbour: PointState, groups: Groups, rtol: float = 1e-6) -> PointState:
+def solve_from(
+    neighbour: PointState, groups: Groups, rtol: float = 1e-6, line: Sequence[tuple[float, PointState]] = ()
+) -> PointState:
     """Return the state of ``groups`` from that of a neighbour, on its mesh as long as this serves.
 
     Parameters
@@ -93,6 +94,8 @@ def solve_from(neighbour: PointState, groups: Groups, rtol: float = 1e-6) -> Poi
         One state of the point geometry.
     rtol : float
         As for :func:`solve_cold`.
+    line : sequence of (float, PointState)
+        States, and the weights with which they predict this one; none by default.
 
     Returns
     -------
@@ -109,14 +112,18 @@ def solve_from(neighbour: PointState, groups: Groups, rtol: float = 1e-6) -> Poi
     if groups.speed == 0 or not isinstance(pair, Pair) or not pair.fine.equations.speed > 0:
         return solve_cold(groups, rtol)
     speed, law = float(groups.speed), contact_law(groups)
-    if fits(pair.fine.resolution, speed, law) and pair.fine.resolution.model == groups.model:
+    if pair.fine.resolution.model == groups.model:
         ending = ENDINGS[groups.model.cavitation]
         held = ending.tolerance(rtol)
-        found = ending.follow(speed, law, pair, held)
-        if found is not None and ending.error(found) <= held:
+        pairs = [(weight, state.work) for weight, state in line]
+        try:
+            found = ending.follow(speed, law, pair, held, pairs if all(isinstance(each, Pair) for _, each in pairs) else ())
+        except MeshTooLargeError:
+            found = None
+        if found is not None and ending.holds(found, held):
             return _state(groups, held, found)
         if found is not None:
-            return _state(groups, held, ending.refine(speed, law, found.fine, held))
+            return _state(groups, held, ending.refine(speed, law, found.fine, held, found))
     return solve_cold(groups, rtol)
 
 
@@ -127,21 +134,21 @@ class Ending(NamedTuple):
     ----------
     refine, follow : callable
         From a first state, and from a neighbour's meshes, to a state on two meshes.
-    error : callable
-        Largest error of such a pair that the tolerance holds.
+    holds : callable
+        Whether the errors of such a pair hold a tolerance along a path.
     tolerance : callable
         The tolerance that is aimed at for one that was asked for.
     """
 
-    refine: Callable[[float, ContactLaw, Level, float], Pair | Outcome]
-    follow: Callable[[float, ContactLaw, Pair, float], Pair | None]
-    error: Callable[[Pair], float]
+    refine: Callable[..., Pair | Outcome]
+    follow: Callable[..., Pair | None]
+    holds: Callable[[Pair, float], bool]
     tolerance: Callable[[float], float]
 
 
 ENDINGS = {
-    Cavitation.NONE: Ending(refine, follow, attrgetter("total"), float),
-    Cavitation.EXIT: Ending(refine_cavitated, follow_cavitated, held, tolerance_of),
+    Cavitation.NONE: Ending(refine, follow, holds_along_path, float),
+    Cavitation.EXIT: Ending(refine_cavitated, follow_cavitated, lambda pair, rtol: held(pair) <= rtol, tolerance_of),
 }
 """How states are refined, by how the film ends."""
 

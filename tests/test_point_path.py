@@ -1,0 +1,79 @@
+"""States of a ball along a curve: what they take over from their neighbours, and that they are those of a cold start."""
+
+import math
+
+import pytest
+
+from stribeck.contacts.groups import Groups, contact_law
+from stribeck.solver.point import refinement
+from stribeck.solver.point.path import NeighbourSolver
+from stribeck.solver.point.refinement import PATH_SLACK, follow, meshes_for, next_meshes
+from stribeck.solver.point.solve import solve_cold, solve_from
+
+RTOL = 1e-4
+
+
+def ball(speed, load=1e-3, kappa=1e-2):
+    return Groups(speed, load, kappa * load ** (2 / 3), geometry="point")
+
+
+@pytest.fixture(scope="module")
+def state():
+    return solve_cold(ball(1e-2), RTOL)
+
+
+def agree(one, other):
+    for name, value in other.values.items():
+        assert abs(one.values[name] - value) <= 2 * (one.absolute_errors[name] + other.absolute_errors[name]), name
+
+
+def test_where_panels_no_longer_fit_the_state_of_a_neighbour_is_carried_to_new_ones(state, monkeypatch):
+    monkeypatch.setattr("stribeck.solver.point.solve.first_state", None)  # no cold start
+    there = ball(1e-3)
+    found = solve_from(state, there, RTOL)
+    assert found.outcome.ok
+    assert found.mesh.edges.size != state.mesh.edges.size
+    monkeypatch.undo()
+    agree(found, solve_cold(there, RTOL))
+
+
+def test_a_mesh_far_finer_than_a_tolerance_needs_is_left(state):
+    groups = ball(9e-3)
+    fine = solve_cold(groups, 1e-7)
+    wanted, keeps = meshes_for(1e-2, contact_law(groups), fine.work, 1e-3)
+    assert not keeps
+    assert wanted.mesh.size < 0.7 * fine.mesh.size
+    assert meshes_for(1e-2, contact_law(groups), state.work, state.work.total) == (state.work.fine.resolution, True)
+
+
+def test_a_state_that_misses_its_tolerance_is_compared_with_the_next_finer_mesh_alone(state, monkeypatch):
+    wanted, coarse = next_meshes(state.work, 0.3 * state.work.total, 5, PATH_SLACK)
+    assert coarse is state.work.fine
+    assert (wanted.degree, wanted.modes) == (coarse.resolution.degree + 2, 2 * math.ceil(0.7 * coarse.resolution.modes))
+    solved = []
+    at_once = refinement.solve_level
+    monkeypatch.setattr(refinement, "solve_level", lambda found, *rest: solved.append(found) or at_once(found, *rest))
+    pair = refinement.refine(1e-2, contact_law(ball(1e-2)), state.work.fine, 0.3 * state.work.total, state.work)
+    assert pair.outcome.ok
+    assert solved == [wanted]
+
+
+def test_a_prediction_is_taken_where_it_is_nearer_than_the_neighbour():
+    solver = NeighbourSolver(lambda s: ball(math.exp(s)), 1e-5)
+    for speed in (1.0e-2, 1.1e-2, 1.2e-2):
+        solver(math.log(speed))
+    s, near, law = math.log(1.3e-2), solver._last[1].work, contact_law(ball(1.3e-2))
+    line = solver._line(s)
+    assert sum(weight for weight, _ in line) == pytest.approx(1)
+    alone, predicted = follow(1.3e-2, law, near, 1e-5), solver(s)
+    assert predicted.work.coarse.iterated.steps < alone.coarse.iterated.steps
+    agree(predicted, solve_cold(ball(1.3e-2), 1e-5))
+
+
+def test_refinement_ends_where_no_mesh_is_finer(state, monkeypatch):
+    asked = []
+    monkeypatch.setattr(refinement, "first_resolution", lambda *_: state.work.fine.resolution)
+    monkeypatch.setattr(refinement, "next_meshes", lambda pair, *_: asked.append(pair) or (pair.fine.resolution, None))
+    pair = refinement.refine(1e-2, contact_law(ball(1e-2)), state.work.fine, 1e-8)
+    assert not pair.outcome.ok
+    assert len(asked) == 1
