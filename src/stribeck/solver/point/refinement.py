@@ -48,8 +48,12 @@ COMPANY = 0.1
 CENTRAL = 0.5
 """Stated error of gap and pressure at the centre over the last coefficients of their series on the first panel."""
 
-UNSEEN, UNSEEN_RADIAL = 5.0, 0.5
-"""Stated error of the minimum film over the last coefficients of its series in the angle, and in the radius."""
+UNSEEN, UNSEEN_RADIAL, UNSEEN_SERIES = 5.0, 0.5, 0.4
+"""Stated error of the minimum film over the last coefficients of its series in the angle, and in the radius; and over what
+the angular one, going on as a geometric series, sums up to."""
+
+SLOWEST_DECAY = 0.02
+"""Smallest rate at which the coefficients are taken to fall."""
 
 MINIMUM_SLACK, PATH_SLACK = 100.0, 1000.0
 """Tolerance of the minimum film over that of the other observables: of a cold state, and along a path."""
@@ -63,7 +67,7 @@ SIDE_LOBES = 7.5
 FINER_DEGREE, FINER_MODES = 2, 1.4
 """By how much the finer mesh of two has a higher degree, and how many times as many modes."""
 
-MOST_DEGREE, MOST_MODES = 18, 160
+MOST_DEGREE, MOST_MODES = 18, 200
 MOST_ROUNDS = 6
 
 LARGE = 200_000_000
@@ -117,8 +121,23 @@ def modes_for(level: Level, amplitude: float) -> int:
     half = slice(max(2, found.size // 2), found.size - 1)
     m = np.arange(found.size)[half]
     rate, level_at = np.polyfit(m, np.log(np.maximum(found[half], 1e-300)), 1)
-    rate = min(rate, -0.02)
+    rate = min(rate, -SLOWEST_DECAY)
     return int(math.ceil((math.log(amplitude) - level_at) / rate))
+
+
+def unseen_in_angle(level: Level) -> float:
+    """Return about how much of the minimum film its series in the angle leaves out, relative to it.
+
+    That is the last coefficients, or the geometric series that follows them; thin films have many that fall slowly.
+    """
+    mesh, h = level.mesh, level.unknowns.gap
+    near = mesh.radii < 2.0 * 2.0**level.resolution.doublings
+    found = (np.abs(mesh.to_modes @ h) / h.min(axis=0))[:, near].max(axis=1)
+    half = slice(max(2, found.size // 2), found.size - 1)
+    m = np.arange(found.size)[half]
+    rate = -np.polyfit(m, np.log(np.maximum(found[half], 1e-300)), 1)[0] if m.size > 1 else 1.0
+    beyond = float(found[-2:].max()) / -math.expm1(-max(rate, SLOWEST_DECAY))
+    return max(UNSEEN * float(modal_amplitudes(level)[-2:].max()), UNSEEN_SERIES * beyond)
 
 
 def legendre_tail(level: Level) -> float:
@@ -168,7 +187,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     errors = {name: max(error, COMPANY * widest * scales[name]) for name, error in errors.items()}
     unseen = UNSEEN_RADIAL * legendre_tail(fine)
     if fine.equations.speed > 0:
-        unseen += UNSEEN * float(modal_amplitudes(fine)[-2:].max())
+        unseen += unseen_in_angle(fine)
     # The series of the side lobes falls from one mesh to the other as the error of the minimum does.
     last, before = (float(modal_amplitudes(level)[-2:].max()) for level in (fine, coarse))
     gained = 2.0 * min(PART, max(0.05, last / max(before, 1e-300)))
@@ -285,7 +304,7 @@ def finer(pair: Pair, rtol: float, band: int, slack: float) -> Resolution:
     if pair.minimum > allowed:
         if UNSEEN_RADIAL * legendre_tail(fine) > 0.3 * allowed:
             degree += 2
-        if UNSEEN * float(modal_amplitudes(fine)[-2:].max()) > 0.3 * allowed or degree == now.degree:
+        if unseen_in_angle(fine) > 0.3 * allowed or degree == now.degree:
             modes = max(math.ceil(1.2 * modes), modes_for(fine, 0.3 * allowed / UNSEEN))
     modes = min(modes, 2 * now.modes)
     return affordable(replace(now, degree=min(MOST_DEGREE, degree), modes=2 * math.ceil(0.5 * modes)), band)
