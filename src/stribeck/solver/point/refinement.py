@@ -68,6 +68,9 @@ SIDE_LOBES = 7.5
 FINER_DEGREE, FINER_MODES = 2, 1.4
 """By how much the finer mesh of two has a higher degree, and how many times as many modes."""
 
+THICK = 0.05
+"""Film above which the degree of a first mesh does not fall: the pressures of thick films are of order one."""
+
 MOST_DEGREE, MOST_MODES = 18, 200
 MOST_ROUNDS = 6
 
@@ -207,7 +210,7 @@ def first_resolution(level: Level, rtol: float, band: int, slack: float, ahead: 
     """Return the finer of the two meshes to begin with, for speeds down to ``ahead`` times that of the level."""
     film = float(level.unknowns.gap[:, 0].mean())
     carried = min(1.0, float(level.contact_pressure[:, 0].mean()))
-    scale = min(1.0, film + 0.3 * carried)
+    scale = min(THICK, film + 0.3 * carried)
     degree = math.ceil(math.log(0.25 / (rtol * scale)) / PANEL_RATE)
     modes = max(1.4 * modes_for(level, 0.7 * math.sqrt(rtol)), modes_for(level, 0.5 * slack * rtol / UNSEEN), 8)
     if level.contact_pressure.max() < 1e-3:
