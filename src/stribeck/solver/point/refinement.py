@@ -220,13 +220,12 @@ def first_resolution(level: Level, rtol: float, band: int, slack: float, ahead: 
     return affordable(replace(level.resolution, degree=degree, modes=2 * math.ceil(0.5 * modes)), band)
 
 
-def refine(
-    speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair | None = None, slack: float = MINIMUM_SLACK
-) -> Pair | Outcome:
+def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair | None = None) -> Pair | Outcome:
     """Return a state on two meshes whose estimated error holds a tolerance, or the best that was found.
 
-    ``known`` is the state with a larger error.
+    ``known`` is the state with a larger error, as found along a path.
     """
+    slack = MINIMUM_SLACK if known is None else PATH_SLACK
     band = band_for(speed, law)
     tolerance = newton_tolerance(rtol)
     best = known
@@ -321,6 +320,11 @@ def affordable(wanted: Resolution, band: int) -> Resolution:
     return wanted
 
 
+def holds_along_path(pair: Pair, rtol: float) -> bool:
+    """Return whether the errors of a state along a path hold a tolerance."""
+    return pair.holds(rtol, PATH_SLACK)
+
+
 def follow(
     speed: float, law: ContactLaw, neighbour: Pair, rtol: float, line: Sequence[tuple[float, Pair]] = ()
 ) -> Pair | None:
@@ -369,5 +373,5 @@ def meshes_for(speed: float, law: ContactLaw, neighbour: Pair, rtol: float) -> t
     if fits(now, speed, law):
         saved = bytes_of(leaner, band) < SAVED * bytes_of(now, band)
         return (leaner, False) if saved else (now, True)
-    found = resolution(ahead, law, leaner.degree, leaner.modes)
+    found = resolution(ahead, law, leaner.degree, leaner.modes, now.model)
     return replace(found, splits=now.splits if found.doublings == now.doublings else ()), False
