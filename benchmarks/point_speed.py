@@ -2,19 +2,23 @@
 
 Usage::
 
-    python benchmarks/point_speed.py [--runs 3] [--speeds 25]
+    python benchmarks/point_speed.py [--runs 3] [--speeds 25] [--memory-rtol 1e-6] [--states 24]
 
-Times are CPU seconds of one thread, each over that of an LU factorisation of a 1000 x 1000 matrix before and after it.
-Other solvers were measured at 7 to 28 s a state, good to 1.4 % (slippy), and at 10 to 33 s, good to 2 % (EHL-FBNS).
+Times are CPU seconds of one thread, each over that of an LU factorisation of a 1000 x 1000 matrix before and after it;
+memory is the largest resident set of a process (Linux).  Other solvers were measured at 7 to 28 s a state, good to 1.4 %
+(slippy), and at 10 to 33 s, good to 2 % (EHL-FBNS).
 """
 
 from __future__ import annotations
 
 import argparse
 import math
+import resource
 import time
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
+from multiprocessing import get_context
 
 import numpy as np
 from scipy.linalg import lapack
@@ -114,16 +118,60 @@ def breakdown(runs: int) -> None:
 
 
 @one_blas_thread
+def peak(groups: sb.Groups, rtol: float) -> float:
+    """Return the largest memory that a process had after one cold state [MB]; in a fresh process it is that state's."""
+    solve_cold(groups, rtol)
+    return 1e-3 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+def processes(count: int) -> ProcessPoolExecutor:
+    """Return fresh processes."""
+    return ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+
+
+def memory(rtol: float) -> None:
+    """Print the memory of fresh processes, one a state."""
+    print("\n| state, in a process of its own | rtol | most memory [MB] |\n|---|---|---|")
+    for name, groups in (
+        ("the package alone", ball(0.0, 0.1)),
+        ("mixed, speed 1e-4", ball(1e-4)),
+        ("mixed, speed 1e-6, kappa 1e-5", ball(1e-6, 1e-5)),
+        ("smooth, speed 1e-3", ball(1e-3, 0.0)),
+        ("smooth, speed 1e-5", ball(1e-5, 0.0)),
+    ):
+        with processes(1) as pool:
+            print(f"| {name} | {rtol:.0e} | {pool.submit(peak, groups, rtol).result():.0f} |")
+
+
+def side_by_side(states: int) -> None:
+    """Print how much sooner two processes solve states than one."""
+    groups = [ball(speed) for speed in np.geomspace(1e-4, 1e-2, states).tolist()]
+    seconds = []
+    for count in (1, 2):
+        with processes(count) as pool:
+            list(pool.map(peak, [groups[0]] * count, [1e-2] * count))  # both have started
+            start = time.perf_counter()
+            list(pool.map(peak, groups, [1e-6] * states))
+            seconds.append(time.perf_counter() - start)
+    print("\n| cold mixed states | one process [s] | two [s] | gain |\n|---|---|---|---|")
+    print(f"| {states} | {seconds[0]:.2f} | {seconds[1]:.2f} | {seconds[0] / seconds[1]:.2f} |")
+
+
+@one_blas_thread
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--speeds", type=int, default=25)
+    parser.add_argument("--memory-rtol", type=float, default=1e-6)
+    parser.add_argument("--states", type=int, default=24)
     arguments = parser.parse_args()
     print(f"unit: LU({SIZE}), {1e3 * unit():.0f} ms of CPU time\n")
     single_states(arguments.runs)
     breakdown(arguments.runs)
     curve(arguments.speeds)
+    memory(arguments.memory_rtol)
+    side_by_side(arguments.states)
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ ARGUMENTS = {
     "cost": ["--runs", "1"],
     "curve_speed": [],
     "peers": ["--quick"],
-    "point_speed": ["--runs", "1", "--speeds", "2"],
+    "point_speed": ["--runs", "1", "--speeds", "2", "--memory-rtol", "1e-2", "--states", "2"],
     "surface_errors": ["--number", "1"],
     "sweep_rate": ["--number", "4", "--workers", "1"],
 }
