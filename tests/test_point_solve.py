@@ -98,3 +98,13 @@ def test_what_is_not_one_state_of_a_ball_is_refused(wrong):
 def test_a_tolerance_out_of_range_is_refused():
     with pytest.raises(InputError, match="1e-08 to 0.01"):
         solve_cold(ball(1.0, 1.0, 1.0), 1e-12)
+
+
+@pytest.mark.slow
+def test_the_minimum_film_of_a_very_thin_smooth_film_states_what_its_slow_series_leaves_out():
+    row = next(row for row in DATA["states"] if row["speed"] == 1e-6 and row["roughness"] == 0)
+    state = solve_cold(groups_of(row), 1e-4)
+    assert state.outcome.ok
+    missed = abs(state.values["minimum_gap"] - row["values"]["minimum_gap"])
+    assert missed <= state.absolute_errors["minimum_gap"] + row["uncertainty"]["minimum_gap"]
+    assert abs(state.values["central_gap"] / row["values"]["central_gap"] - 1) < 1e-6
