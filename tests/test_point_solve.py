@@ -102,7 +102,7 @@ def test_a_tolerance_out_of_range_is_refused():
 
 @pytest.mark.slow
 def test_the_minimum_film_of_a_very_thin_smooth_film_states_what_its_slow_series_leaves_out():
-    row = next(row for row in DATA["states"] if row["speed"] == 1e-6 and row["roughness"] == 0)
+    row = next(row for row in DATA["states"] if row["speed"] == 1e-6 and row["relative_roughness"] == 0)
     state = solve_cold(groups_of(row), 1e-4)
     assert state.outcome.ok
     missed = abs(state.values["minimum_gap"] - row["values"]["minimum_gap"])
