@@ -25,7 +25,7 @@ def nothing_is_solved(monkeypatch):
     def curve(*arguments, **options):
         # Its own checks stay; the first point would be solved after them.
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("stribeck.curves.stribeck_curve.solve_along", solve)
+            patch.setattr("stribeck.curves.stribeck_curve.follow", solve)
             patch.setattr("stribeck.curves.stribeck_curve.automatic_speed_range", solve)
             return checked(*arguments, **options)
 

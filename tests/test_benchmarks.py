@@ -15,6 +15,7 @@ ARGUMENTS = {
     "cold_starts": ["--number", "2"],
     "convergence": ["--number", "1"],
     "cost": ["--runs", "1"],
+    "curve_bound": ["--number", "2", "--speeds", "3"],
     "curve_speed": [],
     "peers": ["--quick"],
     "point_speed": ["--runs", "1", "--speeds", "2", "--memory-rtol", "1e-2", "--states", "2"],

@@ -84,9 +84,9 @@ class Corrector:
 LENGTHS = {"first": 0.1, "longest": 0.5, "shortest": 1e-3}
 
 
-def marched(correct, start, stop, *, first, longest, shortest, order=3, skip=None, **options):
+def marched(correct, start, stop, *, first, longest, shortest, order=3, **options):
     """March with the lengths of steps as keywords."""
-    return march(correct, start, stop, Steps(first, longest, shortest, order, skip=skip), **options)
+    return march(correct, start, stop, Steps(first, longest, shortest, order), **options)
 
 
 @pytest.mark.parametrize(("start", "stop"), [(0.0, 3.0), (3.0, -1.0), (-2.0, 0.1)])
@@ -249,14 +249,3 @@ def test_extrapolation_is_exact_for_polynomials_of_its_order():
 def test_march_refuses_impossible_arguments_by_name(name, arguments):
     with pytest.raises(ValueError, match=name):
         marched(Corrector(), **({"start": 0.0, "stop": 2.0} | LENGTHS | arguments))
-
-
-def test_steps_pass_over_targets_only_where_they_reach_beyond_enough_of_them():
-    targets = np.arange(0.1, 10.05, 0.1).tolist()
-    path = marched(Corrector(effort=0), 0.0, 10.0, targets=targets, skip=2, **LENGTHS | {"longest": 2.0})
-    steps = np.diff(path.coordinates)
-    assert path.outcome is Outcome.CONVERGED
-    assert set(path.coordinates[1:]) <= {*targets, 10.0}
-    assert 1.5 < steps.max() <= 2.0 + 1e-12
-    assert not ((steps > 0.15) & (steps < 0.25)).any()
-    assert len(marched(Corrector(effort=0), 0.0, 10.0, targets=targets, **LENGTHS).coordinates) > 100

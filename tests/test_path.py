@@ -8,7 +8,7 @@ import pytest
 
 from stribeck.numerics.series import circle, radius
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.series.path import Expansion, Interval, follow
+from stribeck.solver.path import Expansion, Interval, follow
 
 pytestmark = pytest.mark.quick
 
@@ -56,6 +56,9 @@ class Known:
 
     def missed(self, left, right, values):
         return np.zeros(3)
+
+    def read_scales(self, values):
+        return np.empty(0)
 
     def read(self, left, right, parts):
         return np.empty((len(parts), 0)), np.empty((len(parts), 0)), []

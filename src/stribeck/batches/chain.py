@@ -17,12 +17,14 @@ from stribeck.numerics.continuation import Steps, march
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.corrector import Corrector
-from stribeck.solver.path import LONGEST_STEP, PREDICTOR_ORDER, SHORTEST_STEP
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import describe, hertz_solution, solution_of
 
 __all__ = ["Ended", "solve_in_order"]
+
+LONGEST_STEP, SHORTEST_STEP, PREDICTOR_ORDER = math.log(10.0), 1e-3, 4
+"""Of the way from state to state: its steps, and the degree of the polynomial that predicts them."""
 
 LONGEST_JUMP = 5.0
 """Distance between two states above which a cold start is cheaper than the states between."""

@@ -1,19 +1,125 @@
-"""A curve as a function: observables, friction and their errors at any of its values."""
+"""A curve as a function: observables, friction and their errors at any of its values, and fields where they are asked for."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.groups import contact_law
+from stribeck.curves.coordinate import Coordinate
+from stribeck.equations.observables import Observables
+from stribeck.equations.state import State
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
-from stribeck.solver.series.line_path import POSITION
-from stribeck.solver.solve import minimum_estimate
+from stribeck.solver.at_rest import with_positive_gap
+from stribeck.solver.line_path import POSITION, LineProblem
+from stribeck.solver.path import SolvedPath
+from stribeck.solver.refinement import RefinedState
+from stribeck.solver.solution import Solution
+from stribeck.solver.solve import minimum_estimate, solution_of, state_notes
 
-__all__ = ["CurveValues"]
+__all__ = ["CurvePoint", "CurveValues", "guess_at", "rows_of", "solved_at", "state_at"]
+
+COLUMNS = (*ALL_NAMES, "minimum_position")
+"""Columns of a path by name."""
+
+
+def _beside(path: SolvedPath, s: float) -> tuple[LineProblem, Any, Any]:
+    interval = path.intervals[int(path.interval_of(np.array([s]))[0])]
+    assert isinstance(interval.problem, LineProblem)
+    return interval.problem, interval.left, interval.right
+
+
+@one_blas_thread
+def solved_at(path: SolvedPath, s: float, rtol: float | None = None) -> RefinedState:
+    """Return the state at a coordinate of a path, verified, by the tolerance of the path unless another is given."""
+    problem, left, right = _beside(path, s)
+    return problem.point_at(left, right, s, rtol)
+
+
+def guess_at(path: SolvedPath, s: float) -> State:
+    """Return about the state at a coordinate of a path, interpolated."""
+    problem, left, right = _beside(path, s)
+    return problem.guess_at(left, right, s)
+
+
+@one_blas_thread
+def state_at(path: SolvedPath, s: float) -> State:
+    """Return the state at a coordinate of a path, corrected once."""
+    problem, left, right = _beside(path, s)
+    return problem.state_at(left, right, s)
+
+
+def rows_of(path: SolvedPath, s: Array, rtol: float) -> tuple[Array, Array]:
+    """Return observables and position of the minimum at coordinates of a path, and their errors, shape (len(s), columns).
+
+    Where the path states more than the tolerance, or no error, the state is solved.
+    """
+    found, errors = path.at(s)
+    exists = path.problem.held & np.isfinite(found).any(axis=0)
+    for i in np.nonzero(~(errors[:, exists] <= rtol).all(axis=1))[0].tolist():
+        point = solved_at(path, float(s[i]), rtol)
+        if point.values is not None and point.estimate is not None and point.outcome.ok:
+            found[i] = *point.values.array(in_article=False), point.values.minimum_position
+            errors[i, : len(point.estimate.relative)] = point.estimate.relative
+            errors[i, POSITION] = point.estimate.minimum_position
+    return found, errors
+
+
+class CurvePoint(Solution):
+    """A point of a curve: its numbers are those of the curve, its fields and notes those of a state solved on first use."""
+
+    _place: tuple[SolvedPath, float]
+
+    def __init__(self, coordinate: Coordinate, path: SolvedPath, s: float, row: Array, errors: Array, rtol: float) -> None:
+        groups, contact = coordinate.groups_at(s), coordinate.contact_at(s)
+        values = dict(zip(COLUMNS, row.tolist(), strict=True))
+        known: dict[str, Any] = {
+            "groups": groups,
+            "contact": contact,
+            "outcome": Outcome.CONVERGED,
+            "rtol": rtol,
+            "observables": Observables(**values),
+            "relative_errors": np.maximum(errors[:POSITION], minimum_estimate(rtol)),
+            "minimum_position_error": float(errors[POSITION]),
+        }
+        vars(self).update(known | {"_place": (path, s)})
+
+    @cached_property
+    def _solved(self) -> Solution:
+        path, s = self._place
+        found = solution_of(solved_at(path, s, self.rtol), self.contact, self.rtol)
+        assert found is not None
+        return found
+
+    @cached_property
+    def notes(self) -> tuple[str, ...]:  # type: ignore[override]
+        """What to know before using the numbers, one sentence each."""
+        path, s = self._place
+        problem, left, right = _beside(path, s)
+        floor = max(left.point.refined.estimate.floor, right.point.refined.estimate.floor)
+        return state_notes(
+            self.groups, self.contact, self.observables, lambda: problem.guess_at(left, right, s), floor, self.rtol
+        )
+
+    @property
+    def law(self) -> str:  # type: ignore[override]
+        """Name of the contact law."""
+        return contact_law(with_positive_gap(self.groups)[0]).name
+
+    rounding_floor = property(lambda self: self._solved.rounding_floor)
+    mesh = property(lambda self: self._solved.mesh)
+    nodal_gap = property(lambda self: self._solved.nodal_gap)
+    gap_shift = property(lambda self: self._solved.gap_shift)
+    nodal_pressures = property(lambda self: self._solved.nodal_pressures)
+    newton_steps = property(lambda self: self._solved.newton_steps)
+    origin = property(lambda self: self._solved.origin)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,19 +150,11 @@ class CurveValues:
     friction_viscous: Any
     friction: Any
     friction_error: Any
+    _sliding: float = field(repr=False, default=1.0)
 
     @classmethod
-    def of(
-        cls,
-        value: Array,
-        found: Array,
-        errors: Array,
-        boundary_friction: float,
-        beta: float,
-        definition: Definition,
-        rtol: float,
-    ) -> CurveValues:
-        """Return the values that rows of a path are; numbers where ``value`` is one.
+    def of(cls, value: Array, found: Array, errors: Array, sliding: float, rtol: float) -> CurveValues:
+        """Return the values that rows of a path are, without friction; numbers where ``value`` is one.
 
         Parameters
         ----------
@@ -64,10 +162,8 @@ class CurveValues:
             What the curve runs over.
         found, errors : ndarray, shape (n, observables)
             Of a path.
-        boundary_friction, beta : float
-            Coefficients of the friction.
-        definition : {"balanced", "published"}
-            Of the viscous friction.
+        sliding : float
+            Part and sign of the sliding friction of asperities that acts.
         rtol : float
             Tolerance of the curve.
 
@@ -78,16 +174,16 @@ class CurveValues:
         """
         relative = np.maximum(errors[:, :POSITION], minimum_estimate(rtol))
         shown = (lambda column: column) if np.ndim(value) else (lambda column: float(column[0]))
-        values = {name: shown(found[:, i]) for i, name in enumerate((*ALL_NAMES, "minimum_position"))}
+        values = {name: shown(found[:, i]) for i, name in enumerate(COLUMNS)}
         nothing = np.nan
-        plain = cls(
+        return cls(
             value if np.ndim(value) else float(value),
             values,
             relative if np.ndim(value) else relative[0],
             shown(errors[:, POSITION]),
             *(nothing, nothing, nothing, nothing),
+            sliding,
         )
-        return plain.with_friction(boundary_friction, beta, definition)
 
     def with_friction(self, boundary_friction: float, beta: float, definition: Definition) -> CurveValues:
         """Return the values with the friction by other coefficients.
@@ -105,8 +201,9 @@ class CurveValues:
             The values.
         """
         name = f"viscous_{definition}"
-        contact, viscous = boundary_friction * self.values["contact_load_share"], beta * self.values[name]
-        error = boundary_friction * self.errors["contact_load_share"] + np.abs(viscous) * self.errors[name]
+        rubbing = self._sliding * boundary_friction
+        contact, viscous = rubbing * self.values["contact_load_share"], beta * self.values[name]
+        error = abs(rubbing) * self.errors["contact_load_share"] + np.abs(viscous) * self.errors[name]
         if not np.ndim(self.value):
             error = float(error)
         return replace(

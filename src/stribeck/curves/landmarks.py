@@ -1,29 +1,39 @@
-"""Landmarks of a curve, the minimum and the transitions: located between its points, on states solved for it."""
+"""Landmarks of a curve, the minimum and the transitions: roots of its series, polished on states solved there."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.curves.coordinate import Coordinate
+from stribeck.curves.function import guess_at
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.outcome import Outcome
 from stribeck.solver.corrector import Corrector
+from stribeck.solver.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, describe, solution_of
 
-__all__ = ["Landmark", "locate"]
+__all__ = ["Landmark", "Landmarks"]
 
 LOCATION_TOLERANCE = 1e-9
 """Relative tolerance to which a minimum or a transition is located; its own error is that of the solved states."""
 
-WIDENINGS = (0, 2, 8, 32, 128)
-"""Points by which the search for a landmark widens on both sides."""
+STATES_RTOL = 1e-8
+"""Largest tolerance of these states."""
+
+PARTS = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 9)
+"""Where a function is looked at in an interval between two solved states, in parts of it."""
+
+STEP = 1e-20
+"""Step into the complex plane for a derivative."""
+
+MOST_POLISHES = 4
+"""States solved for one landmark, at most: each leaves the square of the error before."""
 
 
 @dataclass(frozen=True)
@@ -48,51 +58,68 @@ class Landmark:
     solution: Solution = field(repr=False)
 
 
-@one_blas_thread
-def locate(
-    function: Callable[[RefinedState], float],
-    first: int,
-    last: int,
-    *,
-    coordinate: Coordinate,
-    values: Array,
-    points: Sequence[RefinedState],
-    rtol: float,
-) -> tuple[float, Solution] | None:
-    """Return where ``function`` of the solved state vanishes between two points, and the state there, or None.
+class Landmarks:
+    """The search for landmarks on one path."""
 
-    Where points are dense their own errors hide between which two it is: the search then widens.
-    """
-    corrector = Corrector(coordinate.groups_at, min(rtol, 1e-8))
-    solved: dict[float, RefinedState] = {}
-    found: dict[float, float] = {}
+    def __init__(self, path: SolvedPath, coordinate: Coordinate, rtol: float) -> None:
+        self.path, self.coordinate, self.rtol = path, coordinate, rtol
+        self.moves = bool(coordinate.groups_at(float(path.coordinates[0])).speed > 0)
+        self.corrector = Corrector(coordinate.groups_at, min(rtol, STATES_RTOL))
+        inside = [interval.left.coordinate + PARTS * interval.length for interval in path.intervals]
+        self.places = np.append(np.concatenate(inside), path.coordinates[-1])
+        self.rows = path.smooth(self.places)
 
-    def at(s: float) -> float:
-        # The search asks for its ends twice, where another prediction would round otherwise and may turn a sign.
-        if s in found:
-            return found[s]
-        nearest = sorted(known, key=lambda pair: -abs(pair[0] - s))
-        point = corrector(s, nearest[-3:])
-        if point is None or point.state is None:
-            raise SolveError(Outcome.PATH_LOST, None, f"{describe(coordinate.groups_at(s))}: {Outcome.PATH_LOST.value}")
-        solved[s] = point
-        found[s] = function(point)
-        return found[s]
+    def lowest(
+        self, function: Callable[[Array], Array], slope_of: Callable[[RefinedState], float]
+    ) -> tuple[float, Solution] | None:
+        """Return where a function of the observables is at its minimum inside the path, and the state there, or None."""
+        i = int(np.argmin(function(self.rows)))
+        if not 0 < i < len(self.places) - 1:
+            return None
 
-    for wider in WIDENINGS:
-        ends = max(0, first - wider), min(len(points) - 1, last + wider)
-        known = [(float(np.log(values[i])), points[i]) for i in range(ends[0], ends[1] + 1)]
-        low, high = known[0][0], known[-1][0]
-        if at(low) * at(high) <= 0:
-            break
-    else:
-        return None
-    # Imported here because it takes longer than the rest of the package, and few uses get here.
-    from scipy.optimize import brentq
+        def slope(s: Array) -> Array:
+            return np.asarray(function(self.path.smooth(np.asarray(s + STEP * 1j))).imag / STEP)
 
-    s = float(brentq(at, low, high, xtol=LOCATION_TOLERANCE, rtol=1e-14))
-    if s not in solved:
-        at(s)
-    solution = solution_of(solved[s], coordinate.contact_at(s), rtol)
-    assert solution is not None
-    return math.exp(s), solution
+        low, high = self.places[i - 1], self.places[i + 1]
+        return self._polished(slope, float(low), float(high), slope_of)
+
+    def first(self, function: Callable[[Array], Array], of: Callable[[RefinedState], float]) -> tuple[float, Solution] | None:
+        """Return where a function of the observables vanishes first, ascending, and the state there, or None."""
+        crossings = np.nonzero(np.diff(np.sign(function(self.rows))))[0]
+        if not len(crossings):
+            return None
+        i = int(crossings[0])
+
+        def value(s: Array) -> Array:
+            return function(self.path.smooth(s))
+
+        return self._polished(value, float(self.places[i]), float(self.places[i + 1]), of)
+
+    @one_blas_thread
+    def _polished(
+        self, function: Callable[[Array], Array], low: float, high: float, of: Callable[[RefinedState], float]
+    ) -> tuple[float, Solution] | None:
+        # Imported here because it takes longer than the rest of the package, and few uses get here.
+        from scipy.optimize import brentq
+
+        def at(s: float) -> float:
+            return float(function(np.array([s]))[0])
+
+        if at(low) * at(high) > 0:
+            return None
+        s = float(brentq(at, low, high, xtol=LOCATION_TOLERANCE, rtol=1e-14))
+        width = min(1e-3, 0.1 * (high - low))
+        slope = (at(s + width) - at(s - width)) / (2 * width)
+        guess = guess_at(self.path, s)
+        for _ in range(MOST_POLISHES):
+            groups = self.coordinate.groups_at(s)
+            point = self.corrector.solve(guess, groups)
+            if point.state is None or point.values is None:
+                raise SolveError(point.outcome, None, f"{describe(groups)}: {point.outcome.value}")
+            step = -of(point) / slope
+            if abs(step) <= LOCATION_TOLERANCE or not abs(step) < high - low:
+                break
+            s, guess = s + step, point.state
+        solution = solution_of(point, self.coordinate.contact_at(s), self.rtol)
+        assert solution is not None
+        return math.exp(s), solution

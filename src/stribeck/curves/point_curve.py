@@ -51,13 +51,17 @@ PLATEAU, BRANCH = 1e-3, 1e-2
 class PointCurve(StribeckCurve):
     """Converged states of a ball along one coordinate, and the friction on them; see :class:`stribeck.StribeckCurve`."""
 
-    solutions: tuple[PointSolution, ...]  # type: ignore[assignment]
+    solutions: tuple[PointSolution, ...] = field(kw_only=True)  # type: ignore[assignment]
     _solver: NeighbourSolver = field(kw_only=True, repr=False, compare=False)
 
     @property
     def hydrodynamic_friction(self) -> Array:
         """Nothing: the law of the paper for smooth surfaces is one of the line."""
         return np.full(len(self), math.nan)
+
+    def _friction_of(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
+        found = [s.friction(boundary_friction, beta, definition) for s in self.solutions]
+        return np.array([[f.contact, f.viscous, f.total, f.error] for f in found]).reshape(-1, 4)
 
     def _at(self, s: float) -> PointSolution:
         """Return the solution at a coordinate."""
@@ -194,7 +198,6 @@ def point_curve(
         rtol=rtol,
         outcome=outcome,
         requested=len(values),
-        _points=(),
         _path=coordinate,
         _solver=solver,
         **settings,

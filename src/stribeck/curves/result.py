@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -15,25 +14,25 @@ from stribeck._types import Array
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, FrictionArray, check_definition, coefficients
+from stribeck.contacts.friction import Definition, FrictionArray, check_definition, coefficients, sliding_part
 from stribeck.contacts.groups import Groups
 from stribeck.curves.coordinate import Coordinate, Over, given_values
-from stribeck.curves.function import CurveValues
-from stribeck.curves.landmarks import Landmark, locate
+from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at, state_at
+from stribeck.curves.landmarks import Landmark, Landmarks
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
-from stribeck.equations.sensitivity import GROUPS, friction_slopes
+from stribeck.equations.observables import ROW, Observables
+from stribeck.equations.sensitivity import friction_slopes
+from stribeck.equations.state import State
 from stribeck.files.results import Exported
-from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import InputError, format_si, show
 from stribeck.solver.base_solution import si_films
 from stribeck.solver.notes import HARD, minimum_note
+from stribeck.solver.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
-from stribeck.solver.series.line_path import LineProblem
-from stribeck.solver.series.path import SolvedPath, follow
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import SolveError, describe, finish
+from stribeck.solver.solve import finish
 
 if TYPE_CHECKING:
     import xarray
@@ -42,6 +41,9 @@ __all__ = ["StribeckCurve"]
 
 SLACK = 1e-12
 """Rounding of the ends of a curve."""
+
+TINY = 1e-300
+"""Added to a friction that may vanish."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,8 +56,6 @@ class StribeckCurve(Exported, Shown, ByValue):
         What varies.
     values : ndarray, shape (n,)
         Where the points lie, ascending: the group [-], or SI units where the curve has a contact.
-    solutions : tuple of Solution
-        The state of each point.
     contact : Contact or None
         The contact, at its own speed, load and roughness.
     boundary_friction, beta : float
@@ -72,7 +72,6 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     over: Over
     values: Array
-    solutions: tuple[Solution, ...]
     contact: Contact | None
     boundary_friction: float
     beta: float
@@ -80,18 +79,55 @@ class StribeckCurve(Exported, Shown, ByValue):
     rtol: float
     outcome: Outcome
     requested: int
-    _points: tuple[RefinedState, ...] = field(repr=False, compare=False)
     _path: Coordinate = field(repr=False, compare=False)
+    _function: SolvedPath | None = field(repr=False, compare=False, default=None)
 
     def __len__(self) -> int:
         """Return the number of points."""
-        return len(self.solutions)
+        return len(self.values)
+
+    @cached_property
+    def _rows(self) -> tuple[Array, Array]:
+        """Observables of the points and their errors."""
+        return rows_of(self._solved_path, np.log(self.values), self.rtol)
+
+    @cached_property
+    def solutions(self) -> tuple[Solution, ...]:
+        """The state of each point: its numbers are those of the curve, its fields are solved when they are first asked for."""
+        path = self._solved_path
+        rows = zip(np.log(self.values).tolist(), *self._rows, strict=True)
+        return tuple(CurvePoint(self._path, path, s, row, errors, self.rtol) for s, row, errors in rows)
+
+    @property
+    def _solved_path(self) -> SolvedPath:
+        if self._function is None:
+            raise InputError("curves of balls are known at their points only; give these as an array.")
+        return self._function
+
+    @property
+    def states(self) -> int:
+        """How many states were solved and expanded for the curve."""
+        return len(self._solved_path.expansions)
+
+    def state(self, i: int) -> State:
+        """Return the solved state of a point, as the solver knows it.
+
+        Parameters
+        ----------
+        i : int
+            Number of the point.
+
+        Returns
+        -------
+        State
+            On the mesh of the nearer one of the states that the curve was made of.
+        """
+        return state_at(self._solved_path, float(np.log(self.values[i])))
 
     @property
     def groups(self) -> Groups:
         """Groups of the points, as arrays."""
-        columns = (np.array([float(getattr(s.groups, name)) for s in self.solutions]) for name in GROUPS)
-        return Groups(*columns, **self._path.groups_at(0.0).physics)
+        return self._path.groups_along(self.values)
 
     @property
     def law(self) -> AsperityLaw | None:
@@ -111,6 +147,8 @@ class StribeckCurve(Exported, Shown, ByValue):
         ndarray, shape (n,)
             Its values, in the order of :attr:`values`.
         """
+        if self._function is not None and name in COLUMNS:
+            return np.array(self._rows[0][:, COLUMNS.index(name)])
         return np.array([getattr(s, name) for s in self.solutions])
 
     def at(self, value: Any) -> CurveValues:
@@ -136,19 +174,20 @@ class StribeckCurve(Exported, Shown, ByValue):
 
         Notes
         -----
-        On first use about a dozen states are solved and expanded into Taylor series; from then on a value takes
-        about a millisecond.  Between the states observables are polynomials in the logarithm of ``value``, whose
-        difference from ones of lower order is part of the error (``test_curve_function.py``).
+        A curve is about a dozen solved states, expanded into Taylor series.  Between them observables are polynomials in the
+        logarithm of ``value``, whose difference from ones of lower order is part of the error (``test_curve_function.py``).
         """
         values = given_values(self.over, value, self.contact)
-        low, high = (float(end) for end in np.exp(self._function.coordinates[[0, -1]]))
+        path = self._solved_path
+        low, high = (float(end) for end in np.exp(path.coordinates[[0, -1]]))
         if not ((values >= low * (1 - SLACK)) & (values <= high * (1 + SLACK))).all():
             raise InputError(
                 f"{self.over} = {show(value)} is outside of the curve, which runs from {self._where(low)} to "
                 f"{self._where(high).removeprefix(self.over + ' ')}; ask for a curve that holds it."
             )
-        found, errors = self._function.at(np.log(np.atleast_1d(values)))
-        return CurveValues.of(values, found, errors, self.boundary_friction, self.beta, self.definition, self.rtol)
+        found, errors = path.at(np.log(np.atleast_1d(values)))
+        plain = CurveValues.of(values, found, errors, self._sliding, self.rtol)
+        return plain.with_friction(self.boundary_friction, self.beta, self.definition)
 
     def solve_at(self, value: Any) -> Solution:
         """Return the solution anywhere on the curve, with its fields: solved from the states beside it.
@@ -174,38 +213,22 @@ class StribeckCurve(Exported, Shown, ByValue):
         if np.ndim(found.value):
             raise InputError(f"{self.over} = {show(value)}; give one value, a solution is that of one state.")
         s = math.log(found.value)
-        interval = self._function.intervals[int(self._function.interval_of(np.array([s]))[0])]
-        problem = interval.problem
-        assert isinstance(problem, LineProblem)
-        return finish(
-            problem.point_at(interval.left, interval.right, s), self._path.groups_at(s), self._path.contact_at(s), self.rtol
-        )
+        point = solved_at(self._solved_path, s)
+        return finish(point, self._path.groups_at(s), self._path.contact_at(s), self.rtol)
 
-    @cached_property
-    def _function(self) -> SolvedPath:
-        return one_blas_thread(self._followed)()
-
-    def _followed(self) -> SolvedPath:
-        """Return the path of expanded states from end to end of the points."""
-        if self._path.geometry != "line":
-            raise InputError("curves of balls are known at their points only; give these as an array.")
-        ends = np.log(self.values[[0, -1]])
-        direction = tuple(self._path.direction.tolist())
-        problem = LineProblem(self._path.groups_at, direction, self.rtol, self._path.is_uniform(self.values))
-        path = follow(problem, float(ends[1]), float(ends[0]), self.rtol)
-        if path.outcome is Outcome.INTERRUPTED:
-            raise KeyboardInterrupt
-        if len(path.expansions) < 2:
-            raise SolveError(path.outcome, None, f"{describe(self._path.groups_at(float(ends[1])))}: {path.outcome.value}")
-        return path
+    @property
+    def _sliding(self) -> float:
+        """Part and sign of the sliding friction of asperities that acts."""
+        return sliding_part(2 * self._path.groups_at(0.0).model.film.slide)
 
     @cached_property
     def _friction(self) -> Array:
         return self._friction_of(self.boundary_friction, self.beta, self.definition)
 
     def _friction_of(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
-        found = [s.friction(boundary_friction, beta, definition) for s in self.solutions]
-        return np.array([[f.contact, f.viscous, f.total, f.error] for f in found]).reshape(-1, 4)
+        found = CurveValues.of(self.values, *self._rows, self._sliding, self.rtol)
+        found = found.with_friction(boundary_friction, beta, definition)
+        return np.stack([found.friction_contact, found.friction_viscous, found.friction, found.friction_error], axis=1)
 
     @property
     def friction_contact(self) -> Array:
@@ -323,19 +346,33 @@ class StribeckCurve(Exported, Shown, ByValue):
         return f"{points[0][1]} ({len(points)} of {len(self)} points, {where}.)"
 
     @cached_property
+    def _landmarks(self) -> Landmarks:
+        return Landmarks(self._solved_path, self._path, self.rtol)
+
+    def _landmark(self, name: Transition, found: tuple[float, Solution] | None) -> Landmark | None:
+        if found is None:
+            return None
+        value, solution = found
+        return Landmark(name, value, solution.friction(self.boundary_friction, self.beta, self.definition).total, solution)
+
+    def _parts(self, rows: Array) -> tuple[Array, Array]:
+        """Return the two parts of the friction for rows of observables."""
+        rubbing = self._sliding * self.boundary_friction
+        return rubbing * rows[:, ROW["contact_load_share"]], self.beta * rows[:, ROW[f"viscous_{self.definition}"]]
+
+    @cached_property
     def minimum(self) -> Landmark | None:
-        """The friction minimum, located on solved states where the slope vanishes; None where the curve has none inside."""
-        moves = bool(np.all(np.asarray(self.groups.speed) > 0))  # at rest friction is that of the dry contact throughout
-        i = int(np.argmin(self.friction)) if moves and len(self) > 2 else 0
-        if not 0 < i < len(self) - 1:
+        """The friction minimum, on a state where the slope vanishes; None where the curve has none inside."""
+        if not self._landmarks.moves:  # at rest friction is that of the dry contact throughout
             return None
 
         def slope(point: RefinedState) -> float:
             assert point.state is not None
-            slopes = friction_slopes(point.state, self.boundary_friction, self.beta, self.definition)
+            rubbing = self._sliding * self.boundary_friction
+            slopes = friction_slopes(point.state, rubbing, self.beta, self.definition)
             return float(slopes @ self._path.direction)
 
-        return self._landmark(Transition.MINIMUM, i - 1, i + 1, slope)
+        return self._landmark(Transition.MINIMUM, self._landmarks.lowest(lambda rows: np.add(*self._parts(rows)), slope))
 
     @cached_property
     def transitions(self) -> tuple[Landmark, ...]:
@@ -344,33 +381,26 @@ class StribeckCurve(Exported, Shown, ByValue):
         As far as the curve holds them, ascending: where the fluid carries 5 % and 50 % of the load, where asperities cause
         10 % of the friction, and where friction is at its minimum.
         """
-        fluid = self.observable("fluid_load_share")
-        contact = self.friction_contact / np.maximum(self.friction, 1e-300)
-        found = [self.minimum]
 
-        def cross(name: Transition, line: float, values: Array, of: Callable[[RefinedState], float]) -> None:
-            crossings = np.nonzero(np.diff(np.sign(values - line)))[0]
-            if len(crossings):
-                i = int(crossings[0])
-                found.append(self._landmark(name, i, i + 1, lambda point: of(point) - line))
+        def of_asperities(rows: Array) -> Array:
+            contact, viscous = self._parts(rows)
+            return np.asarray(contact / (contact + viscous + TINY) - HYDRODYNAMIC_CONTACT_SHARE)
 
-        cross(Transition.BOUNDARY_END, BOUNDARY_FLUID_SHARE, fluid, _fluid)
-        cross(Transition.EQUAL_SHARES, 0.5, fluid, _fluid)
-        cross(Transition.HYDRODYNAMIC_START, HYDRODYNAMIC_CONTACT_SHARE, contact, self._contact_part)
+        def of_fluid(share: float) -> tuple[float, Solution] | None:
+            return self._landmarks.first(
+                lambda rows: rows[:, ROW["fluid_load_share"]] - share, lambda point: _values(point).fluid_load_share - share
+            )
+
+        found = [
+            self.minimum,
+            self._landmark(Transition.BOUNDARY_END, of_fluid(BOUNDARY_FLUID_SHARE)),
+            self._landmark(Transition.EQUAL_SHARES, of_fluid(0.5)),
+            self._landmark(
+                Transition.HYDRODYNAMIC_START,
+                self._landmarks.first(of_asperities, lambda point: float(of_asperities(_values(point).array()[None])[0])),
+            ),
+        ]
         return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
-
-    def _contact_part(self, point: RefinedState) -> float:
-        assert point.values is not None
-        contact = self.boundary_friction * point.values.contact_load_share
-        return contact / (contact + self.beta * float(getattr(point.values, f"viscous_{self.definition}")))
-
-    def _landmark(self, name: Transition, first: int, last: int, function: Callable[[RefinedState], float]) -> Landmark | None:
-        """Return the landmark where ``function`` of the solved state vanishes between two points, or None."""
-        found = locate(function, first, last, coordinate=self._path, values=self.values, points=self._points, rtol=self.rtol)
-        if found is None:
-            return None
-        value, solution = found
-        return Landmark(name, value, solution.friction(self.boundary_friction, self.beta, self.definition).total, solution)
 
     def to_dataset(self) -> xarray.Dataset:
         """Return the curve as an xarray Dataset.
@@ -425,6 +455,6 @@ class StribeckCurve(Exported, Shown, ByValue):
         return Card(f"{points}, {ends}{outcome}", rows, self.notes)
 
 
-def _fluid(point: RefinedState) -> float:
+def _values(point: RefinedState) -> Observables:
     assert point.values is not None
-    return point.values.fluid_load_share
+    return point.values

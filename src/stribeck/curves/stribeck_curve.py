@@ -24,9 +24,9 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.path import solve_along
-from stribeck.solver.refinement import RefinedState
-from stribeck.solver.solve import SolveError, check_rtol, describe, finish, solution_of, with_law
+from stribeck.solver.line_path import LineProblem
+from stribeck.solver.path import follow
+from stribeck.solver.solve import SolveError, check_rtol, describe, finish, with_law
 
 __all__ = ["Landmark", "StribeckCurve", "stribeck_curve"]
 
@@ -134,7 +134,8 @@ def stribeck_curve(
 
     Notes
     -----
-    States follow one another by continuation; each meets ``rtol`` by its own error estimate.
+    A few states are solved and expanded into Taylor series; the points lie between them, each within ``rtol`` by its estimated
+    error.  What more of them costs is next to nothing.
     """
     check_rtol(rtol)
     definition = check_definition(definition)
@@ -162,44 +163,38 @@ def stribeck_curve(
         settings = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
         found_curve: StribeckCurve = trace(coordinate, values, rtol, on_point, **settings)
         return found_curve
-    descending = values[::-1]
     done = 0
-    targets = np.log(descending)
-    wanted = set(targets.tolist())
+    places = np.log(values)
 
-    def report(s: float, point: RefinedState) -> None:
+    def report(low: float, high: float) -> None:
         nonlocal done
-        if s in wanted and on_point is not None:
+        while done < len(values) and places[-1 - done] >= low:
             done += 1
-            on_point(done, len(values))
+            if on_point is not None:
+                on_point(done, len(values))
 
-    path = solve_along(coordinate.groups_at, targets.tolist(), rtol, report)
-    found = {s: p for s, p in zip(path.coordinates, path.states, strict=True) if s in wanted}
-    if not found:
-        if path.failure is not None:
-            finish(path.failure, coordinate.groups_at(float(targets[0])), contact, rtol)
-        raise SolveError(path.outcome, None, f"{describe(coordinate.groups_at(float(targets[0])))}: {path.outcome.value}")
-    solutions, kept, where = [], [], []
-    for value, s in zip(values, targets[::-1].tolist(), strict=True):
-        if s in found:
-            solution = solution_of(found[s], coordinate.contact_at(s), rtol)
-            assert solution is not None
-            solutions.append(solution)
-            kept.append(found[s])
-            where.append(value)
+    direction: tuple[float, float, float] = tuple(coordinate.direction.tolist())
+    line = LineProblem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
+    path = follow(line, float(places[-1]), float(places[0]), rtol, report)
+    if path.outcome is not Outcome.INTERRUPTED and path.expansions:
+        done = int((places >= path.coordinates[0]).sum())
+    if not done:
+        groups = coordinate.groups_at(float(places[-1]))
+        if line.failure is not None:
+            finish(line.failure, groups, contact, rtol)
+        raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")
     return StribeckCurve(
         over=over,
-        values=np.array(where),
-        solutions=tuple(solutions),
+        values=values[len(values) - done :],
         contact=contact,
         boundary_friction=boundary_friction,
         beta=beta,
         definition=definition,
         rtol=rtol,
-        outcome=path.outcome if path.failure is None or path.outcome is not Outcome.PATH_LOST else path.failure.outcome,
+        outcome=path.outcome,
         requested=len(values),
-        _points=tuple(kept),
         _path=coordinate,
+        _function=path,
     )
 
 

@@ -138,11 +138,10 @@ def _along(
     if len(curve) < len(points):
         raise SolveError(curve.outcome, None, f"load {load:.6g}, roughness {roughness:.6g}: {curve.outcome.value}")
     values, slopes, errors = np.empty((2, n)), np.empty((2, 3, n)), np.empty((2, n))
-    for i, (solution, point) in enumerate(zip(curve.solutions[:n], curve._points[:n], strict=True)):
-        assert point.state is not None
+    for i, solution in enumerate(curve.solutions[:n]):
         found = solution.observables.array()
         values[:, i] = found[0], found[row]
-        derivatives = log_derivatives(point.state)
+        derivatives = log_derivatives(curve.state(i))
         slopes[:, :, i] = derivatives["contact_load_share"], derivatives[f"viscous_{definition}"]
         errors[:, i] = solution.relative_errors[[0, row]]
     return values, slopes, errors

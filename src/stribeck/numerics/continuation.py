@@ -7,7 +7,6 @@ Source: [Allgower & Georg 1990] Numerical Continuation Methods, chapter 6 (step 
 corrector).
 """
 
-import bisect
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
@@ -20,8 +19,6 @@ from stribeck._types import Array
 from stribeck.quantities.outcome import Outcome
 
 FASTEST_GROWTH = 2.0  # of the step length, per step; also how much a hard step shrinks the next
-
-FASTEST_BEYOND_TARGETS = 4.0  # the same where targets, which cut steps short, may be passed over
 
 
 class State(Protocol):
@@ -97,9 +94,6 @@ class Steps:
         Degree of the prediction: the corrector sees at most ``order + 1`` points.
     aim : float
         Effort at which the step length is kept; two less doubles it, two more halves it.
-    skip : int or None
-        Smallest number of targets for a step to pass over: if it reaches beyond so many it ends at the farthest target
-        that it reaches, and those before are left out. None leaves out none.
     """
 
     first: float
@@ -107,7 +101,6 @@ class Steps:
     shortest: float
     order: int = 3
     aim: float = 4
-    skip: int | None = None
 
     def __post_init__(self) -> None:
         """Refuse lengths that are not in order."""
@@ -195,9 +188,7 @@ def march(
                 on_point(start, state)
         while ahead and not (stop_when is not None and stop_when(points[-1][1])):
             here = points[-1][0]
-            within = 1 if steps.skip is None else bisect.bisect_right(ahead, length, key=lambda s: abs(s - here))
-            passed = within - 1 if steps.skip is not None and within > steps.skip else 0
-            target = ahead[passed]
+            target = ahead[0]
             left = abs(target - here)
             step = left if left <= length else min(length, 0.5 * left)
             s = target if step == left else here + sign * step
@@ -210,11 +201,10 @@ def march(
                 continue
             points.append((s, state))
             if s == target:
-                del ahead[: passed + 1]
+                del ahead[0]
             if on_point is not None:
                 on_point(s, state)
-            fastest = FASTEST_GROWTH if steps.skip is None else FASTEST_BEYOND_TARGETS
-            factor = min(fastest, max(1.0 / FASTEST_GROWTH, 2.0 ** (0.5 * (steps.aim - state.effort))))
+            factor = min(FASTEST_GROWTH, max(1.0 / FASTEST_GROWTH, 2.0 ** (0.5 * (steps.aim - state.effort))))
             if factor < 1.0:
                 length = max(steps.shortest, factor * step)
             elif may_grow:  # a step cut short by a target does not shorten the next one

@@ -6,7 +6,8 @@ r"""Two-point Hermite interpolation: the polynomial that has the Taylor coeffici
     \qquad B_j(\tau) = \tau^j (1 - \tau)^{K+1} \sum_{i=0}^{K-j} \binom{K+i}{i} \tau^i
 
 for an interval of length d, :math:`\tau` running from 0 to 1 on it.  No linear system is solved: that of the monomials loses
-all digits from K = 10 on.  Source: [Davis 1975] Interpolation and Approximation, section 2.5.
+all digits from K = 10 on.  That of Chebyshev polynomials loses none: where a polynomial is evaluated often it is kept by them.
+Source: [Davis 1975] Interpolation and Approximation, section 2.5.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import numpy as np
 
 from stribeck._types import Array
 
-__all__ = ["hermite", "hermite_weights"]
+__all__ = ["chebyshev_basis", "chebyshev_form", "chebyshev_nodes", "hermite", "hermite_weights"]
 
 
 @lru_cache(maxsize=64)
@@ -73,3 +74,35 @@ def hermite(left: Array, right: Array, length: float, tau: Array) -> Array:
     of_left, of_right = hermite_weights(order, tau)
     scale = length ** np.arange(order + 1)
     return np.asarray(np.tensordot(of_left * scale, left, 1) + np.tensordot(of_right * scale, right, 1))
+
+
+@lru_cache(maxsize=64)
+def _from_nodes(count: int) -> Array:
+    """Return the matrix from values at the nodes to coefficients of Chebyshev polynomials."""
+    angles = np.pi * (np.arange(count) + 0.5) / count
+    matrix: Array = 2.0 / count * np.cos(np.outer(np.arange(count), angles))
+    matrix[0] *= 0.5
+    return matrix
+
+
+def chebyshev_nodes(count: int) -> Array:
+    """Return the places between 0 and 1, shape (count,), whose values :func:`chebyshev_form` takes."""
+    return np.asarray(0.5 + 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count))
+
+
+def chebyshev_form(values: Array) -> Array:
+    """Return the coefficients of the polynomials through values at these nodes, both of shape (count, ...)."""
+    return np.asarray(_from_nodes(len(values)) @ values)
+
+
+def chebyshev_basis(tau: Array, count: int) -> Array:
+    """Return the Chebyshev polynomials of degree 0 to ``count - 1`` at real or complex places, shape (len(tau), count)."""
+    x = 2.0 * tau - 1.0
+    found = np.empty((count, *tau.shape), dtype=x.dtype)
+    found[0] = 1.0
+    if count > 1:
+        found[1] = x
+    twice = 2.0 * x
+    for k in range(2, count):
+        found[k] = twice * found[k - 1] - found[k - 2]
+    return np.asarray(found.T)

@@ -1,11 +1,7 @@
-"""Correcting a path: prediction, a mesh kept for as long as it resolves, refinement where it does not.
-
-The stepping is :func:`continuation.march`; here is what it corrects with.
-"""
+"""Correcting a prediction: on the mesh of the state before for as long as it resolves, refined where it does not."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -22,50 +18,30 @@ from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.cold_start import first_path
-from stribeck.solver.judgement import verify_together
 from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, order_for, verify
 
 MOST_STEPS = 16
 """Newton and chord steps after which the present mesh is given up."""
 
-ROUGH = 1e-2
-"""Error of a prediction from which the mesh that was made for it is looked at again: it is finer than need be."""
-
-MOST_WAITING = 8
-"""Points that may wait to be verified together."""
-
-WAITING_NODES = 4000
-"""Nodes that they may have in all: each may keep the factors of a matrix as large as its own."""
-
-PATIENCE = 0.6
-"""How many wait where the errors at the nodes are as large as the tolerance; the smaller they are, the more."""
-
-FINER_THAN_NEEDED = 0.1
-"""Part of the tolerance below which the errors at the nodes call for a coarser mesh."""
-
 CHECK_EVERY = 25
-"""Points between two looks at whether a coarser mesh would do."""
+"""States between two looks at whether a coarser mesh would do."""
 
 WORTH_COARSENING = 0.85
 """Ratio of sizes from which the coarser mesh is taken."""
 
 RELAX = 3.0
-"""Factor by which a mesh tolerance that once had to be lowered is raised again at such a look."""
+"""Factor by which mesh tolerances that once had to be lowered are raised again."""
 
 
 class Corrector:
-    """Solve the states of a path from predictions: ``groups_at(s)`` gives the groups at coordinate s.
+    """Solve states one after another: ``groups_at(s)`` gives the groups at coordinate s.
 
-    It keeps the operators of the present mesh, whose making costs as much as several states.  With ``postpone`` a state on it
-    that looks resolved is verified later, together with others, by :meth:`verify_waiting`.
+    It keeps the operators of the present mesh, whose making costs as much as several states.
     """
 
-    def __init__(self, groups_at: Callable[[float], Groups], rtol: float, postpone: bool = False) -> None:
+    def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
         self.groups_at = groups_at
         self.rtol = rtol
-        self.postpone = postpone
-        self.waiting: list[tuple[RefinedState, Inverse]] = []
-        self.at_nodes = math.inf  # error there of the last point that was verified, in units of rtol
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
         self.inverse: Inverse | None = None
@@ -73,99 +49,59 @@ class Corrector:
         self.tolerances = mesh_tolerances_for(rtol)
 
     def __call__(self, s: float, history: Sequence[tuple[float, RefinedState]]) -> RefinedState | None:
-        """Return the point at ``s`` predicted from ``history``; from cold where that is empty."""
+        """Return the state at ``s`` predicted from ``history``; from cold where that is empty."""
         groups = self.groups_at(s)
-        if groups.model.cavitation is Cavitation.REFORM and groups.speed > 0:  # cavities come and go along a path
-            from stribeck.solver.solve import solved_point
-
-            return solved_point(groups, self.rtol)
         if not history:
-            path = first_path(with_positive_gap(groups)[0])
-            if path.outcome is Outcome.INTERRUPTED:
-                raise KeyboardInterrupt
-            return self._adopt(converge(path.states[-1], groups, self.rtol)) if path.outcome.ok else None
-        guess = extrapolate([(c, p.state) for c, p in history if p.state is not None], s)
-        point = self._on_present_mesh(guess, groups, self.postpone and bool(groups.speed > 0))
-        if point is not None and point.outcome.ok:
-            return self._kept(point)
-        if point is None or point.state is None:
-            return self._adopt(converge(guess, groups, self.rtol, self.tolerances))
-        if self.at_nodes < FINER_THAN_NEEDED:  # the panels of the central and the minimum gap failed alone
-            self._relax()
-        refined = converge(point.state, groups, self.rtol, self.tolerances)
-        adopted = self._adopt(refined)
-        if adopted.state is not None and adopted.outcome.ok and adopted.state.prediction_error > ROUGH:
-            self._coarsen(adopted.state)
-        return adopted
+            return self.cold(groups)
+        return self.solve(extrapolate([(c, p.state) for c, p in history if p.state is not None], s), groups)
 
-    def verify_waiting(self) -> dict[RefinedState, RefinedState]:
-        """Return the points that waited, each with what it became: verified, and solved anew where its mesh was too coarse."""
-        waiting, self.waiting = self.waiting, []
-        found: dict[RefinedState, RefinedState] = {}
-        for fine in {point.fine: None for point, _ in waiting}:
-            points, inverses = zip(*(pair for pair in waiting if pair[0].fine is fine), strict=True)
-            assert fine is not None
-            verified = verify_together([point.state for point in points], inverses, fine, self.rtol)
-            found |= zip(points, verified, strict=True)
-        if waiting:
-            self._learn(found[waiting[-1][0]])
-        return {point: verified if verified.outcome.ok else self._again(verified) for point, verified in found.items()}
+    def cold(self, groups: Groups) -> RefinedState | None:
+        """Return the state of ``groups`` from cold, None where no path leads there."""
+        if _cavity_may_vanish(groups):
+            return _from_cold(groups, self.rtol)
+        path = first_path(with_positive_gap(groups)[0])
+        if path.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        return self._adopt(converge(path.states[-1], groups, self.rtol)) if path.outcome.ok else None
 
-    @property
-    def patience(self) -> int:
-        """How many points may wait: the better the mesh resolved the last one, the more."""
-        size = 1 if self.operators is None else self.operators.mesh.size
-        return max(1, min(MOST_WAITING, WAITING_NODES // size, int(PATIENCE / math.sqrt(self.at_nodes + 1e-300))))
+    def solve(self, guess: Guess, groups: Groups, spread: float = 0.0) -> RefinedState:
+        """Return the state of ``groups`` from a guess; ``spread`` as for :func:`stribeck.equations.state.mesh_for`."""
+        if not _cavity_may_vanish(groups):
+            return self._solve(guess, groups, spread)
+        if isinstance(guess, State):  # one with as many unknowns as the state before
+            point = self._solve(guess, replace(groups, model=guess.groups.model), spread)
+            if point.outcome.ok and _keeps_cavity(point, groups):
+                return replace(point, groups=groups)
+        return _from_cold(groups, self.rtol)
 
-    def _learn(self, point: RefinedState) -> RefinedState:
-        """Return the point, and keep what it tells of the mesh."""
-        if point.estimate is not None:
-            self.at_nodes = point.estimate.at_nodes / self.rtol
-        return point
-
-    def _again(self, point: RefinedState) -> RefinedState:
-        """Return a point whose mesh was too coarse: on the present one where that is another, else on a finer one."""
-        assert point.state is not None
-        if self.operators is not None and self.operators.mesh is not point.state.mesh:
-            again = self._on_present_mesh(point.state, point.groups, postpone=False)
-            if again is not None and again.outcome.ok:
-                return self._kept(again)
-        return self._adopt(converge(point.state, point.groups, self.rtol, self.tolerances))
-
-    def _on_present_mesh(self, guess: Guess, groups: Groups, postpone: bool) -> RefinedState | None:
-        if self.operators is None or self.fine is None:
-            return None
-        base, tolerance = with_positive_gap(groups)[0], newton_tolerance(self.rtol)
-        if base.model != self.operators.model:
-            self.operators, self.inverse = Operators(self.operators.mesh, base.model), None
-        state = solve_state(base, self.operators, guess, tolerance, MOST_STEPS, self.inverse)
-        if not state.outcome.ok:
-            return None
-        if postpone:
-            resolved = gap_is_resolved(state.mesh, state.gap, self.rtol)
-            outcome = Outcome.CONVERGED if resolved else Outcome.REFINEMENT_LIMIT
-            point = RefinedState(groups, state, None, None, outcome, fine=self.fine)
-        else:
-            point = self._learn(verify(state, groups, self.fine, self.rtol))
-        self.since_check += 1
-        if self.since_check >= CHECK_EVERY and point.outcome.ok:
-            self._coarsen(state)
-        return point
+    def _solve(self, guess: Guess, groups: Groups, spread: float) -> RefinedState:
+        base = with_positive_gap(groups)[0]
+        if self.operators is not None and self.fine is not None:
+            if base.model != self.operators.model:
+                self.operators, self.inverse = Operators(self.operators.mesh, base.model), None
+            state = solve_state(base, self.operators, guess, newton_tolerance(self.rtol), MOST_STEPS, self.inverse)
+            if state.outcome.ok:
+                if gap_is_resolved(state.mesh, state.gap, self.rtol, spread):
+                    point = verify(state, groups, self.fine, self.rtol)
+                    if point.outcome.ok:
+                        self._look_for_coarser(state)
+                        return self._kept(point)
+                guess = state
+        return self._adopt(converge(guess, groups, self.rtol, self.tolerances, spread=spread))
 
     def _kept(self, point: RefinedState) -> RefinedState:
-        """Return the point with its inverse kept here, for the next one, instead of there."""
+        """Return the state with its inverse kept here, for the next one, instead of there."""
         if point.state is None:
             return point
         same_mesh = self.operators is not None and point.state.mesh is self.operators.mesh
-        inverse = point.state.root.inverse
-        self.inverse = inverse if same_mesh else None
-        kept = replace(point, state=point.state.without_inverse())
-        if kept.estimate is None and kept.outcome.ok and inverse is not None:
-            self.waiting.append((kept, inverse))
-        return kept
+        self.inverse = point.state.root.inverse if same_mesh else None
+        return replace(point, state=point.state.without_inverse())
 
-    def _coarsen(self, state: State) -> None:
-        """Try wider tolerances from now on, and at once where the mesh they make is clearly smaller than the present one."""
+    def _look_for_coarser(self, state: State) -> None:
+        """From time to time, take the mesh that wider tolerances make if it is clearly smaller than the present one."""
+        self.since_check += 1
+        if self.since_check < CHECK_EVERY:
+            return
         self.since_check = 0
         self._relax()
         try:
@@ -184,6 +120,28 @@ class Corrector:
         if point.state is not None and point.outcome.ok:
             self.operators, self.fine = point.state.equations.operators, point.fine
             self.tolerances = point.tolerances or self.tolerances
+            self._relax()
             self.since_check = 0
-            self._learn(point)
         return self._kept(point)
+
+
+def _cavity_may_vanish(groups: Groups) -> bool:
+    """Return whether a film may have a cavity or none: neighbours may then have other unknowns."""
+    return groups.model.cavitation is Cavitation.REFORM and bool(groups.speed > 0)
+
+
+def _keeps_cavity(point: RefinedState, groups: Groups) -> bool:
+    """Return whether a full film has no suction by which it would rupture; with a cavity it is what it was solved for."""
+    state = point.state
+    if state is None or state.groups.model.cavitation is not Cavitation.NONE:
+        return True
+    return bool(state.equations.pressures(state.y)[1].min() >= groups.model.cavity_pressure)
+
+
+def _from_cold(groups: Groups, rtol: float) -> RefinedState:
+    from stribeck.solver.solve import SolveError, solved_point
+
+    try:
+        return solved_point(groups, rtol)
+    except SolveError as failure:
+        return RefinedState(groups, None, None, None, failure.outcome)

@@ -1,149 +1,353 @@
-"""Following a state along one coordinate, the logarithm of whatever varies: steps, and the targets that lie between them."""
+r"""A path of states along one coordinate, the logarithm of whatever varies, as a function of it.
+
+A few states are solved and expanded into Taylor series; between two of them each observable is the polynomial that has the
+coefficients of both.  A step is as long as their radius of convergence allows; where the polynomial of all orders differs from
+that without the highest by more than the tolerance a state is solved in between.  The stated error of an observable is the
+larger of those of both ends, and this difference.
+
+What the states are is known to a :class:`Problem` alone.
+"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol
 
-from stribeck.contacts.line import Groups
-from stribeck.numerics.continuation import Path, Steps, march
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.corrector import Corrector
-from stribeck.solver.infill import SolvedState, interpolate_and_correct
-from stribeck.solver.refinement import RefinedState
 
-LONGEST_STEP = math.log(10.0)
+LONGEST_STEP = 4.0
 SHORTEST_STEP = 1e-3
-PREDICTOR_ORDER = 4
 
-AIM = 3
-"""What steps aim at where targets may be passed over: the smaller, the shorter the steps, and the better what lies between is
-interpolated."""
+REACH = 0.95
+"""Largest step over the radius of convergence."""
 
-MIN_SKIPPED = 3
-"""Targets that a step has to pass over: filling fewer costs more than as many steps."""
+KNOT_PART = 0.75
+"""Part of the tolerance that a solved state must hold: the rest is for what lies between."""
 
-FILL_ORDER = 5
-"""Degree of the interpolation between the steps of a path."""
+CHECKED = 0.85
+"""Part of the tolerance that an interval must hold where it is checked."""
 
-ANCHORS = 8
-"""Steps of a path that are kept for it."""
+REDUCIBLE = 0.05
+"""Part of the tolerance that interpolation must miss for a shorter interval to help."""
 
+READ_AT = 16
+"""Places of an interval at which what has no series is read, for a polynomial between them."""
 
-class PathAssembler:
-    """The points of a path in their order: its steps, and the targets that lie between them."""
+TAIL = 3.0
+"""What a polynomial is wrong by, over the largest of its last three coefficients."""
 
-    def __init__(
-        self, corrector: Corrector, targets: Sequence[float], on_point: Callable[[float, RefinedState], object] | None
-    ) -> None:
-        self.corrector = corrector
-        self.targets = list(targets)
-        self.on_point = on_point
-        self.anchors: list[SolvedState] = []
-        self.arrived: list[tuple[float, RefinedState]] = []
-        self.done: list[tuple[float, RefinedState]] = []
-        self.lost: Path[RefinedState] | None = None
+CHECKS = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 14) / 14)
+"""Where an interval is checked, in parts of it."""
 
-    def arrive(self, s: float, point: RefinedState) -> None:
-        """Take the next step of the path, and report the points up to it."""
-        found = {s: point}
-        skipped = self.targets[: self.targets.index(s)] if s in self.targets else []
-        self.targets = self.targets[len(skipped) + (s in self.targets) :]
-        if self.targets or skipped:
-            left, right = self.anchors[-1:], self._anchor(s, point)
-            if skipped:
-                found = self._found(skipped, left[0], right) | found
-                last = self.anchors[-1]
-                self.corrector.inverse = last.inverse if last.operators is self.corrector.operators else None
-        for c in [*skipped, s]:
-            if c not in found:
-                break
-            self.arrived.append((c, found[c]))
-        if len(self.corrector.waiting) >= self.corrector.patience:
-            self.release()
+LOST = 1e3
+"""Value over what its interpolation misses below which a share goes by its logarithm."""
 
-    def release(self) -> None:
-        """Have the points verified that wait for it, and report all that arrived."""
-        verified = self.corrector.verify_waiting()
-        self.arrived = [(s, verified.get(point, point)) for s, point in self.arrived]
-        while self.arrived and self.lost is None:
-            s, point = self.arrived.pop(0)
-            if not point.outcome.ok:
-                self.lost = Path((), (), point.outcome, 1, point)
-                break
-            self.done.append((s, point))
-            if self.on_point is not None:
-                self.on_point(s, point)
+MIDDLE = np.array([0.5])
 
-    def _anchor(self, s: float, point: RefinedState) -> SolvedState:
-        """Return the anchor that a solved point is, and keep it as one to interpolate through."""
-        assert self.corrector.operators is not None and self.corrector.fine is not None
-        anchor = SolvedState.at(s, point, self.corrector.operators, self.corrector.fine)
-        self.anchors = [*self.anchors[-ANCHORS:], anchor]
-        return anchor
+LONGEST_END = 0.05
+"""Longest interval on which an observable may cease to exist."""
 
-    def _nearest(self, s: float) -> list[SolvedState]:
-        """Return the anchors to interpolate through, the nearest last."""
-        return sorted(self.anchors, key=lambda anchor: -abs(anchor.coordinate - s))[-FILL_ORDER - 1 :]
-
-    def _found(self, coordinates: list[float], left: SolvedState, right: SolvedState) -> dict[float, RefinedState]:
-        """Return the points between two anchors: all at once on the mesh of either, else on both sides of a step between."""
-        found: dict[float, RefinedState] = {}
-        missing = coordinates
-        for anchor in (right, left) if left.operators is not right.operators else (right,):
-            groups = [self.corrector.groups_at(s) for s in missing]
-            through = self._nearest(0.5 * (left.coordinate + right.coordinate))
-            points = interpolate_and_correct((left, right), anchor, through, missing, groups, self.corrector.rtol)
-            found |= {s: p for s, p in zip(missing, points, strict=False) if p.outcome.ok}
-            missing = [s for s in missing if s not in found]
-            if not missing:
-                return found
-        half = len(missing) // 2
-        path = self._step(left, missing[half])
-        if not path.outcome.ok:
-            self.lost = path
-            return found
-        middle = self._anchor(missing[half], path.states[-1])
-        found[middle.coordinate] = middle.point
-        for part, ends in ((missing[:half], (left, middle)), (missing[half + 1 :], (middle, right))):
-            if part and self.lost is None:
-                found |= self._found(part, *ends)
-        return found
-
-    def _step(self, left: SolvedState, s: float) -> Path[RefinedState]:
-        """Return the path from an anchor to ``s``, predicted by interpolation."""
-        distance = abs(s - left.coordinate)
-        return march(
-            lambda c, _: self.corrector(c, [(a.coordinate, a.point) for a in self._nearest(c)]),
-            left.coordinate,
-            s,
-            Steps(distance, distance, min(SHORTEST_STEP, distance)),
-            history=[(left.coordinate, left.point)],
-        )
+SHORTEST_INTERVAL = 0.01
+"""Length below which an interval is left as it is, with the error that it has: where a film ruptures no series converges."""
 
 
-def solve_along(
-    groups_at: Callable[[float], Groups],
-    coordinates: Sequence[float],
-    rtol: float,
-    on_point: Callable[[float, RefinedState], object] | None = None,
-) -> Path[RefinedState]:
-    """Return the converged points at ``coordinates``, ascending or descending, and those between that the path needed."""
-    targets = [float(s) for s in coordinates]
-    corrector = Corrector(groups_at, rtol, postpone=True)
-    moving = bool(groups_at(targets[0]).speed > 0)
-    assembler = PathAssembler(corrector, targets, on_point)
-    path = march(
-        corrector,
-        targets[0],
-        targets[-1],
-        Steps(0.5, LONGEST_STEP, SHORTEST_STEP, PREDICTOR_ORDER, AIM if moving else 4, MIN_SKIPPED if moving else None),
-        targets=targets,
-        stop_when=lambda _: assembler.lost is not None,
-        on_point=assembler.arrive,
-    )
-    if path.outcome is not Outcome.INTERRUPTED:  # then what was reported is kept
-        assembler.release()
-    end = path if assembler.lost is None else assembler.lost
-    points = assembler.done
-    return Path(tuple(s for s, _ in points), tuple(point for _, point in points), end.outcome, end.failures, end.failure)
+@dataclass(frozen=True, eq=False)
+class Expansion:
+    """Taylor coefficients of observables about a solved state, order by order in the first axis.
+
+    Attributes
+    ----------
+    coordinate : float
+        Where the state is.
+    point : object
+        The state, as its problem knows it.
+    series : ndarray, shape (K + 1, n)
+        Coefficients of the observables.
+    logs : ndarray, shape (K + 1, n)
+        Those of their logarithms; nan where there are none.
+    errors : ndarray, shape (n,)
+        Estimated errors at the state, in units of the scales of :class:`Problem`.
+    radius : float
+        About the radius of convergence.
+    """
+
+    coordinate: float
+    point: Any
+    series: Array
+    logs: Array
+    errors: Array
+    radius: float
+
+    @property
+    def order(self) -> int:
+        """K."""
+        return len(self.series) - 1
+
+
+class Problem(Protocol):
+    """What a path asks of the states that it follows."""
+
+    @property
+    def held(self) -> Flags:
+        """Which observables the tolerance holds for."""
+
+    @property
+    def signed(self) -> Flags:
+        """Which observables may cross zero: absolute errors of the ends count between them, for others relative ones."""
+
+    def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
+        """Return the expanded state at ``s``; ``near`` holds none, the last, or both that it lies between.
+
+        A failure is returned as its outcome.
+        """
+
+    def scales(self, values: Array, s: Array) -> Array:
+        """Return what errors of observables at coordinates s, shape (len(s), n), are relative to."""
+
+    def read_scales(self, values: Array) -> Array:
+        """Return the same for what has no series."""
+
+    def missed(self, left: Expansion, right: Expansion, values: Array) -> Array:
+        """Return by how much the equations contradict ``values`` in the middle between two expansions, in units of the scales.
+
+        Zero where the coefficients are surely right.
+        """
+
+    def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
+        """Return observables that have no series, at parts of an interval: values, errors, and their columns."""
+
+
+def _missed(left: Array, right: Array) -> Array:
+    r"""Return by how much the interpolation changes with its highest order K, at most, over :math:`(\tau (1 - \tau))^K`.
+
+    The change is that times a linear function, which may vanish anywhere: its larger end counts.
+    """
+    at = np.array([0.25, 0.75])
+    a, b = (hermite(left, right, 1.0, at) - hermite(left[:-1], right[:-1], 1.0, at)) / (3 / 16) ** (len(left) - 1)
+    return np.asarray(np.maximum(np.abs(1.5 * a - 0.5 * b), np.abs(1.5 * b - 0.5 * a)))
+
+
+@dataclass(frozen=True, eq=False)
+class Interval:
+    """What lies between two expansions."""
+
+    problem: Problem
+    left: Expansion
+    right: Expansion
+
+    @property
+    def length(self) -> float:
+        """Length, positive; zero where a single state is both ends."""
+        return self.right.coordinate - self.left.coordinate
+
+    def parts(self, s: Array) -> Array:
+        """Return coordinates as parts of the interval."""
+        return np.asarray((s - self.left.coordinate) / (self.length or 1.0))
+
+    @property
+    def order(self) -> int:
+        """K, that both ends have."""
+        return min(self.left.order, self.right.order)
+
+    @cached_property
+    def _forms(self) -> tuple[Array, Array, Array, list[int]]:
+        """The polynomials of the observables and what they miss, those of logarithms, and the columns that these are for."""
+        scale = self.length ** np.arange(self.order + 1.0)[:, None]
+        ends = self.left.series, self.right.series, self.left.logs, self.right.logs
+        left, right, log_left, log_right = (form[: self.order + 1] * scale for form in ends)
+        columns = np.nonzero(np.isfinite(log_left + log_right).all(axis=0))[0].tolist()
+        nodes = chebyshev_nodes(2 * self.order + 2)
+        logs = hermite(log_left[:, columns], log_right[:, columns], 1.0, nodes)
+        return chebyshev_form(hermite(left, right, 1.0, nodes)), _missed(left, right), chebyshev_form(logs), columns
+
+    def _interpolated(self, parts: Array) -> tuple[Array, Array]:
+        """Return the observables and what the interpolation misses.
+
+        A share that is lost in that goes by its logarithm, which keeps it positive and its digits.
+        """
+        form, size, logs, columns = self._forms
+        basis = chebyshev_basis(parts, len(form))
+        found, missed = basis @ form, (parts.real * (1 - parts.real))[:, None] ** self.order * size
+        if columns:
+            shares, limit = found[:, columns], LOST * missed[:, columns]
+            lost = shares.real < limit
+            if lost.any():
+                with np.errstate(over="ignore", invalid="ignore"):
+                    tiny = np.exp(basis @ logs)
+                found[:, columns] = np.where(lost & (np.abs(tiny) < limit), tiny, shares)
+        return found, missed
+
+    @cached_property
+    def _at_ends(self) -> tuple[Array, Array]:
+        """Errors at the ends, the larger: in units of the scales there, and absolute, for what crosses zero between."""
+        relative = np.stack([self.left.errors, self.right.errors])
+        values = np.stack([self.left.series[0], self.right.series[0]])
+        scales = self.problem.scales(values, np.array([self.left.coordinate, self.right.coordinate]))
+        return relative.max(axis=0), (relative * scales).max(axis=0)
+
+    @cached_property
+    def _in_the_middle(self) -> Array:
+        """What the problem itself finds wrong in the middle."""
+        return self.problem.missed(self.left, self.right, self.smooth(MIDDLE)[0])
+
+    @cached_property
+    def _read(self) -> tuple[Array, Array, Sequence[int], bool]:
+        """Polynomials of what has no series, their errors and columns, and whether they are good enough."""
+        nodes = chebyshev_nodes(READ_AT)
+        values, errors, columns = self.problem.read(self.left, self.right, nodes)
+        form = chebyshev_form(values)
+        tails = TAIL * np.abs(form[-3:]).max(axis=0, initial=0.0)
+        largest = errors.max(axis=0, initial=0.0)
+        scales = self.problem.read_scales(values)
+        return form, largest + tails / scales, columns, bool((tails <= 0.5 * largest * scales).all())
+
+    def smooth(self, parts: Array) -> Array:
+        """Return what :meth:`at` does, without errors and without what has no series."""
+        return self._interpolated(parts)[0]
+
+    def at(self, parts: Array) -> tuple[Array, Array]:
+        """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
+        found, missed = self._interpolated(parts)
+        scales = self.problem.scales(found, self.left.coordinate + parts * self.length)
+        relative, absolute = self._at_ends
+        errors = self._in_the_middle + np.where(self.problem.signed, absolute / scales, relative) + missed / scales
+        form, largest, columns, is_smooth = self._read
+        if is_smooth:
+            found[:, columns], errors[:, columns] = chebyshev_basis(parts, len(form)) @ form, largest
+        else:
+            found[:, columns], errors[:, columns], _ = self.problem.read(self.left, self.right, parts)
+        return found, errors
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedPath:
+    """What lies along a path, ascending, and how it ended.
+
+    Attributes
+    ----------
+    problem : Problem
+        What was followed.
+    intervals : tuple of Interval
+        Between neighbouring solved states; of a single state, from it to itself.
+    outcome : Outcome
+        CONVERGED if the path reaches the end asked for.
+    """
+
+    problem: Problem
+    intervals: tuple[Interval, ...]
+    outcome: Outcome
+
+    @cached_property
+    def expansions(self) -> tuple[Expansion, ...]:
+        """The solved states."""
+        found = [self.intervals[0].left] if self.intervals else []
+        return (*found, *(one.right for one in self.intervals if one.right is not one.left))
+
+    @cached_property
+    def coordinates(self) -> Array:
+        """Where the solved states are."""
+        return np.array([one.coordinate for one in self.expansions])
+
+    def smooth(self, s: Array) -> Array:
+        """Return what :meth:`at` does, without errors and without what has no series, at complex coordinates too."""
+        values = np.empty((len(s), self.expansions[0].series.shape[1]), dtype=s.dtype)
+        for interval, mine in self._shared(s.real):
+            values[mine] = interval.smooth(interval.parts(s[mine]))
+        return values
+
+    def interval_of(self, s: Array) -> Array:
+        """Return the number of the interval of each coordinate."""
+        return np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, len(self.intervals) - 1)
+
+    def _shared(self, s: Array) -> list[tuple[Interval, Any]]:
+        """Return the intervals that hold coordinates, each with the indices of its own."""
+        where = self.interval_of(s)
+        if len(where) == 1:
+            return [(self.intervals[int(where[0])], slice(None))]
+        return [(self.intervals[k], np.nonzero(where == k)[0]) for k in np.unique(where).tolist()]
+
+    def at(self, s: Array) -> tuple[Array, Array]:
+        """Return the observables at coordinates, shape (len(s), n), and their errors in units of the scales."""
+        values = np.empty((len(s), self.expansions[0].series.shape[1]))
+        errors = np.empty_like(values)
+        for interval, mine in self._shared(s):
+            values[mine], errors[mine] = interval.at(np.clip(interval.parts(s[mine]), 0.0, 1.0))
+        return values, errors
+
+
+def follow(
+    problem: Problem, start: float, end: float, rtol: float, on_interval: Callable[[float, float], object] | None = None
+) -> SolvedPath:
+    """Return the path from ``start`` down to ``end``.
+
+    Parameters
+    ----------
+    problem : Problem
+        What is followed.
+    start, end : float
+        Highest and lowest coordinate.
+    rtol : float
+        Error allowed, in units of the scales.
+    on_interval : callable, optional
+        ``on_interval(low, high)`` is called when the path from ``start`` is known down to ``low``.
+
+    Returns
+    -------
+    SolvedPath
+        As far as it was reached.
+    """
+    found: list[Interval] = []  # descending
+    alone: tuple[Interval, ...] = ()
+    outcome = Outcome.CONVERGED
+    try:
+        here = problem.solve(start, [])
+        if isinstance(here, Outcome):
+            return SolvedPath(problem, (), here)
+        alone = (Interval(problem, here, here),)
+        while here.coordinate > end:
+            left = here.coordinate - end
+            step = min(left, LONGEST_STEP, max(SHORTEST_INTERVAL, _step(here, rtol)))
+            if left < 2 * step:  # two like steps rather than a long and a short one
+                step = left if left <= step else 0.5 * left
+            while isinstance(new := problem.solve(end if step == left else here.coordinate - step, [here]), Outcome):
+                step *= 0.5
+                if step < SHORTEST_STEP or new is Outcome.INTERRUPTED:
+                    return SolvedPath(problem, tuple(found[::-1]) or alone, new)
+            found += _refined(Interval(problem, new, here), rtol)[::-1]
+            if on_interval is not None:
+                on_interval(new.coordinate, here.coordinate)
+            here = new
+    except KeyboardInterrupt:
+        outcome = Outcome.INTERRUPTED
+    return SolvedPath(problem, tuple(found[::-1]) or alone, outcome)
+
+
+def _step(here: Expansion, rtol: float) -> float:
+    """Return the longest step that the coefficients promise to interpolate within the tolerance."""
+    order = here.order
+    return here.radius * min(REACH, 2.0 * float((0.1 * rtol) ** (0.5 / max(order, 1))))
+
+
+def _refined(interval: Interval, rtol: float) -> list[Interval]:
+    """Return the intervals that an interval becomes where it does not interpolate within the tolerance, ascending."""
+    if interval.length < SHORTEST_INTERVAL:
+        return [interval]
+    problem, left, right = interval.problem, interval.left, interval.right
+    exists = [np.isfinite(one.series).all(axis=0) for one in (left, right)]
+    ends_between = bool((exists[0] != exists[1]).any()) and interval.length > LONGEST_END  # what exists on one side alone
+    errors = interval.at(CHECKS)[1]
+    # What the ends are wrong by does not fall with the length.
+    excess = errors - np.fmax(left.errors, right.errors) > REDUCIBLE * rtol
+    if not ends_between and not ((errors > CHECKED * rtol) & excess)[:, problem.held].any():
+        return [interval]
+    middle = problem.solve(0.5 * (left.coordinate + right.coordinate), [left, right])
+    if isinstance(middle, Outcome):
+        return [interval]
+    halves = Interval(problem, left, middle), Interval(problem, middle, right)
+    return [part for half in halves for part in _refined(half, rtol)]

@@ -16,8 +16,10 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import ARTICLE
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables
+from stribeck.equations.state import State
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.threads import one_blas_thread
@@ -305,22 +307,11 @@ def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> So
     state, values, estimate = point.state, point.values, point.estimate
     if state is None or values is None or estimate is None:
         return None
-    notes = [*shape_notes(contact), *law_notes(point.groups, contact, values)]
-    if contact is not None and point.groups.speed > 0:
-        notes += cavitation_notes(contact, state.equations.pressures(state.y)[1])
-    if not state.equations.operators.is_article and point.groups.speed > 0:
-        film, fluid = state.equations.film, state.equations.pressures(state.y)[1]
-        said = film.notes(state.gap, fluid if film.uses_pressure else None, state.flux_gap)
-        notes += [f"The fluid leaves the range of its laws: {each.rstrip('.')}." for each in said]
-    if math.isnan(values.flux_gap):
-        notes.append("The gap is negative, so no fluid passes and there is no flux gap.")
-    if estimate.floor > 0.1 * rtol:
-        notes.append(f"Rounding in double precision limits the relative error of this state to {estimate.floor:.1e}.")
     return Solution(
         groups=point.groups,
         contact=contact,
         outcome=point.outcome,
-        notes=tuple(notes),
+        notes=state_notes(point.groups, contact, values, lambda: state, estimate.floor, rtol),
         rtol=rtol,
         law=state.equations.law.name,
         observables=values,
@@ -334,6 +325,30 @@ def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> So
         origin=(state.exit, state.dilation),
         newton_steps=state.root.steps,
     )
+
+
+def state_notes(
+    groups: Groups,
+    contact: Contact | None,
+    values: Observables,
+    state: Callable[[], State],
+    floor: float,
+    rtol: float,
+) -> tuple[str, ...]:
+    """Return what to know of a state; ``state()`` is asked for its pressures alone, ``floor`` is the error by rounding."""
+    notes = [*shape_notes(contact), *law_notes(groups, contact, values)]
+    if groups.speed > 0 and (contact is not None or groups.model != ARTICLE):
+        solved = state()
+        film, fluid = solved.equations.film, solved.equations.pressures(solved.y)[1]
+        notes += [] if contact is None else cavitation_notes(contact, fluid)
+        if not solved.equations.operators.is_article:
+            said = film.notes(solved.gap, fluid if film.uses_pressure else None, solved.flux_gap)
+            notes += [f"The fluid leaves the range of its laws: {each.rstrip('.')}." for each in said]
+    if math.isnan(values.flux_gap):
+        notes.append("The gap is negative, so no fluid passes and there is no flux gap.")
+    if floor > 0.1 * rtol:
+        notes.append(f"Rounding in double precision limits the relative error of this state to {floor:.1e}.")
+    return tuple(notes)
 
 
 def hertz_solution(groups: Groups, contact: Contact | None, rtol: float) -> Solution:

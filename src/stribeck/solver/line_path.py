@@ -11,6 +11,7 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.groups import Groups, contact_law
+from stribeck.contacts.model import Model
 from stribeck.equations.error_estimate import GAP_FLOOR, GAPS, FineOperators
 from stribeck.equations.gap import minimum_gaps
 from stribeck.equations.line import Equations, Operators
@@ -23,10 +24,10 @@ from stribeck.numerics.series import Samples, circle, interval, radius
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
 from stribeck.solver.at_rest import shift_along, with_positive_gap
+from stribeck.solver.corrector import Corrector
+from stribeck.solver.expansion import Around, Direction, around, expand, from_logs
+from stribeck.solver.path import KNOT_PART, Expansion
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
-from stribeck.solver.series.corrector import Corrector
-from stribeck.solver.series.expansion import Around, Direction, around, expand, from_logs
-from stribeck.solver.series.path import KNOT_PART, Expansion
 
 ORDER, ORDER_OF_ANY_FILM = 10, 6
 """Highest orders of series: of the article, and of films of which the whole residual is sampled."""
@@ -81,7 +82,8 @@ class LineProblem:
     """The states of the line: ``groups_at(s)`` gives the groups at coordinate s, ``direction`` their derivatives."""
 
     def __init__(self, groups_at: Callable[[float], Groups], direction: Direction, rtol: float, uniform: bool = True) -> None:
-        self.groups_at, self.direction, self.rtol, self.uniform = groups_at, direction, KNOT_PART * rtol, uniform
+        self.groups_at, self.direction, self.uniform = groups_at, direction, uniform
+        self.allowed, self.rtol = rtol, KNOT_PART * rtol
         start = groups_at(0.0)
         self.moves = bool(start.speed > 0)
         self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
@@ -90,7 +92,6 @@ class LineProblem:
         self.count = 9 if rtol >= 1e-7 else 11
         self.corrector = Corrector(groups_at, self.rtol)
         self.failure: RefinedState | None = None
-        self.floor = 0.0
 
     @property
     def held(self) -> Flags:
@@ -114,10 +115,14 @@ class LineProblem:
         found[found == 0] = 1.0
         return found
 
+    def read_scales(self, values: Array) -> Array:
+        """Return the lowest minimum gap, and the half-width for its position."""
+        return np.append(values[:, :1].min(axis=0), np.ones(values.shape[1] - 1)) if values.size else np.empty(0)
+
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
-        """Return the expanded state at ``s``, see :class:`stribeck.solver.series.path.Problem`."""
+        """Return the expanded state at ``s``, see :class:`stribeck.solver.path.Problem`."""
         groups = self.groups_at(s)
-        if near:
+        if near and _alike(*near):
             guess = self._guess(s, groups, near)
             if not np.isfinite(np.log(guess.y[guess.equations.layout.gap])).all():
                 return Outcome.NOT_FINITE
@@ -127,22 +132,28 @@ class LineProblem:
             refined = self.corrector.cold(groups)
         if refined is None:
             return Outcome.PATH_LOST
-        if refined.state is None or not refined.outcome.ok:
+        if refined.state is None or refined.estimate is None or not refined.estimate.total <= self.allowed:
             self.failure = refined
             return refined.outcome
+        refined = replace(refined, outcome=Outcome.CONVERGED)  # where rounding leaves no more than the tolerance
         return self._expanded(s, refined, min((one.radius for one in near), default=2.0))
 
     def _expanded(self, s: float, refined: RefinedState, near: float) -> Expansion:
         state, values, estimate = refined.state, refined.values, refined.estimate
         assert state is not None and values is not None and estimate is not None and refined.fine is not None
         reach = max(SHORTEST_REACH, REACH * near)
+        exists = [column for column in (SMOOTH if self.moves else []) if np.isfinite(values.array(in_article=False)[column])]
         for trial in range(MOST_TRIALS):
             samples = circle(reach, self.count) if self.analytic else interval(INTERVAL * reach)
             with np.errstate(all="ignore"):  # what is not finite is cut off below
                 found = expand(state.equations, state.y, self._around(s, state, samples), samples, self.order)
             of_values = found.observables[:, SMOOTH] / self.scales(found.observables[:1], np.array([s]))[:, SMOOTH]
             known = min(radius(found.unknowns[:, : state.mesh.size], reach), radius(of_values, reach))
-            if found.aliased > ALIASED * self.rtol:  # a law changes much faster than the gap
+            finite = np.isfinite(np.hstack([found.unknowns, found.observables[:, exists]])).all(axis=1)
+            if not finite.all():  # a law is too steep for so wide a neighbourhood
+                known = reach
+                reach = max(SHORTEST_REACH, 0.25 * reach)
+            elif found.aliased > ALIASED * self.rtol:  # a law changes much faster than the gap
                 reach = max(SHORTEST_REACH, min(0.5 * reach, REACH * known))
             elif reach > FARTHEST * known or (trial == 0 and reach < NEAREST * known):
                 reach = max(SHORTEST_REACH, REACH * known)
@@ -158,50 +169,63 @@ class LineProblem:
         if state.equations.operators.is_article:
             errors[ROW["viscous_upper"]] = errors[ROW["viscous_balanced"]]
         unknowns = found.unknowns
-        finite = np.isfinite(unknowns).all(axis=1)
-        if not finite.all():  # a law too steep for so wide a neighbourhood: fewer orders
+        if not finite.all():
             order = max(1, int(np.argmin(finite)) - 1)
             unknowns, series, logs = (part[: order + 1] for part in (unknowns, series, logs))
         state = replace(state, y=found.y, root=replace(state.root, x=found.y, inverse=None))
         point = LinePoint(replace(refined, state=state), state, unknowns, found.inverse, refined.fine)
-        self.floor = max(self.floor, estimate.floor)
         return Expansion(s, point, series, logs, errors, known)
 
     def _around(self, s: float, state: State, samples: Samples) -> Around:
         """Return the equations around a place."""
         groups = self.groups_at(s)
         direction, shifts = shift_along(groups, state.groups, self.direction, samples.places)
-        models = [] if self.uniform else [self.groups_at(s + t).model for t in samples.places.tolist()]
+        models = [] if self.uniform else [_as_in(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
         return around(state.equations, state.gap, state.groups, direction, samples, shifts, models)
 
     def _guess(self, s: float, groups: Groups, near: Sequence[Expansion]) -> State:
         base = with_positive_gap(groups)[0]
         last: LinePoint = near[-1].point
+        if base.model.cavitation is not last.state.groups.model.cavitation:
+            base = replace(base, model=_as_in(last.state, base.model))
         if len(near) == 1:
             w = _extrapolated(last.unknowns, s - near[0].coordinate)
             mesh_of = last
         else:
             left, right = near
-            part = (s - left.coordinate) / (right.coordinate - left.coordinate)
+            part = (s - left.coordinate) / ((right.coordinate - left.coordinate) or 1.0)
             mesh_of = left.point if part < 0.5 else right.point
             w = between(left, right, mesh_of, np.array([part]))[0]
         return self.state(base, mesh_of, w)
 
+    def guess_at(self, left: Expansion, right: Expansion, s: float) -> State:
+        """Return about the state between two expansions, on the mesh of the nearer one."""
+        for end in (left, right):
+            if s == end.coordinate:
+                found: State = end.point.state
+                return found
+        if not _alike(left, right):
+            point = self.corrector.cold(self.groups_at(s))
+            assert point is not None and point.state is not None
+            return point.state
+        return self._guess(s, self.groups_at(s), [left, right])
+
     def state_at(self, left: Expansion, right: Expansion, s: float) -> State:
-        """Return the state between two expansions, corrected on the mesh of the nearer one."""
-        guess = self._guess(s, self.groups_at(s), [left, right])
-        kept = next(end.point.inverse for end in (left, right) if end.point.state.mesh is guess.mesh)
+        """Return the state between two expansions, corrected with the Jacobian of the nearer one."""
+        guess = self.guess_at(left, right, s)
+        kept = next((end.point.inverse for end in (left, right) if end.point.state.mesh is guess.mesh), None)
         return solve_state(guess.groups, guess.equations.operators, guess, newton_tolerance(self.rtol), kept=kept)
 
-    def point_at(self, left: Expansion, right: Expansion, s: float) -> RefinedState:
-        """Return the same, verified, and refined where its mesh is too coarse."""
+    def point_at(self, left: Expansion, right: Expansion, s: float, rtol: float | None = None) -> RefinedState:
+        """Return the same, verified, and refined where its mesh is too coarse for the tolerance."""
+        rtol = self.allowed if rtol is None else rtol
         state, groups = self.state_at(left, right, s), self.groups_at(s)
         fine = next((end.point.fine for end in (left, right) if end.point.fine.coarse is state.mesh), None)
         if state.outcome.ok and fine is not None:
-            point = verify(state, groups, fine, self.rtol)
+            point = verify(state, groups, fine, rtol)
             if point.outcome.ok:
                 return point
-        return converge(state, groups, self.rtol)
+        return converge(state, groups, rtol)
 
     def state(self, groups: Groups, of: LinePoint, w: Array) -> State:
         """Return the state with unknowns ``w``, those of gaps as logarithms, on the mesh of a point."""
@@ -216,19 +240,23 @@ class LineProblem:
     def missed(self, left: Expansion, right: Expansion, values: Array) -> Array:
         """Return by how much a state corrected in the middle contradicts ``values``, where laws are not analytic."""
         found = np.zeros(POSITION + 1)
-        if self.exact:
+        if self.exact or not _alike(left, right):
             return found
         s = 0.5 * (left.coordinate + right.coordinate)
         guess = self._guess(s, self.groups_at(s), [left, right])
-        equations, y, load = guess.equations, guess.y, float(guess.groups.load)
-        inverse = next(end.point.inverse for end in (right, left) if end.point.state.mesh is guess.mesh)
-        change = equations.units(y) * inverse(equations.residual(y))
         if not self.moves:
             return found
-        corrected = observables(equations, y + change, load).array(in_article=False)
-        wrong = np.abs(corrected - values[:POSITION]) / self.scales(values[None], np.array([s]))[0, :POSITION]
+        equations, y, load = guess.equations, guess.y, float(guess.groups.load)
+        inverse = next(end.point.inverse for end in (right, left) if end.point.state.mesh is guess.mesh)
+        with np.errstate(all="ignore"):  # what is not finite is as wrong as can be
+            change = equations.units(y) * inverse(equations.residual(y))
+            corrected = observables(equations, y + change, load).array(in_article=False)
+            wrong = np.abs(corrected - values[:POSITION]) / self.scales(values[None], np.array([s]))[0, :POSITION]
         wrong[READ[0]] = 0.0
-        found[:POSITION] = np.nan_to_num(np.maximum(wrong - np.maximum(left.errors, right.errors)[:POSITION], 0.0))
+        wrong = np.where(np.isfinite(values[:POSITION]), np.nan_to_num(wrong, nan=np.inf), 0.0)
+        found[:POSITION] = np.nan_to_num(
+            np.maximum(wrong - np.maximum(left.errors, right.errors)[:POSITION], 0.0), posinf=np.inf
+        )
         return found
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
@@ -236,6 +264,10 @@ class LineProblem:
         if not self.moves:
             return np.empty((len(parts), 0)), np.empty((len(parts), 0)), []
         ends = (left, right)
+        if not _alike(left, right):
+            a, b = (end.series[0, READ] for end in ends)
+            at_ends = np.maximum(left.errors[READ], right.errors[READ])
+            return a + parts[:, None] * (b - a), np.abs((b - a) / [a[0], 1.0]) + at_ends + np.zeros((len(parts), 1)), READ
         of_left, of_right = hermite_weights(min(left.order, right.order), parts)
         found, errors = [], []
         for of in ends[:1] if left.point.state.mesh is right.point.state.mesh else ends:
@@ -264,6 +296,19 @@ class LineProblem:
             error = np.where(better, unresolved[1] + errors[1][1], unresolved[0] + errors[0][1])
         at_ends = np.maximum(left.errors[READ], right.errors[READ])
         return values.T, np.stack([np.maximum(at_ends[0], error), np.full(len(parts), at_ends[1])], axis=1), READ
+
+
+def _alike(*near: Expansion) -> bool:
+    """Return whether states have the same unknowns: films that end, or begin anew, have more."""
+    return len({end.point.state.groups.model.cavitation for end in near}) == 1
+
+
+def _as_in(state: State, model: Model) -> Model:
+    """Return a model whose film has the cavity that it has in a state."""
+    cavitation = state.groups.model.cavitation
+    if model.cavitation is cavitation:
+        return model
+    return replace(model, cavitation=cavitation, cavity_pressure=0.0)
 
 
 def between(left: Expansion, right: Expansion, of: LinePoint, parts: Array, lower: int = 0) -> Array:

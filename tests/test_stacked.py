@@ -1,14 +1,15 @@
-"""States between the steps of a curve: solved many at once, and the same as those solved one by one."""
+"""Stacked states are what each is alone; meshes from known blocks, and where they resolve a gap."""
 
 import numpy as np
 import pytest
 
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
+from stribeck.equations.error_estimate import FineOperators, gap_is_resolved, perturbations
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import gradients, observables, observables_of_stacked
+from stribeck.equations.state import StackedStates
 from stribeck.numerics.panels import Mesh, base_edges
-from stribeck.quantities.outputs import NAMES
 from stribeck.solids.half_plane import (
     Blocks,
     _beside_panel,
@@ -17,47 +18,11 @@ from stribeck.solids.half_plane import (
     nodal_deflection,
     nodes_on_panel,
 )
-from stribeck.solver import path as follow_module
+from stribeck.solver.cold_start import cold_start
+from stribeck.solver.refinement import converge, verify
 
 SEED = 61_441
 RTOL = 1e-6
-
-
-@pytest.fixture
-def filled(monkeypatch):
-    """Coordinates of the points that were found between steps."""
-    found = []
-    between = follow_module.interpolate_and_correct
-
-    def counted(ends, on, through, coordinates, groups, rtol):
-        points = between(ends, on, through, coordinates, groups, rtol)
-        found.extend(s for s, p in zip(coordinates, points, strict=False) if p.outcome.ok)
-        return points
-
-    monkeypatch.setattr(follow_module, "interpolate_and_correct", counted)
-    return found
-
-
-@pytest.mark.parametrize(("load", "roughness"), [(0.1, 1e-4), (2.0, 0.05), (1e-4, 0.0)])
-def test_states_between_steps_are_those_of_single_solves(filled, load, roughness):
-    curve = sb.stribeck_curve(load=load, roughness=roughness, speed=(1e-6, 1e-1), points=101, rtol=RTOL)
-    assert curve.outcome.ok and len(curve) == 101
-    assert len(filled) > 25
-    nearest = [int(np.argmin(np.abs(np.log(curve.values) - s))) for s in filled]
-    for i in np.random.default_rng(SEED).choice(nearest, 6, replace=False):
-        exact = sb.solve(sb.Groups(curve.values[i], load, roughness), rtol=1e-9)
-        for name in NAMES:
-            found, true = (getattr(s.observables, name) for s in (curve.solutions[i], exact))
-            scale = 1.0 if name.endswith("share") else max(abs(true), 1e-3 if name == "offset" else 0.0)
-            assert abs(found - true) <= (curve.solutions[i].errors[name] + 1e-9) * scale, name
-
-
-def test_points_that_cannot_be_found_at_once_are_stepped_to(monkeypatch):
-    whole = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1), points=61)
-    monkeypatch.setattr(follow_module, "interpolate_and_correct", lambda *arguments: [])
-    alone = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1), points=61)
-    assert alone.outcome.ok and len(alone) == 61
-    np.testing.assert_allclose(alone.friction, whole.friction, rtol=3 * RTOL)
 
 
 def rows(size, load=0.1, roughness=1e-3):
@@ -109,3 +74,26 @@ def test_a_block_is_to_the_bit_the_same_whatever_else_is_computed_with_it():
     assert len(together.known) > 15
     for place, block in zip(places, whole, strict=True):
         np.testing.assert_array_equal(alone.at([place], order)[0], block)
+
+
+def test_a_mesh_reads_off_the_gaps_where_its_estimate_says_so():
+    groups = sb.Groups(0.05, 0.1, 1e-4)
+    state = converge(cold_start(groups).states[-1], groups, RTOL).state
+    fine = FineOperators(state.mesh)
+    error = verify(state, groups, fine, RTOL).estimate.between_nodes
+    assert gap_is_resolved(state.mesh, state.gap, 2 * error)
+    assert not gap_is_resolved(state.mesh, state.gap, 0.1 * error)
+
+
+def test_fine_panels_hold_the_far_gap_without_its_logarithm():
+    # x**2/2 - ln|x|/2 + c is exact there: a change of friction on finer nodes would be an error of the estimate alone.
+    mesh = Mesh(base_edges(1.0, 8.0), 12, 1.0)
+    x = mesh.nodes
+    gap = 0.5 * (x * x + 1.0) - 0.25 * np.log(x * x + 1.0) + 1.0
+    y = np.append(gap, [1.0, 4 / 3])
+    groups = sb.Groups(1.0, 0.1, 1e-4)
+    equations = Equations(Operators(mesh), 1.0, contact_law(groups))
+    observed = observables(equations, y, 0.1).array()
+    rows = StackedStates(equations, y[None], 0.1, lambda r: r)
+    found = perturbations(rows, observed[None], FineOperators(mesh)).friction[:, 0]
+    assert (found <= 1e-9 * observed[-2:]).all()

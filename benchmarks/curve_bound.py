@@ -1,0 +1,98 @@
+"""Random curves against states solved one by one: whether the errors that a curve states cover the true ones.
+
+Usage::
+
+    python benchmarks/curve_bound.py [--number 50] [--speeds 2001] [--rtol 1e-6] [--seed 17] [--minutes 60]
+
+Load 1e-4 to 1 and relative roughness 1e-5 to 10, even in the logarithm; speeds from boundary plateau to hydrodynamic branch.
+Contact laws by turns: exponential, Persson's, Greenwood and Williamson's, Greenwood and Tripp's, a table.  The true values are
+those of states solved one after the other, to 1e-9 or a tenth of a smaller tolerance.  Prints one row a curve: states that it
+was made of, part of the speeds at which all errors are covered, the worst miss over the stated error and the observable.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from functools import cache
+
+import numpy as np
+
+import stribeck as sb
+from stribeck.contact_laws.law import AsperityLaw
+from stribeck.quantities.outputs import ABSOLUTE, NAMES
+
+LAWS = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table")
+
+OFFSET_FLOOR = 5e-3
+"""The error of the offset is relative to it where it exceeds this."""
+
+
+@cache
+def law_of(name: str) -> AsperityLaw | None:
+    """Return a contact law; None is the exponential one."""
+    if name == "persson":
+        return sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8))
+    if name == "table":
+        s = np.linspace(0.05, 6.0, 40)
+        return sb.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s))
+    return {"greenwood-williamson": sb.GreenwoodWilliamson(), "greenwood-tripp": sb.GreenwoodTripp()}.get(name)
+
+
+def draw(seed: int, number: int) -> tuple[str, float, float]:
+    """Return law, load and relative roughness of one curve; that of a number does not depend on the others."""
+    load, kappa = 10 ** np.random.default_rng([seed, number]).uniform((-4, -5), (0, 1))
+    return LAWS[number % len(LAWS)], float(load), float(kappa)
+
+
+def misses(curve: sb.StribeckCurve, speeds: np.ndarray) -> tuple[np.ndarray, int]:
+    """Return errors over what a curve states at speeds, shape (speeds, observables), and how many states were not solved."""
+    fixed = curve.groups
+    groups = sb.Groups(speeds, float(fixed.load[0]), float(fixed.roughness[0]), law=curve.law)
+    exact = sb.solve_batch(groups, rtol=max(min(1e-9, 0.1 * curve.rtol), 1e-10))
+    here = curve.at(speeds)
+    found = np.empty((len(speeds), len(NAMES)))
+    for i, name in enumerate(NAMES):
+        true = np.asarray(getattr(exact, name))
+        scale = (
+            np.ones_like(true) if name in ABSOLUTE else np.maximum(np.abs(true), OFFSET_FLOOR if name == "offset" else 1e-300)
+        )
+        found[:, i] = np.abs(here.values[name] - true) / scale / (here.errors[name] + exact.errors[name])
+    return found, int(np.isnan(found).all(axis=1).sum())
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--number", type=int, default=50)
+    parser.add_argument("--speeds", type=int, default=2001)
+    parser.add_argument("--rtol", type=float, default=1e-6)
+    parser.add_argument("--seed", type=int, default=17)
+    parser.add_argument("--minutes", type=float, default=60.0, help="no curve is begun after so long")
+    arguments = parser.parse_args()
+    print("| curve | law | load | kappa | states | largest stated | covered | worst | observable |")
+    print("|---|---|---|---|---|---|---|---|---|", flush=True)
+    start = time.monotonic()
+    for number in range(arguments.number):
+        if time.monotonic() - start > 60 * arguments.minutes:
+            break
+        name, load, kappa = draw(arguments.seed, number)
+        law = law_of(name)
+        base = sb.Groups(1.0, load, kappa * load, **({} if law is None else {"law": law}))
+        curve = sb.stribeck_curve(base, points=2, rtol=arguments.rtol)
+        speeds = np.geomspace(*curve.values[[0, -1]], arguments.speeds)
+        speeds[[0, -1]] = curve.values[[0, -1]]
+        found, lost = misses(curve, speeds)
+        worst = np.nanmax(found, axis=1)
+        where = np.unravel_index(np.nanargmax(found), found.shape)
+        stated = float(np.nanmax(curve.at(speeds).relative_errors))
+        covered = float((worst <= 1).sum() / max(1, len(speeds) - lost))
+        print(
+            f"| {number} | {name} | {load:.2g} | {kappa:.2g} | {curve.states} | {stated:.1e} | {covered:.4f} "
+            f"| {worst[where[0]]:.2g} | {NAMES[where[1]]} |",
+            flush=True,
+        )
+
+
+if __name__ == "__main__":
+    main()

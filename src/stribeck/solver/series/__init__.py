@@ -1,1 +1,0 @@
-"""Curves as functions: states expanded into Taylor series, and interpolation between them."""
