@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import lu_solve
 from scipy.sparse.linalg import gmres
 
-from stribeck.numerics.newton import LU, Dense, StepControl, relative_size, root_find
+from stribeck.numerics.newton import LU, Dense, StepControl, relative_size, root_between, root_find
 from stribeck.quantities.outcome import Outcome
 
 pytestmark = pytest.mark.quick
@@ -346,3 +346,17 @@ def test_impossible_arguments_are_refused_by_name(name, arguments):
     allowed = {"residual": lambda x: x - 1.0, "jacobian": lambda x: np.eye(2), "start": [0.0, 0.0]}
     with pytest.raises(ValueError, match=name):
         find(**(allowed | arguments))
+
+
+@pytest.mark.quick
+def test_a_root_lies_between_two_signs():
+    calls = []
+
+    def function(x):
+        calls.append(x)
+        return math.exp(x) - 3.0
+
+    assert root_between(function, 0.0, 5.0, 1e-10) == pytest.approx(math.log(3.0), abs=1e-10)
+    assert len(calls) < 25
+    assert root_between(lambda x: x, 0.0, 1.0, 1e-10) == 0.0
+    assert root_between(lambda x: x * x + 1, 0.0, 1.0, 1e-10) is None

@@ -11,6 +11,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import guess_at
+from stribeck.numerics.newton import root_between
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.corrector import Corrector
 from stribeck.solver.path import SolvedPath
@@ -99,15 +100,13 @@ class Landmarks:
     def _polished(
         self, function: Callable[[Array], Array], low: float, high: float, of: Callable[[RefinedState], float]
     ) -> tuple[float, Solution] | None:
-        # Imported here because it takes longer than the rest of the package, and few uses get here.
-        from scipy.optimize import brentq
-
         def at(s: float) -> float:
             return float(function(np.array([s]))[0])
 
-        if at(low) * at(high) > 0:
+        found = root_between(at, low, high, LOCATION_TOLERANCE)
+        if found is None:
             return None
-        s = float(brentq(at, low, high, xtol=LOCATION_TOLERANCE, rtol=1e-14))
+        s = found
         width = min(1e-3, 0.1 * (high - low))
         slope = (at(s + width) - at(s - width)) / (2 * width)
         guess = guess_at(self.path, s)

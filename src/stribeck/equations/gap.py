@@ -107,7 +107,8 @@ def minimum_gaps(mesh: Mesh, log_gap: Array) -> tuple[Array, Array, Array, Indic
     rows = np.arange(len(log_gap))
     first, second = rule.derivative @ rule.to_legendre, rule.derivative @ rule.derivative @ rule.to_legendre
     found = []
-    for k, start in ((panel, rule.nodes[inside]), (beside, np.where(inside == 0, 1.0, -1.0))):
+    sides = [(panel, rule.nodes[inside]), (beside, np.where(inside == 0, 1.0, -1.0))]
+    for k, start in sides if (beside != panel).any() else sides[:1]:
         k = np.clip(k, 0, mesh.panels - 2)
         own = shape.reshape(len(rows), mesh.panels, order)[rows, k]
         slopes, bends, values = own @ first.T, own @ second.T, own @ rule.to_legendre.T
@@ -122,8 +123,8 @@ def minimum_gaps(mesh: Mesh, log_gap: Array) -> tuple[Array, Array, Array, Indic
         x = c + d * s
         value = (legendre.legvander(s, order - 1) * values).sum(axis=1) + np.log(mesh.scale**2 + x * x)
         found.append((value, x, k, 2 * interpolation_error(own)))
-    lower = found[1][0] < found[0][0]
-    value, x, k, missed = (np.where(lower, b, a) for a, b in zip(*found, strict=True))
+    lower = found[-1][0] < found[0][0]
+    value, x, k, missed = (np.where(lower, b, a) for a, b in zip(found[0], found[-1], strict=True))
     return x, np.exp(value), missed, k
 
 

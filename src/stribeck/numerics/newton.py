@@ -35,6 +35,10 @@ ROUNDING_SIZE = 1e-5  # steps that stop contracting below this size are rounding
 STALE_STEPS = 3  # so many Newton steps without a halving mean that steps have stopped contracting
 
 
+MOST_HALVINGS = 100
+"""Steps of the search for a root of one unknown."""
+
+
 class Inverse(Protocol):
     """What removes residuals to first order; made at one state, good near it."""
 
@@ -369,3 +373,38 @@ def _is_singular(matrix: Array, singular_below: float) -> bool:
     lu, _, _ = lapack.dgetrf(matrix)
     reciprocal_condition, _ = lapack.dgecon(lu, np.abs(matrix).sum(axis=0).max())  # 0 for a zero pivot
     return bool(reciprocal_condition <= singular_below)
+
+
+def root_between(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float | None:
+    """Return where a function vanishes between two places at which its signs differ, by regula falsi (Illinois).
+
+    Parameters
+    ----------
+    function : callable
+        Of one number, continuous.
+    low, high : float
+        The two places.
+    tolerance : float
+        Absolute change of the place at which the search ends.
+
+    Returns
+    -------
+    float or None
+        The place; None where the signs are the same.
+    """
+    a, b, value_a, value_b = low, high, function(low), function(high)
+    if value_a == 0.0 or value_b == 0.0:
+        return a if value_a == 0.0 else b
+    if not value_a * value_b < 0:
+        return None
+    for _ in range(MOST_HALVINGS):
+        c = b - value_b * (b - a) / (value_b - value_a)
+        value = function(c)
+        if value == 0.0 or abs(c - b) <= tolerance:
+            return c
+        if value * value_b < 0:
+            a, value_a = b, value_b
+        else:
+            value_a *= 0.5
+        b, value_b = c, value
+    return b

@@ -50,6 +50,12 @@ ALIASED = 3e-3
 SPREAD = 1.6
 """Part of the way of the minimum gap from the state before on which a mesh also resolves the gap."""
 
+BETWEEN_MESHES = 0.2
+"""Part of the tolerance by which states between two meshes may be less resolved than those that these were made for."""
+
+UNSEEN = 3.0
+"""What one correction with the Jacobian of a neighbour leaves unseen: the error over the correction."""
+
 OFFSET_FLOOR = 5e-3
 """The error of the offset is relative to it where it exceeds this: between states it is that of states where it is larger."""
 
@@ -239,7 +245,8 @@ class LineProblem:
 
     def missed(self, left: Expansion, right: Expansion, values: Array) -> Array:
         """Return by how much a state corrected in the middle contradicts ``values``, where laws are not analytic."""
-        found = np.zeros(POSITION + 1)
+        same = left.point.state.mesh is right.point.state.mesh
+        found = np.full(POSITION + 1, 0.0 if same else BETWEEN_MESHES * self.allowed)
         if self.exact or not _alike(left, right):
             return found
         s = 0.5 * (left.coordinate + right.coordinate)

@@ -33,7 +33,7 @@ KNOT_PART = 0.75
 CHECKED = 0.85
 """Part of the tolerance that an interval must hold where it is checked."""
 
-REDUCIBLE = 0.05
+REDUCIBLE = 0.25
 """Part of the tolerance that interpolation must miss for a shorter interval to help."""
 
 READ_AT = 16
@@ -42,7 +42,7 @@ READ_AT = 16
 TAIL = 3.0
 """What a polynomial is wrong by, over the largest of its last three coefficients."""
 
-CHECKS = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 14) / 14)
+CHECKS = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 30) / 30)
 """Where an interval is checked, in parts of it."""
 
 LOST = 1e3
