@@ -105,6 +105,10 @@ class PointCurve(StribeckCurve):
         except SolveError:
             return None
 
+    def landmark(self, name: Transition) -> Landmark | None:
+        """Return one transition, or None where the curve does not hold it."""
+        return next((mark for mark in self.transitions if mark.name == name), None)
+
     @cached_property
     def transitions(self) -> tuple[Landmark, ...]:
         """The boundaries between regimes, where the load is shared in halves, and the friction minimum, ascending."""

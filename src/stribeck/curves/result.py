@@ -374,6 +374,43 @@ class StribeckCurve(Exported, Shown, ByValue):
 
         return self._landmark(Transition.MINIMUM, self._landmarks.lowest(lambda rows: np.add(*self._parts(rows)), slope))
 
+    def landmark(self, name: Transition) -> Landmark | None:
+        """Return one transition.
+
+        Parameters
+        ----------
+        name : Transition
+            Which.
+
+        Returns
+        -------
+        Landmark or None
+            None where the curve does not hold it.
+        """
+        if name not in self._found:
+            self._found[name] = self.minimum if name is Transition.MINIMUM else self._crossing_of(name)
+        return self._found[name]
+
+    @cached_property
+    def _found(self) -> dict[Transition, Landmark | None]:
+        return {}
+
+    def _crossing_of(self, name: Transition) -> Landmark | None:
+        if name is Transition.HYDRODYNAMIC_START:
+
+            def excess(rows: Array) -> Array:
+                contact, viscous = self._parts(rows)
+                return np.asarray(contact / (contact + viscous + TINY) - HYDRODYNAMIC_CONTACT_SHARE)
+
+        else:
+            share = BOUNDARY_FLUID_SHARE if name is Transition.BOUNDARY_END else 0.5
+
+            def excess(rows: Array) -> Array:
+                return np.asarray(rows[:, ROW["fluid_load_share"]] - share)
+
+        found = self._landmarks.first(excess, lambda point: float(excess(_values(point).array()[None])[0]))
+        return self._landmark(name, found)
+
     @cached_property
     def transitions(self) -> tuple[Landmark, ...]:
         """The boundaries between regimes, where the load is shared in halves, and the friction minimum.
@@ -381,25 +418,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         As far as the curve holds them, ascending: where the fluid carries 5 % and 50 % of the load, where asperities cause
         10 % of the friction, and where friction is at its minimum.
         """
-
-        def of_asperities(rows: Array) -> Array:
-            contact, viscous = self._parts(rows)
-            return np.asarray(contact / (contact + viscous + TINY) - HYDRODYNAMIC_CONTACT_SHARE)
-
-        def of_fluid(share: float) -> tuple[float, Solution] | None:
-            return self._landmarks.first(
-                lambda rows: rows[:, ROW["fluid_load_share"]] - share, lambda point: _values(point).fluid_load_share - share
-            )
-
-        found = [
-            self.minimum,
-            self._landmark(Transition.BOUNDARY_END, of_fluid(BOUNDARY_FLUID_SHARE)),
-            self._landmark(Transition.EQUAL_SHARES, of_fluid(0.5)),
-            self._landmark(
-                Transition.HYDRODYNAMIC_START,
-                self._landmarks.first(of_asperities, lambda point: float(of_asperities(_values(point).array()[None])[0])),
-            ),
-        ]
+        found = [self.landmark(name) for name in Transition]
         return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
 
     def to_dataset(self) -> xarray.Dataset:

@@ -66,11 +66,11 @@ SEARCHES: dict[Geometry, Search] = {
 DECADE = math.log(10.0)
 """Length of one step outwards in the logarithm of an input."""
 
-POINTS = 6
-"""States on a decade."""
+POINTS: dict[Geometry, int] = {"line": 41, "point": 6}
+"""States looked at on a decade, by geometry: read off a function, or solved."""
 
-FINER = 9
-"""States between the two between which the regime changes."""
+FINER: dict[Geometry, int] = {"line": 0, "point": 9}
+"""States solved anew between the two between which the regime changes; none where the curve is a function."""
 
 THRESHOLD = 5e-3
 """Logarithm of the factor below which a contact is said to stand at the threshold."""
@@ -340,12 +340,12 @@ class _Scan:
         while size - here > 1e-9:
             there = min(here + DECADE, size)
             near, far = (value * math.exp(outward * s) for s in (here, there))
-            curve = self._curve(start, name, near, far, POINTS)
+            curve = self._curve(start, name, near, far, POINTS[start.groups.geometry])
             if curve is None:
                 break
             change = self._first_change(curve, outward)
             if change is not None:
-                regime, place = self._located(start, name, outward, *change)
+                regime, place = self._located(curve, start, name, outward, *change)
                 return Crossing(regime, place, place / value), math.log(place / value)
             here = there
         return None, outward * here
@@ -378,19 +378,21 @@ class _Scan:
         return None
 
     def _located(
-        self, start: Contact, name: Over, outward: float, regime: Regime, near: float, far: float
+        self, curve: StribeckCurve, start: Contact, name: Over, outward: float, regime: Regime, near: float, far: float
     ) -> tuple[Regime, float]:
         """Return the regime entered first between two values, and the value where its share passes the bound."""
         if near == far:
             return regime, near
-        curve = self._curve(start, name, near, far, FINER)
-        if curve is None:
+        points = FINER[curve.groups.geometry]
+        finer = self._curve(start, name, near, far, points) if points else curve
+        if finer is None:
             return regime, math.sqrt(near * far)
+        curve = finer
         regime, near, far = self._first_change(curve, outward) or (regime, near, far)
         wanted = Transition.HYDRODYNAMIC_START if "hydrodynamic" in (regime, self.present) else Transition.BOUNDARY_END
         low, high = sorted((near, far))
-        marks = [mark.value for mark in curve.transitions if mark.name == wanted]
-        found = next((value for value in marks if low <= value <= high), None)
+        mark = curve.landmark(wanted)
+        found = mark.value if mark is not None and low <= mark.value <= high else None
         # Where the states' own errors hide the passage it lies within them: at the end that is at the threshold itself.
         return regime, self._nearest_to_bound(curve, wanted, low, high) if found is None else found
 
