@@ -261,9 +261,8 @@ class LineProblem:
             wrong = np.abs(corrected - values[:POSITION]) / self.scales(values[None], np.array([s]))[0, :POSITION]
         wrong[READ[0]] = 0.0
         wrong = np.where(np.isfinite(values[:POSITION]), np.nan_to_num(wrong, nan=np.inf), 0.0)
-        found[:POSITION] = np.nan_to_num(
-            np.maximum(wrong - np.maximum(left.errors, right.errors)[:POSITION], 0.0), posinf=np.inf
-        )
+        beyond = wrong - np.maximum(left.errors, right.errors)[:POSITION]
+        found[:POSITION] += UNSEEN * np.where(beyond > 0, beyond, 0.0)
         return found
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
