@@ -10,7 +10,7 @@ import pytest
 
 FOLDER = Path(__file__).parents[1] / "examples"
 EXAMPLES = sorted(FOLDER.glob("*.py"))
-SLOW = {"transition_of_a_ball"}
+SLOW = {"fit_a_ball", "transition_of_a_ball"}
 EACH = pytest.mark.parametrize(
     "path",
     [pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * (path.stem in SLOW)) for path in EXAMPLES],
@@ -52,6 +52,15 @@ def test_an_example_draws_what_it_returns(path, results):
     assert list(inspect.signature(module.plot).parameters)
     figure = module.plot(data)
     assert all(axes.has_data() for axes in figure.axes)
+
+
+@pytest.mark.slow
+def test_the_fit_of_a_ball_gives_back_what_its_data_were_made_with(results):
+    _, fit = results("fit_a_ball")
+    assert fit.converged and fit.solver_shift < 0.1
+    for name, true in (("boundary_friction", 0.8), ("roughness", 1e-7)):
+        low, high = fit[name].interval_95
+        assert low < true < high < 1.3 * low, name
 
 
 def test_friction_of_the_pdms_cylinder_is_lowest_at_28_mm_per_second(results):

@@ -18,6 +18,7 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.fits.result import Fit
 from stribeck.numerics.threads import one_blas_thread
@@ -287,7 +288,9 @@ def _places(
 def _speed_range(fit: Fit) -> tuple[float, float]:
     divisors = np.array(
         [
-            {"speed": 1.0, "speed_viscosity": each.viscosity, "hersey_number": each.viscosity / each.load}[fit.data.abscissa]
+            {"speed": 1.0, "speed_viscosity": each.viscosity, "hersey_number": 1 / RULES[each.groups.geometry].hersey(each)}[
+                fit.data.abscissa
+            ]
             for each in fit.contacts
         ]
     )
