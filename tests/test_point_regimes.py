@@ -94,3 +94,20 @@ def test_the_tail_of_the_law_moves_the_minimum_of_a_ball():
     check = found["tail of the contact law"]
     assert 0.02 < check.value < 0.6
     assert "minimum of friction" in check.sentence
+
+
+@pytest.mark.slow
+def test_errors_of_the_inputs_of_a_ball_become_those_of_friction_and_regime():
+    from stribeck.curves.sensitivities import friction_sensitivities
+
+    found = sb.propagate(BALL, {"roughness": 0.02, "boundary_friction": 0.05})
+    assert sum(found.regimes.values()) == pytest.approx(1.0)
+    assert found.regimes["mixed"] == pytest.approx(1.0, abs=1e-6)
+    _, slopes = friction_sensitivities(BALL, rtol=1e-4)
+    wanted = math.hypot(slopes["roughness"] * 0.02, slopes["boundary_friction"] * 0.05)
+    friction = next(each for each in found.spreads if each.name == "friction")
+    low, high = friction.interval_68
+    assert 0.5 * math.log(high / low) == pytest.approx(wanted, rel=0.05)
+    assert slopes["boundary_friction"] ** 2 * 0.05**2 / wanted**2 == pytest.approx(
+        found.contributions["boundary_friction"], rel=0.02
+    )

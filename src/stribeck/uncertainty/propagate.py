@@ -11,6 +11,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Transition
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.curves.stribeck_curve import stribeck_curve
@@ -18,16 +19,21 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, show
 from stribeck.uncertainty.result import Spread, Uncertainty
-from stribeck.uncertainty.states import NAMES, states_of
+from stribeck.uncertainty.states import films_of, states_of
 
 __all__ = ["kept_errors", "propagate"]
 
 SAMPLES, SEED = 20_000, 20261122
 """Of the inputs; the same in every call, so that results repeat."""
 
-RTOL = 1e-5
+RTOLS = {"line": 1e-5, "point": 1e-4}
+"""Of the states, by geometry: a ball takes a tenth of a second or more each."""
+
 POINTS = 21
-"""Of the states and of the curves."""
+"""Of the curves."""
+
+IMAGINARY = 1e-30
+"""Step along the imaginary axis, whose derivatives are exact."""
 
 STEP = 1e-3
 """Of the logarithms of inputs in the differences that find the powers of scales, which are power laws."""
@@ -95,15 +101,20 @@ def propagate(
 
     groups = contact.groups
     of_groups = power(lambda each: [float(getattr(each.groups, name)) for name in ("speed", "load", "roughness")])
-    states, method = states_of(groups, offsets @ of_groups, definition, RTOL)
+    states, method = states_of(groups, offsets @ of_groups, definition, RTOLS[groups.geometry], contact)
 
     def scale(function: Any) -> Array:
         return np.asarray(function(contact) * np.exp(offsets @ power(lambda each: [function(each)])[:, 0]))
 
     share = states["contact_load_share"]
-    dry = scale(lambda each: each.boundary_friction) * share
-    friction = dry + scale(lambda each: each.beta) * states["viscous"]
-    solution, sensitivities = friction_sensitivities(contact, rtol=RTOL, definition=definition)
+    solution, sensitivities = friction_sensitivities(contact, rtol=RTOLS[groups.geometry], definition=definition)
+    rule = RULES[groups.geometry]
+    inputs = rule.of_contact(contact)
+    dry = rule.rubbing(groups, inputs) * scale(lambda each: each.boundary_friction) * share
+    viscous = contact.beta * states["viscous"]
+    for name, exponent in _exponents(solution, inputs, definition).items():
+        viscous = viscous * (scale(rule.inputs[name]) / inputs[name]) ** exponent
+    friction = dry + viscous
     given = solution.friction(definition=definition)
     spreads = [
         _spread("friction", "friction coefficient", given.total, friction),
@@ -111,7 +122,7 @@ def propagate(
         _spread("fluid_load_share", "load on the fluid", solution.fluid_load_share, 1 - share),
     ]
     height = scale(lambda each: each.hertz.indentation)
-    for name in NAMES:
+    for name in films_of(groups.geometry):
         value = float(getattr(solution, name)) * contact.hertz.indentation
         spreads.append(_spread(name, LABELS[name], value, states[name] * height, "length"))
     if contact.roughness > 0:
@@ -176,6 +187,19 @@ def _tied(contact: Contact, name: str, sigmas: Mapping[str, float]) -> tuple[str
     """Return the inputs that move together with one."""
     follows = name == "roughness" and "beta" not in sigmas and contact.law is not None and contact.law.name == "persson"
     return ("roughness", "beta") if follows else (name,)
+
+
+def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definition) -> dict[str, float]:
+    """Return the powers with which beta, motion and liquid enter the viscous friction of a state beside its groups."""
+    groups, rule = solution.groups, RULES[solution.groups.geometry]
+    parts = {name: float(getattr(solution, name)) for name in rule.parts(definition)}
+    found = {}
+    for name, value in inputs.items():
+        if 0 < value < math.inf and groups.speed > 0:
+            moved = {**inputs, name: value * (1 + 1j * IMAGINARY)}
+            here = rule.viscous(parts, groups.speed, groups.load, moved, definition)
+            found[name] = float(np.imag(here) / IMAGINARY / np.real(here))
+    return found
 
 
 def _power(contact: Contact, function: Any, inputs: tuple[str, ...]) -> list[float]:

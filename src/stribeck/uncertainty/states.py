@@ -15,11 +15,15 @@ import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.groups import Geometry
 from stribeck.contacts.line import Groups
+from stribeck.quantities.outputs import OUTPUT_TABLES
 from stribeck.solver.solve import solve
 
-__all__ = ["NAMES", "states_of"]
+__all__ = ["NAMES", "films_of", "states_of"]
 
 NAMES = ("central_gap", "minimum_gap", "flux_gap")
 """The films of a state."""
@@ -37,7 +41,25 @@ TINY = 1e-290
 """What stands for a share that underflows."""
 
 
-def states_of(groups: Groups, offsets: Array, definition: Definition, rtol: float) -> tuple[dict[str, Array], str]:
+def films_of(geometry: Geometry) -> tuple[str, ...]:
+    """Return the films that states of a geometry have, of :data:`NAMES`.
+
+    Parameters
+    ----------
+    geometry : {"line", "point"}
+        The geometry.
+
+    Returns
+    -------
+    tuple of str
+        Their names.
+    """
+    return tuple(name for name in NAMES if name in OUTPUT_TABLES[geometry].names)
+
+
+def states_of(
+    groups: Groups, offsets: Array, definition: Definition, rtol: float, contact: Contact | None = None
+) -> tuple[dict[str, Array], str]:
     """Return load share, viscous friction and films of samples.
 
     Parameters
@@ -50,11 +72,13 @@ def states_of(groups: Groups, offsets: Array, definition: Definition, rtol: floa
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of solved states.
+    contact : Contact, optional
+        Whose beta, motion and liquid the viscous friction of a ball takes.
 
     Returns
     -------
     dict of str to ndarray, shape (n,)
-        ``contact_load_share``, ``viscous`` (for beta = 1) and :data:`NAMES`.
+        ``contact_load_share``, ``viscous``, which is over beta, and the films of :func:`films_of`.
     str
         ``"atlas"`` or ``"solver"``.
     """
@@ -66,33 +90,40 @@ def states_of(groups: Groups, offsets: Array, definition: Definition, rtol: floa
             found["viscous"] = np.asarray(atlas.viscous_friction(samples, 1.0, definition))
             if all(np.isfinite(values).all() for values in found.values()):
                 return {name: np.broadcast_to(values, (len(offsets),)) for name, values in found.items()}, "atlas"
-    return _by_quadratics(groups, offsets, definition, rtol), "solver"
+    return _by_quadratics(groups, offsets, definition, rtol, contact), "solver"
 
 
-def _by_quadratics(groups: Groups, offsets: Array, definition: Definition, rtol: float) -> dict[str, Array]:
+def _by_quadratics(
+    groups: Groups, offsets: Array, definition: Definition, rtol: float, contact: Contact | None = None
+) -> dict[str, Array]:
     middle = offsets.mean(axis=0)
     variances, axes = np.linalg.eigh(np.atleast_2d(np.cov(offsets.T)))
-    y = np.tile(start := _solved(groups, middle, definition, rtol), (len(offsets), 1))
+    y = np.tile(start := _solved(groups, middle, definition, rtol, contact), (len(offsets), 1))
     for variance, axis in zip(variances, axes.T, strict=True):
         width = float(np.sqrt(max(variance, 0.0)))
         if width < NARROW:
             continue
-        ahead, behind = (_solved(groups, middle + sign * NODE * width * axis, definition, rtol) for sign in (1, -1))
+        ahead, behind = (_solved(groups, middle + sign * NODE * width * axis, definition, rtol, contact) for sign in (1, -1))
         t = np.clip((offsets - middle) @ axis / width, -FARTHEST, FARTHEST)[:, None]
         y += (ahead - behind) / (2 * NODE) * t + (ahead + behind - 2 * start) / (2 * NODE**2) * t**2
     odds, viscous, *films = y.T
     return {
         "contact_load_share": 1 / (1 + np.exp(-np.clip(odds, -700, 700))),
         "viscous": np.exp(viscous),
-        **{name: np.exp(film) for name, film in zip(NAMES, films, strict=True)},
+        **{name: np.exp(film) for name, film in zip(films_of(groups.geometry), films, strict=True)},
     }
 
 
-def _solved(groups: Groups, offset: Array, definition: Definition, rtol: float) -> Array:
+def _solved(groups: Groups, offset: Array, definition: Definition, rtol: float, of: Contact | None) -> Array:
     """Return the log odds of the load share and the logarithms of viscous friction and films of a solved state."""
     state = solve(_moved(groups, offset), rtol=rtol)
     contact, fluid = max(state.contact_load_share, TINY), max(state.fluid_load_share, TINY)
-    values = [max(float(getattr(state, name)), TINY) for name in (f"viscous_{definition}", *NAMES)]
+    rule = RULES[groups.geometry]
+    inputs = rule.of_contact(of)
+    parts = {name: float(getattr(state, name)) for name in rule.parts(definition)}
+    viscous = float(rule.viscous(parts, state.groups.speed, state.groups.load, inputs, definition)) / inputs["beta"]
+    films = [float(getattr(state, name)) for name in films_of(groups.geometry)]
+    values = [max(value, TINY) for value in (viscous, *films)]
     return np.array([np.log(contact / fluid), *np.log(values)])
 
 
