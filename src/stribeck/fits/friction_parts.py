@@ -34,8 +34,8 @@ __all__ = ["FrictionParts", "PartsOf", "Ways", "atlas_parts", "atlas_or_solved_p
 LATTICE_RTOL, BALL_RTOL = 3e-4, 1e-4
 """Tolerances of solved balls in the search, and the smallest in the values that a fit returns: far below what rigs resolve."""
 
-LATTICE_ERROR = 1e-3
-"""Largest relative error of the parts read off a lattice of balls."""
+LATTICE_ERROR = 3e-3
+"""Largest relative error of the parts read off a lattice of balls; 2e-3 was found in the middle of a cell."""
 
 FINE_STEPS = (0.3, 1.0, 1.0)
 """Steps of solved curves of balls: of ln(speed), and none that count of ln(load) and ln(relative roughness)."""
