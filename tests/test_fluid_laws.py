@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_bvp
 from scipy.optimize import brentq
+from scipy.special import ndtr
 
 import stribeck as sb
 from stribeck.fluids import local_flow
-from stribeck.fluids.effective_medium import PERCOLATION, EffectiveMedium
+from stribeck.fluids.effective_medium import PERCOLATION, EffectiveMedium, medium_width
 from stribeck.fluids.flow_factors import FLOOR, PatirCheng, mean_inverse_width, nominal_separation
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
@@ -315,6 +316,20 @@ def test_the_effective_medium_has_the_values_of_an_independent_program(row):
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize("separation", [0.1, 0.9, 3.67, 8.0])
+def test_the_width_of_the_medium_solves_its_equation(separation):
+    nodes, weights = np.polynomial.legendre.leggauss(600)
+    widest = separation + 9.0
+    u, share = 0.5 * widest * (nodes + 1), 0.5 * widest * weights
+    share = share * np.exp(-0.5 * (u - separation) ** 2) / np.sqrt(2 * np.pi)
+
+    def excess(e):
+        return share @ ((u**3 - e**3) / (u**3 + e**3)) - ndtr(-separation)
+
+    found = float(medium_width(np.array([separation]))[0][0])
+    assert found == pytest.approx(brentq(excess, 1e-3, 10.0, xtol=1e-14, rtol=1e-13), rel=1e-9)
+
+
 def test_the_effective_medium_conducts_from_its_threshold_on_and_as_tripp_says_when_wide():
     factors = EffectiveMedium(1.0).scaled(FilmUnits(1, 1, 1, 1, decay_length=1.0))
     closed, open_ = factors.pressure(np.array([0.99 * PERCOLATION, 1.5 * PERCOLATION]))[0]
