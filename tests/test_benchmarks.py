@@ -17,14 +17,15 @@ ARGUMENTS = {
     "cost": ["--runs", "1"],
     "curve_bound": ["--number", "2", "--speeds", "3"],
     "curve_speed": [],
+    "fluid_box": ["motion", "--number", "2"],
     "peers": ["--quick"],
     "point_speed": ["--runs", "1", "--speeds", "2", "--memory-rtol", "1e-2", "--states", "2"],
     "surface_errors": ["--number", "1"],
     "sweep_rate": ["--number", "4", "--workers", "1"],
 }
-"""Scripts, and what makes them small; those of the explorer need a browser, instructions valgrind: they are tested apart."""
+"""Scripts, and what makes them small; those apart need a browser, valgrind or minutes."""
 
-APART = {"point_box", "walk", "explorer_latency", "explorer_memory", "instructions"}
+APART = {"fluid_speed", "point_box", "walk", "explorer_latency", "explorer_memory", "instructions"}
 NO_SCRIPTS = {"textbook"}
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
 

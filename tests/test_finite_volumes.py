@@ -20,7 +20,7 @@ def compare(groups, cells, tolerance):
 
 @pytest.mark.parametrize("groups", STATES, ids=["mixed", "film"])
 def test_a_film_that_ends_is_that_of_finite_volumes(groups):
-    compare(groups, 240, 2e-2)  # of second order: sixteen times that of the finer ones
+    compare(groups, 480, 2e-2)
 
 
 @pytest.mark.slow
