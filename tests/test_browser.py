@@ -3,12 +3,14 @@
 Needs the extra ``browser`` and Debian's ``chromium``, or CHROMIUM=/path/to/it.
 """
 
+import json
 import os
 import re
 import shutil
 import socket
 import subprocess
 import sys
+import threading
 import time
 import urllib.error
 import urllib.request
@@ -112,7 +114,7 @@ def settled(page):
     """Wait until the address stays, as on a slow machine a page may rest between two moves, and return its inputs."""
     last = None
     while last != (last := page.evaluate("location.search")):
-        page.wait_for_timeout(1200)
+        page.wait_for_timeout(600)
     return contact_of(page)
 
 
@@ -151,23 +153,68 @@ def field(page, name):
     return page.locator(f"[data-row={name}] input.field")
 
 
-@pytest.mark.parametrize("name", [*inputs.FIELDS["line"], *inputs.GROUP_FIELDS])
-def test_moving_a_slider_changes_the_numbers_to_what_solve_gives(open_page, name):
+def test_moving_each_slider_changes_the_numbers_to_what_solve_gives(open_page):
     page = open_page()
-    before = contact_of(page)
+    for name in (*inputs.FIELDS["line"], *inputs.GROUP_FIELDS):
+        before = contact_of(page)
 
-    def move():
-        slider(page, name).focus()
-        for _ in range(5):
-            page.keyboard.press("ArrowLeft")
+        def move(name=name):
+            slider(page, name).focus()
+            for _ in range(5):
+                page.keyboard.press("ArrowLeft")
 
-    now = at_rest(page, move)
-    moved = inputs.value_of(now, name) / inputs.value_of(before, name)
-    assert moved == pytest.approx(10**-0.05, rel=0.02)
-    assert field(page, name).input_value() == inputs.number_text(now, name)
+        now = at_rest(page, move)
+        moved = inputs.value_of(now, name) / inputs.value_of(before, name)
+        assert moved == pytest.approx(10**-0.05, rel=0.02), name
+        assert field(page, name).input_value() == inputs.number_text(now, name)
+        check_numbers(page, now)
+        friction = sb.solve(now.contact).friction().total
+        assert point(page) == pytest.approx([now.contact.speed, friction], rel=1e-5), name
+
+
+def pick(page, name, value):
+    page.locator(f"[data-choice={name}] select").select_option(value)
+
+
+def test_a_ball_is_chosen_and_shows_its_film_on_the_plane(open_page):
+    page = open_page()
+    assert not page.locator(".chart-plane").is_visible() and not page.locator("[data-row=wetted_radius]").is_visible()
+    now = at_rest(page, lambda: pick(page, "geometry", "point"))
+    page.wait_for_selector("body:not(.working)")
+    page.wait_for_function("document.querySelector('.chart-plane canvas')?.getBoundingClientRect().width > 100")
+    assert isinstance(now.contact, sb.PointContact)
+    solution = sb.solve(now.contact, rtol=now.rtol)
+    shown = page.evaluate(NUMBERS)
+    friction = solution.friction(definition=now.definition).total
+    assert abs(float(shown[f"friction_{now.definition}"][0]) / friction - 1) < 3 * now.rtol
+    film = np.array(page.evaluate(CHART, "plane")["series"][0]["data"])
+    assert film.shape == (49 * 49, 3) and film[:, 2].max() - film[:, 2].min() > 1
+    assert page.locator("[data-row=load] select").input_value() == "mN"
+    back = at_rest(page, lambda: pick(page, "geometry", "line"))
+    assert back.contact.load == pytest.approx(server.example().contact.load) and not page.locator(".chart-plane").is_visible()
+
+
+def test_parts_of_the_model_are_chosen_and_refused_at_their_place(open_page):
+    page = open_page()
+    now = at_rest(page, lambda: pick(page, "solid", "layer"))
+    assert now.contact.solid.thickness == 0.002
+    thickness = page.locator("#detail-solid-layer_thickness")
+    thickness.fill("3 s")
+    thickness.press("Enter")
+    page.wait_for_function("document.querySelector('[data-choice=solid] .sentence').textContent.includes('is a time')")
+    assert contact_of(page) == now and thickness.get_attribute("aria-invalid") == "true"
+    now = at_rest(page, lambda: (thickness.fill("4 mm"), thickness.press("Enter")))
+    assert now.contact.solid.thickness == 0.004
+    now = at_rest(page, lambda: pick(page, "preset", "glycerol-water"))
+    assert now.contact.viscosity == sb.fluids.PRESETS["glycerol-water"]().viscosity
     check_numbers(page, now)
-    friction = sb.solve(now.contact).friction().total
-    assert point(page) == pytest.approx([now.contact.speed, friction], rel=1e-5)
+    other = open_page(urlparse(page.url).query)
+    assert contact_of(other) == now
+
+
+def test_what_is_outside_the_model_is_said_above_the_numbers(open_page):
+    page = open_page("?modulus=100+GPa&load=100+kN/m")
+    assert page.locator(".numbers .outside").inner_text().startswith("Outside the model")
 
 
 def test_dragging_a_slider_follows_the_hand(open_page):
@@ -250,8 +297,8 @@ def test_a_measured_curve_is_shown_over_the_model(open_page, tmp_path):
 @pytest.mark.parametrize(
     ("label", "ending", "begins"),
     [
-        ("Picture (PNG)", ".png", b"\x89PNG"),
-        ("Picture (SVG)", ".svg", b"<?xml"),
+        ("Picture of the curve (PNG)", "-curve.png", b"\x89PNG"),
+        ("Picture of the fields (SVG)", "-state.svg", b"<?xml"),
         ("Curves (CSV)", ".csv", b"# title: PDMS cylinder"),
         ("Gap and pressure (CSV)", "-profile.csv", b"# title: PDMS cylinder"),
         ("Case file of this state (TOML)", ".toml", b"title = "),
@@ -450,3 +497,113 @@ def test_nothing_jumps_while_values_change(open_page):
     for name, text in (("load", "4"), ("viscosity", "1234"), ("roughness", "0"), ("roughness", "0.123")):
         at_rest(page, lambda name=name, text=text: (field(page, name).fill(text), field(page, name).press("Enter")))
         assert page.evaluate(boxes) == before, (name, text)
+
+
+class Firefox:
+    """Debian's Firefox by WebDriver BiDi, which Playwright speaks with newer ones only."""
+
+    def __init__(self, path, profile):
+        from websockets.sync.client import connect
+
+        command = [path, "--headless", "--no-remote", "--profile", str(profile), "--remote-debugging-port=0"]
+        self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        found = next(found for line in self.process.stderr if (found := re.search(r"BiDi listening on (ws://\S+)", line)))
+        self.drain = threading.Thread(target=self.process.stderr.read, daemon=True)  # or it would stop at a full pipe
+        self.drain.start()
+        self.socket = connect(f"{found[1]}/session", max_size=None, open_timeout=30, legacy=True)
+        self.number, self.faults = 0, []
+        self.send("session.new", capabilities={})
+        self.send("session.subscribe", events=["log.entryAdded"])
+
+    def send(self, method, **params):
+        self.number += 1
+        self.socket.send(json.dumps({"id": self.number, "method": method, "params": params}))
+        while True:
+            answer = json.loads(self.socket.recv(90))
+            if answer.get("method") == "log.entryAdded" and answer["params"]["level"] == "error":
+                self.faults.append(answer["params"]["text"])
+            if answer.get("id") == self.number:
+                assert answer["type"] == "success", answer
+                return answer["result"]
+
+    def open(self, address, width, height):
+        self.page = self.send("browsingContext.create", type="tab")["context"]
+        self.send("browsingContext.setViewport", context=self.page, viewport={"width": width, "height": height})
+        self.send("browsingContext.navigate", context=self.page, url=address, wait="complete")
+        self.wait("location.search.includes('definition=')")
+
+    def evaluate(self, expression):
+        """Return what an expression gives, as JSON."""
+        expression = f"Promise.resolve({expression}).then(JSON.stringify)"
+        found = self.send("script.evaluate", expression=expression, target={"context": self.page}, awaitPromise=True)
+        assert found["type"] == "success", found
+        return json.loads(found["result"].get("value", "null"))
+
+    def wait(self, condition):
+        deadline = time.monotonic() + LONG / 1000
+        while not self.evaluate(f"Boolean({condition})"):
+            assert time.monotonic() < deadline, condition
+            time.sleep(0.1)
+
+    def press(self, *keys):
+        actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
+        self.send("input.performActions", context=self.page, actions=[{"type": "key", "id": "keys", "actions": actions}])
+
+    def inputs(self):
+        opened = url.decode(parse_qsl(self.evaluate("location.search")[1:], keep_blank_values=True), server.example())
+        assert opened.problems == {}
+        return opened.inputs
+
+
+@pytest.fixture(scope="module")
+def firefox(tmp_path_factory):
+    path = os.environ.get("FIREFOX") or shutil.which("firefox-esr") or shutil.which("firefox")
+    assert path, "there is no firefox: apt-get install firefox-esr, or say where it is with FIREFOX="
+    driven = Firefox(path, tmp_path_factory.mktemp("firefox"))
+    yield driven
+    driven.socket.close()
+    driven.process.terminate()
+    driven.process.wait(20)
+    assert driven.faults == []
+
+
+ARROW_RIGHT = "\ue014"
+
+
+def test_firefox_shows_the_same_numbers_and_follows_the_keyboard(firefox, address):
+    firefox.open(address, 1440, 900)
+    assert firefox.inputs().contact == server.example().contact
+    firefox.evaluate("document.querySelector('[data-row=speed] input.slider').focus()")
+    before = firefox.evaluate("location.search")
+    firefox.press(*[ARROW_RIGHT] * 5)
+    firefox.wait(f"location.search !== {json.dumps(before)}")
+    time.sleep(1.5)
+    now = firefox.inputs()
+    assert now.contact.speed / server.example().contact.speed == pytest.approx(10**0.05, rel=0.02)
+    shown = firefox.evaluate(f"({NUMBERS})()")
+    solution = sb.solve(now.contact)
+    assert abs(float(shown["friction_balanced"][0]) - solution.friction().total) <= 2 * shown["friction_balanced"][1]
+    series = firefox.evaluate(f"({CHART})('friction').series.map(s => [s.id, s.data.length])")
+    assert dict(series)["friction"] > 100
+
+
+def test_firefox_chooses_a_ball_and_has_no_fault_of_axe_core(firefox, address):
+    from axe_playwright_python import sync_playwright as axe
+
+    firefox.open(address, 390, 844)
+    assert firefox.evaluate("document.documentElement.scrollWidth") <= 390
+    firefox.evaluate(
+        "(() => { const s = document.querySelector('[data-choice=geometry] select'); s.value = 'point';"
+        " s.dispatchEvent(new Event('change')); })()"
+    )
+    firefox.wait("document.querySelector('.chart-plane canvas')?.getBoundingClientRect().width > 100")
+    firefox.wait("location.search.includes('point')")
+    assert isinstance(firefox.inputs().contact, sb.PointContact)
+    assert firefox.evaluate("document.documentElement.scrollWidth") <= 390
+    source = next(Path(axe.__file__).parent.glob("axe*.js"), None) or next(Path(axe.__file__).parent.rglob("axe*.js"))
+    firefox.evaluate(f"(() => {{ {source.read_text()}; }})()")
+    found = firefox.evaluate(
+        "axe.run(document, {resultTypes: ['violations']}).then("
+        "r => r.violations.map(v => [v.id, v.nodes.map(n => n.html.slice(0, 200))]))"
+    )
+    assert found == []

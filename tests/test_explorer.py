@@ -5,7 +5,9 @@ import io
 import math
 import socket
 import sys
+import tomllib
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from urllib.parse import parse_qsl
 from xml.etree import ElementTree
@@ -359,6 +361,15 @@ def test_every_choice_makes_a_contact_that_link_and_saved_case_keep(name):
         saved = files.read_case("saved.toml", files.content("toml", files.View(SimpleNamespace(inputs=shown, curve=None))))
         same_contact(saved.contact, shown.contact)
         assert choices.choose(shown, name, choices.CHOICES[name].first).model in ("", shown.model)
+
+
+def test_the_examples_of_the_page_load_and_come_with_the_wheel():
+    project = tomllib.loads(Path("pyproject.toml").read_text())
+    shipped = project["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"]
+    assert {path.name for path in files.examples().values()} == {Path(name).name for name in shipped}
+    assert all(shipped[name] == f"stribeck/explorer/{name}" for name in shipped)
+    for title, path in files.examples().items():
+        assert inputs.from_case(sb.load_case(path)).title == title
 
 
 def test_a_preset_is_a_viscosity_and_a_fluid():

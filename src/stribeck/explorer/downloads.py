@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import functools
 import io
 import json
 import re
@@ -22,7 +23,7 @@ from stribeck.explorer.measured import Measured
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import BaseSolution
 
-__all__ = ["KINDS", "View", "case_text", "content", "name_of", "pin_name", "read_case", "shown_name"]
+__all__ = ["KINDS", "View", "case_text", "content", "examples", "name_of", "pin_name", "read_case", "shown_name"]
 
 LONGEST_NAME = 80
 
@@ -90,6 +91,19 @@ def read_case(name: str, content: bytes) -> Case:
                 f"start with 'stribeck explore {path}', or write its rows into the case."
             )
     return check_case(tables, path)
+
+
+@functools.cache
+def examples() -> dict[str, Path]:
+    """Return the examples that come with the package, by their titles."""
+    here = Path(__file__).parent / "examples"
+    folder = here if here.is_dir() else Path(__file__).parents[3] / "examples"
+    found = {}
+    for path in sorted(folder.glob("*.toml")):
+        tables = parse_toml(path.read_bytes(), path)
+        if "contact" in tables and "fit" not in tables:
+            found[str(tables.get("title", path.stem))] = path
+    return found
 
 
 def shown_name(name: str) -> str:

@@ -24,7 +24,7 @@ from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.drawing import drawing
 from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
-from stribeck.explorer.downloads import View
+from stribeck.explorer.downloads import View, examples
 from stribeck.explorer.measured import Measured
 
 __all__ = ["UPDATING", "Page"]
@@ -164,8 +164,10 @@ class Page:
                 .classes("hidden-upload")
                 .on("change", js_handler=f"event => explorerUpload(event.target, {self.client_name})")
             )
-            with button("Load", "upload_file", "Load a case (TOML) or a measured curve (CSV)") as load:
-                load.on("click", js_handler=f"() => getHtmlElement({self.upload.id}).click()")
+            with button("Load", "upload_file", "Load a case, a measured curve or an example"), ui.menu():
+                item = ui.menu_item("File: a case (TOML) or a measured curve (CSV) ...")
+                item.on("click", js_handler=f"() => getHtmlElement({self.upload.id}).click()")
+                self.examples = {path: ui.menu_item(title) for title, path in examples().items()}
             with button("Save", "download", "Download picture, data or case"):
                 with ui.menu():
                     for label, kind in files.KINDS.items():

@@ -14,10 +14,12 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from html import escape
+from pathlib import Path
 from typing import Any
 
 from nicegui import background_tasks, events, ui
 
+from stribeck.cases.case import load_case
 from stribeck.explorer import downloads as files
 from stribeck.explorer import table
 from stribeck.explorer.answer import Answer, Answerer
@@ -176,6 +178,8 @@ class Tab:
         page.pin_button.on("click", self.pin)
         page.fit_button.on("click", self.fit)
         page.theme_button.on("click", self.toggle_theme)
+        for path, item in page.examples.items():
+            item.on("click", lambda path=path: self.take_example(path))
         for name, way in (("undo", -1), ("redo", 1)):
             page.history[name].on("click", lambda way=way: self.step(way))
         page.keyboard.on_key(self.on_key)
@@ -281,6 +285,18 @@ class Tab:
         self.show_chips()
         self.ask()
 
+    async def take_example(self, path: Path) -> None:
+        """Show an example."""
+        found = await self.run(FILES, lambda: inputs.from_case(load_case(path)))
+        with self.page.client:
+            self.begin(found)
+
+    def begin(self, found: Inputs) -> None:
+        """Show the inputs of a case."""
+        self.start = found
+        self.change(replace(found, abscissa=self.inputs.abscissa))
+        self.page.show_title(self.inputs)
+
     async def take_file(self, name: str, content: bytes) -> None:
         """Take a case or a measured curve that the browser sent."""
         kind = "case" if name.lower().endswith(".toml") else "measured"
@@ -291,9 +307,7 @@ class Tab:
             return
         with self.page.client:
             if kind == "case":
-                self.start = found
-                self.change(replace(found, abscissa=self.inputs.abscissa))
-                self.page.show_title(self.inputs)
+                self.begin(found)
             else:
                 self.measured = [*self.measured, *found][-MOST_MEASURED:]
                 self.show_chips()
