@@ -33,7 +33,7 @@ help:
 	@echo "make quick      the core claims, in a minute      make test   all tests      make slow   those that take minutes"
 	@echo "make quick-kernels, quick-lowest, quick-newest   the core claims under two other BLAS kernels than that of this"
 	@echo "                machine, with the lowest versions that pyproject.toml allows, and with the newest there are"
-	@echo "make browser    the tests of the explorer, and the live curve, in Chromium      make screenshots  docs/images/explorer*.png"
+	@echo "make browser    the tests of the explorer, and the live curve, in Chromium and Firefox      make screenshots  docs/images/explorer*.png"
 	@echo "make lint       style          make format apply it"
 	@echo "make types      static types   make benchmark  the tables of the documentation"
 	@echo "make docs       the site, build/docs/index.html, and the code of its pages      make site  the site alone"

@@ -1,8 +1,9 @@
-"""The explorer in a real browser, through the real server: `make browser`.
+"""The explorer in real browsers, through the real server: `make browser`.
 
-Needs the extra ``browser`` and Debian's ``chromium``, or CHROMIUM=/path/to/it.
+Needs the extra ``browser``, and Debian's ``chromium`` and ``firefox-esr``, or CHROMIUM=/path/to/it and FIREFOX=/path/to/it.
 """
 
+import contextlib
 import json
 import os
 import re
@@ -510,7 +511,8 @@ class Firefox:
         found = next(found for line in self.process.stderr if (found := re.search(r"BiDi listening on (ws://\S+)", line)))
         self.drain = threading.Thread(target=self.process.stderr.read, daemon=True)  # or it would stop at a full pipe
         self.drain.start()
-        self.socket = connect(f"{found[1]}/session", max_size=None, open_timeout=30, legacy=True)
+        self.closing = contextlib.ExitStack()
+        self.socket = self.closing.enter_context(connect(f"{found[1]}/session", max_size=None, open_timeout=30))
         self.number, self.faults = 0, []
         self.send("session.new", capabilities={})
         self.send("session.subscribe", events=["log.entryAdded"])
@@ -561,7 +563,7 @@ def firefox(tmp_path_factory):
     assert path, "there is no firefox: apt-get install firefox-esr, or say where it is with FIREFOX="
     driven = Firefox(path, tmp_path_factory.mktemp("firefox"))
     yield driven
-    driven.socket.close()
+    driven.closing.close()
     driven.process.terminate()
     driven.process.wait(20)
     assert driven.faults == []

@@ -148,7 +148,7 @@ class Page:
                 with ui.element("section").classes("card more").props('aria-label="Margins"'):
                     head = f"Distance to the next regimes <span class='caption waits'>{UPDATING}</span>"
                     ui.html(f"<h2>{head}</h2>", sanitize=False)
-                    self.margins = ui.html(f'<p class="caption">{UPDATING}</p>', sanitize=False).classes("ways")
+                    self.margins = ui.html("", sanitize=False).classes("ways")
                 with ui.element("section").classes("card diagram").props('aria-label="Phase diagram"'):
                     self.diagram_head = ui.html("<h2>Regimes</h2>", sanitize=False)
                     self.chart("diagram", "Regimes over speed and roughness")
