@@ -101,7 +101,7 @@ def examples() -> dict[str, Path]:
     found = {}
     for path in sorted(folder.glob("*.toml")):
         tables = parse_toml(path.read_bytes(), path)
-        if "contact" in tables and "fit" not in tables:
+        if "contact" in tables and not {"fit", "vary"} & tables.keys():
             found[str(tables.get("title", path.stem))] = path
     return found
 
