@@ -86,7 +86,7 @@ class CurvePoint(Solution):
             "outcome": Outcome.CONVERGED,
             "rtol": rtol,
             "observables": Observables(**values),
-            "relative_errors": np.maximum(errors[:POSITION], minimum_estimate(rtol)),
+            "relative_errors": np.maximum(errors[:POSITION], minimum_estimate(rtol, groups.model)),
             "minimum_position_error": float(errors[POSITION]),
         }
         vars(self).update(known | {"_place": (path, s)})
@@ -153,7 +153,7 @@ class CurveValues:
     _sliding: float = field(repr=False, default=1.0)
 
     @classmethod
-    def of(cls, value: Array, found: Array, errors: Array, sliding: float, rtol: float) -> CurveValues:
+    def of(cls, value: Array, found: Array, errors: Array, sliding: float, least: float) -> CurveValues:
         """Return the values that rows of a path are, without friction; numbers where ``value`` is one.
 
         Parameters
@@ -164,15 +164,15 @@ class CurveValues:
             Of a path.
         sliding : float
             Part and sign of the sliding friction of asperities that acts.
-        rtol : float
-            Tolerance of the curve.
+        least : float
+            Smallest error that is stated.
 
         Returns
         -------
         CurveValues
             The values.
         """
-        relative = np.maximum(errors[:, :POSITION], minimum_estimate(rtol))
+        relative = np.maximum(errors[:, :POSITION], least)
         shown = (lambda column: column) if np.ndim(value) else (lambda column: float(column[0]))
         values = {name: shown(found[:, i]) for i, name in enumerate(COLUMNS)}
         nothing = np.nan

@@ -32,7 +32,7 @@ from stribeck.solver.notes import HARD, minimum_note
 from stribeck.solver.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import finish
+from stribeck.solver.solve import finish, minimum_estimate
 
 if TYPE_CHECKING:
     import xarray
@@ -186,7 +186,7 @@ class StribeckCurve(Exported, Shown, ByValue):
                 f"{self._where(high).removeprefix(self.over + ' ')}; ask for a curve that holds it."
             )
         found, errors = path.at(np.log(np.atleast_1d(values)))
-        plain = CurveValues.of(values, found, errors, self._sliding, self.rtol)
+        plain = CurveValues.of(values, found, errors, self._sliding, self._least_error)
         return plain.with_friction(self.boundary_friction, self.beta, self.definition)
 
     def solve_at(self, value: Any) -> Solution:
@@ -221,12 +221,17 @@ class StribeckCurve(Exported, Shown, ByValue):
         """Part and sign of the sliding friction of asperities that acts."""
         return sliding_part(2 * self._path.groups_at(0.0).model.film.slide)
 
+    @property
+    def _least_error(self) -> float:
+        """Smallest error that is stated."""
+        return minimum_estimate(self.rtol, self._path.groups_at(0.0).model)
+
     @cached_property
     def _friction(self) -> Array:
         return self._friction_of(self.boundary_friction, self.beta, self.definition)
 
     def _friction_of(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
-        found = CurveValues.of(self.values, *self._rows, self._sliding, self.rtol)
+        found = CurveValues.of(self.values, *self._rows, self._sliding, self._least_error)
         found = found.with_friction(boundary_friction, beta, definition)
         return np.stack([found.friction_contact, found.friction_viscous, found.friction, found.friction_error], axis=1)
 

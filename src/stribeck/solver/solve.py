@@ -16,7 +16,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.scaled import named_law
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import Observables
 from stribeck.equations.state import State
@@ -53,7 +53,7 @@ MIN_ESTIMATE = 0.03
 """Part of the tolerance below which no error is stated, as estimates so small are not sure."""
 
 MIN_ESTIMATE_OF_OTHERS = 0.2
-"""The same of films that end, other fluids and flow factors, whose kinks finer nodes see in part only."""
+"""The same of films that end, other fluids, flow factors and solids, whose kinks finer nodes see in part only."""
 
 SURE_ESTIMATE = 1e-10
 """Error from which estimates are sure also where the tolerance is smaller."""
@@ -296,9 +296,9 @@ def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: f
     raise SolveError(point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}{untested(groups)}")
 
 
-def minimum_estimate(rtol: float, of_article: bool = True) -> float:
+def minimum_estimate(rtol: float, model: Model) -> float:
     """Return the smallest error that is stated for a tolerance, with the model of the article or another."""
-    least = MIN_ESTIMATE if of_article else MIN_ESTIMATE_OF_OTHERS
+    least = MIN_ESTIMATE if model == ARTICLE else MIN_ESTIMATE_OF_OTHERS
     return max(least * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
 
 
@@ -315,7 +315,7 @@ def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> So
         rtol=rtol,
         law=state.equations.law.name,
         observables=values,
-        relative_errors=np.maximum(estimate.relative, minimum_estimate(rtol, state.equations.operators.is_article)),
+        relative_errors=np.maximum(estimate.relative, minimum_estimate(rtol, point.groups.model)),
         minimum_position_error=estimate.minimum_position,
         rounding_floor=estimate.floor,
         mesh=state.mesh,
