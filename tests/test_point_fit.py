@@ -75,6 +75,17 @@ def test_the_derivatives_of_the_friction_of_a_ball_are_its_differences(definitio
         np.testing.assert_allclose(found.jacobian[:, i], slope, atol=1e-7, err_msg=name)
 
 
+@pytest.mark.parametrize("abscissa", ["speed", "hersey_number"])
+def test_free_inputs_of_a_ball_act_as_those_of_its_contact(abscissa):
+    contact = TRUE.replace(wetted_radius="3 mm")
+    data = measured(np.ones(5), SPEEDS if abscissa == "speed" else SPEEDS * TRUE.hersey_number / TRUE.speed, abscissa)
+    names = [name for name in FREE if name != "viscosity" or abscissa == "speed"]
+    model = FrictionModel(contact, data, free_inputs(contact, data, names, FitSettings(geometry="point")))
+    theta, parts = np.linspace(-0.2, 0.3, len(names)), made_up("published")
+    moved = FrictionModel(model.contact_of(0, theta), data, ())
+    np.testing.assert_allclose(model.predict(theta, parts).friction, moved.predict(np.zeros(0), parts).friction, rtol=1e-12)
+
+
 def test_a_prediction_from_solved_curves_is_the_friction_of_the_contacts():
     data = measured(np.ones(2), SPEEDS[1:2], inputs=({}, {"load": 1.5 * TRUE.load, "slide_to_roll": 1.0}))
     model = FrictionModel(TRUE, data, free_inputs(TRUE, data, ("boundary_friction",), FitSettings(geometry="point")))
