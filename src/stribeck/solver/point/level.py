@@ -58,7 +58,7 @@ def band_for(speed: float, law: ContactLaw) -> int:
     """Return the band of modes that the preconditioner keeps: thin films of smooth contacts couple more of them."""
     if float(np.max(law.decay_length)) > speed**0.6 or speed >= 1e-3:
         return 5
-    return int(min(16, round(5.0 * (1e-3 / speed) ** 0.1)))
+    return int(min(16, round(5.0 * (1e-3 / speed) ** 0.17)))
 
 
 def moved(y: Unknowns, old: PolarMesh, new: PolarMesh) -> Unknowns:
