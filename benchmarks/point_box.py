@@ -66,7 +66,7 @@ def better_values(state: PointState) -> dict[str, float] | None:
     finer = replace(fine.resolution, halvings=fine.resolution.halvings + 1)
     speed, law = fine.equations.speed, fine.equations.law
     if speed == 0:
-        level = _dry_level(law, 20, TIGHT, finer.halvings)
+        level = _dry_level(law, 20, TIGHT, state.groups.model, finer.halvings)
     else:
         modes = max(fine.mesh.modes, min(MOST_MODES, round(FINER_MODES * fine.mesh.modes)))
         finer = replace(finer, degree=finer.degree + FINER_DEGREE, modes=modes)

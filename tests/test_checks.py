@@ -132,14 +132,6 @@ def test_the_finite_surface_has_the_pressures_of_the_simulation():
         FiniteSurface(0)
 
 
-@pytest.mark.quick
-def test_no_curve_of_a_ball_is_solved_for_a_check(monkeypatch):
-    monkeypatch.setattr("stribeck.checks.subject.solve", lambda *_, **__: sb.solve(TRUE, rtol=1e-3))
-    found = checks_of(Subject(sb.load_case(EXAMPLES / "pdms_ball.toml").contact))
-    assert "tail of the contact law: a curve of a ball takes minutes." in found.unchecked
-    assert found["contact width a/R"].value > 0.1
-
-
 def test_steel_is_said_to_be_outside_before_any_number(tmp_path, capsys):
     case = tmp_path / "lip.toml"
     case.write_text(STEEL_LIP)

@@ -237,7 +237,7 @@ def test_the_json_of_a_curve_holds_its_points_and_landmarks(capsys, tmp_path):
             "transitions",
         ),
         *("regimes", "points", "requested_points", "complete", "error_estimate", "outcome", "message", "notes"),
-        *("files", "contact_law", "contact_law_parameters"),
+        *("files", "contact_law", "contact_law_parameters", "model"),
     }
     assert {len(values) for values in found["points"].values()} == {6}
     assert found["minimum"]["value"] == pytest.approx(0.0276042, rel=1e-5)

@@ -209,6 +209,13 @@ def test_a_rate_law_its_slope_its_inverse_and_its_moments_belong_together(law):
             assert found == pytest.approx(expected, rel=1e-10)
 
 
+def test_a_rate_that_is_no_number_has_no_moments():
+    """A step of an iteration that went astray is to be seen as such, not to end in an index."""
+    first, second = sb.fluids.Cross(1.0, 0.7).moments(np.array([np.nan, 1.0]))
+    assert np.isnan([first[0], second[0]]).all()
+    assert np.isfinite([first[1], second[1]]).all()
+
+
 @pytest.mark.parametrize("law", CURVES, ids=lambda law: f"{law.name}-{law.parameters}")
 def test_the_local_flow_is_found_for_all_rates_slips_and_fluxes(law):
     rng = np.random.default_rng(RNG_SEED)

@@ -17,7 +17,7 @@ def groups_of_a_curve():
 
 
 def groups_between_states():
-    return _Polyline(np.array([[1e-3, 1e-3, 1e-4], [1e-2, 1e-3, 1e-4]]), BALL.physics).groups_at(1.0)
+    return _Polyline(np.array([[1e-3, 1e-3, 1e-4], [1e-2, 1e-3, 1e-4]]), [BALL.physics] * 2).groups_at(1.0)
 
 
 def groups_of_a_diagram():

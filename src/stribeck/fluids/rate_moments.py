@@ -82,7 +82,7 @@ class Table:
         """Return both integrals from zero to rates >= 0, with the stresses there."""
         place = (np.log(np.maximum(rate, 1e-300)) - self.smallest) / WIDTH
         place = np.clip(place, 0.0, self.count * (1 - 1e-15))
-        panel = place.astype(np.intp)
+        panel = np.nan_to_num(place).astype(np.intp)  # a rate that is nan has moments that are
         s = 2 * (place - panel) - 1
         basis = np.empty((ORDER, *s.shape))
         basis[0], basis[1] = 1.0, s
