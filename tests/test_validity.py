@@ -106,8 +106,7 @@ def test_a_map_says_what_it_is(maps):
 
 
 def test_the_ends_of_a_range_are_in_it_though_the_relative_roughness_is_rounded():
-    low = np.logspace(-5, 0, 16)[0]
-    assert low < 1e-5
+    low = np.nextafter(1e-5, 0.0)  # as powers of ten come out on some processors
     formula = replace(rest.central_gap, limits=(Limit("relative_roughness", 1e-5, 1e-3),))
     data = error_map(formula, load=0.1, relative_roughness=[9e-6, low, 1e-3, 1.1e-3])
     assert data["valid"].values.tolist() == [[False, True, True, False]]
