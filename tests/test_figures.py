@@ -376,7 +376,7 @@ def test_no_state_is_given_that_did_not_converge(monkeypatch):
     with pytest.raises(sb.SolveError):
         work.solve(1e-6, 0.1, 1e-7)
     whole = sb.stribeck_curve(load=0.1, roughness=0.01, speed=(0.1, 1.0), points=3)
-    few = {"solutions": whole.solutions[1:], "values": whole.values[1:]}
+    few = {"values": whole.values[1:]}
     for changes in ({"outcome": sb.Outcome.PATH_LOST}, few):
         broken = dataclasses.replace(whole, **changes)
         monkeypatch.setattr("stribeck.figures.build.stribeck_curve", lambda broken=broken, **arguments: broken)
