@@ -115,7 +115,7 @@ def settled(page):
     """Wait until the address stays, as on a slow machine a page may rest between two moves, and return its inputs."""
     last = None
     while last != (last := page.evaluate("location.search")):
-        page.wait_for_timeout(600)
+        page.wait_for_timeout(1200)
     return contact_of(page)
 
 

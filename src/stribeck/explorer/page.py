@@ -18,7 +18,7 @@ from stribeck.explorer import table
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.asked import choices, inputs
 from stribeck.explorer.asked.choices import CHOICES
-from stribeck.explorer.asked.inputs import GROUP_FIELDS, NAMES, Inputs
+from stribeck.explorer.asked.inputs import FIELDS, GROUP_FIELDS, NAMES, Inputs
 from stribeck.explorer.asked.url import Pin
 from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.drawing import drawing
@@ -77,8 +77,10 @@ def knob_state(now: Inputs, name: str) -> dict[str, Any]:
     if name in CHOICES:
         return choices.state_of(now, name)
     if name not in GROUP_FIELDS and name not in now.fields:
-        empty = {"label": "", "symbol": "", "low": 0, "high": 1, "text": "", "unit": "", "units": [], "place": 0}
-        return {"hidden": True, **empty}
+        # Of another geometry: it is not seen, and named all the same.
+        other = next(fields[name] for fields in FIELDS.values() if name in fields)
+        empty = {"symbol": "", "low": 0, "high": 1, "text": "", "unit": "", "units": [], "place": 0}
+        return {"hidden": True, "label": other.label, **empty}
     field, unit = now.shown_as(name), now.units.get(name, "")
     return {
         "hidden": False,

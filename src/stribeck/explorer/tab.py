@@ -49,8 +49,10 @@ REST = 0.4
 
 LIVE = ThreadPoolExecutor(2, "explorer")
 SLOW = ThreadPoolExecutor(1, "explorer-slow")
+CHECKS = ThreadPoolExecutor(1, "explorer-checks")
 FILES = ThreadPoolExecutor(2, "explorer-files")
-"""Threads of what follows the slider, of what comes when it rests, and of files that are read."""
+"""Threads of what follows the slider, of what comes when it rests, of checks that need curves of their own and cannot be given
+up, and of files that are read."""
 
 MOST_OPENED = 4
 OPENED: dict[str, Answer] = {}
@@ -175,6 +177,7 @@ class Tab:
         for name, toggle in page.toggles.items():
             toggle.on_value_change(lambda event, name=name: self.choose(name, event.value))
         page.client.on_delete(self.close)
+        page.client.on_connect(self.rest)
         page.pin_button.on("click", self.pin)
         page.fit_button.on("click", self.fit)
         page.theme_button.on("click", self.toggle_theme)
@@ -448,16 +451,25 @@ class Tab:
                 found = await self.run(SLOW, self.ways, now)
                 if found is not None and self.inputs is now:
                     self.page.show_margins(found if isinstance(found, str) else table.margins_html(found), now)
-                if await self.run(SLOW, self.model.settle_checks, now):
+                if await self.run(CHECKS, self.checks, now):
                     await self.refresh(now)
             except Superseded:
                 return
+
+    def checks(self, now: Inputs) -> bool:
+        """Make the checks that take long, unless the contact is no longer shown; tell whether they say something new."""
+        return self.inputs is now and self.is_seen and self.model.settle_checks(now)
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether a browser shows the page; what it left is given up at once, and done anew if it comes back."""
+        return not self.closed and self.page.client.has_socket_connection
 
     def reporter(self, now: Inputs) -> Callable[[float], None]:
         """Return what slow work reports to: it ends where the inputs have changed."""
 
         def report(part: float) -> None:
-            if self.inputs is not now or self.closed:
+            if self.inputs is not now or not self.is_seen:
                 raise Superseded
             self.page.progress = f"{UPDATING} {100 * part:.0f} %"
 
@@ -467,7 +479,7 @@ class Tab:
         """Return the margins of a contact, the reason why there are none, or None where it is no longer shown."""
 
         def go_on(done: int, scans: int) -> None:
-            if self.inputs is not now or self.closed:
+            if self.inputs is not now or not self.is_seen:
                 raise Superseded
 
         try:
