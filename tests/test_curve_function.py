@@ -131,3 +131,9 @@ def test_other_films_are_functions_with_fewer_orders(parts):
     here = curve.at("12 mm/s")
     for name in ("central_gap", "minimum_gap", "flux_gap", "viscous_balanced"):
         assert here.values[name] == pytest.approx(getattr(alone, name), rel=2e-6)
+
+
+def test_a_curve_does_not_refine_a_vanishing_difference():
+    curve = sb.stribeck_curve(load=0.1, roughness=0.0, speed=(1e2, 1e8), points=3)
+    assert curve.outcome.ok and len(curve._solved_path.expansions) < 60
+    assert (curve.at(np.geomspace(1e2, 1e8, 50)).relative_errors[:, :8] < 3e-6).all()

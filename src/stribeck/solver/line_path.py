@@ -110,11 +110,13 @@ class LineProblem:
         return np.isin(np.arange(POSITION + 1), [ROW["offset"], *UNLIMITED, *([] if self.moves else GAPS)])
 
     def scales(self, values: Array, s: Array) -> Array:
-        """Return what errors of observables are relative to: themselves but for the shares, and what crosses zero."""
+        """Return what errors of observables are relative to: themselves but for what may vanish."""
         found = np.abs(values)
         found[:, SHARES] = 1.0
         found[:, [column for column in UNLIMITED if column < found.shape[1]]] = 1.0
         found[:, ROW["offset"]] = np.maximum(found[:, ROW["offset"]], OFFSET_FLOOR)
+        # What the upper wall feels is the small difference of larger numbers in thick films, and none at some slides.
+        found[:, ROW["viscous_upper"]] = np.fmax(found[:, ROW["viscous_upper"]], found[:, ROW["viscous_balanced"]])
         if not self.moves:
             kappa = np.array([float(self.groups_at(c).relative_roughness) for c in s.tolist()])
             found[:, GAPS] = np.maximum(found[:, GAPS], GAP_FLOOR * kappa[:, None])

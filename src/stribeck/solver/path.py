@@ -10,6 +10,7 @@ What the states are is known to a :class:`Problem` alone.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -55,6 +56,9 @@ LONGEST_END = 0.05
 
 SHORTEST_INTERVAL = 0.01
 """Length below which an interval is left as it is, with the error that it has: where a film ruptures no series converges."""
+
+NOISY, PROGRESS = 0.2, 0.8
+"""Length below which halving an interval has to take its error to this part of what it was, or the error is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -334,7 +338,7 @@ def _step(here: Expansion, rtol: float) -> float:
     return here.radius * min(REACH, 2.0 * float((0.1 * rtol) ** (0.5 / max(order, 1))))
 
 
-def _refined(interval: Interval, rtol: float) -> list[Interval]:
+def _refined(interval: Interval, rtol: float, before: float = math.inf) -> list[Interval]:
     """Return the intervals that an interval becomes where it does not interpolate within the tolerance, ascending."""
     if interval.length < SHORTEST_INTERVAL:
         return [interval]
@@ -346,8 +350,11 @@ def _refined(interval: Interval, rtol: float) -> list[Interval]:
     excess = errors - np.fmax(left.errors, right.errors) > REDUCIBLE * rtol
     if not ends_between and not ((errors > CHECKED * rtol) & excess)[:, problem.held].any():
         return [interval]
+    worst = float(np.nanmax(errors[:, problem.held]))
+    if interval.length < NOISY and worst > PROGRESS * before:  # rounding, which halving does not take away
+        return [interval]
     middle = problem.solve(0.5 * (left.coordinate + right.coordinate), [left, right])
     if isinstance(middle, Outcome):
         return [interval]
     halves = Interval(problem, left, middle), Interval(problem, middle, right)
-    return [part for half in halves for part in _refined(half, rtol)]
+    return [part for half in halves for part in _refined(half, rtol, worst)]
