@@ -95,7 +95,7 @@ slow: $(READY)
 
 # Debian's chromium, or CHROMIUM=/path/to/it.
 browser: $(BROWSER)
-	$(ONE_THREAD) $(BIN)/python -m pytest -m browser tests/test_browser.py tests/test_live_curve.py tests/test_benchmarks.py
+	$(ONE_THREAD) $(BIN)/python -m pytest -m browser $(BROWSER_TESTS) tests/test_browser.py tests/test_live_curve.py tests/test_benchmarks.py
 
 screenshots: $(BROWSER)
 	$(ONE_THREAD) $(BIN)/python docs/explorer.py

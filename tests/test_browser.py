@@ -566,6 +566,8 @@ def firefox(tmp_path_factory):
     driven.closing.close()
     driven.process.terminate()
     driven.process.wait(20)
+    driven.drain.join(20)
+    driven.process.stderr.close()
     assert driven.faults == []
 
 
