@@ -4,21 +4,12 @@ import pickle
 
 import numpy as np
 import pytest
+from ball_data import BALL
 
 import stribeck as sb
 from stribeck.batches import chain
 from stribeck.solver.point import path
 
-BALL = sb.PointContact.from_groups(
-    sb.Groups(1e-3, 1e-2, 2e-4, geometry="point"),
-    radius=0.01,
-    modulus=1e6,
-    viscosity=0.1,
-    alpha=2.0,
-    beta=0.1,
-    boundary_friction=0.8,
-    slide_to_roll=0.5,
-)
 RTOL = 1e-3
 ROUGHNESS = [BALL.roughness, 1.3 * BALL.roughness]
 

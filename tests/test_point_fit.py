@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from ball_data import BALL as TRUE
 from command_line import call
 
 import stribeck as sb
@@ -13,16 +14,6 @@ from stribeck.fits import friction_parts
 from stribeck.fits.friction_parts import FrictionParts, Ways, curve_parts
 from stribeck.fits.model import FrictionModel, free_inputs
 
-TRUE = sb.PointContact.from_groups(
-    sb.Groups(1e-3, 1e-2, 2e-4, geometry="point"),
-    radius=0.01,
-    modulus=1e6,
-    viscosity=0.1,
-    alpha=2.0,
-    beta=0.1,
-    boundary_friction=0.8,
-    slide_to_roll=0.5,
-)
 SPEEDS = TRUE.speed * np.geomspace(0.3, 6.0, 5)
 FREE = ("boundary_friction", "roughness", "modulus", "load", "beta", "radius", "viscosity", "alpha")
 

@@ -2,6 +2,7 @@
 
 import math
 
+import ball_data
 import numpy as np
 import pytest
 
@@ -10,15 +11,7 @@ from stribeck.checks.subject import TRACES, Subject, speed_of_film
 from stribeck.checks.table import checks_of
 from stribeck.regimes.margins import SEARCHES, _limits, physical_bounds, regime_margins
 
-BALL = sb.PointContact.from_groups(
-    sb.Groups(1e-3, 1e-2, 2e-4, geometry="point"),
-    radius=0.01,
-    modulus=1e6,
-    viscosity=0.1,
-    alpha=2.0,
-    beta=0.1,
-    boundary_friction=0.8,
-)
+BALL = ball_data.BALL.replace(slide_to_roll=2.0)
 LAW = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=3e4, q1=3e6, hurst=0.8))
 
 

@@ -18,6 +18,7 @@ from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Transition
 from stribeck.curves.result import StribeckCurve
+from stribeck.numerics.newton import root_between
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.finish import finish_point
 from stribeck.solver.point.path import NeighbourSolver
@@ -127,16 +128,15 @@ class PointCurve(StribeckCurve):
         crossings = np.nonzero(np.diff(np.sign(values - line)))[0]
         if not len(crossings):
             return None
-        from scipy.optimize import brentq
 
         def excess(s: float) -> float:
             return of(self._at(s)) - line
 
         ends = np.log(self.values[crossings[0] : crossings[0] + 2]).tolist()
         try:
-            place: float = brentq(excess, ends[0], ends[1], xtol=LOCATION_TOLERANCE, rtol=1e-14)
-            return self._mark(name, place)
-        except (SolveError, ValueError):
+            place = root_between(excess, ends[0], ends[1], LOCATION_TOLERANCE)
+            return None if place is None else self._mark(name, place)
+        except SolveError:
             return None
 
 

@@ -376,12 +376,6 @@ def unknowns_on(operators: Operators, guess: Guess) -> Array:
     return y
 
 
-def inverse_on(operators: Operators, state: State) -> Inverse:
-    """Return the inverse of the Jacobian at a state, put on the mesh of ``operators``, in units of the unknowns."""
-    equations = Equations(operators, float(state.groups.speed), contact_law(state.groups), state.flux_gap**2)
-    return equations.inverse(unknowns_on(operators, state))
-
-
 def solve_state(
     groups: Groups,
     operators: Operators,

@@ -383,11 +383,11 @@ class _Scan:
         """Return the regime entered first between two values, and the value where its share passes the bound."""
         if near == far:
             return regime, near
-        points = FINER[curve.groups.geometry]
-        finer = self._curve(start, name, near, far, points) if points else curve
-        if finer is None:
-            return regime, math.sqrt(near * far)
-        curve = finer
+        if points := FINER[curve.groups.geometry]:
+            finer = self._curve(start, name, near, far, points)
+            if finer is None:
+                return regime, math.sqrt(near * far)
+            curve = finer
         regime, near, far = self._first_change(curve, outward) or (regime, near, far)
         wanted = Transition.HYDRODYNAMIC_START if "hydrodynamic" in (regime, self.present) else Transition.BOUNDARY_END
         low, high = sorted((near, far))

@@ -249,12 +249,10 @@ class LineProblem:
         """Return by how much a state corrected in the middle contradicts ``values``, where laws are not analytic."""
         same = left.point.state.mesh is right.point.state.mesh
         found = np.full(POSITION + 1, 0.0 if same else BETWEEN_MESHES * self.allowed)
-        if self.exact or not _alike(left, right):
+        if self.exact or not self.moves or not _alike(left, right):
             return found
         s = 0.5 * (left.coordinate + right.coordinate)
         guess = self._guess(s, self.groups_at(s), [left, right])
-        if not self.moves:
-            return found
         equations, y, load = guess.equations, guess.y, float(guess.groups.load)
         inverse = next(end.point.inverse for end in (right, left) if end.point.state.mesh is guess.mesh)
         with np.errstate(all="ignore"):  # what is not finite is as wrong as can be
