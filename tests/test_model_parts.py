@@ -129,7 +129,7 @@ def test_the_inverse_undoes_the_derivative_of_the_residual(film, cavitation, sti
     mesh = replace(stiffening.mesh, restart=0.25)
     operators = Operators(mesh, Model(film, cavitation, cavity_pressure=-0.02))
     equations = Equations(operators, 1e-3, stiffening.equations.law, stiffening.flux_gap**2)
-    layout, rng = operators.layout, np.random.default_rng(83)
+    layout, rng = equations.layout, np.random.default_rng(83)
     pressure = stiffening.equations.pressures(stiffening.y)[1]
     y = stacked(layout, stiffening.gap, pressure, -0.3, 1.1 * stiffening.flux_gap, 0.9, 1.2)
     units = equations.units(y)

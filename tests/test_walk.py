@@ -5,9 +5,9 @@ from collections import Counter
 import pytest
 
 
-@pytest.mark.parametrize(("walk", "files"), [("in_python", 10), ("on_the_command_line", 15)])
+@pytest.mark.parametrize(("walk", "files"), [("in_python", 9), ("on_the_command_line", 14)])
 def test_a_call_reaches_the_first_residual_through_few_files(load_benchmark, walk, files):
     found = getattr(load_benchmark("walk"), walk)()
     assert found[-1] == "equations/line.py"
     assert len(set(found)) <= files
-    assert max(Counter(found).values()) <= 4
+    assert max(Counter(found).values()) <= 3  # left and entered again twice

@@ -112,7 +112,7 @@ class Groups:
         except ValueError:
             shapes = ", ".join(f"{name} {np.shape(getattr(self, name))}" for name in ("speed", "load", "roughness"))
             raise InputError(f"the shapes of the groups do not broadcast: {shapes}.") from None
-        _check_ratio(self.roughness, self.load, self.scaling.roughness_exponent)
+        _check_ratio(self.roughness, self.relative_roughness)
 
     @property
     def scaling(self) -> Scaling:
@@ -267,13 +267,11 @@ def contact_law(groups: Groups) -> ContactLaw:
     return ScaledLaw(groups.law, groups.load, groups.relative_roughness, groups.scaling.pressure_exponent)
 
 
-def _check_ratio(roughness: float | Array, load: float | Array, exponent: float) -> None:
+def _check_ratio(roughness: float | Array, relative: float | Array) -> None:
     """Refuse a relative roughness that double precision loses although roughness and load are in their ranges."""
-    if isinstance(roughness, float) and isinstance(load, float):
-        if roughness == 0.0 or SMALLEST <= roughness / load**exponent <= LARGEST:
-            return
-    with np.errstate(all="ignore"):
-        ratio = np.asarray(roughness) / np.asarray(load) ** exponent
+    if isinstance(relative, float) and (roughness == 0.0 or SMALLEST <= relative <= LARGEST):
+        return
+    ratio = np.asarray(relative)
     wrong = np.not_equal(roughness, 0) & ((ratio < SMALLEST * (1 - SLACK)) | (ratio > LARGEST * (1 + SLACK)))
     if np.any(wrong):
         raise InputError(

@@ -33,6 +33,7 @@ from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.damping import longest_step
 from stribeck.equations.operators import LOAD, Operators
 from stribeck.equations.unknowns import Layout
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film, Slopes
 from stribeck.numerics.newton import LU, Inverse
 from stribeck.numerics.running_integral import RunningIntegral, Volterra
@@ -98,10 +99,23 @@ class Equations:
     law: ContactLaw
     flux_scale: Numbers = 1.0
 
-    @property
+    @cached_property
     def layout(self) -> Layout:
-        """The unknowns by name."""
-        return self.operators.layout
+        """The unknowns by name; the fluid pressure and the ends of the film are among them if the model has them."""
+        n, model = self.operators.mesh.nodes.size, self.operators.model
+        fields = 2 * n if model.film.uses_pressure else n
+        exit = fields + 2 + (model.cavitation is not Cavitation.NONE)
+        size = exit + (model.cavitation is Cavitation.REFORM)
+        return Layout(
+            size,
+            gap=slice(0, n),
+            numbers=slice(fields, size),
+            offset=slice(fields, fields + 1),
+            flux_gap=slice(fields + 1, fields + 2),
+            pressure=slice(n, fields),
+            exit=slice(fields + 2, exit),
+            dilation=slice(exit, size),
+        )
 
     @cached_property
     def film(self) -> Film:

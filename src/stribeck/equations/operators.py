@@ -18,7 +18,6 @@ import numpy as np
 
 from stribeck._types import Array, Flags, Numbers
 from stribeck.contacts.model import ARTICLE, Model
-from stribeck.equations.unknowns import Layout
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.panels import HalfTail, Mesh, reference
@@ -45,24 +44,6 @@ class Operators:
 
     mesh: Mesh
     model: Model = ARTICLE
-
-    @cached_property
-    def layout(self) -> Layout:
-        """The unknowns by name; the fluid pressure and the ends of the film are among them if the model has them."""
-        n = self.mesh.size
-        fields = 2 * n if self.model.film.uses_pressure else n
-        exit = fields + 2 + self.has_exit
-        size = exit + self.has_reformation
-        return Layout(
-            size,
-            gap=slice(0, n),
-            numbers=slice(fields, size),
-            offset=slice(fields, fields + 1),
-            flux_gap=slice(fields + 1, fields + 2),
-            pressure=slice(n, fields),
-            exit=slice(fields + 2, exit),
-            dilation=slice(exit, size),
-        )
 
     @property
     def has_exit(self) -> bool:

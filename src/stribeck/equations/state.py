@@ -271,6 +271,7 @@ def mesh_for(
         If more panels are needed than :data:`mesh.MAX_PANELS`.
     """
     cavitation = groups.model.cavitation
+    plateau, broken = fall_of(groups.model.film, float(groups.speed))
     ends, restart = cavitation is not Cavitation.NONE, math.inf
     if cavitation is Cavitation.REFORM:
         restart = _cavity_on_mesh(guess)
@@ -280,7 +281,6 @@ def mesh_for(
     width = np.sqrt(1.0 + central_gap)
     scale = 2.0 ** round(float(np.log2(width).mean()))
     minimum_position = guess.minimum_position / to_guess
-    plateau, broken = fall_of(groups.model.film, float(groups.speed))
     lift = 1.0
     if broken and isinstance(guess, State):  # kinks that no load feels are felt by the flux
         lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
@@ -360,17 +360,16 @@ def _cavity_on_mesh(guess: Guess) -> float:
     return guess.restart if near else 2.0 ** round(math.log2(length))
 
 
-def unknowns_on(operators: Operators, guess: Guess) -> Array:
-    """Return the unknowns of a guess on the mesh of ``operators``."""
-    mesh, at = operators.mesh, operators.layout
-    y = np.empty(at.size)
+def unknowns_of(equations: Equations, guess: Guess) -> Array:
+    """Return the unknowns of a guess on the mesh of ``equations``."""
+    mesh, at = equations.operators.mesh, equations.layout
     same = guess.restart == mesh.restart
     nodes = mesh.nodes if same else mesh.nodes * (guess.restart / mesh.restart)
+    y = np.empty(at.size)
     y[at.gap] = np.exp(guess.log_gap(mesh) if same else guess.fields(nodes)[0])
     y[at.offset], y[at.flux_gap], y[at.exit] = guess.offset, guess.flux_gap, guess.exit
-    if operators.has_reformation:
-        y[at.dilation] = guess.dilation if same else guess.dilation * guess.restart / mesh.restart
-    if operators.model.film.uses_pressure:
+    y[at.dilation] = guess.dilation if same else guess.dilation * guess.restart / mesh.restart
+    if at.pressure.start < at.pressure.stop:
         fields = guess.fields(nodes)
         y[at.pressure] = fields[1] if len(fields) == 2 else 0.0
     return y
@@ -389,8 +388,8 @@ def solve_state(
     ``kept`` is the inverse of a neighbour on the same mesh, to be used for as long as it makes the steps contract.
     """
     equations = Equations(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2)
-    start = unknowns_on(operators, guess)
+    start = unknowns_of(equations, guess)
     root = root_find(equations, start, StepControl(tolerance, max_steps, CHORD), kept)
-    gap = operators.layout.gap
+    gap = equations.layout.gap
     error = float(np.abs(start[gap] / root.x[gap] - 1).max())
     return State(groups, equations, root.x, root, error)

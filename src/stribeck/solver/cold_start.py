@@ -108,19 +108,16 @@ def rigid_guess(groups: Groups) -> RigidGuess | None:
     x, dx = np.linspace(-6, 6, 241, retstep=True)
     x, dx = x * math.sqrt(law.decay_length), dx * math.sqrt(law.decay_length)
 
-    def excess(log_height: float) -> float:
-        height = math.exp(log_height)
-        with np.errstate(over="ignore"):
-            contact = float(law.pressure(height + x * x / 2).sum() * dx)
-        film = min(speed / (height * math.sqrt(height)), 1e6)
-        return min(math.pi / 48 * film * film + contact, 1e9) - LOAD
-
     for end in HEIGHTS:
-        if excess(-end) > 0 > excess(end):
-            low, high = -end, end
-            while high - low > 1e-6:  # excess falls, and scipy.optimize takes longer to import than a solve
-                middle = 0.5 * (low + high)
-                low, high = (middle, high) if excess(middle) > 0 else (low, middle)
+        low, high = -end, end
+        while high - low > 1e-6:  # the load falls with the height, and scipy.optimize takes longer to import than a solve
+            middle = 0.5 * (low + high)
+            height = math.exp(middle)
+            with np.errstate(over="ignore"):
+                contact = float(law.pressure(height + x * x / 2).sum() * dx)
+            film = min(speed / (height * math.sqrt(height)), 1e6)
+            low, high = (middle, high) if math.pi / 48 * film * film + contact > LOAD else (low, middle)
+        if -end < low and high < end:
             height = math.exp(0.5 * (low + high))
             return RigidGuess(speed, height, 4 * height / 3)
     return None
@@ -139,7 +136,7 @@ def cold_start(groups: Groups) -> Path[State]:
     Path
         Of states on meshes that resolve them to about 1e-3; its outcome tells whether the end was reached.
     """
-    kappa = float(contact_law(groups).decay_length)
+    kappa = float(groups.relative_roughness)
     by_speed = groups.speed > 0 and groups.load > SATURATED_LOAD and kappa < RIGID_ROUGHNESS
     along = faster if by_speed else unloaded
     factors = []

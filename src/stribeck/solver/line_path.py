@@ -241,7 +241,7 @@ class LineProblem:
         y = from_logs(of.state.equations, w)
         if operators.model != groups.model:
             operators = Operators(operators.mesh, groups.model)
-        scale = float(y[operators.layout.flux_gap.start]) ** 2
+        scale = float(y[of.state.equations.layout.flux_gap.start]) ** 2
         equations = Equations(operators, float(groups.speed), contact_law(groups), scale)
         return State(groups, equations, y, Root(y, Outcome.CONVERGED, 0, 0, 0.0, 0.0, 0.0, None), 0.0)
 
