@@ -25,6 +25,9 @@ ARGUMENTS = {
 }
 """Scripts, and what makes them small; those apart need a browser, valgrind or minutes."""
 
+LONG = {"point_speed"}
+"""Those that take a while even so."""
+
 APART = {"fluid_speed", "point_box", "walk", "explorer_latency", "explorer_memory", "instructions"}
 NO_SCRIPTS = {"textbook"}
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
@@ -69,7 +72,7 @@ def test_no_script_is_forgotten():
     assert {path.stem for path in folder.glob("*.py")} == set(ARGUMENTS) | APART | NO_SCRIPTS
 
 
-@pytest.mark.parametrize("name", ARGUMENTS)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in ARGUMENTS])
 def test_its_tables_come_out(load_benchmark, run, monkeypatch, name):
     script = load_benchmark(name)
     if name == "curve_speed":

@@ -20,6 +20,8 @@ from stribeck.evidence.ball import OBSERVED
 from stribeck.evidence.coefficients import JUDGED, RATIOS, largest_errors
 from stribeck.evidence.formulas import AXES, LOCATED, MEASURED, OF_STATE, error_map, error_maps, kind_of, relative_error
 
+pytestmark = pytest.mark.xdist_group("validity")  # whose solved curves are shared
+
 pytest.importorskip("xarray")
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -245,6 +247,7 @@ def test_the_worst_error_on_the_page_is_the_one_there_and_within_the_stated_one(
     assert shown <= 1.02 * formula.worst
 
 
+@pytest.mark.slow
 def test_a_coarser_map_finds_no_worse_error_than_the_page(blocks):
     # Along the speed every state is kept, as long steps cost more than what lies between.
     for kind, rough in (("smooth", slice(None)), ("rest", slice(1, None, 5)), ("mixed", slice(3, None, 16))):
