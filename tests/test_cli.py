@@ -320,7 +320,6 @@ def test_no_heading_of_the_regimes_is_cut_in_a_narrow_terminal(capsys, monkeypat
     assert re.search(r"transition +speed +change +friction", shown)
 
 
-@pytest.mark.quick
 def test_regimes_tells_the_regime_the_transitions_and_what_moves_friction(capsys):
     answer = call(capsys, "regimes", PDMS)
     assert (answer.code, answer.err) == (0, "")
@@ -509,7 +508,6 @@ def test_without_arguments_the_help_is_shown(capsys):
     assert "Usage: stribeck COMMAND" in answer.out
 
 
-@pytest.mark.quick
 def test_the_installed_command_and_the_module_are_the_same():
     outside = call_outside("solve", *GROUPS, "--json")
     code = "import runpy; runpy.run_module('stribeck', run_name='__main__', alter_sys=True)"

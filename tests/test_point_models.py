@@ -86,7 +86,6 @@ def test_rough_flow_lifts_the_ball_and_goes_with_the_roughness():
     assert rough.identity_error < 1e-7
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(("thickness", "ratio"), [(3.0, 0.5), (0.5, 0.3)])
 def test_the_layer_deflects_as_hankels_transform_says(thickness, ratio):
     mesh = PolarMesh(np.array([0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 2.0, 10.0, 50.0]), 7, 12, 3)

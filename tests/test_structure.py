@@ -93,7 +93,6 @@ def imported_tops(path):
                 yield top if top and is_module else "__init__"
 
 
-@pytest.mark.quick
 def test_a_package_imports_only_packages_below_it():
     arrows = {(top_of(path), top): path for path in FILES for top in imported_tops(path) if top != top_of(path)}
     against = {arrow for arrow in arrows if LEVEL[arrow[1]] >= LEVEL[arrow[0]]}
@@ -102,7 +101,6 @@ def test_a_package_imports_only_packages_below_it():
     assert NEVER & set(arrows) == set()
 
 
-@pytest.mark.quick
 def test_a_folder_holds_no_more_modules_than_a_reader_can_keep_in_mind():
     for folder in {path.parent for path in FILES}:
         assert len(list(folder.glob("*.py"))) <= 14, f"{folder.name}: thirteen modules beside __init__ at most"
@@ -129,7 +127,6 @@ def test_the_walk_over_imports_sees_every_form(tmp_path, monkeypatch):
     assert set(imported_tops(inner)) == {"sub", "e", "a"}
 
 
-@pytest.mark.quick
 def test_a_module_runs_nothing_at_import():
     allowed = (ast.Import, ast.ImportFrom, ast.Assign, ast.AnnAssign, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
     for path in FILES:
@@ -143,12 +140,10 @@ def test_a_module_runs_nothing_at_import():
                 assert isinstance(node, allowed), where
 
 
-@pytest.mark.quick
 def test_a_module_says_what_it_is_for():
     assert [path for path in FILES if not ast.get_docstring(ast.parse(path.read_text()))] == []
 
 
-@pytest.mark.quick
 def test_importing_the_package_is_silent_and_leaves_heavy_libraries_alone():
     code = """
         import json, sys, numpy
@@ -180,7 +175,6 @@ json.dump(list(sys.modules), sys.stderr)
 """
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("arguments", "unloaded"),
     [
@@ -198,7 +192,6 @@ def test_the_command_loads_what_it_uses(arguments, unloaded):
     assert (unloaded | {"pint", "matplotlib", "stribeck.sweeps", "stribeck.explorer"}) & set(json.loads(run.stderr)) == set()
 
 
-@pytest.mark.quick
 def test_public_names_are_loaded_on_first_use_and_alone_are_listed():
     code = """
         import json, sys
@@ -219,7 +212,6 @@ def test_public_names_are_loaded_on_first_use_and_alone_are_listed():
         stribeck.__getattr__("stribek_curve")
 
 
-@pytest.mark.quick
 def test_the_stub_of_the_package_has_the_names_of_the_package():
     tree = ast.parse((PACKAGE / "__init__.pyi").read_text())
     stub = {
@@ -307,14 +299,12 @@ def test_the_examples_in_docstrings_are_right():
     assert sum(result.attempted for result in results) > 0
 
 
-@pytest.mark.quick
 def test_the_public_names_exist_once_and_in_a_list():
     assert isinstance(stribeck.__all__, list)
     assert len(set(stribeck.__all__)) == len(stribeck.__all__)
     assert all(hasattr(stribeck, name) for name in stribeck.__all__)
 
 
-@pytest.mark.quick
 def test_a_public_name_hides_no_module():
     for name in stribeck.__all__:
         found = getattr(stribeck, name)

@@ -383,7 +383,6 @@ def kill_and_resume(tmp_path, text, total, kill_at, workers):
     return again
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("workers", [pytest.param(1, marks=SLOW), 2])
 def test_kill_9_loses_nothing_and_computes_nothing_twice(tmp_path, workers):
     text = RANDOM.format(kind="sobol", points=128)
