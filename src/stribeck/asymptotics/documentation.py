@@ -7,9 +7,10 @@ from the tables here; a section or an argument that a formula describes itself i
 from __future__ import annotations
 
 import inspect
-import re
 from collections.abc import Callable
 from typing import Any
+
+from stribeck.quantities import docstrings
 
 ARGUMENTS: dict[str, tuple[str, str]] = {
     "x": ("float or array_like", "Positions [a]; broadcast with the groups."),
@@ -53,8 +54,6 @@ ERRORS: dict[str, str] = {
 }
 """When a formula refuses an argument."""
 
-_HEADING = re.compile(r"^(\w+)\n-+\n", re.MULTILINE)
-
 
 def completed(function: Callable[..., Any], predicts: str, uses: tuple[str, ...], undefined: str) -> str:
     """Return the docstring of a formula with the sections that it leaves to the tables here.
@@ -75,20 +74,10 @@ def completed(function: Callable[..., Any], predicts: str, uses: tuple[str, ...]
     str
         Docstring in the form of numpydoc.
     """
-    head, *parts = _HEADING.split(inspect.getdoc(function) or "")
-    own = {title: text.strip("\n") for title, text in zip(parts[::2], parts[1::2], strict=True)}
-    described = dict(re.findall(r"^(\w+) : (.*(?:\n    .*)*)", own.get("Parameters", ""), re.MULTILINE))
     names = list(inspect.signature(function).parameters)
     groups = "all three groups" if len(uses) == 3 else " and ".join(f"``{name}``" for name in uses)
     states = "Groups\n    " + (f"Uses {groups} [-]; arrays broadcast." if uses else "Any; the answer takes their shape.")
     common = {"groups": states} | {name: f"{kind}\n    {words}" for name, (kind, words) in ARGUMENTS.items()}
     refused = [f"InputError\n    {ERRORS[name]}" for name in names if name in ERRORS]
     value = f"float or ndarray\n    {VALUES[predicts]}" + (f"; nan {undefined}." if undefined else ".")
-    sections = {
-        "Parameters": "\n".join(f"{name} : {described.get(name) or common[name]}" for name in names),
-        "Returns": own.get("Returns", value),
-        "Raises": own.get("Raises", "\n".join(refused)),
-        "Notes": own.get("Notes", ""),
-    }
-    body = "\n\n".join(f"{title}\n{'-' * len(title)}\n{text}" for title, text in sections.items() if text)
-    return f"{head.strip()}\n\n{body}\n"
+    return docstrings.completed(function, common, value, "\n".join(refused))

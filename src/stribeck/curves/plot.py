@@ -26,6 +26,7 @@ from stribeck.files.pictures import (
     footer_lines,
     make_logarithmic,
     new_figure,
+    picture,
 )
 from stribeck.files.writing import PathLike
 from stribeck.quantities.inputs import si_text
@@ -53,6 +54,7 @@ FEW = 25
 """Number of points up to which each is marked."""
 
 
+@picture()
 def plot_curve(
     curve: StribeckCurve, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
 ) -> Figure:
@@ -67,26 +69,8 @@ def plot_curve(
     ----------
     curve : StribeckCurve
         The curve.
-    path : str or path-like, optional
-        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
     ax : matplotlib.axes.Axes, optional
         Axes to draw friction into, over what varies, in place of a new figure.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
-    title : str
-        Headline.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be written, or exists and ``force`` is not given.
-    MissingExtraError
-        If matplotlib is not installed.
     """
     if ax is not None:
         figure = figure_of(ax)

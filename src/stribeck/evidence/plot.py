@@ -13,7 +13,7 @@ from stribeck._types import Array
 from stribeck.asymptotics.formula import Formula
 from stribeck.contacts.line import Groups
 from stribeck.figures.style import DASHED, house_style, power, save, sequence
-from stribeck.files.pictures import CONTACT, GREY, INK, PICTURES, TINTS
+from stribeck.files.pictures import CONTACT, GREY, INK, PICTURES, TINTS, picture
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
 from stribeck.quantities.units import InputError
 
@@ -56,6 +56,7 @@ SYMBOLS = {
 }
 
 
+@picture("there is nothing to draw")
 def plot_error_maps(
     maps: Sequence[tuple[Formula[Any], xarray.Dataset]],
     path: PathLike | None = None,
@@ -74,24 +75,6 @@ def plot_error_maps(
     maps : sequence of (Formula, xarray.Dataset)
         Formulas, and what :func:`stribeck.evidence.formulas.error_map` returned for them.  More than three loads make a map
         of what does not depend on the speed.
-    path : str or path-like, optional
-        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
-    title : str
-        Headline.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-
-    Raises
-    ------
-    InputError
-        If there is nothing to draw, or the file cannot be written, or exists and ``force`` is not given.
-    MissingExtraError
-        If matplotlib is not installed.
 
     Notes
     -----

@@ -8,16 +8,19 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError, PathLike, atomic_write
+from stribeck.quantities.docstrings import completed
 from stribeck.quantities.units import InputError, show
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+Draws = TypeVar("Draws", bound=Callable[..., Any])
 
 PICTURES = (".png", ".svg", ".pdf")
 """Endings of the pictures."""
@@ -34,6 +37,30 @@ TINTS = {"boundary": "#fbe9dd", "mixed": "#f6f3e3", "hydrodynamic": "#e2eff8"}
 LINE = 0.19
 LEGEND = 0.55
 """Heights of a line of the footer and of the legend [inch]."""
+
+ARGUMENTS = {
+    "path": "str or path-like, optional\n    Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.",
+    "ax": "matplotlib.axes.Axes, optional\n    Axes to draw into, in place of a new figure.",
+    "force": "bool\n    Whether an existing file is replaced; otherwise it is kept.",
+    "title": "str\n    Headline.",
+}
+"""The arguments that functions share which draw."""
+
+RETURNS = "matplotlib.figure.Figure\n    The figure."
+RAISES = (
+    "InputError\n    If the file cannot be written, or exists and ``force`` is not given{}.\n"
+    "MissingExtraError\n    If matplotlib is not installed."
+)
+
+
+def picture(also: str = "") -> Callable[[Draws], Draws]:
+    """Return a decorator that says of a function which draws what all of them do; ``also`` is what else it refuses."""
+
+    def say(function: Draws) -> Draws:
+        function.__doc__ = completed(function, ARGUMENTS, RETURNS, RAISES.format(f", or if {also}" if also else ""))
+        return function
+
+    return say
 
 
 def new_figure(

@@ -22,6 +22,7 @@ from stribeck.files.pictures import (
     footer_lines,
     make_logarithmic,
     new_figure,
+    picture,
 )
 from stribeck.files.writing import PathLike
 from stribeck.fits.case_file import format_interval, format_value
@@ -46,6 +47,7 @@ LABELS = {
 }
 
 
+@picture()
 def plot_fit(
     fit: Fit, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
 ) -> Figure:
@@ -55,26 +57,8 @@ def plot_fit(
     ----------
     fit : Fit
         The fit.
-    path : str or path-like, optional
-        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
     ax : matplotlib.axes.Axes, optional
         Axes to draw friction into, in place of a new figure.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
-    title : str
-        Headline.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be written, or exists and ``force`` is not given.
-    MissingExtraError
-        If matplotlib is not installed.
     """
     data = fit.data
     below: Axes | None

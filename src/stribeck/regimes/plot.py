@@ -27,6 +27,7 @@ from stribeck.files.pictures import (
     finish_figure,
     footer_lines,
     new_figure,
+    picture,
 )
 from stribeck.files.writing import PathLike
 from stribeck.quantities.inputs import QUANTITIES, SYMBOLS
@@ -75,6 +76,7 @@ SURFACES = ("speed_at_5_percent_fluid", "speed_at_10_percent_contact_friction")
 """The two surfaces between the three regimes."""
 
 
+@picture("the diagram has fewer than two speeds or roughnesses that a logarithmic axis shows")
 def plot_phase_diagram(
     dataset: xarray.Dataset,
     path: PathLike | None = None,
@@ -90,28 +92,8 @@ def plot_phase_diagram(
     ----------
     dataset : xarray.Dataset
         From :func:`stribeck.regimes.phase_diagram`, in groups or in SI units.
-    path : str or path-like, optional
-        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw into, in place of a new figure.
     load : float, optional
         The load, of which the nearest in the dataset is drawn; the first if not given.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
-    title : str
-        Headline.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-
-    Raises
-    ------
-    InputError
-        If the diagram has fewer than two speeds or roughnesses that a logarithmic axis shows, or the file cannot be written.
-    MissingExtraError
-        If matplotlib is not installed.
     """
     if ax is not None:
         figure = figure_of(ax)
@@ -126,6 +108,7 @@ def plot_phase_diagram(
     return finish_figure(figure, path, force)
 
 
+@picture("the diagram has fewer than two loads, speeds or roughnesses")
 def plot_phase_space(dataset: xarray.Dataset, path: PathLike | None = None, *, force: bool = False, title: str = "") -> Figure:
     """Draw the regimes over speed, load and roughness: planes at the first and last load, and the surfaces between.
 
@@ -133,24 +116,6 @@ def plot_phase_space(dataset: xarray.Dataset, path: PathLike | None = None, *, f
     ----------
     dataset : xarray.Dataset
         From :func:`stribeck.regimes.phase_diagram` with two or more loads.
-    path : str or path-like, optional
-        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
-    title : str
-        Headline.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-
-    Raises
-    ------
-    InputError
-        If the diagram has fewer than two loads, speeds or roughnesses, or the file cannot be written.
-    MissingExtraError
-        If matplotlib is not installed.
     """
     _plane(dataset, None)
     loads = dataset["load"].values

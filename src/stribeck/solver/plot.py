@@ -23,6 +23,7 @@ from stribeck.files.pictures import (
     footer_lines,
     make_logarithmic,
     new_figure,
+    picture,
 )
 from stribeck.files.writing import PathLike
 from stribeck.quantities.inputs import SYMBOLS
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 __all__ = ["axis_in_si", "draw_gap", "footer_of", "law_text", "plot_profile"]
 
 
+@picture()
 def plot_profile(
     solution: Solution | PointSolution,
     path: PathLike | None = None,
@@ -53,26 +55,8 @@ def plot_profile(
     ----------
     solution : Solution or PointSolution
         The state.
-    path : str or path-like, optional
-        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
     ax : matplotlib.axes.Axes, optional
         Axes to draw the pressures into, in place of a new figure.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
-    title : str
-        Headline.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be written, or exists and ``force`` is not given.
-    MissingExtraError
-        If matplotlib is not installed.
     """
     if not isinstance(solution, Solution):
         from stribeck.solver.point.plot import plot_point_solution

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, figure_of, finish_figure
+from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, figure_of, finish_figure, picture
 from stribeck.files.writing import MissingExtraError, PathLike
 from stribeck.quantities.units import DIMENSIONS, format_si
 from stribeck.surfaces.analysis import Surface
@@ -26,6 +26,7 @@ MOST_PIXELS = 1024
 """Largest number of points along a side of the map that is drawn."""
 
 
+@picture()
 def plot_surface(
     surface: Surface, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
 ) -> Figure:
@@ -35,26 +36,10 @@ def plot_surface(
     ----------
     surface : Surface
         The surface.
-    path : str or path-like, optional
-        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
     ax : matplotlib.axes.Axes, optional
         Axes to draw the heights into, in place of a new figure.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
     title : str
         Headline; the name of the file by default.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be written, or exists and ``force`` is not given.
-    MissingExtraError
-        If matplotlib is not installed.
     """
     if ax is not None:
         figure = figure_of(ax)

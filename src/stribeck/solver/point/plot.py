@@ -26,6 +26,7 @@ from stribeck.files.pictures import (
     figure_of,
     finish_figure,
     new_figure,
+    picture,
 )
 from stribeck.files.writing import PathLike
 from stribeck.quantities.units import InputError, show
@@ -80,6 +81,7 @@ def interference(gap: Any, index: float = INDEX) -> Array:
     return np.asarray(0.5 * (1 - np.cos(4 * math.pi * path / waves) * fading))
 
 
+@picture("the colours are unknown or need a contact")
 def plot_point_solution(
     solution: PointSolution,
     path: PathLike | None = None,
@@ -95,28 +97,10 @@ def plot_point_solution(
     ----------
     solution : PointSolution
         The state.
-    path : str or path-like, optional
-        Image to write as well, ending in ``.png``, ``.svg`` or ``.pdf``.
     ax : matplotlib.axes.Axes, optional
         Axes to draw the film into, in place of a new figure.
     colours : {"film", "interference"}
         What colours the film: its thickness, or the light that it reflects in an optical rig, which needs a contact.
-    force : bool
-        Whether an existing file is replaced; otherwise it is kept.
-    title : str
-        Headline.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-
-    Raises
-    ------
-    InputError
-        If the colours are unknown or need a contact, the file cannot be written, or exists and ``force`` is not given.
-    MissingExtraError
-        If matplotlib is not installed.
     """
     if not isinstance(colours, str) or colours not in ("film", "interference"):
         raise InputError(f"colours = {show(colours)}; it must be 'film' or 'interference'.")
