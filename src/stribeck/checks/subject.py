@@ -6,17 +6,18 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stribeck.contact_laws.finite_surface import FiniteSurface
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.curves.landmarks import Landmark
-from stribeck.curves.result import StribeckCurve
-from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.quantities.facts import FACTS
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
+
+if TYPE_CHECKING:
+    from stribeck.curves.landmarks import Landmark
+    from stribeck.curves.result import StribeckCurve
 
 __all__ = ["Subject"]
 
@@ -89,6 +90,8 @@ class Subject:
         return self._curve_of(self.contact.replace(law=FiniteSurface(self.contact.alpha, law)))
 
     def _curve_of(self, contact: Contact) -> StribeckCurve:
+        from stribeck.curves.stribeck_curve import stribeck_curve  # a fifth of the time of a single solve
+
         tracing = TRACES[contact.groups.geometry]
         speeds = None if tracing.films is None else tuple(speed_of_film(contact, film) for film in tracing.films)
         return stribeck_curve(contact, speed=speeds, points=tracing.points, rtol=tracing.rtol, definition=self.definition)

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from stribeck.checks import body, film, law
 from stribeck.checks.check import Check, Checks
 from stribeck.checks.subject import Subject
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.curves.result import StribeckCurve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.facts import fact_values
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError
+
+if TYPE_CHECKING:
+    from stribeck.curves.result import StribeckCurve
 
 __all__ = ["ROWS", "Effort", "Row", "check", "checks_of"]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import erf
+import scipy
 
 from stribeck._types import Array, Numbers
 
@@ -127,7 +127,7 @@ class SpectralExponential:
 
     def area_fraction_at(self, pressure: Array) -> Array:
         """Return ``erf(k Phi)``, the real area of contact over the apparent one."""
-        return np.asarray(erf(self.area_slope * pressure))
+        return np.asarray(scipy.special.erf(self.area_slope * pressure))
 
     def notes(self, separation: float) -> tuple[str, ...]:
         """Return none: those of the exponential law are those of the groups."""

@@ -14,7 +14,7 @@ import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy import special
+import scipy
 
 from stribeck._types import Array, Indices
 from stribeck.contact_laws.persson_integral import Integral, tabulate
@@ -197,7 +197,7 @@ class PerssonLaw(ByValue):
         ndarray
             Share of the area in contact, with all roughness of the spectrum [-].
         """
-        return np.asarray(special.erf(np.asarray(pressure, dtype=float) * (self.beta * math.sqrt(2) / self.rms_slope)))
+        return np.asarray(scipy.special.erf(np.asarray(pressure, dtype=float) * (self.beta * math.sqrt(2) / self.rms_slope)))
 
     def scaled(self, rms_height: float) -> PerssonLaw:
         """Return the law of the same shape of the spectrum with another rms height, without a new table.

@@ -21,7 +21,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special
+import scipy
 
 from stribeck._types import Array
 from stribeck.contact_laws.spectrum import Spectrum
@@ -78,7 +78,7 @@ class Integral:
         lowest = (P[:, 0] / self.stiffness) ** 2
         t = P / self.G
         fade = np.exp(np.minimum(lowest[:, None] - t * t, 0.0)) * self.weight
-        erf, share = special.erf(t), 3 * (1 - self.gamma)
+        erf, share = scipy.special.erf(t), 3 * (1 - self.gamma)
         rate = self.gamma + share * erf * erf
         bend = 4 / math.sqrt(math.pi) * share * erf * t * np.exp(-t * t) - 2 * t * t * rate
         s = np.sum(_scaled_J(t, self.gamma) * fade, axis=1)
@@ -125,7 +125,7 @@ def _scaled_J(t: Array, gamma: float) -> Array:  # noqa: N802
     large = square > _SCALED
     near = np.where(large, 1.0, t)
     factor, nodes = np.exp(near * near), np.where(large, square, _SCALED)
-    exponential = np.where(large, _laguerre(nodes), factor * special.exp1(near * near))
+    exponential = np.where(large, _laguerre(nodes), factor * scipy.special.exp1(near * near))
     erf_part = np.where(large, 0.5 * exponential, _erf_part()[0](near))
     return np.asarray(0.5 * gamma * exponential + 3 * (1 - gamma) * erf_part)
 
@@ -152,7 +152,7 @@ def _erf_part() -> tuple[np.polynomial.Chebyshev, float]:
 
     def scaled(t: Array) -> Array:
         square = np.asarray(t)[..., None] ** 2 + z
-        return np.asarray(np.sum(weight * special.erf(np.sqrt(square)) ** 2 / square, axis=-1))
+        return np.asarray(np.sum(weight * scipy.special.erf(np.sqrt(square)) ** 2 / square, axis=-1))
 
     fit = np.polynomial.Chebyshev.interpolate(scaled, 72, domain=[0.0, math.sqrt(_SCALED)])
     return fit, float(scaled(np.array(0.0)))

@@ -18,8 +18,8 @@ from functools import lru_cache
 from typing import Self
 
 import numpy as np
+import scipy
 from numpy.polynomial import chebyshev, legendre
-from scipy.special import ndtr
 
 from stribeck._types import Array
 from stribeck.fluids.flow_factors import (
@@ -103,7 +103,7 @@ class EffectiveMedium(FlowFactors):
         d = nominal_separation(width)
         e, slope = medium_width(d)
         phi = (e / width) ** 3
-        by_gap = 3 * (e / width) ** 2 * (slope / ndtr(d) - e / width) / gap
+        by_gap = 3 * (e / width) ** 2 * (slope / scipy.special.ndtr(d) - e / width) / gap
         return lifted(phi, by_gap)
 
     def shear(self, gap: Array) -> tuple[Array, Array]:
@@ -181,7 +181,7 @@ def _width(d: float, start: float) -> float:
         mass = half[:, None] * weights * np.exp(-0.5 * (u - d) ** 2) / math.sqrt(2 * math.pi)
         part = e**3 / (u**3 + e**3)
         # Widths of zero have the part one.
-        excess = 1 - 2 * (float(ndtr(-d)) + float((mass * part).sum()))
+        excess = 1 - 2 * (float(scipy.special.ndtr(-d)) + float((mass * part).sum()))
         slope = -2 * float((mass * 3 * part * (1 - part)).sum())
         step = max(-1.0, min(1.0, -excess / slope))
         log_e += step

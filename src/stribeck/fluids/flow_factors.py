@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import Literal, Self, TypeVar
 
 import numpy as np
-from scipy.special import ndtr
+import scipy
 
 from stribeck._types import Array
 from stribeck.fluids.laws import FilmUnits, FlowFactors
@@ -212,14 +212,14 @@ class PatirCheng(FlowFactors):
         if self.argument == "mean":
             return gap / self.sigma, np.full_like(gap, 1 / self.sigma)
         H = nominal_separation(gap / self.sigma)
-        return H, 1 / (self.sigma * ndtr(H))
+        return H, 1 / (self.sigma * scipy.special.ndtr(H))
 
 
 def nominal_separation(width: Array) -> Array:
     """Return the separation of the mean planes at a mean width > 0, both over the roughness of Gaussian surfaces."""
     H = np.array(width, dtype=float)
     for _ in range(MOST_STEPS):  # from above the function is convex: Newton's steps cannot overshoot
-        share = ndtr(H)
+        share = scipy.special.ndtr(H)
         step = (H * share + np.exp(-0.5 * H * H) / math.sqrt(2 * math.pi) - width) / share
         H = np.maximum(H - step, -37.0)
         if np.abs(step).max(initial=0.0) < 1e-14 * 37:

@@ -11,7 +11,7 @@ Source: [DLMF] 14.5, 14.10 (recurrence in the degree), 19.5; Miller's algorithm:
 from __future__ import annotations
 
 import numpy as np
-from scipy.special import ellipe, ellipkm1
+import scipy
 
 from stribeck._types import Array
 
@@ -44,8 +44,8 @@ def ring_functions(radius: Array, source: Array, difference: Array, count: int) 
     excess = 0.5 * ratio * ratio  # chi - 1
     complement = (difference / (radius + source)) ** 2
     k = np.sqrt(1.0 - complement)
-    first = k * ellipkm1(complement)
-    second = (1.0 + excess) * first - (2.0 + excess) * k * ellipe(1.0 - complement)
+    first = k * scipy.special.ellipkm1(complement)
+    second = (1.0 + excess) * first - (2.0 + excess) * k * scipy.special.ellipe(1.0 - complement)
     chi = 1.0 + excess
     xi = 2.0 * np.arcsinh(0.5 * ratio)
     found = np.empty((count, radius.size))

@@ -17,8 +17,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.polynomial import chebyshev
-from scipy.special import j0
 
 from stribeck._types import Array
 from stribeck.numerics.fourier_panels import PolarMesh
@@ -40,7 +40,7 @@ def _table(poisson_ratio: float) -> Array:
     nodes, weights = np.polynomial.legendre.leggauss(1200)
     q, weights = 0.5 * LARGEST_WAVE * (1 + nodes), 0.5 * LARGEST_WAVE * weights
     xi = 0.5 * REACH * (1 + np.cos(np.pi * (np.arange(TABLE) + 0.5) / TABLE))
-    values = j0(np.outer(xi, q)) @ (weights * (transfer(q, poisson_ratio) - 1))
+    values = scipy.special.j0(np.outer(xi, q)) @ (weights * (transfer(q, poisson_ratio) - 1))
     return np.asarray(chebyshev.chebfit(2 * xi / REACH - 1, values, TABLE - 1))
 
 

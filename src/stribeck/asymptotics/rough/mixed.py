@@ -18,7 +18,7 @@ import math
 from typing import Any, Literal, get_args
 
 import numpy as np
-from scipy.special import lambertw
+import scipy
 
 from stribeck._types import Array
 from stribeck.asymptotics.constants import FILM_CONSTANT
@@ -155,7 +155,7 @@ def friction(
 
 def lambert_w(z: Value, branch: int = 0) -> Array:
     """Return a branch of Lambert's W, nan where it is not real."""
-    w: Any = lambertw(np.asarray(z, dtype=complex), branch)
+    w: Any = scipy.special.lambertw(np.asarray(z, dtype=complex), branch)
     return np.where(w.imag == 0, w.real, np.nan)
 
 

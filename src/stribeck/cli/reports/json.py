@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,12 +14,14 @@ from stribeck.cli.reports.words import Sensitivities, contact_part, hersey_of, p
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.with_parts import part_attributes
-from stribeck.curves.landmarks import Landmark
-from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
-from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
 from stribeck.solver.base_solution import BaseSolution, si_films
+
+if TYPE_CHECKING:
+    from stribeck.curves.landmarks import Landmark
+    from stribeck.curves.result import StribeckCurve
+    from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
 
 __all__ = ["curve_json", "dump", "law_json", "regimes_json", "solution_json"]
 

@@ -23,12 +23,13 @@ from stribeck.cli.reports.words import (
 )
 from stribeck.contacts.friction import DEFINITIONS
 from stribeck.curves.regime import regime_of
-from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.units import format_si
 from stribeck.solver.base_solution import BaseSolution
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+    from stribeck.curves.result import StribeckCurve
 
 __all__ = ["print_curve", "print_solution"]
 

@@ -16,7 +16,6 @@ from stribeck.contacts.friction import Definition, Friction
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import part_attributes
 from stribeck.curves.regime import regime_of
-from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import ROWS
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import format_bound, format_si
@@ -24,6 +23,8 @@ from stribeck.solver.base_solution import BaseSolution
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+    from stribeck.curves.result import StribeckCurve
 
 HANDS_ON = tuple(row.name for row in ROWS if not row.derived and not row.follows_surface)
 """Inputs that one may change; alpha and beta follow from the surface."""
