@@ -44,6 +44,30 @@ def test_a_sweep_keeps_balls_with_their_own_observables(tmp_path):
     assert float(found["friction_balanced"].values.ravel()[1]) == pytest.approx(alone.friction(beta=0.1).total, rel=3e-3)
 
 
+def test_two_processes_find_what_one_does(tmp_path):
+    pytest.importorskip("zarr")
+    path = tmp_path / "sweep.toml"
+    path.write_text(
+        '[groups]\ngeometry = "point"\nroughness = 2e-4\nbeta = 0.1\n[vary]\nload = [0.001, 0.1]\nspeed = [1e-3, 2e-3]\n'
+        "[solver]\nrtol = 1e-3\n"
+    )
+    one, two = (sb.sweep(path, tmp_path / f"{count}.zarr", workers=count).to_dataset() for count in (1, 2))
+    assert set(two["outcome"].values.ravel()) == {"CONVERGED"}
+    for name in ("contact_load_share", "central_gap", "minimum_gap", "friction_balanced", "error_estimate"):
+        np.testing.assert_array_equal(one[name].values, two[name].values, err_msg=name)
+
+
+def test_the_command_draws_a_ball(capsys, tmp_path):
+    pytest.importorskip("matplotlib")
+    picture = tmp_path / "ball.svg"
+    assert main(["solve", str(EXAMPLES / "rubber_ball.toml"), "--rtol", "1e-3", "--plot", str(picture)]) == 0
+    assert f"Written: {picture}\n" in capsys.readouterr().out
+    drawn = picture.read_text()
+    assert "<svg" in drawn
+    for said in ("film", "µm", "MPa"):
+        assert said in drawn, said
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("edge", [None, "2 mm"])
 def test_sensitivities_of_a_ball_are_those_of_frictions_beside_it(edge):

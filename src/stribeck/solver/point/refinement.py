@@ -195,7 +195,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     last, before = (float(modal_amplitudes(level)[-2:].max()) for level in (fine, coarse))
     gained = 2.0 * min(PART, max(0.05, last / max(before, 1e-300)))
     for name in ("minimum_gap", "minimum_gap_on_axis"):
-        errors[name] = max(gained * abs(values[name] - rough[name]), unseen * scales[name])
+        errors[name] = max(gained * abs(values[name] - rough[name]), max(unseen, COMPANY * widest) * scales[name])
     for name in ("minimum_radius", "minimum_angle"):
         errors[name] = max(4.0 * errors[name], unseen)
     ok = coarse.outcome.ok and fine.outcome.ok
