@@ -91,6 +91,7 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
         ({"fluid": {"model": "carreau"}}, r"\[fluid\] relaxation_time is missing, which model = 'carreau' needs"),
         ({"fluid": {"model": "eyring", "stress": "5 MPa", "exponent": 1}}, r"\[fluid\] exponent = 1 is given, but model"),
         ({"fluid": {"modle": "carreau"}}, r"\[fluid\] modle = 'carreau' is not a known key; did you mean model"),
+        ({"fluid": {"name": "water"}}, r"\[fluid\] name = 'water' is not a known key; did you mean preset or model"),
         ({"fluid": {"model": "bingham"}}, r"\[fluid\] model = 'bingham' must be one of"),
         ({"fluid": {"viscosity_law": "barus"}}, r"\[fluid\] pressure_viscosity is missing"),
         ({"fluid": {"pressure_viscosity": "15 GPa"}}, r"\[fluid\] pressure_coefficient = '15 GPa' is a pressure"),
@@ -108,6 +109,17 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
 def test_what_is_wrong_in_a_table_is_said_with_its_name(tables, said):
     with pytest.raises(sb.InputError, match=said):
         case_of(**tables)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("geometry", ["line", "point"])
+def test_slide_to_roll_may_stand_in_contact_or_motion_but_not_in_both(geometry):
+    base = {**CONTACT, "geometry": geometry} | ({"load": "50 mN"} if geometry == "point" else {})
+    given = case_of({**base, "slide_to_roll": 0.5})
+    assert given.contact.slide_to_roll == 0.5
+    assert given.contact == case_of(base, motion={"slide_to_roll": 0.5}).contact
+    with pytest.raises(sb.InputError, match=r"0.5 in \[contact\] and 1 in \[motion\] are both given; remove one"):
+        case_of({**base, "slide_to_roll": 0.5}, motion={"slide_to_roll": 1})
 
 
 @pytest.mark.quick

@@ -85,7 +85,7 @@ def test_python_takes_a_data_sheet_too():
         ({"load": '"770 N/m"'}, "load = '770 N/m' and force = '15.4 N' and width = '20 mm' are both given"),
         ({"rotational_speed": '"5 Hz"'}, "may mean turns or radians per second; write it in rpm or rad/s"),
         ({"ra": '"0.4 +- x um"'}, "cannot be read; write it as '1.0 +- 0.2 um'"),
-        ({"ra": '"0.4 +- 4 um"'}, "has an error of 1e+03 %"),
+        ({"ra": '"0.4 +- 4 um"'}, "has an error of 1000 %"),
         ({"ra": '{ value = "0.4 um" }'}, "must be a table of value and error"),
         ({"rpm": '"3 rpm"'}, "rpm = '3 rpm' is not a known key; give rotational_speed"),
         ({"shore": "70"}, "shore = 70 is not a known key; write shore_a = 70"),

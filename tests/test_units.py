@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stribeck.quantities.units import DIMENSIONS, InputError, format_si, to_si
+from stribeck.quantities.units import DIMENSIONS, InputError, format_factor, format_percent, format_si, to_si
 
 pytestmark = pytest.mark.quick
 
@@ -160,3 +160,19 @@ def test_short_text_reads_back_within_its_digits(value, sign, dimension, digits)
 )
 def test_short_text_has_a_fitting_prefix(value, dimension, text):
     assert format_si(value, dimension) == text
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (format_si(1e12, "pressure"), "1000 GPa"),
+        (format_si(2.5e16, "pressure"), "2.5e+07 GPa"),
+        (format_percent(0.99996), "100 %"),
+        (format_percent(0.00123), "0.12 %"),
+        (format_factor(3752.6), "3750"),
+        (format_factor(999.7), "1000"),
+        (format_factor(2e6), "2e+06"),
+    ],
+)
+def test_numbers_that_people_read_have_no_exponent_without_need(text, expected):
+    assert text == expected

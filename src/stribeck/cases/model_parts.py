@@ -32,6 +32,8 @@ RHEOLOGIES: dict[str, tuple[Any, tuple[str, ...], tuple[str, ...]]] = {
 VISCOSITY_LAWS = ("constant", "barus", "roelands")
 DENSITIES = ("incompressible", "dowson-higginson")
 CONDITIONS = ("weight_fraction", "temperature", "grade")
+NAMES = ("name", "type", "kind", "law", "fluid", "liquid")
+"""Keys that people write for the one that says which."""
 
 KEYS = {
     "fluid": (
@@ -93,14 +95,27 @@ def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], d
             parts |= read(table, rest.get("contact"))
         except InputError as problem:
             problems += [f"[{name}] {line}" for line in str(problem).split("\n")]
-    if geometry == "point" and "slide_to_roll" in parts and isinstance(rest.get("contact"), dict):
-        rest["contact"].setdefault("slide_to_roll", parts.pop("slide_to_roll"))
+    problems += _slide_to_roll(rest.get("contact"), parts, geometry)
     return rest, parts, problems
+
+
+def _slide_to_roll(contact: Any, parts: dict[str, Any], geometry: str) -> list[str]:
+    """Take the ratio from ``[contact]`` or ``[motion]``, whichever has it: of a ball it is an input, of a cylinder a part."""
+    if not isinstance(contact, dict):
+        return []
+    if "slide_to_roll" in contact and "slide_to_roll" in parts:
+        given = show(contact.pop("slide_to_roll")), show(parts["slide_to_roll"])
+        return [f"slide_to_roll = {given[0]} in [contact] and {given[1]} in [motion] are both given; remove one of them."]
+    source, target = (parts, contact) if geometry == "point" else (contact, parts)
+    if "slide_to_roll" in source:
+        target["slide_to_roll"] = source.pop("slide_to_roll")
+    return []
 
 
 def _unknown(key: str, value: Any, known: tuple[str, ...]) -> str:
     near = difflib.get_close_matches(key, known, n=1, cutoff=0.8)
-    advice = f"did you mean {near[0]}" if near else f"known are {', '.join(known)}"
+    meant = near or [each for each in ("preset", "model") if key in NAMES and each in known]
+    advice = f"did you mean {' or '.join(meant)}" if meant else f"known are {', '.join(known)}"
     return f"{key if key.isprintable() else repr(key)} = {show(value)} is not a known key; {advice}."
 
 

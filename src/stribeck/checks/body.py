@@ -36,7 +36,7 @@ def pressure(subject: Subject) -> Check:
     uses_pressure = getattr(getattr(subject.contact, "fluid", None), "viscosity", None) is not None
     if uses_pressure:
         return Check(
-            "Hertz pressure", p, math.inf, "fine", f"The growth of viscosity with pressure is solved ({modelled}).", "Pa"
+            "Hertz pressure", p, math.inf, "fine", f"The growth of viscosity with pressure is modelled ({modelled}).", "Pa"
         )
     verdict = verdict_of(growth, FINE_STIFFENING, STIFFENING * (1 + 1e-12))
     if given is None and verdict == "outside":
@@ -80,12 +80,13 @@ def width(subject: Subject) -> Check:
 def layer(subject: Subject) -> Check | None:
     """Return the check of the layer: half-width over its thickness; None where the thickness is not known."""
     thickness = subject.fact("layer_thickness")
-    if subject.models("solid") and getattr(getattr(subject.contact, "solid", None), "thickness", None) is not None:
-        return Check("layer a/thickness", math.nan, FINE_LAYER, "fine", "The layer is solved as one.")
+    modelled = getattr(subject.contact.solid, "thickness", None) if subject.models("solid") else None
+    thickness = thickness if modelled is None else modelled
     if thickness is None or thickness == 0:
         return None
-    a = subject.contact.hertz.half_width
-    ratio = a / thickness
+    ratio = subject.contact.hertz.half_width / thickness
+    if modelled is not None:
+        return Check("layer a/thickness", ratio, math.inf, "fine", "The finite thickness of the layer is part of the model.")
     verdict = verdict_of(ratio, FINE_LAYER, THIN_LAYER)
     meaning = {
         "fine": "The layer is as good as a half-space.",
@@ -104,7 +105,7 @@ def loss(subject: Subject) -> Check | None:
     frequency = contact.speed / contact.hertz.half_width
     verdict = verdict_of(tangent, FINE_LOSS, LOSS)
     if subject.models("solid") and getattr(getattr(contact, "solid", None), "uses_speed", False):
-        return Check("loss tangent", tangent, FINE_LOSS, "fine", "The loss of the solid is solved.")
+        return Check("loss tangent", tangent, FINE_LOSS, "fine", "The viscoelasticity of the solid is modelled.")
     meaning = {
         "fine": "hysteresis is small.",
         "doubtful": "hysteresis adds friction that is not solved.",

@@ -6,6 +6,7 @@ import math
 
 from stribeck.checks.check import Check, Verdict, number_text, verdict_of
 from stribeck.checks.subject import Subject
+from stribeck.quantities.units import format_percent
 from stribeck.solver.notes import ATMOSPHERE, cavitation_notes
 
 USUAL_THINNING = 1e6
@@ -40,7 +41,7 @@ def suction(subject: Subject) -> Check:
     """Return the check of the suction behind the contact against the pressure of the atmosphere."""
     contact = subject.contact
     if subject.models("cavitation"):
-        return Check("suction", 0.0, ATMOSPHERE, "fine", f"Cavitation is solved ({subject.models('cavitation')}).", "Pa")
+        return Check("suction", 0.0, ATMOSPHERE, "fine", f"Cavitation is modelled ({subject.models('cavitation')}).", "Pa")
     if contact.speed == 0:
         return Check("suction", 0.0, ATMOSPHERE, "fine", "At rest there is no suction.", "Pa")
     fluid = subject.solution.fluid_pressure
@@ -64,7 +65,7 @@ def shear_rate(subject: Subject) -> Check:
     given = subject.fact("thinning_rate")
     limit = USUAL_THINNING if given is None else given
     if getattr(getattr(contact, "fluid", None), "rheology", None) is not None:
-        return Check("shear rate", rate, math.inf, "fine", f"Thinning is solved ({subject.models('fluid')}).", "1/s")
+        return Check("shear rate", rate, math.inf, "fine", f"Thinning is modelled ({subject.models('fluid')}).", "1/s")
     outside = math.inf if given is None else THINNED * limit
     verdict = verdict_of(rate, limit, outside)
     about = f"The shear rate at the minimum film is {rate:.2g} 1/s"
@@ -122,7 +123,7 @@ def heating(subject: Subject) -> Check:
     kelvin = contact.viscosity * contact.speed**2 / (8 * k)
     lost = slope * kelvin
     verdict = verdict_of(lost, FINE_HEATING, HEATING)
-    sentence = f"Shear heats the film by up to {kelvin:.2g} K, which costs {100 * lost:.2g} % of its viscosity" + (
+    sentence = f"Shear heats the film by up to {kelvin:.2g} K, which costs {format_percent(lost)} of its viscosity" + (
         "." if verdict == "fine" else "; the model is isothermal: give the viscosity at the temperature of the film."
     )
     return Check("viscous heating", lost, FINE_HEATING, verdict, sentence)

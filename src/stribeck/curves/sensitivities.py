@@ -15,6 +15,7 @@ from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import GROUP_EXPONENTS
+from stribeck.quantities.units import InputError
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
 
@@ -95,6 +96,40 @@ def friction_sensitivities(
         slopes = friction_slopes(point.state, contact.boundary_friction, contact.beta, definition)
     friction = solution.friction(definition=definition)
     return solution, _sensitivities(slopes, friction.contact, friction.viscous)
+
+
+def sensitivities_if_known(
+    contact: Contact, *, rtol: float = 1e-6, definition: Definition = "balanced"
+) -> tuple[Solution, dict[str, float], str]:
+    """Return the state of a contact with its sensitivities, or with none and the reason where they cannot be computed.
+
+    Parameters
+    ----------
+    contact : Contact
+        The contact.
+    rtol : float
+        Relative tolerance of the state.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+
+    Returns
+    -------
+    Solution
+        The state.
+    dict of str to float
+        As :func:`friction_sensitivities` returns them; empty where a part of the model has no derivatives.
+    str
+        Why it is empty, a sentence.
+
+    Raises
+    ------
+    InputError
+        If an argument is outside its range.
+    """
+    try:
+        return *friction_sensitivities(contact, rtol=rtol, definition=definition), ""
+    except InputError as refusal:
+        return solve(contact, rtol=rtol), {}, str(refusal)
 
 
 def _of_ball(contact: Contact, rtol: float, definition: Definition) -> tuple[Any, dict[str, float]]:

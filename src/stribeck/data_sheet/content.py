@@ -18,10 +18,10 @@ from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
 from stribeck.curves.regime import regime_of
 from stribeck.curves.result import StribeckCurve
-from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fits.measurements import Measurements, read_measurements
-from stribeck.quantities.units import format_share, format_si
+from stribeck.quantities.units import format_percent, format_share, format_si
 from stribeck.regimes.margins import regime_margins
 from stribeck.regimes.sentences import ways_to
 from stribeck.solver.solution import Solution
@@ -144,7 +144,7 @@ def content_of(
     step = on_step or (lambda done, total: None)
     measured = read_measurements(data, case.fit) if isinstance(data, str | Path) else data
     contact, definition = case.contact, case.definition
-    solution, slopes = friction_sensitivities(contact, rtol=case.rtol, definition=definition)
+    solution, slopes, _ = sensitivities_if_known(contact, rtol=case.rtol, definition=definition)
     curve = stribeck_curve(contact, points=POINTS, rtol=case.rtol, definition=definition)
     step(1, 5)
     checks = checks_of(Subject(contact, case.facts, definition, solution, curve))
@@ -189,7 +189,7 @@ def _inputs(case: Case) -> tuple[InputLine, ...]:
         names = (name, *through.get(name, ()))
         error = next((case.errors[each] for each in names if each in case.errors), None)
         source = next((sources[each] for each in names if each in sources), "")
-        shown = "" if error is None else f"± {100 * error:.2g} %"
+        shown = "" if error is None else f"± {format_percent(error)}"
         lines.append(InputLine(row.label, format_si(value, row.dimension, 4), shown, source))
     return tuple(lines)
 
@@ -223,9 +223,9 @@ def _sentences(case: Case, solution: Solution, curve: StribeckCurve, found: Unce
         f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load."
     )
     if found is None:
-        return (first, "No errors of the inputs are given, so that no probability of a regime can be.")
-    blame = ", ".join(f"{case.contact.INPUTS.quantities[n].label} {100 * v:.2g} %" for n, v in found.contributions.items())
-    return (first, f"Probability of each regime: {found.probabilities}.", f"Of the variance of friction come from: {blame}.")
+        return (first, 'With errors of the inputs, as in roughness = "1.0 +- 0.2 um", this page has intervals and the probability of each regime.')
+    blame = ", ".join(f"{case.contact.INPUTS.quantities[n].label} {format_percent(v)}" for n, v in found.contributions.items())
+    return (first, f"Probability of each regime: {found.probabilities}.", f"Sources of the variance of friction: {blame}.")
 
 
 def _films(solution: Solution, curve: StribeckCurve, found: Uncertainty | None) -> tuple[tuple[str, str, str], ...]:

@@ -15,15 +15,13 @@ from stribeck.quantities.units import DIMENSIONS, format_si
 __all__ = ["new_case"]
 
 PARTS = """
-# A fluid that is not Newtonian, a film that breaks, a thin layer: take away the # of a table and of what you know.
+# A fluid that is not Newtonian, a film that breaks, a thin layer: remove the # of a table and of what you know.
 # [fluid]
 # preset = "water"   # or glycerol-water, silicone-oil, pao-4, ...: gives the viscosity too, at temperature = "25 degC"
 # model = "carreau"   # or cross, eyring, power-law; with relaxation_time = "1 ms", exponent = 0.7
 # pressure_viscosity = "20 1/GPa"   # viscosity_law = "barus" or "roelands"
 # [cavitation]
 # model = "exit"   # the film ends at ambient pressure behind the contact; or "reform"
-# [motion]
-# slide_to_roll = 0.5   # 2 (u1 - u2)/(u1 + u2); 2 with one surface at rest
 # [solid]
 # layer_thickness = "2 mm"
 # poisson_ratio = 0.49
@@ -87,14 +85,20 @@ def new_case(geometry: Geometry = "line") -> str:
                 shown = "; ".join(f"{each.name} = {_quoted(each.typical, each.dimension)}" for each in conversion.inputs)
                 lines.append(f"# Or instead: {shown}   ({conversion.formula})")
         lines.append("")
+    if geometry == "line":
+        lines += [
+            "# Slide-to-roll ratio [no unit], 2 (u1 - u2)/(u1 + u2), 0 to 2. Without it one surface rests, which is 2.",
+            "# slide_to_roll = 0.5",
+            "",
+        ]
     lines += [
         '# Contact law: "exponential" (alpha, beta above), or "persson" with a table [surface] in their place and in that of',
         '# roughness: h_rms = "1 um", hurst = 0.8, longest_wavelength = "150 um", shortest_wavelength = "1.5 um".',
         'law = "exponential"',
-        *([PARTS.rstrip()] if geometry == "line" else []),
+        PARTS.rstrip(),
         OPTIONS,
         "[check]",
-        "# What no equation takes, but by which stribeck check judges; take away the # of what you know.",
+        "# Used by stribeck check alone; remove the # of what you know.",
     ]
     lines += [f"# {fact.name} = {_quoted(fact.typical, fact.dimension)}   # {fact.label}; {fact.source}" for fact in FACTS]
     return "\n".join(lines) + "\n"
@@ -102,7 +106,7 @@ def new_case(geometry: Geometry = "line") -> str:
 
 def _about(row: Input) -> list[str]:
     low, high = row.usual
-    unit = DIMENSIONS[row.dimension].unit or "a bare number"
+    unit = DIMENSIONS[row.dimension].unit or "no unit"
     usual = f", usually {format_si(low, row.dimension)} to {format_si(high, row.dimension)}" if high < math.inf else ""
     return [f"# {row.label[0].upper()}{row.label[1:]} [{unit}]{usual}. Here: {row.source}."]
 

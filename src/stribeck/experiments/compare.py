@@ -20,7 +20,7 @@ from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.result import Fit
 from stribeck.quantities.keywords import answers_typos
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, format_percent, show
 from stribeck.solver.solve import SolveError
 
 __all__ = ["CAVEATS", "Candidate", "Comparison", "compare"]
@@ -93,7 +93,7 @@ class Comparison:
         """Return the table as text."""
         lines = [f"{'law':<24}{'noise':<9}{'AICc':<10}{'difference':<12}weight"]
         for each in self.candidates:
-            size = f"{100 * each.fit.noise:.2g} %" if each.fit.logarithmic and math.isfinite(each.fit.noise) else ""
+            size = format_percent(each.fit.noise) if each.fit.logarithmic and math.isfinite(each.fit.noise) else ""
             lines.append(f"{each.name:<24}{size:<9}{each.aicc:<10.1f}{each.difference:<12.1f}{each.weight:.2g}")
         failed = [f"{name}: {why}" for name, why in self.failed.items()]
         return "\n".join([*lines, *failed, self.sentence, *CAVEATS])

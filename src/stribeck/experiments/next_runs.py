@@ -23,7 +23,7 @@ from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.fits.result import Fit
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import quantity
-from stribeck.quantities.units import InputError, format_si, show
+from stribeck.quantities.units import InputError, format_percent, format_si, show
 from stribeck.solver.solve import SolveError
 
 if TYPE_CHECKING:
@@ -106,12 +106,12 @@ class Plan:
         columns = (("run", 5), ("speed", 14), ("load", 14), ("viscosity", 14), ("friction", 11), ("gain", 8), ("cost", 7))
         lines = ["".join(f"{name:<{width}}" for name, width in columns) + "standard errors after it"]
         for i, each in enumerate(self.runs, 1):
-            after = ", ".join(f"{name} {100 * error:.2g} %" for name, error in each.errors.items())
+            after = ", ".join(f"{name} {format_percent(error)}" for name, error in each.errors.items())
             place = f"{format_si(each.speed, 'speed'):<14}{format_si(each.load, self.load_dimension):<14}"
             place += f"{format_si(each.viscosity, 'viscosity'):<14}"
             lines.append(f"{i:<5}{place}{each.friction:<11.3g}{each.gain:<8.2g}{each.cost:<7.3g}{after}")
-        now = ", ".join(f"{name} {100 * error:.2g} %" for name, error in self.before.items())
-        return "\n".join([*lines, f"Standard errors now: {now}; a run is supposed to be good to {100 * self.noise:.2g} %."])
+        now = ", ".join(f"{name} {format_percent(error)}" for name, error in self.before.items())
+        return "\n".join([*lines, f"Standard errors now: {now}; a run is supposed to be good to {format_percent(self.noise)}."])
 
     def to_dict(self) -> dict[str, Any]:
         """Return the runs and the errors before and after them, ready for JSON.

@@ -57,7 +57,7 @@ _ABSENT = (
     ),
     (
         ("slide_to_roll", "srr", "slip"),
-        "write slide_to_roll in the table [motion], and the sum of both speeds as speed or their mean as entrainment_speed",
+        "write slide_to_roll in [contact], and the sum of both speeds as speed or their mean as entrainment_speed",
     ),
     (
         ("rpm", "angular_velocity", "rotation"),

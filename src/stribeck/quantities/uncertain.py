@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
+from stribeck.quantities.units import DIMENSIONS, InputError, format_percent, show, to_si
 
 __all__ = ["has_error", "relative_error", "split_error"]
 
@@ -71,7 +71,7 @@ def split_error(name: str, value: Any, dimension: str) -> tuple[Any, float | Non
     relative = _percent(name, error) if isinstance(error, str) else float(error) / known if known else math.inf
     if not 0 < relative <= LARGEST_ERROR:
         raise InputError(
-            f"{name} = {show(value)} has an error of {100 * relative:.3g} %; it must be positive and below "
+            f"{name} = {show(value)} has an error of {format_percent(relative, 3)}; it must be positive and below "
             f"{100 * LARGEST_ERROR:.0f} % of a positive value."
         )
     return known, relative

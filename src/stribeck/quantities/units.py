@@ -23,6 +23,8 @@ __all__ = [
     "Dimension",
     "InputError",
     "format_bound",
+    "format_factor",
+    "format_percent",
     "format_share",
     "format_si",
     "read_number",
@@ -261,6 +263,8 @@ def format_si(value: float, dimension: str, digits: int = 3) -> str:
         exponent = int(f"{value:.{digits - 1}e}".partition("e")[2])
         power = max((step for step in steps if step <= exponent), default=min(steps))
     number = f"{value / 10.0**power:.{digits}g}"
+    if re.fullmatch(r"-?\d(\.\d+)?e\+0[345]", number):  # 1000 GPa, where there is no larger unit, not 1e+03 GPa
+        number = f"{float(number):.0f}"
     return f"{number} {steps[power]}".rstrip()
 
 
@@ -287,6 +291,50 @@ def format_bound(error: float) -> str:
         step = 10.0 ** int(digits.partition("e")[2])
         digits = f"{float(digits) + step:.0e}"
     return f"< {digits}"
+
+
+def format_factor(factor: float) -> str:
+    """Return a factor with three digits, written out up to a million.
+
+    Parameters
+    ----------
+    factor : float
+        The factor.
+
+    Returns
+    -------
+    str
+        The text.
+
+    Examples
+    --------
+    >>> format_factor(5.527), format_factor(189600.0)
+    ('5.53', '190000')
+    """
+    return f"{float(f'{factor:.3g}'):.0f}" if 999.5 <= factor < 999_500 else f"{factor:.3g}"
+
+
+def format_percent(part: float, digits: int = 2) -> str:
+    """Return a part of a whole in per cent.
+
+    Parameters
+    ----------
+    part : float
+        The part, 1 for the whole.
+    digits : int
+        Significant digits.
+
+    Returns
+    -------
+    str
+        The text.
+
+    Examples
+    --------
+    >>> format_percent(0.9999), format_percent(0.1462)
+    ('100 %', '15 %')
+    """
+    return f"{float(f'{100 * part:.{digits}g}'):g} %"
 
 
 def format_share(part: float, error: float) -> str:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable
-from stribeck.quantities.units import format_si
+from stribeck.quantities.units import format_factor, format_si
 from stribeck.regimes.margins import Crossing, Margin, RegimeMargins
 
 __all__ = ["ways_to"]
@@ -46,7 +46,8 @@ def _step(name: str, mark: Crossing, table: InputTable) -> str:
     value = format_si(mark.value, table.quantities[name].dimension, 4)
     if math.isinf(mark.factor):
         return f"from zero to {value}"
-    return f"x {mark.factor:.3g} (to {value})" if mark.factor >= 1 else f"/ {1 / mark.factor:.3g} (to {value})"
+    larger = mark.factor >= 1
+    return f"{'x' if larger else '/'} {format_factor(mark.factor if larger else 1 / mark.factor)} (to {value})"
 
 
 def _searched(margin: Margin, table: InputTable) -> str:

@@ -8,6 +8,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
+from stribeck.quantities.units import format_percent
 
 __all__ = [
     "ADVICE",
@@ -195,7 +196,7 @@ def minimum_note(groups: Groups, contact: Contact | None, values: Values, fricti
         return ""
     return (
         f"At the minimum of friction, {where}, the central gap is {ratio:.2g} {measured}, beyond the range of "
-        f"{_range(groups)}, while asperities cause {100 * friction:.2g} % of the friction: on a surface with "
+        f"{_range(groups)}, while asperities cause {format_percent(friction)} of the friction: on a surface with "
         f"fewer high asperities the minimum is lower and at a lower speed{ADVICE}"
     )
 
@@ -235,7 +236,7 @@ def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, 
     supposed = "" if known else f", at boundary friction 1 and beta = {USUAL_BETA:g}"
     return (
         f"The central gap is {ratio:.3g} {measured}, beyond the range of {_range(groups)}, while asperities carry "
-        f"{100 * load:.2g} % of the load and cause {100 * friction:.2g} % of the friction{supposed}: few asperities are so "
+        f"{format_percent(load)} of the load and cause {format_percent(friction)} of the friction{supposed}: few asperities are so "
         "high, and a real surface may have fewer than the law assumes.",
     )
 

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from stribeck.contacts.contact import Contact
-from stribeck.quantities.units import format_si
+from stribeck.quantities.units import format_percent, format_si
 
 __all__ = ["Spread", "Uncertainty"]
 
@@ -103,7 +103,7 @@ class Uncertainty:
     def __str__(self) -> str:
         """Return the table as text."""
         width = max(len(each.label) for each in self.spreads)
-        blame = ", ".join(f"{name} {100 * value:.2g} %" for name, value in self.contributions.items())
+        blame = ", ".join(f"{name} {format_percent(value)}" for name, value in self.contributions.items())
         lines = [f"{each.label.ljust(width)}  {each.text}" for each in self.spreads]
         return "\n".join([*lines, f"Regime: {self.probabilities}.", f"Variance of friction: {blame}."])
 

@@ -13,11 +13,11 @@ import stribeck as sb
 from stribeck.checks.check import Checks
 from stribeck.checks.table import checks_of_curve
 from stribeck.cli.reports.regimes import print_regimes, print_uncertainty
-from stribeck.cli.reports.words import print_conversions
+from stribeck.cli.reports.words import print_conversions, say
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.curves.result import StribeckCurve
-from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
 from stribeck.regimes.margins import RegimeMargins, regime_margins
@@ -50,6 +50,8 @@ class Regimes:
         Whether the model applies.
     errors : Uncertainty or None
         What uncertain inputs make of the results, if any are given as uncertain.
+    reason : str
+        Why there are no sensitivities; empty where there are some.
     """
 
     solution: Solution
@@ -58,6 +60,7 @@ class Regimes:
     margins: RegimeMargins
     checks: Checks | None
     errors: sb.Uncertainty | None
+    reason: str = ""
 
 
 class Explanation(str):
@@ -92,14 +95,15 @@ def regimes_of(case: sb.Case, on_point: Callable[[int, int], object] | None = No
         If the user interrupted it.
     """
     contact, rtol, definition = case.contact, case.rtol, case.definition
-    solution, sensitivities = friction_sensitivities(contact, rtol=rtol, definition=definition)
+    solution, sensitivities, reason = sensitivities_if_known(contact, rtol=rtol, definition=definition)
     curve = sb.stribeck_curve(contact, points=POINTS, rtol=rtol, definition=definition, on_point=on_point)
     _ = curve.transitions
     if curve.outcome is sb.Outcome.INTERRUPTED:
         raise KeyboardInterrupt
     margins = regime_margins(contact, rtol=rtol, definition=definition, on_point=on_point)
     errors = sb.propagate(contact, case.errors, definition=definition) if case.errors else None
-    return Regimes(solution, sensitivities, curve, margins, checks_of_curve(curve, case.facts, solution), errors)
+    checks = checks_of_curve(curve, case.facts, solution)
+    return Regimes(solution, sensitivities, curve, margins, checks, errors, reason)
 
 
 def print_words(console: Console, found: Regimes, case: sb.Case) -> None:
@@ -115,6 +119,8 @@ def print_words(console: Console, found: Regimes, case: sb.Case) -> None:
         The case.
     """
     print_regimes(console, found.solution, found.sensitivities, found.curve, found.margins, case.title, found.checks)
+    if found.reason:
+        say(console, f"No sensitivities: {found.reason}")
     if found.errors is not None:
         print_uncertainty(console, found.errors)
     print_conversions(console, case)

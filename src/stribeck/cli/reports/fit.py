@@ -10,7 +10,7 @@ from stribeck.cli.reports.words import print_first
 from stribeck.fits.case_file import format_interval, format_value
 from stribeck.fits.posterior import Posterior
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
-from stribeck.quantities.units import format_si
+from stribeck.quantities.units import format_percent, format_si
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -121,7 +121,7 @@ def fit_json(fit: Fit, title: str, files: Sequence[str] = (), posterior: Posteri
 def _error(each: FittedInput) -> str:
     if math.isnan(each.standard_error):
         return "at its bound"
-    return f"{100 * each.standard_error:.2g} %" if each.standard_error < 1 else "unknown"
+    return format_percent(each.standard_error) if each.standard_error < 1 else "unknown"
 
 
 def _held(fit: Fit) -> str:
@@ -147,5 +147,5 @@ def _noise(fit: Fit) -> str:
             f"Residuals: chi squared {quality.chi_squared:.3g} for {quality.degrees_of_freedom:.3g} degrees of freedom "
             f"(p = {quality.chi_squared_probability:.2g}); {said} (p = {quality.structure_probability:.2g})."
         )
-    size = f"{100 * fit.noise:.2g} %" if fit.logarithmic else f"{fit.noise:.2g}"
+    size = format_percent(fit.noise) if fit.logarithmic else f"{fit.noise:.2g}"
     return f"Residuals: {size} of noise; {said} (p = {quality.structure_probability:.2g})."

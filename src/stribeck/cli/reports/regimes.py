@@ -18,10 +18,11 @@ from stribeck.cli.reports.words import (
     strongest,
     table_of,
 )
+from stribeck.contacts.contact import Contact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import QUANTITIES
-from stribeck.quantities.units import format_share, format_si
+from stribeck.quantities.units import format_factor, format_percent, format_share, format_si
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.regimes.sentences import ways_to
 from stribeck.solver.base_solution import BaseSolution
@@ -84,6 +85,15 @@ def print_regimes(
             console,
             "This contact has no transition between the boundary plateau and the hydrodynamic branch.",
         )
+    _print_sensitivities(console, contact, sensitivities)
+    notes = [*solution.notes, *curve.minimum_notes, *margins.notes]
+    print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), notes, checks)
+
+
+def _print_sensitivities(console: Console, contact: Contact, sensitivities: Sensitivities) -> None:
+    """Print by how much friction changes with each input, and with which most."""
+    if not sensitivities:
+        return
     table = table_of("input", "value", "sensitivity", "10 % increase gives", right=(1, 2, 3))
     for name in sorted(sensitivities, key=lambda name: -abs(sensitivities[name])):
         value, slope = getattr(contact, name), sensitivities[name]
@@ -100,12 +110,7 @@ def print_regimes(
         factor = 0.9 if slope > 0 else 1.1
         way, gain = "less" if slope > 0 else "more", f"{-100 * _change(factor, slope):.3g} %"
         name = contact.INPUTS.quantities[most].label
-        say(
-            console,
-            f"Friction is most sensitive to {name}: 10 % {way} lowers friction by {gain}, other inputs fixed.",
-        )
-    notes = [*solution.notes, *curve.minimum_notes, *margins.notes]
-    print_outcome(console, curve.outcome.value, max(solution.error_estimate, curve.error_estimate), notes, checks)
+        say(console, f"Friction is most sensitive to {name}: 10 % {way} lowers friction by {gain}, other inputs fixed.")
 
 
 def print_uncertainty(console: Console, found: Uncertainty) -> None:
@@ -124,15 +129,15 @@ def print_uncertainty(console: Console, found: Uncertainty) -> None:
         table.add_row(each.label, value, f"{low} to {high}")
     print_table(console, table)
     say(console, f"Probability of each regime: {found.probabilities}.")
-    blame = ", ".join(f"{QUANTITIES[name].label} {100 * part:.2g} %" for name, part in found.contributions.items())
-    say(console, f"Of the variance of friction come from: {blame}.")
+    blame = ", ".join(f"{QUANTITIES[name].label} {format_percent(part)}" for name, part in found.contributions.items())
+    say(console, f"Sources of the variance of friction: {blame}.")
 
 
 def _way(mark: Landmark, speed: float) -> str:
     if speed == 0:
         return "from rest"
     factor = mark.value / speed
-    return f"{factor:.3g}x faster" if factor >= 1 else f"{1 / factor:.3g}x slower"
+    return f"{format_factor(factor)}x faster" if factor >= 1 else f"{format_factor(1 / factor)}x slower"
 
 
 def _change(factor: float, slope: float) -> float:
