@@ -9,7 +9,8 @@ import pytest
 
 import stribeck as sb
 from stribeck import cli
-from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.curves import sensitivities
+from stribeck.curves.sensitivities import friction_sensitivities, sensitivities_if_known
 from stribeck.quantities.inputs import GROUP_EXPONENTS
 from stribeck.regimes.margins import BOX, regime_margins
 
@@ -337,3 +338,14 @@ def test_the_command_has_words_for_the_corners(capsys, tmp_path, changes, senten
     text = command(capsys, tmp_path, **changes)
     assert sentence in text
     assert ("Speed and viscosity" in text) == bool(re.search("viscosity [x/]", text))
+
+
+@pytest.mark.quick
+def test_a_part_without_derivatives_leaves_the_sensitivities_out_and_says_so(monkeypatch):
+    def refuse(contact, rtol, definition):
+        raise sb.InputError("this solid has no derivatives.")
+
+    assert sensitivities_if_known(CONTACT, rtol=1e-3)[2] == ""
+    monkeypatch.setitem(sensitivities.SENSITIVITIES, "line", refuse)
+    solution, slopes, reason = sensitivities_if_known(CONTACT, rtol=1e-3)
+    assert solution.outcome.ok and slopes == {} and reason == "this solid has no derivatives."
