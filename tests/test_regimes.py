@@ -291,8 +291,7 @@ def test_the_command_says_what_it_takes_to_reach_each_neighbour(capsys, tmp_path
         "not reachable by changing load (range searched 7.99 mN/m to 305 N/m)." in text
     )
     assert (
-        "To reach hydrodynamic lubrication: speed x 30.5 (to 30.46 mm/s), or load / 3750 (to 7.994 mN/m), or roughness"
-        in text
+        "To reach hydrodynamic lubrication: speed x 30.5 (to 30.46 mm/s), or load / 3750 (to 7.994 mN/m), or roughness" in text
     )
     assert "Only the product of speed and viscosity matters" in text
     rows = {line.split("  ")[0].strip() for line in text.splitlines()}

@@ -1,4 +1,4 @@
-"""Asymptotic laws of the model, each with range and source; the solver, which they judge, imports none.
+"""Asymptotic laws of the model, each with range and source; the solver, which is compared with them, imports none.
 
 :data:`FORMULAS` is the one list of them: tests, documentation and figures loop over it.
 """

@@ -1,7 +1,7 @@
 """Case files: a TOML file of quantities with units becomes a checked :class:`Case`.
 
-Everything that is wrong with a file is reported at once, a sentence for each problem, with the path, the table
-and the key. What a quantity may be is not written here but in :mod:`stribeck.quantities.inputs`.
+All problems of a file are reported at once, a sentence each, with the path, the table and the key. Bounds of quantities are
+in :mod:`stribeck.quantities.inputs`.
 """
 
 import functools
@@ -60,7 +60,7 @@ _SLIPS = {
 
 @dataclass(frozen=True)
 class CurveSettings:
-    """What the ``[curve]`` table of a case asks for.
+    """The ``[curve]`` table of a case.
 
     Parameters
     ----------
@@ -96,17 +96,17 @@ class Case:
     definition : {"balanced", "published"}
         Which friction force the outputs show, from the ``[solver]`` table.
     title : str
-        Headline for outputs; empty where the file has none.
+        Headline for outputs; empty if the file has none.
     notes : str
-        Free text; empty where the file has none.
+        Free text; empty if the file has none.
     fit : FitSettings
         The ``[fit]`` table, for :func:`stribeck.fit`.
     facts : dict
         The ``[check]`` table, for :func:`stribeck.check`, in SI units.
     errors : dict
-        Standard errors of inputs over their values, of those that the file gives with an error.
+        Relative standard errors of the inputs that have one.
     conversions : tuple of str
-        What was made of inputs as data sheets have them, one sentence each.
+        Conversions of data-sheet inputs, one sentence each.
     tables : dict
         All tables and keys of the file as written.
     """
@@ -134,10 +134,10 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     path : str or path-like
         A TOML file: a table ``[contact]`` (``geometry``, the arguments of :class:`LineContact` or
         :class:`PointContact`, and ``law`` by its name), a table
-        ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and where wanted ``[fluid]``,
+        ``[surface]``, ``[asperities]`` or ``[table]`` where the law comes from one, and optionally ``[fluid]``,
         ``[cavitation]``, ``[motion]``, ``[flow_factors]`` and ``[solid]`` (see fluids.md), ``[curve]``
         (``over``, ``range``, ``points``), ``[solver]`` (``rtol``, ``definition``), ``[fit]`` (see fitting.md),
-        ``[check]`` (facts that :func:`stribeck.check` judges by), ``title`` and ``notes``.
+        ``[check]`` (facts for :func:`stribeck.check`), ``title`` and ``notes``.
 
     Returns
     -------

@@ -28,7 +28,7 @@ COLUMNS = (
     *("speed", "speed_viscosity", "hersey_number", "friction", "error", "curve"),
     *("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "friction_force", "normal_force", "run"),
 )
-"""What a column of the data may be, beside the inputs of :data:`FREE`, which tell curves apart."""
+"""Kinds of columns of the data, beside the inputs of :data:`FREE`, which distinguish curves."""
 
 KEYS = (
     *("free", "per_curve", "noise", "relative_error", "absolute_error", "robust", "magnitudes", "header_row"),

@@ -9,20 +9,20 @@ from stribeck.checks.subject import Subject
 from stribeck.solver.notes import HARD, OIL, pressure_notes, width_notes
 
 FINE_STIFFENING, STIFFENING = 0.1, 1.0
-"""Pressure coefficient times Hertz pressure that is fine, and beyond which the film is another one: 12 % thicker, its friction
+"""Pressure coefficient times Hertz pressure that is fine, and beyond which the film differs: 12 % thicker, its friction
 88 % larger (when_not_to_use.md)."""
 
 SOFT, HARD_MODULUS = 5e9, 1e10
 """E* up to which a body counts as soft, and from which it is metal, glass or ceramic [Pa]."""
 
 FINE_WIDTH, TOO_WIDE = 0.1, 0.5
-"""Half-width over the radius up to which a parabola on a half-space is accurate, and beyond which it is none."""
+"""Half-width over the radius up to which a parabola on a half-space is accurate, and beyond which it is not valid."""
 
 FINE_LAYER, THIN_LAYER = 0.3, 1.0
-"""Half-width over thickness up to which a layer is a half-space within about a tenth, and beyond which it is none."""
+"""Half-width over thickness up to which a layer acts as a half-space within about a tenth, and beyond which it does not."""
 
 FINE_LOSS, LOSS = 0.1, 0.3
-"""Loss tangents up to which hysteresis is small, and beyond which the contact is not symmetric at rest any more."""
+"""Loss tangents up to which hysteresis is small, and beyond which the contact is no longer symmetric."""
 
 
 def pressure(subject: Subject) -> Check:
@@ -90,8 +90,8 @@ def layer(subject: Subject) -> Check | None:
     verdict = verdict_of(ratio, FINE_LAYER, THIN_LAYER)
     meaning = {
         "fine": "The layer is as good as a half-space.",
-        "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than solved.",
-        "outside": "The layer is thinner than the contact is wide: it is no half-space, and its films are others.",
+        "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than computed.",
+        "outside": "The layer is thinner than the contact is wide: the half-space does not apply, and films differ.",
     }[verdict]
     return Check("layer a/thickness", ratio, FINE_LAYER, verdict, f"The half-width is {ratio:.2g} of the thickness. {meaning}")
 
@@ -108,8 +108,8 @@ def loss(subject: Subject) -> Check | None:
         return Check("loss tangent", tangent, FINE_LOSS, "fine", "The viscoelasticity of the solid is modelled.")
     meaning = {
         "fine": "hysteresis is small.",
-        "doubtful": "hysteresis adds friction that is not solved.",
-        "outside": "hysteresis adds friction and shifts the contact, which is not solved; the solid is not elastic.",
+        "doubtful": "hysteresis adds friction that is not modelled.",
+        "outside": "hysteresis adds friction and shifts the contact, which is not modelled; the solid is not elastic.",
     }[verdict]
-    sentence = f"The loss tangent is {tangent:.2g} (it counts at U/a = {frequency:.2g} 1/s): {meaning}"
+    sentence = f"The loss tangent is {tangent:.2g} (take it at U/a = {frequency:.2g} 1/s): {meaning}"
     return Check("loss tangent", tangent, FINE_LOSS, verdict, sentence)

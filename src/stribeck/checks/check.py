@@ -1,4 +1,4 @@
-"""What a check says, and what all checks of a contact say together."""
+"""A check, and all checks of a contact together."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Verdict = Literal["fine", "doubtful", "outside"]
 ORDER: tuple[Verdict, ...] = ("fine", "doubtful", "outside")
 
 OUTSIDE = "Outside the model"
-"""How the first line of an output begins where a check says that the model does not apply."""
+"""Beginning of the first line of an output if the model does not apply."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +30,11 @@ class Check:
     value : float
         Its value for this contact, in ``unit``.
     limit : float
-        Up to where it is fine, in ``unit``.
+        Largest value that is fine, in ``unit``.
     verdict : {"fine", "doubtful", "outside"}
         Whether the model applies.
     sentence : str
-        What that means.
+        What the verdict means.
     unit : str
         Unit of value and limit; empty for a bare number.
     """
@@ -103,13 +103,13 @@ class Checks:
         Returns
         -------
         tuple of Check
-            They, in the order of the table.
+            Those checks, in the order of the table.
         """
         return tuple(each for each in self.checks if each.verdict == verdict)
 
     @property
     def headline(self) -> str:
-        """One sentence: whether the model applies, and which checks say that it does not."""
+        """One sentence: whether the model applies, and which checks fail."""
         outside, doubtful = self.with_verdict("outside"), self.with_verdict("doubtful")
         if outside:
             return f"{OUTSIDE} by {_names(outside)}{f'; doubtful by {_names(doubtful)}' if doubtful else ''}."
@@ -119,12 +119,12 @@ class Checks:
 
     @property
     def first_line(self) -> str:
-        """What outputs print before any number: nothing unless a check is outside."""
+        """Line that outputs print before any number; empty unless a check is outside."""
         outside = self.with_verdict("outside")
         return f"{OUTSIDE}: {' '.join(each.sentence for each in outside)}" if outside else ""
 
     def covers(self, note: str) -> bool:
-        """Return whether the first line has said what a note says, its numbers apart.
+        """Return whether the first line already contains a note, apart from its numbers.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class Checks:
         Returns
         -------
         bool
-            Whether to leave it out below that line.
+            Whether to omit it below that line.
         """
         said = [_words(each.sentence) for each in self.with_verdict("outside")]
         return any(_words(note)[: len(text)] in text for text in said)

@@ -10,19 +10,19 @@ from stribeck.quantities.units import format_percent
 from stribeck.solver.notes import ATMOSPHERE, cavitation_notes
 
 USUAL_THINNING = 1e6
-"""Shear rate up to which base oils, water and glycerol keep their viscosity [1/s]; improvers and polymers thin earlier."""
+"""Shear rate up to which base oils, water and glycerol keep their viscosity [1/s]; polymers thin earlier."""
 
 THINNED = 10.0
-"""Times the rate at which a fluid begins to thin from which it is another fluid."""
+"""Multiple of the rate at which a fluid begins to thin, beyond which its viscosity is unknown."""
 
 FINE_SUPPLY, STARVED = 0.5, 1.0
-"""Film that passes, h*/2, over the film that arrives: flooded, and more than there is."""
+"""Film that passes, h*/2, over the film that arrives: flooded below the first, starved above the second."""
 
 USUAL_MOLECULE = 1e-9
 """Size of an oil's molecules [m]."""
 
 FINE_LAYERS, LAYERS = 10.0, 3.0
-"""Molecules across the thinnest film: enough for a viscosity, and too few."""
+"""Molecules across the thinnest film: enough for a continuum, and too few."""
 
 USUAL_CONDUCTIVITY, USUAL_THERMAL_THINNING = 0.15, 0.04
 """Of oils [W/(m K)], [1/K]."""
@@ -75,7 +75,9 @@ def shear_rate(subject: Subject) -> Check:
         )
     else:
         who = "oils with improvers and all polymer solutions are thinner" if given is None else "the fluid is thinner"
-        sentence = f"{about}: {who} there than at rest. Give the viscosity at that rate, and look at the film again."
+        sentence = (
+            f"{about}: {who} there than at rest. Give the viscosity at that rate, or a law of shear thinning in [fluid]."
+        )
     return Check("shear rate", rate, limit, verdict, sentence, "1/s")
 
 
@@ -89,8 +91,8 @@ def supply(subject: Subject) -> Check | None:
     verdict = verdict_of(ratio, FINE_SUPPLY, STARVED)
     meaning = {
         "fine": "the inlet is flooded.",
-        "doubtful": "the inlet is close to starving: the film is thinner than solved.",
-        "outside": "that is more than arrives. The contact is starved, and its film is what the supply lets through.",
+        "doubtful": "the inlet is close to starvation: the film is thinner than computed.",
+        "outside": "more than is supplied. The contact is starved, and the supply sets its film.",
     }[verdict]
     sentence = (
         f"Half of h*, {number_text(passing, 'm')}, passes the contact and {number_text(arriving, 'm')} arrives: {meaning}"
@@ -107,7 +109,7 @@ def molecules(subject: Subject) -> Check:
     verdict: Verdict = "fine" if film >= limit else "doubtful" if film >= LAYERS * size else "outside"
     meaning = {
         "fine": "the fluid is a continuum.",
-        "doubtful": "layers of molecules begin to count.",
+        "doubtful": "molecular layering begins to matter.",
         "outside": "a viscosity means little there.",
     }[verdict]
     about = f"The minimum film is {number_text(film, 'm')}, {film / size:.2g} molecules of {number_text(size, 'm')}"
@@ -139,7 +141,7 @@ def inertia(subject: Subject) -> Check:
     meaning = (
         "the inertia of the fluid is negligible"
         if verdict == "fine"
-        else "Reynolds' equation neglects inertia, which counts here"
+        else "Reynolds' equation neglects inertia, which matters here"
     )
     return Check("inertia", number, FINE_INERTIA, verdict, f"The reduced Reynolds number is {number:.2g}: {meaning}.")
 

@@ -1,4 +1,4 @@
-"""Checks of the contact law: its range at the centre and at the minimum of friction, and what its tail decides."""
+"""Checks of the contact law: its range at the centre and at the minimum of friction, and the influence of its tail."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from stribeck.solver.notes import ADVICE, LAW_RANGE, law_notes, matters, minimum
 from stribeck.solver.solution import Solution
 
 WORTH_SAYING = 0.005
-"""Relative change that a sentence names."""
+"""Smallest relative change that the sentence names."""
 
 FINE_TAIL = 0.05
-"""Relative change of the minimum and of transitions by the tail of the law that is fine: about what experiments resolve."""
+"""Change of minimum and transitions by the tail of the law that counts as fine: about what experiments resolve."""
 
 
 def range_at_centre(subject: Subject) -> Check | None:
@@ -38,7 +38,7 @@ def range_at_centre(subject: Subject) -> Check | None:
     elif matters(contact, state.observables):
         sentence = f"The central gap is {ratio:.3g} h_rms, inside the range of the contact law."
     else:
-        sentence = f"The central gap is {ratio:.3g} h_rms; asperities carry too little for the law to count."
+        sentence = f"The central gap is {ratio:.3g} h_rms; asperities carry too little for the law to matter."
     return Check("contact law at the centre", ratio, limit, verdict, sentence, "h_rms")
 
 
@@ -80,12 +80,12 @@ def tail(subject: Subject) -> Check | None:
         if max(abs(speed), abs(friction)) >= WORTH_SAYING
     )
     moved = f"these move: {said}" if said else "nothing moves by 1 % or more"
-    sentence = f"With the highest asperities of a finite surface {moved}. No spectrum tells how high they are."
+    sentence = f"With the highest asperities of a finite surface {moved}. A spectrum does not determine their height."
     return Check("tail of the contact law", largest, FINE_TAIL, verdict_of(largest, FINE_TAIL), sentence)
 
 
 def _place(name: str) -> str:
-    """Return the name of a landmark such that a sentence may go on with what happens there."""
+    """Return the name of a landmark as the beginning of a sentence."""
     return f"at the {name}" if name == Transition.MINIMUM else f"where {name}"
 
 
@@ -95,7 +95,7 @@ def _ratio(subject: Subject, state: Solution) -> float:
 
 
 def _range(subject: Subject) -> tuple[float, float]:
-    """Return the gaps over h_rms between which the contact's law holds."""
+    """Return the range of the contact's law, in gaps over h_rms."""
     law = subject.contact.law
     high = LAW_RANGE[1] if has_endless_tail(law) else math.inf
     return (LAW_RANGE[0] if is_exponential(law) else 0.0), high

@@ -1,4 +1,4 @@
-"""What checks look at: a contact, what is known of it, and the states that are solved only if a check asks for them."""
+"""Subject of the checks: a contact, what is known about it, and the states, solved only if a check needs them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["Subject"]
 
 PLAIN = ("", "newtonian", "half-plane", "half-space", "none")
-"""Names of the parts of the article, of which nothing needs to be said."""
+"""Names of the article's own parts, which need no mention."""
 
 RTOL = 1e-4
 

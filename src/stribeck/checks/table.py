@@ -37,11 +37,11 @@ class Row:
     name : str
         What is checked.
     check : callable
-        Returns the :class:`Check` of a :class:`Subject`, or None where it does not arise.
+        Returns the :class:`Check` of a :class:`Subject`, or None if it does not apply.
     effort : {"contact", "state", "curve", "tail"}
         What must be solved for it.
     missing : str
-        The fact without which it cannot be made; empty if it needs none.
+        The fact that it needs; empty if none.
     """
 
     name: str
@@ -66,7 +66,7 @@ ROWS = (
     Row("contact law at the minimum", law.range_at_minimum, "curve"),
     Row("tail of the contact law", law.tail, "tail"),
 )
-"""All checks, from the cheapest to the dearest."""
+"""All checks, cheapest first."""
 
 
 @one_blas_thread
@@ -78,9 +78,9 @@ def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any
     contact : LineContact or PointContact
         The contact.
     definition : {"balanced", "published"}
-        Definition of the viscous friction, which the minimum depends on.
+        Definition of the viscous friction, on which the minimum depends.
     **facts : str or float
-        What is known of the contact besides: ``pressure_viscosity``, ``layer_thickness``, ``loss_tangent``, ``supply_film``,
+        Further facts about the contact: ``pressure_viscosity``, ``layer_thickness``, ``loss_tangent``, ``supply_film``,
         ``thinning_rate``, ``molecular_size``, ``thermal_conductivity``, ``thermal_thinning``, ``density``; text with units, or
         numbers in SI units.
 
@@ -107,7 +107,7 @@ def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any
 
 
 def checks_of(subject: Subject, effort: Effort = "tail") -> Checks:
-    """Return the checks of a subject that take at most an effort.
+    """Return the checks of a subject up to a given effort.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Running the command: its words, its exit codes, and errors as sentences."""
+"""Running the command: arguments, exit codes, and errors as sentences."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ Exit codes: 0 success, 1 the solve failed or the output could not be written, 2 
 
 
 NARROWEST = 20
-"""Fewest columns of a terminal that are believed."""
+"""Smallest plausible width of a terminal."""
 
 
 def main(tokens: Sequence[str] | None = None) -> int:
@@ -73,7 +73,7 @@ def main(tokens: Sequence[str] | None = None) -> int:
 
 
 def _run(tokens: list[str], interrupted: Interrupted) -> int:
-    """Run the command and make sentences of what is raised."""
+    """Run the command and turn exceptions into sentences."""
     try:
         result = make_app()(
             tokens,
@@ -117,7 +117,7 @@ def _run(tokens: list[str], interrupted: Interrupted) -> int:
 
 
 def make_app() -> App:
-    """Return the command line as cyclopts sees it."""
+    """Return the command line for cyclopts."""
     app = App(
         name="stribeck",
         help=HELP,
@@ -147,7 +147,7 @@ def make_app() -> App:
 
 
 def _parsing(problem: CycloptsError) -> str:
-    """Return the sentence for arguments that do not fit together."""
+    """Return the sentence for incompatible arguments."""
     if isinstance(problem, UnusedCliTokensError) and problem.unused_tokens:
         return f"unexpected argument {problem.unused_tokens[0]!r}."
     if isinstance(problem, MissingArgumentError) and problem.argument is not None:

@@ -233,7 +233,7 @@ def check_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
 
     Example: stribeck check examples/rod_seal.toml
 
-    What only checks need goes into the table [check] of the case: pressure_viscosity, layer_thickness, loss_tangent,
+    Facts that only checks use go into the table [check] of the case: pressure_viscosity, layer_thickness, loss_tangent,
     supply_film, thinning_rate, molecular_size, thermal_conductivity, thermal_thinning, density.
 
     The exit code is 0 whatever the verdict.
@@ -272,7 +272,7 @@ def figures_command(
     out: Annotated[Path, Parameter(name="--out")] = Path("figures"),
     force: Flag = False,
 ) -> int:
-    """Reproduce figures of the paper from our own solutions: PNG, SVG and NetCDF data for each.
+    """Reproduce the figures of the article from our own solutions: PNG, SVG and NetCDF data for each.
 
     Example: stribeck figures
 

@@ -280,7 +280,7 @@ def explore_command(
 
     Example: stribeck explore examples/pdms_cylinder.toml
 
-    The page is served on this machine only, needs no internet and sends nothing away.  It opens only with the token in its
+    The page is served on this machine only, works offline and sends no data.  It opens only with the token in its
     address.  Ctrl-C ends it.
 
     Parameters

@@ -1,4 +1,4 @@
-r"""The exponential contact law of the paper, written out for speed, and the law of smooth surfaces, which have none.
+r"""The exponential contact law of the article, written out for speed, and that of smooth surfaces: no contact pressure.
 
 Everything is in Hertz units: gap in u_Hz, pressure in p_Hz.
 """

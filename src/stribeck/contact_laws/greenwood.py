@@ -126,7 +126,7 @@ class _GaussianHeights:
         return log_moment_slope(self.order, separation)
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state of which this is the minimum separation."""
+        """Return notes on a state with this minimum separation."""
         if separation >= 0:
             return ()
         return (

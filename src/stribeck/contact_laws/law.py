@@ -1,4 +1,4 @@
-r"""What a contact law is: its shape without dimensions, and what the equations ask of it at a load and a roughness."""
+r"""The protocols of a contact law: dimensionless, and scaled to a load and a roughness."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class AsperityLaw(Protocol):
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """What tells this law from others of its name, for outputs."""
+        """Parameters that distinguish this law from others of its name, for outputs."""
 
     @property
     def lowest(self) -> float:
@@ -35,19 +35,19 @@ class AsperityLaw(Protocol):
         """Return d ln(Phi)/ds at the separation s, negative."""
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state of which this is the minimum separation, one sentence each."""
+        """Return notes on a state with this minimum separation, one sentence each."""
 
 
 @runtime_checkable
 class WithArea(AsperityLaw, Protocol):
-    """What a law has besides that knows the spectrum of its surface."""
+    """What a law adds that knows the spectrum of its surface."""
 
     def area_fraction_at(self, pressure: Array) -> Array:
         """Return the real area of contact over the apparent one at the pressure Phi."""
 
 
 class ContactLaw(Protocol):
-    """What the equations ask of a contact law."""
+    """A contact law as the equations use it."""
 
     @property
     def name(self) -> str:
@@ -81,7 +81,7 @@ class ContactLaw(Protocol):
 
 
 def is_exponential(law: AsperityLaw | None) -> bool:
-    """Return whether a law is the exponential one of the paper; ask what follows from that where it is known by a name."""
+    """Return whether a law is the exponential one of the article."""
     return law is None or law.name == "exponential"
 
 
@@ -99,7 +99,7 @@ def largest_load(law: AsperityLaw | None) -> float:
 
 
 def check_law(law: Any) -> AsperityLaw | None:
-    """Return a contact law, or None for the exponential one; refuse what has not the methods of one."""
+    """Return a contact law, or None for the exponential one; refuse objects without its methods."""
     if law is None or (isinstance(law, AsperityLaw) and not isinstance(law, type)):
         return law
     advice = f"write {law.__name__}()" if isinstance(law, type) else "give an object such as GreenwoodWilliamson(), or None"

@@ -79,7 +79,7 @@ class PerssonLaw(ByValue):
 
     @property
     def parameters(self) -> dict[str, float | str]:
-        """Numbers of the surface that the law comes from, for outputs."""
+        """Numbers of the surface behind the law, for outputs."""
         names = ("alpha", "beta", "rms_height", "rms_slope", "gamma")
         return {name: float(getattr(self, name)) for name in names}
 
@@ -95,11 +95,11 @@ class PerssonLaw(ByValue):
 
     @property
     def coefficients(self) -> dict[str, float]:
-        """What a line contact needs of the surface: ``alpha``, ``beta`` and ``roughness`` [1, 1, m]."""
+        """Inputs of a contact that follow from the surface: ``alpha``, ``beta`` and ``roughness`` [1, 1, m]."""
         return {"alpha": self.alpha, "beta": self.beta, "roughness": self.rms_height}
 
     def notes(self, separation: float) -> tuple[str, ...]:
-        """Return what to know about a state of which this is the minimum separation.
+        """Return notes on a state with this minimum separation.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-r"""Persson's integral over the power spectrum, and the table of separation and pressure that is made of it.
+r"""Persson's integral over the power spectrum, tabulated as separation and pressure.
 
 With :math:`G(q) = (\pi \int_{q_0}^q q'^3 C\, \mathrm{d}q')^{1/2}`, the mean separation :math:`u` at the mean pressure
 :math:`p = P E^*` is
@@ -30,7 +30,7 @@ from stribeck.quantities.units import InputError
 __all__ = ["Integral", "tabulate"]
 
 TOLERANCE = 1e-11
-"""Largest error of the logarithm of the pressure that the table may have between its points."""
+"""Largest error of the table between its points, of the logarithm of the pressure."""
 
 FADED = 37.0
 """Logarithm by which the excess over the exponential, which fades as exp(-s), is below double precision."""

@@ -156,7 +156,7 @@ class BlendedLaw:
 
 
 def named_law(name: str) -> AsperityLaw | None:
-    """Return the law of a name; refuse a name that there is not, or of which more must be known."""
+    """Return the law of a name; refuse unknown names, and laws that need more than a name."""
     if name not in NAMED:
         known = ", ".join(map(repr, NAMED))
         raise InputError(f"law = {show(name)}; names are {known}. A law of a surface or table needs a case file or an object.")

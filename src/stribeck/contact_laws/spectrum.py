@@ -310,7 +310,7 @@ def _growth(power: Array, width: Array) -> Array:
 
 
 def positive(name: str, value: object) -> float:
-    """Return a positive number as a float, or raise the sentence that names it."""
+    """Return a positive number as a float, or raise an error that names it."""
     try:
         number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
@@ -321,7 +321,7 @@ def positive(name: str, value: object) -> float:
 
 
 def height_of_roughness(value: object, longest_wavelength: float) -> float:
-    """Return an rms height, or raise the sentence that says that it is one, where it cannot be that of a roughness."""
+    """Return an rms height, or raise an error if no roughness can have it."""
     height = positive("rms_height", value)
     if height > longest_wavelength:
         raise InputError(

@@ -234,7 +234,7 @@ def _column(name: str, values: ArrayLike) -> list[float]:
 
 
 def _check_rows(s: Sequence[float], p: Sequence[float]) -> None:
-    """Refuse rows that are no contact law, naming the first."""
+    """Refuse rows that are no contact law, and name the first."""
     if len(s) != len(p):
         raise InputError(f"separation has {len(s)} rows and pressure {len(p)}; they must have the same length.")
     if len(s) < MIN_ROWS:

@@ -1,4 +1,4 @@
-"""What contacts of every geometry have in common: inputs in SI units that are checked, kept and replaced.
+"""The part common to contacts of every geometry: inputs in SI units, checked, kept and replaced.
 
 A geometry adds its table of inputs, its groups and its Hertz scales.
 """

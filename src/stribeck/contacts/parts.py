@@ -1,4 +1,4 @@
-"""What a contact has beside its numbers: fluid, cavitation, flow factors, solid and motion, as users give them.
+"""The parts of a contact beside its numbers: fluid, cavitation, flow factors, solid and motion, as users give them.
 
 The numbers of laws are in SI units with a contact and in Hertz units with groups; :meth:`Parts.model` makes them the model
 that the equations see.
@@ -27,7 +27,7 @@ PURE_SLIDING = 2.0
 """Slide-to-roll ratio of one surface at rest."""
 
 LARGEST_RATIO = 100.0
-"""Of slide-to-roll: beyond, the surfaces move against each other and hardly any fluid is carried in."""
+"""Largest slide-to-roll ratio: beyond it the surfaces move against each other and entrain hardly any fluid."""
 
 
 @dataclass(frozen=True, init=False)
@@ -142,7 +142,7 @@ class Parts:
 
 
 class WithParts(Contact):
-    """A contact that has parts, each of them by its name."""
+    """A contact with parts, each by its name."""
 
     parts: Parts
 
@@ -157,7 +157,7 @@ class WithParts(Contact):
 
     @property
     def film_units(self) -> FilmUnits:
-        """What makes the numbers of its fluid dimensionless."""
+        """Scales of the numbers of its fluid."""
         hertz = self.hertz
         return FilmUnits(
             pressure=hertz.pressure,

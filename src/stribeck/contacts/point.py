@@ -1,4 +1,4 @@
-"""The ball in SI units, and the dimensionless groups that the model makes of it.
+"""The ball in SI units, and its dimensionless groups.
 
 :class:`PointContact` is to the ball what :class:`stribeck.LineContact` is to the cylinder.  No equation is solved here.
 

@@ -1,4 +1,4 @@
-"""What a report says: inputs with their sources, checks, regime, films, margins and levers, all solved here."""
+"""Content of a report: inputs with their sources, checks, regime, films, margins and levers, all solved here."""
 
 from __future__ import annotations
 
@@ -34,10 +34,15 @@ __all__ = ["Content", "InputLine", "Lever", "content_of"]
 POINTS = 41
 
 GOAL = 0.8
-"""What levers are to bring the friction down to."""
+"""Friction that a lever should reach, relative to the present one."""
 
 FARTHEST = 100.0
-"""Factor beyond which an input is no lever."""
+"""Largest factor of a lever."""
+
+NO_ERRORS = (
+    'With errors of the inputs, as in roughness = "1.0 +- 0.2 um", this page has intervals and the probability of each regime.'
+)
+"""What a report says of its certainty if no input has an error."""
 
 HANDS_ON = ("speed", "viscosity", "load", "roughness", "modulus", "radius", "boundary_friction")
 """Inputs that a designer may change."""
@@ -45,7 +50,7 @@ HANDS_ON = ("speed", "viscosity", "load", "roughness", "modulus", "radius", "bou
 
 @dataclass(frozen=True)
 class InputLine:
-    """One input: what it is called, its value with its error, and where the file says that it is from."""
+    """One input: label, value, error, and source as stated in the file."""
 
     label: str
     value: str
@@ -55,7 +60,7 @@ class InputLine:
 
 @dataclass(frozen=True)
 class Lever:
-    """One input that lowers friction: what to change it to, and the friction that then is solved."""
+    """One input that lowers friction: its new value, and the friction solved there."""
 
     label: str
     change: str
@@ -64,7 +69,7 @@ class Lever:
 
 @dataclass(frozen=True)
 class Content:
-    """What a report says.
+    """Content of a report.
 
     Attributes
     ----------
@@ -73,7 +78,7 @@ class Content:
     inputs : tuple of InputLine
         The inputs.
     conversions : tuple of str
-        What was made of inputs as data sheets have them.
+        Conversions of data-sheet inputs.
     checks : Checks
         The checks.
     sentences : tuple of str
@@ -81,13 +86,13 @@ class Content:
     films : tuple of tuple of str
         Name, value and 95 % interval of films, friction and transitions; no interval without errors.
     uncertainty : Uncertainty or None
-        What errors of the inputs make of them.
+        The propagated errors of the inputs.
     margins : tuple of str
-        The way to the next regimes.
+        Margins to the next regimes.
     levers : tuple of Lever
         The two inputs that lower friction by a fifth with the smallest change.
     notes : tuple of str
-        What to know before using the numbers.
+        Notes on the validity of the numbers.
     versions : str
         Program and libraries.
     curve : StribeckCurve
@@ -118,7 +123,7 @@ class Content:
 def content_of(
     case: Case, data: str | Path | Measurements | None = None, on_step: Callable[[int, int], object] | None = None
 ) -> Content:
-    """Solve all that a report says of a case.
+    """Solve the content of a report.
 
     Parameters
     ----------
@@ -175,7 +180,7 @@ def content_of(
 
 
 def _told(note: str, checks: Checks) -> bool:
-    """Return whether a check says what a note says."""
+    """Return whether a check contains a note."""
     return checks.covers(note) or any(note in each.sentence for each in checks)
 
 
@@ -223,7 +228,10 @@ def _sentences(case: Case, solution: Solution, curve: StribeckCurve, found: Unce
         f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load."
     )
     if found is None:
-        return (first, 'With errors of the inputs, as in roughness = "1.0 +- 0.2 um", this page has intervals and the probability of each regime.')
+        return (
+            first,
+            NO_ERRORS,
+        )
     blame = ", ".join(f"{case.contact.INPUTS.quantities[n].label} {format_percent(v)}" for n, v in found.contributions.items())
     return (first, f"Probability of each regime: {found.probabilities}.", f"Sources of the variance of friction: {blame}.")
 

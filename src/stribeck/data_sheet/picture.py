@@ -1,4 +1,4 @@
-"""The picture of a report: friction over the speed with measured points, and films over the speed."""
+"""The picture of a report: friction against speed with measured points, and films against speed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["draw_report"]
 
 
 def draw_report(content: Content) -> Figure:
-    """Draw friction and films over the speed, the contact's own speed marked.
+    """Draw friction and films against speed, with the contact's own speed marked.
 
     Parameters
     ----------
@@ -80,6 +80,6 @@ def draw_report(content: Content) -> Figure:
 
 
 def _points(data: Measurements, viscosity: float, load: float) -> tuple[Array, Array, Array | None]:
-    """Return measured speed, friction and error; what was measured over another number is turned into a speed."""
+    """Return measured speed, friction and error; points measured against another quantity are converted to speed."""
     divisor = {"speed": 1.0, "speed_viscosity": viscosity, "hersey_number": viscosity / load}[data.abscissa]
     return data.values / divisor, data.friction, data.error

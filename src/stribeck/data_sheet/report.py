@@ -1,4 +1,4 @@
-"""One page to hand over, as HTML or PDF: self-contained, it asks no server for anything."""
+"""One page to hand over, as HTML or PDF: self-contained, without requests to any server."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def write_report(
     force: bool = False,
     on_step: Callable[[int, int], object] | None = None,
 ) -> Content:
-    """Write a page that says all of a contact: inputs with sources, checks, curve, films, regime, margins and levers.
+    """Write one page about a contact: inputs with sources, checks, curve, films, regime, margins and levers.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def page_of(content: Content) -> str:
 
 
 def _svg(content: Content) -> str:
-    """Return the picture as SVG for a page, without what names other addresses."""
+    """Return the picture as SVG for a page, without references to other addresses."""
     import matplotlib as mpl
 
     stream = io.StringIO()

@@ -1,4 +1,4 @@
-r"""Which contact law measured friction prefers, and by how much.
+r"""Comparison of contact laws on measured friction.
 
 .. math:: \mathrm{AICc} = -2 \ln L + 2 k + \frac{2 k (k + 1)}{n - k - 1}, \qquad w \propto e^{-\mathrm{AICc}/2}
 """
@@ -28,9 +28,9 @@ __all__ = ["CAVEATS", "Candidate", "Comparison", "compare"]
 CAVEATS = (
     "The weights say which of these laws is nearest to the data, not that it is right: look at the residuals of the best.",
     "They hold if errors of rows are independent; a systematic error of the rig counts as evidence otherwise.",
-    "Laws differ most where asperities are few, near the minimum: without rows there the data cannot tell them apart.",
+    "Laws differ most where asperities are few, near the minimum: without rows there the data cannot distinguish them.",
 )
-"""What to know before believing a comparison."""
+"""Caveats of a comparison."""
 
 CLEAR = 10.0
 """Difference of AICc from which a law is practically excluded."""
@@ -49,7 +49,7 @@ class Candidate:
     aicc : float
         Corrected information criterion of Akaike.
     difference : float
-        That above the least.
+        Excess over the smallest.
     weight : float
         Relative probability among the laws compared, 0 to 1.
     """
@@ -78,13 +78,13 @@ class Comparison:
 
     @property
     def sentence(self) -> str:
-        """What the data prefer, in a sentence."""
+        """The preferred law, in a sentence."""
         best, *others = self.candidates
         if not others:
             return f"Only {best.name} could be fitted."
         if others[0].difference < 2:
             near = [each.name for each in self.candidates if each.difference < 2]
-            return f"The data do not tell {' and '.join(near)} apart (differences of AICc below 2)."
+            return f"The data do not distinguish {' and '.join(near)} (differences of AICc below 2)."
         out = [each.name for each in others if each.difference > CLEAR]
         excluded = f"; practically excluded: {', '.join(out)}" if out else ""
         return f"The data prefer {best.name}, by {others[0].difference:.1f} in AICc over {others[0].name}{excluded}."
@@ -129,14 +129,14 @@ def compare(
     free: tuple[str, ...] | None = None,
     on_step: Callable[[str, int], object] | None = None,
 ) -> Comparison:
-    """Fit measured friction with several contact laws, and tell which it prefers and by how much.
+    """Fit measured friction with several contact laws, and return which it prefers, and by how much.
 
     Parameters
     ----------
     data : path-like or Measurements
         Measured friction.
     case : path-like, Case or Contact
-        What is known of the contact.
+        The contact.
     laws : mapping, optional
         Laws by name; by default that of the case, its variant with the tail of a finite surface, and those of Greenwood and
         Williamson and of Greenwood and Tripp (at alpha = 1: their separations are in heights).

@@ -32,16 +32,16 @@ if TYPE_CHECKING:
 __all__ = ["NextRun", "Plan", "next_runs"]
 
 SPEEDS, BEYOND = 17, 3.0
-"""Speeds that are tried, from the slowest measured over a factor to the fastest times it."""
+"""Candidate speeds: from the slowest measured over this factor to the fastest times it."""
 
 LOADS = (1 / 3, 1.0, 3.0)
-"""Loads that are tried, over that of the first curve."""
+"""Candidate loads, over the load of the first curve."""
 
 COST = {"point": 1.0, "load": 2.0, "viscosity": 3.0}
 """Cost of a run at another speed, and of another load or fluid."""
 
 IGNORANCE = math.log(10)
-"""Standard error of the logarithm of an input of which the data say nothing: a factor of ten."""
+"""Standard error of the logarithm of an input that the data do not constrain: a factor of ten."""
 
 RTOL = 1e-4
 MOST = 50
@@ -86,7 +86,7 @@ class Plan:
     runs : tuple of NextRun
         The runs.
     before : dict of str to float
-        Standard errors of the logarithms of the fitted inputs as the data have them.
+        Standard errors of the logarithms of the fitted inputs from the data so far.
     noise : float
         Relative standard error of a run that was supposed.
     scanned : tuple of NextRun
@@ -111,7 +111,9 @@ class Plan:
             place += f"{format_si(each.viscosity, 'viscosity'):<14}"
             lines.append(f"{i:<5}{place}{each.friction:<11.3g}{each.gain:<8.2g}{each.cost:<7.3g}{after}")
         now = ", ".join(f"{name} {format_percent(error)}" for name, error in self.before.items())
-        return "\n".join([*lines, f"Standard errors now: {now}; a run is supposed to be good to {format_percent(self.noise)}."])
+        return "\n".join(
+            [*lines, f"Standard errors now: {now}; a run is assumed to be accurate to {format_percent(self.noise)}."]
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return the runs and the errors before and after them, ready for JSON.

@@ -53,7 +53,7 @@ RTOL = 1e-6
 PIN_RTOL = 1e-4
 MOST_KEPT = 64
 ABSENT = 0.01
-"""Share of the load below which asperities, or the fluid, count as absent for the formulas without them."""
+"""Share of the load below which asperities, or the fluid, count as absent when formulas are chosen."""
 
 FIELDS_DRAWN = ("gap", "pressure", "contact_pressure", "fluid_pressure")
 
@@ -61,7 +61,7 @@ PLANE_REACH, PLANE_POINTS = 1.6, 49
 """Half the side of the map of a ball [a], and points along it."""
 
 STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
-"""Numbers at which axes end, times powers of ten: few, so that axes rest while a slider moves."""
+"""Ends of axes, times powers of ten: few, so that axes stay still while a slider moves."""
 
 T = TypeVar("T")
 
@@ -133,7 +133,7 @@ class Answer:
 
 
 class Answerer:
-    """Answers the inputs of one tab, one after another."""
+    """Answers to the inputs of one tab, one after another."""
 
     def __init__(self) -> None:
         self._solve = WarmStartSolver(RTOL)
@@ -195,7 +195,7 @@ class Answerer:
         inputs : Inputs
             What is shown.
         report : callable
-            Is called with the part that is done; what it raises ends the work.
+            Called with the finished part; an exception that it raises ends the work.
 
         Returns
         -------
@@ -227,7 +227,7 @@ class Answerer:
             yield
 
     def settle_checks(self, inputs: Inputs) -> bool:
-        """Make the checks that need the curve, or another one; tell whether they change what stands above the numbers."""
+        """Make the checks that need the curve, or another one; return whether they change the line above the numbers."""
         contact = inputs.contact
         key = ("checks", contact, inputs.rest)
         if ("all checks", *key) in self._kept:
@@ -240,7 +240,7 @@ class Answerer:
         return bool(self._kept[key] != before)
 
     def why_no_curve(self, inputs: Inputs) -> str:
-        """Return why a curve could not be solved; empty where it was, or was not tried."""
+        """Return why a curve could not be solved; empty if it was, or was not tried."""
         return str(self._kept.get(("why", _key(inputs.contact), inputs.definition), ""))
 
     def curve(self, contact: Contact, definition: Definition, speeds: tuple[float, float]) -> Curve | None:
@@ -330,13 +330,13 @@ def _diagram_key(contact: Contact, definition: Definition, speeds: tuple[float, 
 
 
 def round_up(value: float) -> float:
-    """Return the next larger of the numbers at which axes end."""
+    """Return the next larger end of an axis."""
     power = 10.0 ** math.floor(math.log10(value))
     return float(f"{next(step for step in STEPS if step * power >= value * (1 - 1e-9)) * power:.6g}")
 
 
 def round_down(value: float) -> float:
-    """Return the next smaller of the numbers at which axes end."""
+    """Return the next smaller end of an axis."""
     power = 10.0 ** math.floor(math.log10(value))
     return float(f"{next(step for step in STEPS[::-1] if step * power <= value * (1 + 1e-9)) * power:.6g}")
 

@@ -51,7 +51,7 @@ ROW_POINTS, ROW_STEP = 25, 3
 """Points of a row of a diagram that is solved, and of how many rows one is."""
 
 Report = Callable[[float], object]
-"""Is called with the part that is done; what it raises ends the work."""
+"""Called with the finished part; an exception that it raises ends the work."""
 
 
 @dataclass(frozen=True)
@@ -200,7 +200,7 @@ def solved_curve(contact: Contact, definition: Definition, report: Report) -> Cu
     definition : {"balanced", "published"}
         By which minimum and transitions go.
     report : callable
-        Is called with the part that is done; what it raises ends the work.
+        Called with the finished part; an exception that it raises ends the work.
 
     Returns
     -------

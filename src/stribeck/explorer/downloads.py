@@ -36,7 +36,7 @@ KINDS = {
     "Gap and pressure (CSV)": "profile.csv",
     "Case file of this state (TOML)": "toml",
 }
-"""What can be downloaded: label and ending."""
+"""Downloads: label and ending."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +121,7 @@ def name_of(kind: str, title: str) -> str:
 
 
 def pin_name(inputs: Inputs, start: Inputs, taken: Sequence[str]) -> str:
-    """Return what a pinned curve is called: the inputs in which it differs from those at the start."""
+    """Return the name of a pinned curve: the inputs in which it differs from the start."""
     changed = [
         f"{shown.label.lower()} {exact_text(inputs, name).replace('*', '·') or 'none'}"
         for name, shown in inputs.fields.items()
@@ -169,7 +169,7 @@ def content(kind: str, shown: View) -> bytes:
 
 
 def case_text(shown: View) -> str:
-    """Return the case file that holds what is shown, and all that the page carries along."""
+    """Return the case file of the present state, with everything that the page keeps for it."""
     inputs, curve = shown.answer.inputs, shown.answer.curve
     model = tables_of(inputs.model)
     rest = json.loads(inputs.rest) if inputs.rest else {}
@@ -194,7 +194,7 @@ def case_text(shown: View) -> str:
 
 
 def _rolls(inputs: Inputs) -> bool:
-    """Return whether a case says the speed by the mean of both surfaces: that of a ball and a disc that both move."""
+    """Return whether a case gives the speed as the mean of both surfaces: a ball and a disc that both move."""
     return inputs.table.geometry == "point" and inputs.contact.slide_to_roll != 2  # type: ignore[attr-defined]
 
 

@@ -1,4 +1,4 @@
-"""Measured curves to draw over the model: what fits read from a laboratory's file, as friction over speed."""
+"""Measured curves to draw over the model: read as fits read them, as friction against speed."""
 
 from __future__ import annotations
 

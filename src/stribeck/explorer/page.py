@@ -30,10 +30,10 @@ from stribeck.explorer.measured import Measured
 __all__ = ["UPDATING", "Page"]
 
 UPDATING = "Updating ..."
-"""What stands where something is still being computed."""
+"""Text while something is still being computed."""
 
 PATIENCE = 2.0
-"""Seconds after which a browser that does not answer gets the next picture all the same."""
+"""Seconds after which a browser that does not answer gets the next picture nevertheless."""
 
 DEFINITIONS = {"balanced": "balanced", "published": "as published"}
 ABSCISSAS = {"speed": "speed", "hersey": "Hersey number"}
@@ -148,7 +148,7 @@ class Page:
                     self.status = ui.label().classes("status").props('role="status"')
                     self.numbers = ui.html("", sanitize=False)
                 with ui.element("section").classes("card more").props('aria-label="Margins"'):
-                    head = f"Distance to the next regimes <span class='caption waits'>{UPDATING}</span>"
+                    head = f"Margins to the next regimes <span class='caption waits'>{UPDATING}</span>"
                     ui.html(f"<h2>{head}</h2>", sanitize=False)
                     self.margins = ui.html("", sanitize=False).classes("ways")
                 with ui.element("section").classes("card diagram").props('aria-label="Phase diagram"'):

@@ -1,4 +1,4 @@
-"""What one open page does: it takes what the user changes, asks for the answer, and gives it to the page.
+"""One open page: it takes the changes of the user, asks for the answer, and gives it to the page.
 
 A tab keeps one answer on its way. What changes meanwhile is asked next, so that the last value wins and a slow machine shows
 fewer pictures instead of late ones.
@@ -42,7 +42,7 @@ from stribeck.solver.solve import SolveError
 __all__ = ["TABS", "Tab", "opening"]
 
 MOMENT = 0.15
-"""Seconds after which an answer that is not there leaves what is shown marked."""
+"""Seconds of waiting for an answer after which the old one is marked."""
 
 REST = 0.4
 """Seconds after the last change from which what takes longer is done."""
@@ -242,7 +242,7 @@ class Tab:
         self.page.show_ways(self.history.ways)
 
     def on_key(self, event: events.KeyEventArguments) -> None:
-        """Do what a letter stands for, outside fields."""
+        """Act on a keyboard shortcut, outside fields."""
         if event.action.keydown and not (event.modifiers.ctrl or event.modifiers.alt or event.modifiers.meta):
             if event.key == "p":
                 self.pin()
@@ -457,7 +457,7 @@ class Tab:
                 return
 
     def checks(self, now: Inputs) -> bool:
-        """Make the checks that take long, unless the contact is no longer shown; tell whether they say something new."""
+        """Make the slow checks, unless the contact is no longer shown; return whether they say something new."""
         return self.inputs is now and self.is_seen and self.model.settle_checks(now)
 
     @property
@@ -484,7 +484,7 @@ class Tab:
 
         try:
             if now.table.geometry == "point":
-                return '<p class="note">Distances of a ball take many minutes; see stribeck regimes.</p>'
+                return '<p class="note">Margins of a ball take minutes; run stribeck regimes.</p>'
             return regime_margins(now.contact, definition=now.definition, on_point=go_on)
         except Superseded:
             return None

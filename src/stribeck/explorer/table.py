@@ -254,7 +254,7 @@ COMPARED: dict[str, Callable[[BaseSolution, Definition], str]] = {
 
 
 def margins_html(margins: RegimeMargins) -> str:
-    """Return the way to the next regimes in each input as HTML.
+    """Return the margins to the next regimes in each input as HTML.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The figures of the paper from our own solves: a picture as PNG and SVG, and its data as NetCDF beside them.
+"""The figures of the article from our own solutions: a picture as PNG and SVG, and its data as NetCDF beside them.
 
 One module for each figure, ``figure_3`` to ``figure_s1``; :func:`make_figures` makes and keeps them.
 """

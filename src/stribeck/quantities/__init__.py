@@ -1,1 +1,1 @@
-"""Quantities: units, inputs with their bounds, and what an input error says."""
+"""Quantities: units, inputs with their bounds, and error messages."""

@@ -1,6 +1,6 @@
 """The table of conversions: inputs as data sheets have them, and the inputs of a contact that follow from them.
 
-Contacts and case files take them; each is done before anything else looks, and said: what was made of what, by which formula.
+Contacts and case files take them; each is applied first, and reported: what follows from what, by which formula.
 """
 
 from __future__ import annotations
@@ -241,7 +241,7 @@ def _typical(name: str, table: InputTable) -> float:
 
 
 def _row(name: str, table: InputTable) -> Input | GivenInput:
-    """Return the row of an input, as data sheets or as contacts have it."""
+    """Return the row of an input of data sheets or contacts."""
     return GIVEN[name] if name in GIVEN else table.quantities[name]
 
 

@@ -1,4 +1,4 @@
-"""The table of facts: what is known of a contact that no equation takes, but by which checks judge whether the model holds.
+"""The table of facts: what is known about a contact and used by no equation, only to check whether the model applies.
 
 The table ``[check]`` of case files and :func:`stribeck.check` read it: one row is one fact everywhere.
 """
@@ -91,7 +91,7 @@ def fact_values(given: Mapping[str, Any]) -> dict[str, float]:
         if name not in FACTS:
             near = difflib.get_close_matches(name, FACTS, n=1)
             hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(FACTS)}."
-            raise InputError(f"{name} = {show(value)} is not a fact that checks know; {hint}")
+            raise InputError(f"{name} = {show(value)} is not a fact that the checks use; {hint}")
         number = to_si(value, FACTS[name].dimension, name)
         if not 0 <= number < math.inf:
             raise InputError(f"{name} = {show(value)} must be zero or positive.")

@@ -1,4 +1,4 @@
-"""What to say of a key that the package does not know: a slip of the pen, a symbol, or a quantity that the model has not."""
+"""Advice on an unknown key: a typing error, a symbol, or a quantity that the model does not have."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from stribeck.quantities.units import FROM_HARDNESS
 __all__ = ["MEANT", "advice_on"]
 
 MEANT = LETTERS | FORMER | {"poisson": "poisson_ratio", "mu": "boundary_friction", "cof": "boundary_friction"}
-"""What symbols, former names and short names stand for."""
+"""Meaning of symbols, former names and short names."""
 
 ALIKE = 0.8
-"""Smallest likeness, 0 to 1, of two words of which one is taken for a slip of the other: 0.8 allows one letter in five."""
+"""Smallest similarity, 0 to 1, of a typing error and the word meant: 0.8 allows one letter in five."""
 
 SHORTEST = 4
 """Smallest number of letters of a word that stands for the key that begins with it."""
 
 _RMS = "heights are root mean squares: rq or ra in [contact], h_rms in [surface]"
-_LINE = "give load: of a cylinder in N/m, or force in N with its width; of a ball, geometry = 'point', the force in N"
+_LINE = "give load: for a cylinder in N/m, or force in N with its width; for a ball, geometry = 'point', the force in N"
 
 # Whole words of a key, and what the package has instead.  The first that matches is said.
 _ABSENT = (
@@ -37,7 +37,7 @@ _ABSENT = (
     ),
     (
         ("relaxation_time", "infinite_viscosity", "shear_thinning"),
-        "what makes a fluid thin is in the table [fluid]",
+        "shear thinning is described in the table [fluid]",
     ),
     (
         ("density", "rho"),
@@ -45,7 +45,7 @@ _ABSENT = (
     ),
     (
         ("shear_modulus", "storage_modulus", "loss_modulus", "bulk_modulus"),
-        "of the solid give modulus, which is E*, or youngs_modulus and poisson_ratio; for a shear modulus G and a Poisson "
+        "for the solid give modulus, which is E*, or youngs_modulus and poisson_ratio; for a shear modulus G and a Poisson "
         "ratio nu, E* = 2 G/(1 - nu)",
     ),
     (("force", "normal_force", "weight", "mass"), _LINE),
@@ -53,7 +53,7 @@ _ABSENT = (
     (("diameter",), "give radius, half the diameter; of a shaft that turns, shaft_diameter with rotational_speed"),
     (
         ("ellipticity", "ball", "sphere"),
-        "of a ball write geometry = 'point' and its radius; an ellipse is not modelled",
+        "for a ball write geometry = 'point' and its radius; elliptic contacts are not modelled",
     ),
     (
         ("slide_to_roll", "srr", "slip"),

@@ -372,7 +372,7 @@ _OF_A_BALL: dict[str, dict[str, Any]] = {
     "speed": {"source": _BALL},
     "beta": {"exponents": (0, -3, -2)},
 }
-"""What differs in the rows of a ball."""
+"""Rows that differ for a ball."""
 
 POINT_ROWS = (
     *(replace(row, **_OF_A_BALL.get(row.name, {})) for row in ROWS),
@@ -396,7 +396,7 @@ POINT_ROWS = (
         symbol="$X_c$",
         dimension="length",
         typical="3 mm",
-        source="where the liquid around the contact ends; the whole ball without it",
+        source="where the liquid around the contact ends; without it the whole ball is immersed",
         usual=(1e-4, 1.0),
         units=("mm", "cm"),
         optional=True,
@@ -457,13 +457,13 @@ INPUT_TABLES = {"line": LINE, "point": POINT}
 """The inputs by geometry."""
 
 QUANTITIES, INPUTS, SYMBOLS, GROUP_EXPONENTS = LINE.quantities, LINE.names, LINE.symbols, LINE.exponents
-"""Those of a cylinder: its inputs by name, what it keeps, symbols for pictures, exponents in the groups."""
+"""For a cylinder: its inputs by name, those that it keeps, symbols for pictures, exponents in the groups."""
 
 LETTERS = {letter: row.name for table in (POINT, LINE) for row in table.rows for letter in row.letters}
-"""Letters of the article and of the trade, and the inputs that they stand for."""
+"""Symbols of the article and of the field, and the inputs that they stand for."""
 
 FORMER = {"friction_coefficient": "boundary_friction", "mu0": "boundary_friction"}
-"""What inputs were once called, and the names that took their place."""
+"""Former names of inputs, and their present names."""
 
 
 def quantity(name: str, value: Any, table: InputTable = LINE) -> float:
@@ -610,7 +610,7 @@ def replaced(kept: Mapping[str, Any], changes: Mapping[str, Any], table: InputTa
     """Return inputs with some changed; an alternative among the changes takes the place of what it stands for."""
     found = dict(kept)
     if "radius_2" in changes and "radius" not in changes:
-        raise InputError("radius_2 is given without radius; give both radii, as a contact keeps only what they make together.")
+        raise InputError("radius_2 is given without radius; give both radii, as a contact keeps only their combination.")
     for other in table.alternatives:
         if any(name in changes for name in other.inputs):
             del found[other.of]

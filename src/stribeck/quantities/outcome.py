@@ -1,4 +1,4 @@
-"""How a solve ended, as a sentence for people."""
+"""How a solve ended, as a sentence."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["Outcome"]
 
 
 class Outcome(Enum):
-    """How a solve ended: a sentence for people; :attr:`ok` says whether the result can be trusted."""
+    """How a solve ended, as a sentence; :attr:`ok` is whether the result can be trusted."""
 
     CONVERGED = "Converged."
     STEP_LIMIT = "Newton's method reached its step limit; try a closer initial guess or smaller parameter steps."

@@ -144,7 +144,7 @@ class OutputTable:
 
     @cached_property
     def films(self) -> dict[str, tuple[str, str]]:
-        """What a file of a contact holds in SI units besides: unit and meaning of each."""
+        """Further SI quantities in the file of a contact: unit and meaning of each."""
         return {row.film: (_UNITS[row.scale], row.meaning) for row in self.rows if row.film} | HERTZ
 
 
@@ -222,7 +222,7 @@ POINT = OutputTable(
         Observable(
             "identity_error",
             "error of the identity",
-            "what is left of the identity of the friction integrals, over the largest of them",
+            "residual of the identity of the friction integrals, over the largest of them",
             error="",
         ),
         _SHARED["error_estimate"],
@@ -243,4 +243,4 @@ AREA = {
     "central_area_fraction": ("1", "real over apparent contact area at the centre"),
     "central_area_fraction_error": ("1", "estimated absolute error of central_area_fraction"),
 }
-"""What a solution has besides if the contact law knows the spectrum of the surface."""
+"""Further observables if the contact law knows the spectrum of the surface."""

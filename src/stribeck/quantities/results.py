@@ -1,4 +1,4 @@
-"""What all results have in common: they show themselves in a screen, and are equal if their numbers are."""
+"""The part common to all results: a representation that fits a screen, and equality of numbers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Card:
 
 
 class Shown:
-    """A result that shows a :class:`Card`: lines in a terminal, a table in a notebook; by default its fields in short."""
+    """A result shown as a :class:`Card`: lines in a terminal, a table in a notebook; by default its fields in short."""
 
     def _card(self) -> Card:
         said = (inspect.getdoc(type(self)) or "").partition("\n")[0]

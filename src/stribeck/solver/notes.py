@@ -236,8 +236,8 @@ def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, 
     supposed = "" if known else f", at boundary friction 1 and beta = {USUAL_BETA:g}"
     return (
         f"The central gap is {ratio:.3g} {measured}, beyond the range of {_range(groups)}, while asperities carry "
-        f"{format_percent(load)} of the load and cause {format_percent(friction)} of the friction{supposed}: few asperities are so "
-        "high, and a real surface may have fewer than the law assumes.",
+        f"{format_percent(load)} of the load and cause {format_percent(friction)} of the friction{supposed}: few asperities "
+        "are so high, and a real surface may have fewer than the law assumes.",
     )
 
 

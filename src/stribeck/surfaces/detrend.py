@@ -1,4 +1,4 @@
-r"""Tilt and curvature of a scan: what the shape of the body adds to its roughness, found by least squares and taken away.
+r"""Tilt and curvature of a scan: the form of the body, found by least squares and removed from its roughness.
 
 .. math:: z = a + b \cdot x + \tfrac12 x^T K x
 

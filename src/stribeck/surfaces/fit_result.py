@@ -1,4 +1,4 @@
-r"""What a fit of a self-affine spectrum says: the spectrum, its standard errors, and intervals of alpha and beta.
+r"""The fit of a self-affine spectrum: the spectrum, its standard errors, and intervals of alpha and beta.
 
 A scan does not show waves longer than itself.  So the longest wave of the surface can only be longer than the scan, and an
 interval of alpha or beta holds the values for all longest waves from the scan to far beyond it.
@@ -88,13 +88,13 @@ class FitParameters:
         return np.array([0.5 * (theta[0] - math.log(level)), H, q_r, q0, q1])
 
     def surface(self, theta: Array, corner: float = 1.0, lowest: float = 1.0) -> SelfAffine:
-        """Return the surface of the parameters, with longer waves if wanted."""
+        """Return the surface of the parameters, optionally with longer waves."""
         log_h, H, q_r, q0, q1 = map(float, self.physical(theta, corner, lowest))
         return SelfAffine(math.exp(log_h), math.exp(q0), math.exp(q1), H, math.exp(max(q_r, q0)))
 
     @property
     def longer(self) -> list[tuple[float, float]]:
-        """Factors on roll-off and q_0 of surfaces with longer waves that the scan cannot tell from this one."""
+        """Factors on roll-off and q_0 of surfaces with longer waves that the scan cannot distinguish from this one."""
         if self.q0_found:
             return [(1.0, 1.0)]
         # A power law that is not seen to end may end, or become a plateau, anywhere beyond the scan.

@@ -1,4 +1,4 @@
-"""What must be known about a scan before its numbers are used, a sentence each."""
+"""Notes on the validity of the numbers of a scan, a sentence each."""
 
 from __future__ import annotations
 

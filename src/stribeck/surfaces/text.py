@@ -24,7 +24,7 @@ TEXT = (".csv", ".tsv", ".txt", ".dat", ".xyz")
 """Endings of plain text files."""
 
 INFINITE = {"inf", "-inf"}
-"""What some instruments write for a missing point."""
+"""Text that some instruments write for a missing point."""
 
 UNEVEN = 0.02
 """Largest deviation of a position from the even grid, over the spacing, that passes for even."""
@@ -82,7 +82,7 @@ def read_text(
         if spacing is None:
             what = "one column" if columns == 1 else f"{columns} columns, a matrix of heights"
             raise InputError(
-                f"{path} has {what} without positions; say the distance between points with --spacing '0.5 um' "
+                f"{path} has {what} without positions; give the distance between points with --spacing '0.5 um' "
                 "(in Python spacing='0.5 um')."
             )
         step = to_si(spacing, "length", "spacing")

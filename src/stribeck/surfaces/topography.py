@@ -1,4 +1,4 @@
-r"""Measured heights of a surface: what a map or a line is, dead pixels and spikes, and surfaces made with a known spectrum.
+r"""Measured heights of a surface: maps and lines, dead pixels and spikes, and surfaces made with a known spectrum.
 
 Reading files is in :mod:`stribeck.surfaces.files` and :mod:`stribeck.surfaces.text`, evaluation in
 :mod:`stribeck.surfaces.analysis`.
@@ -75,7 +75,7 @@ class Topography:
                 f"{kind} needs {FEWEST[z.ndim]} or more along each side."
             )
         if not all(math.isfinite(step) and step > 0 for step in self.spacing):
-            raise InputError(f"{where}the spacing {self.spacing} m is not positive; say it with its unit.")
+            raise InputError(f"{where}the spacing {self.spacing} m is not positive; give it with its unit.")
         z[~np.isfinite(z)] = np.nan
         share = float(np.isnan(z).mean())
         if share > MOST_MISSING:

@@ -1,4 +1,4 @@
-"""What one worker of a sweep solves at a time: a chain of states, and the row of numbers that each becomes."""
+"""The work of one worker of a sweep: a chain of states, and the row of numbers that each becomes."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Chain:
         return self.inputs["boundary_friction"][i], self.inputs["beta"][i]
 
     def row(self, i: int, ended: Ended) -> tuple[Array, str]:
-        """Return the numbers that a sweep keeps of the i-th state, and what there is to say about it."""
+        """Return the numbers that a sweep keeps of the i-th state, and the notes on it."""
         if ended.solution is None:
             return failed_row(self.contact(i), self.physics, ERROR if ended.fault else ended.outcome.name, ended.message)
         values, text = row_of(ended.solution, *self.coefficients(i))

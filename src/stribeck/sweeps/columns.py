@@ -1,4 +1,4 @@
-"""What a sweep keeps of each state: the names, units and meanings of its numbers, and how a solution becomes a row of them."""
+"""The columns of a sweep: the names, units and meanings of its numbers, and how a solution becomes a row of them."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def input_columns(names: tuple[str, ...], table: InputTable) -> dict[str, tuple[
 
 
 def row_of(solution: BaseSolution, boundary_friction: float, beta: float) -> tuple[Array, str]:
-    """Return the numbers of a state, in the order of :func:`columns_of`, and what there is to say about it."""
+    """Return the numbers of a state, in the order of :func:`columns_of`, and the notes on it."""
     table = solution.outputs
     values = [float(getattr(solution, name)) for name in table.listed]
     values += [solution.errors[name] for name in table.names if name in table.listed]

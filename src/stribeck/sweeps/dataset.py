@@ -105,7 +105,7 @@ class Sweep(Exported, Shown, ByValue):
         ends = [outcomes[int(code)] if done else PENDING for code, done in zip(codes, self.rows.done, strict=True)]
         columns["regime"] = (self._regimes(columns), "1", "lubrication regime, by the balanced friction")
         columns["outcome"] = (np.array(ends, dtype=object), unit, label)
-        columns["message"] = (np.array(self.rows.texts, dtype=object), "1", "what to know of the state before using it")
+        columns["message"] = (np.array(self.rows.texts, dtype=object), "1", "notes on the validity of the state")
         return xarray.Dataset(
             {name: ("state", values, {"units": unit, "long_name": label}) for name, (values, unit, label) in columns.items()},
             coords={"state": ("state", np.arange(len(self)), {"units": "1", "long_name": "number of the state"})},

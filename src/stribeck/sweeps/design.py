@@ -106,7 +106,7 @@ class SweepDesign:
 
     @functools.cached_property
     def fingerprint(self) -> str:
-        """What tells this design from another: of its states and settings, not of comments in its file."""
+        """Identity of this design: its states and settings, without comments in its file."""
         settings: list[Any] = [sorted(self.inputs), self.si, self.rtol, self.law, self.kind, self.shape]
         if self.physics["geometry"] != "line":
             settings.append(self.physics["geometry"])

@@ -25,7 +25,7 @@ LARGEST_SUMS = 10_000
 LARGEST = 2**40
 """Sizes that are certainly wrong [byte]."""
 
-ADVICE = "take it from a copy, or run the sweep again into a new store"
+ADVICE = "restore it from a copy, or run the sweep again into a new store"
 
 
 def seal(store: Path) -> None:

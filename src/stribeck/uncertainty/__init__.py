@@ -1,1 +1,1 @@
-"""Uncertainty: what errors of the inputs make of films, friction, transitions and the regime."""
+"""Uncertainty: errors of the inputs, propagated to films, friction, transitions and regimes."""

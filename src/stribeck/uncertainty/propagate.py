@@ -24,7 +24,7 @@ from stribeck.uncertainty.states import films_of, states_of
 __all__ = ["kept_errors", "propagate"]
 
 SAMPLES, SEED = 20_000, 20261122
-"""Of the inputs; the same in every call, so that results repeat."""
+"""Random samples of the inputs; the seed is fixed, so that results repeat."""
 
 RTOLS = {"line": 1e-5, "point": 1e-4}
 """Of the states, by geometry: a ball takes a tenth of a second or more each."""
@@ -39,7 +39,7 @@ STEP = 1e-3
 """Of the logarithms of inputs in the differences that find the powers of scales, which are power laws."""
 
 THROUGH = {"youngs_modulus": ("modulus", 1.0), "poisson_ratio": ("modulus", 2 / 3), "entrainment_speed": ("speed", 1.0)}
-"""Inputs that others take the place of, and the power with which they enter; that of the Poisson ratio at 1/2."""
+"""Inputs that stand in for others, and the power with which they enter; for the Poisson ratio at 1/2."""
 
 LABELS = {"central_gap": "central film", "minimum_gap": "minimum film", "flux_gap": "flux film h*"}
 
@@ -171,7 +171,7 @@ def kept_errors(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]
             raise InputError(f"errors has {show(name)}, which is no input of a contact; known are {', '.join(known)}.")
         value = getattr(contact, kept)
         if value == 0:
-            raise InputError(f"errors has {name}, which is zero: an error over it says nothing.")
+            raise InputError(f"errors has {name}, which is zero: a relative error of zero has no meaning.")
         if isinstance(error, str):
             relative = relative_error(name, value, error, contact.INPUTS.quantities[kept].dimension)
         elif isinstance(error, bool) or not isinstance(error, int | float) or not 0 < error < 3:

@@ -1,4 +1,4 @@
-"""What errors of the inputs make of a state: medians, intervals, the probability of each regime, and who is to blame."""
+"""Propagated errors of a state: medians, intervals, the probability of each regime, and the share of each input."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Spread:
     Attributes
     ----------
     name, label : str
-        Its name as in a solution, and what reports call it.
+        Its name in a solution, and its label in reports.
     value : float
         Its value for the inputs as given, in SI units.
     median : float
@@ -47,7 +47,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """What errors of the inputs make of a state.
+    """A state with the propagated errors of its inputs.
 
     Attributes
     ----------

@@ -38,7 +38,7 @@ NARROW = 1e-9
 """Standard deviation of a logarithm below which a direction counts as known."""
 
 TINY = 1e-290
-"""What stands for a share that underflows."""
+"""Value in place of a share that underflows."""
 
 
 def films_of(geometry: Geometry) -> tuple[str, ...]:

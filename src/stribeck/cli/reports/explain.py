@@ -1,4 +1,4 @@
-"""What ``stribeck regimes`` prints about a contact, as text for Python."""
+"""The text of ``stribeck regimes``, for Python."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ POINTS = 41
 
 @dataclass(frozen=True)
 class Regimes:
-    """All that is said about the regime of a contact.
+    """Everything about the regime of a contact.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Regimes:
     checks : Checks or None
         Whether the model applies.
     errors : Uncertainty or None
-        What uncertain inputs make of the results, if any are given as uncertain.
+        Uncertainty of the results, if inputs have errors.
     reason : str
         Why there are no sensitivities; empty where there are some.
     """
@@ -64,7 +64,7 @@ class Regimes:
 
 
 class Explanation(str):
-    """Text that shows itself as it would be printed."""
+    """Text whose representation is the text itself."""
 
     def __repr__(self) -> str:
         """Return the text itself."""
@@ -75,7 +75,7 @@ class Explanation(str):
 
 
 def regimes_of(case: sb.Case, on_point: Callable[[int, int], object] | None = None) -> Regimes:
-    """Solve what there is to say about the regime of a case.
+    """Solve everything about the regime of a case.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def regimes_of(case: sb.Case, on_point: Callable[[int, int], object] | None = No
 
 
 def print_words(console: Console, found: Regimes, case: sb.Case) -> None:
-    """Print what there is to say about the regime of a case.
+    """Print everything about the regime of a case.
 
     Parameters
     ----------

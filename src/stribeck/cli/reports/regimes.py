@@ -1,4 +1,4 @@
-"""The regime of a contact in words: where its transitions lie, what it takes to reach them, what moves its friction."""
+"""The regime of a contact in words: its transitions, the margins to them, and the sensitivity of friction."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def print_regimes(
     title: str,
     checks: Checks | None = None,
 ) -> None:
-    """Print in which regime a contact runs, where the transitions lie, and what moves its friction.
+    """Print the regime of a contact, its transitions, the margins and the sensitivity of friction.
 
     Parameters
     ----------
@@ -114,16 +114,16 @@ def _print_sensitivities(console: Console, contact: Contact, sensitivities: Sens
 
 
 def print_uncertainty(console: Console, found: Uncertainty) -> None:
-    """Print what errors of the inputs make of friction, films, transitions and the regime.
+    """Print the uncertainty of friction, films, transitions and regime.
 
     Parameters
     ----------
     console : rich.console.Console
         Where to.
     found : Uncertainty
-        What they make.
+        The propagated errors.
     """
-    table = table_of("with the errors of the inputs", "value", "95 %", right=(1, 2))
+    table = table_of("with errors of the inputs", "value", "95 %", right=(1, 2))
     for each in found.spreads:
         value, low, high = (format_si(end, each.dimension) for end in (each.value, *each.interval_95))
         table.add_row(each.label, value, f"{low} to {high}")

@@ -1,4 +1,4 @@
-"""A sweep in words: its progress, and what came out."""
+"""Text of a sweep: its progress and outcome."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def print_sweep(console: Console, sweep: Sweep, files: Sequence[str]) -> None:
     varied = ", ".join(sweep.about["varied"])
     say(f"{sweep.finished} of {len(sweep)} states are finished in {sweep.path}; {varied} varied, {sweep.about['kind']}.")
     speed = f", {sweep.computed / sweep.seconds:.3g} per second" if sweep.computed and sweep.seconds > 0 else ""
-    say(f"Computed now: {sweep.computed}{speed}; found there: {sweep.finished - sweep.computed}.")
+    say(f"Computed now: {sweep.computed}{speed}; found in the store: {sweep.finished - sweep.computed}.")
     for name, count in sweep.outcomes.items():
         meaning = "An error of the program; please report it." if name == ERROR else Outcome[name].value
         say(f"{count} {name}: {meaning}")

@@ -1,4 +1,4 @@
-"""Words that reports share: numbers with the digits that their errors allow, headlines, notes, tables."""
+"""Formatting shared by all reports: numbers with the digits that their errors allow, headlines, notes, tables."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from stribeck.curves.result import StribeckCurve
 
 HANDS_ON = tuple(row.name for row in ROWS if not row.derived and not row.follows_surface)
-"""Inputs that one may change; alpha and beta follow from the surface."""
+"""Inputs that a designer can change; alpha and beta follow from the surface."""
 
 WIDTH = 100
-"""Columns that a table may take in a narrower terminal."""
+"""Smallest width of a table, in columns."""
 
 Sensitivities = dict[str, float]
 
@@ -58,13 +58,13 @@ def hersey_of(solution: BaseSolution, beta: float | None) -> float:
 
 
 def strongest(sensitivities: Sensitivities) -> str | None:
-    """Return the input at hand that moves friction most; None where none does."""
+    """Return the input to which friction is most sensitive; None if there is none."""
     found = max(HANDS_ON, key=lambda name: abs(np.nan_to_num(sensitivities[name])))
     return found if abs(np.nan_to_num(sensitivities[found])) > 0 else None
 
 
 def place(curve: StribeckCurve, value: float, digits: int = 3) -> str:
-    """Return a value of what a curve runs over, with its unit."""
+    """Return a value of the quantity that varies along a curve, with its unit."""
     if curve.contact is None:
         return f"{value:.{digits}g}"
     return format_si(value, curve.contact.INPUTS.quantities[curve.over].dimension, digits)
@@ -95,7 +95,7 @@ def error_text(relative: float) -> str:
 
 
 def part(value: float, error: float) -> str:
-    """Return a part of a sum with the digits that its absolute error allows, or that error as a bound."""
+    """Return a part of a sum with the digits that its absolute error allows, or a bound."""
     if 0 < value <= error:
         return format_bound(error)
     return digits(value, error / value if value > 0 else error)
@@ -165,19 +165,19 @@ def print_outcome(console: Console, outcome: str, error: float, notes: Sequence[
 
 
 def print_first(console: Console, checks: Checks | None) -> None:
-    """Print above all else that the model is not for this contact, where a check says so."""
+    """Print first, if a check is outside, that the model does not apply."""
     if checks is not None and checks.first_line:
         console.print(checks.first_line, style="bold red", markup=False, highlight=False, soft_wrap=True)
 
 
 def print_conversions(console: Console, case: Case | None) -> None:
-    """Print what was made of inputs as data sheets have them."""
+    """Print the conversions of data-sheet inputs."""
     for sentence in () if case is None else case.conversions:
         say(console, f"Converted: {sentence}")
 
 
 def conversions_json(case: Case | None) -> dict[str, Any]:
-    """Return what was made of inputs as data sheets have them; nothing where nothing was."""
+    """Return the conversions of data-sheet inputs; empty if there are none."""
     return {"conversions": list(case.conversions)} if case is not None and case.conversions else {}
 
 
@@ -198,7 +198,7 @@ def table_of(*columns: str, right: Sequence[int] = ()) -> Any:
 
 
 def print_table(console: Console, table: Any) -> None:
-    """Print a table, wider than a narrow terminal rather than cut: a heading or number without its end says nothing."""
+    """Print a table; in a narrow terminal it is wide rather than cut."""
     from rich.console import Console as Wide
 
     Wide(file=console.file, width=max(WIDTH, console.width)).print(table)

@@ -1,1 +1,1 @@
-"""What a page is asked: its inputs, the parts of its model, its address and its history."""
+"""The state of a page: its inputs, the parts of its model, its address and its history."""

@@ -1,4 +1,4 @@
-"""What a case holds beside its numbers: the parts of its model, and what the page carries along for the saved case.
+"""The parts of a case beside its numbers: its model, and what the page keeps for the saved case.
 
 Both are kept as compact JSON, which goes into a link as it is and compares by value.  The model is the tables of a case:
 ``geometry``, ``law`` with its ``surface`` or ``table``, ``fluid``, ``cavitation``, ``motion``, ``flow_factors``, ``solid``.
@@ -149,7 +149,7 @@ def contact_of(model: str, numbers: Mapping[str, Any]) -> Contact:
 
 
 def rest_of_case(case: Case) -> str:
-    """Return as JSON what a case holds that the page does not show; empty where there is nothing."""
+    """Return as JSON what the page does not show of a case; empty if there is nothing."""
     found = {key: case.tables[key] for key in REST if case.tables.get(key)}
     return json_text(found | ({"errors": case.errors} if case.errors else {}))
 
@@ -190,7 +190,7 @@ def _shape(text: str) -> AsperityLaw | None:
 
 
 def check_rest(text: str) -> str:
-    """Return what a page carries along, in the form of :func:`rest_of_case`; refuse what no case can hold."""
+    """Return what a page keeps for the saved case, in the form of :func:`rest_of_case`; refuse what no case can hold."""
     if not text:
         return ""
     found = _object("rest", text, REST)
@@ -224,7 +224,7 @@ def law_words(model: str) -> str:
 
 
 def model_words(model: str) -> list[str]:
-    """Return a line for each part of the model that is not that of the article."""
+    """Return a line for each part of the model that differs from the article's."""
     tables = tables_of(model)
     lines = [f"contact law: {law_words(model)}"]
     for name in KEYS:

@@ -1,6 +1,6 @@
-"""What of the model is chosen from a list: geometry, contact law, fluid, cavitation, motion, flow factors, solid.
+"""The parts of the model that are chosen from lists: geometry, contact law, fluid, cavitation, motion, flow factors, solid.
 
-Each row is a table of a case and one of its keys; what keys a choice needs is taken from the readers of cases.
+Each row is a table of a case and one of its keys; the keys of a choice come from the readers of cases.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ TYPICAL: dict[str, Any] = {
     "longest_wavelength": "150 um",
     "shortest_wavelength": "1.5 um",
 }
-"""What a key that is needed has at first."""
+"""First value of a key that is needed."""
 
 WORDS = {
     "slide_to_roll": "slide-to-roll ratio",
@@ -48,7 +48,7 @@ WORDS = {
     "hurst": "Hurst exponent",
     "pressure_viscosity": "pressure coefficient",
 }
-"""What keys are called where that is not the key itself."""
+"""Labels of keys that differ from the key itself."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class Choice:
 
     @property
     def first(self) -> str:
-        """What holds where nothing is chosen."""
+        """The choice by default."""
         return next(iter(self.options))
 
 

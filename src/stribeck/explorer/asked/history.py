@@ -1,4 +1,4 @@
-"""Undo and redo: the inputs with which a page has rested, in their order."""
+"""Undo and redo: the inputs at which a page has rested, in order."""
 
 from __future__ import annotations
 

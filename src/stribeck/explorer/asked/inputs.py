@@ -1,4 +1,4 @@
-"""What a tab shows: a contact in SI units and as groups, linked both ways, and the unit of each field.
+"""The inputs of a tab: a contact in SI units and as groups, linked both ways, and the unit of each field.
 
 Every change makes new inputs from old ones, or raises the sentence that the command line prints; nothing is half changed.
 """
@@ -74,7 +74,7 @@ class Field:
 
 FRICTION = "boundary_friction"
 LARGEST_FRICTION = 10.0
-"""Friction coefficient above which per cent are suspected."""
+"""Friction coefficient above which the value is probably in per cent."""
 
 
 def _html(symbol: str) -> str:
@@ -85,7 +85,7 @@ def _html(symbol: str) -> str:
 
 
 MOST_CHANGED = ("speed", "load", "viscosity", "roughness")
-"""The inputs that one changes most, which stand first."""
+"""The inputs changed most often, shown first."""
 
 
 def _field(row: Input) -> Field:
@@ -96,7 +96,7 @@ FIELDS: dict[str, dict[str, Field]] = {
     geometry: {name: _field(table.quantities[name]) for name in dict.fromkeys((*MOST_CHANGED, *table.names))}
     for geometry, table in INPUT_TABLES.items()
 }
-"""The inputs of the contact of each geometry, those first that one changes most."""
+"""The inputs of each geometry, those changed most often first."""
 
 GROUP_FIELDS = {
     "speed_group": Field("Speed group", "λ", 1e-12, 1e4),
@@ -109,7 +109,7 @@ NAMES = tuple(dict.fromkeys(name for fields in FIELDS.values() for name in field
 """The inputs of all geometries."""
 
 DIGITS = 3
-"""Digits to which a slider rounds, so that what it chose can be read and typed."""
+"""Digits to which a slider rounds, so that its value can be read and typed."""
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ class Inputs:
         return FIELDS[self.table.geometry]
 
     def shown_as(self, name: str) -> Field:
-        """Return how a quantity or a group is shown."""
+        """Return the format of a quantity or a group."""
         return GROUP_FIELDS.get(name) or self.fields[name]
 
 
@@ -244,7 +244,7 @@ def units_of(contact: Contact) -> dict[str, str]:
 
 
 def value_of(inputs: Inputs, name: str) -> float:
-    """Return a quantity in SI units, or a group; infinite for what the contact does without."""
+    """Return a quantity in SI units, or a group; infinite if the contact does without it."""
     if name in GROUP_FIELDS:
         return float(getattr(inputs.contact.groups, name.removesuffix("_group")))
     value = getattr(inputs.contact, name)

@@ -1,4 +1,4 @@
-"""The state of a tab as the query string of its address, and back: what is sent to somebody else opens as it was left."""
+"""The state of a tab as the query string of its address, and back: a shared link opens the same state."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def decode(items: Iterable[tuple[str, str]], start: Inputs) -> Opened:
     items : iterable of (str, str)
         Keys and values, unquoted.
     start : Inputs
-        What holds where nothing is said.
+        The default.
 
     Returns
     -------

@@ -292,7 +292,7 @@ WITHOUT_MAP = {
     "line": "",
     "point": "Regime map unavailable: it would take an hour to solve for a ball, and no lookup table holds this one.",
 }
-"""What stands in the place of a map that is not there: nothing where it is being solved."""
+"""Text in place of a missing map; empty while it is being solved."""
 
 
 def _words(palette: Palette) -> Options:
@@ -300,7 +300,7 @@ def _words(palette: Palette) -> Options:
 
 
 def _region_name(name: str, one: Array, two: Array, rows: Array, palette: Palette) -> Options:
-    """Return the name of a regime where its region is widest, or nothing where it is too narrow for it."""
+    """Return the label of a regime where its region is widest; none if it is too narrow."""
     width = np.log10(two / one)
     place = np.arange(len(rows)) / len(rows)
     i = int(np.argmax(np.where((place < 0.1) | (place > 0.8), -1.0, width)))
@@ -319,7 +319,7 @@ def _region_name(name: str, one: Array, two: Array, rows: Array, palette: Palett
 
 
 def _regime_areas(curve: Curve, ends: tuple[float, float], scale: float, palette: Palette) -> Options:
-    """Return the grounds of the regimes behind a curve."""
+    """Return the background of the regimes behind a curve."""
     low, high = (end * scale for end in ends)
     first, last = curve.transition("boundary"), curve.transition("hydrodynamic")
     b = low if first is None else min(max(first.speed * scale, low), high)
@@ -355,7 +355,7 @@ def _range(values: Array) -> list[float]:
 
 
 def _friction_limits(values: Sequence[float]) -> tuple[float, float]:
-    """Return ends of the axis of friction in whole or third decades, so that it rests while a slider moves."""
+    """Return ends of the axis of friction in whole or third decades, so that it stays still while a slider moves."""
     low, high = (min(values), max(values)) if values else (1e-3, 1.0)
     return round_down(low / 3), round_up(high * 1.25)
 

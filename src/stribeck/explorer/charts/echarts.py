@@ -1,4 +1,4 @@
-"""What charts are made of, as options of ECharts: axes, lines, points and legends; and what differs between two charts.
+"""Elements of charts as options of ECharts: axes, lines, points and legends; and the difference of two charts.
 
 Keys that begin with a colon hold JavaScript and are sent once, when a chart is made. Every series has a name for itself,
 ``id``, by which later data find it.
@@ -58,7 +58,7 @@ def data_only(options: Any) -> Any:
 
 
 def difference(old: Options, new: Options) -> tuple[Options, Options] | None:
-    """Return what ECharts must be told to show ``new`` after ``old``: options, and how to merge them.
+    """Return the options that take ECharts from ``old`` to ``new``, and how to merge them.
 
     Parameters
     ----------
@@ -120,11 +120,11 @@ def _axis(name: str, low: float, high: float, palette: Palette) -> Options:
 
 
 POINTED = """p => Number(p.value.toPrecision(3)) + ' ' + ((window.explorerUnits || {})['CHART'] || '')"""
-"""Headline of a tooltip: the place along an axis with its unit, of which the page keeps what it is at the moment."""
+"""Headline of a tooltip: the position along an axis with its present unit."""
 
 
 def with_unit(chart: str, axis: Options) -> Options:
-    """Return an axis along which a tooltip tells the place with its unit."""
+    """Return an axis whose tooltip shows the position with its unit."""
     return axis | {"axisPointer": {"label": {":formatter": POINTED.replace("CHART", chart)}}}
 
 

@@ -1,4 +1,4 @@
-"""Colours of the page, by light and by dark: those of Okabe and Ito, which most colour-blind readers tell apart."""
+"""Colours of the page, by light and by dark: those of Okabe and Ito, which most colour-blind readers can distinguish."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is shown as a picture for slides and papers, drawn by the package's own plots."""
+"""The charts as pictures for slides and papers, drawn by the package's own plots."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What the server of the page needs that is no page: its door, and the memory of pages that closed."""
+"""The server around the page: access control, and the memory of closed pages."""

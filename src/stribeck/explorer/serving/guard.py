@@ -1,4 +1,4 @@
-"""Who may talk to the server: programs of this machine that know the token, and no page of another site.
+"""Access to the server: programs on this machine that know the token, and no page of another site.
 
 Everything that arrives, pages, sockets and files, passes here first.
 """
