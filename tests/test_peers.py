@@ -69,8 +69,22 @@ def test_our_dry_contact_is_that_of_hertz_but_for_its_roughness(load_benchmark):
     assert (smooth.pressure, smooth.half_width) == (1.0, 1.0)
 
 
-def test_the_readme_shows_the_table_of_the_page():
-    page = (BENCHMARKS / "peers.md").read_text()
-    table = re.search(r"^\| relative error of .*?\n\n", page, re.M | re.S)[0]
-    assert table.count("\n") >= 6
-    assert table in (ROOT / "README.md").read_text()
+def per_cent(part):
+    return f"{100 * float(part):.9f}".rstrip("0").rstrip(".") + " %"
+
+
+def rows_of(text, first):
+    table = re.search(rf"^\| {first}.*?\n\n", text, re.M | re.S)[0]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:] if line]
+
+
+def test_the_readme_shows_the_numbers_of_the_page_in_per_cent():
+    readme = (ROOT / "README.md").read_text()
+    ours, uniform, graded, *others = rows_of((BENCHMARKS / "peers.md").read_text(), "relative error of")
+    shown = rows_of(readme, r"\| error of the film")
+    for row, found in zip((ours, uniform, graded), shown, strict=True):
+        assert found[1].split(";")[0] == per_cent(row[1].split(",")[0])
+        assert [float(cell) for cell in found[3:]] == [float(cell) for cell in row[4:]]
+    assert shown[0][2] == "below 1e-8 %" and ours[2] == "< 1e-10"
+    assert [found[2] for found in shown[1:]] == [per_cent(row[2]) for row in (uniform, graded)]
+    assert {row[3] for row in others} == {"2e-5"} and "within 0.002 %, stribeck within 0.0002 %" in readme and ours[3] == "2e-6"

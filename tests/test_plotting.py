@@ -87,7 +87,7 @@ def test_the_second_panel_shows_friction_against_the_hydrodynamic_law_beside_the
     axes = plot_curve(curve).axes[1]
     np.testing.assert_array_equal(line(axes, "friction").get_xdata(), curve.hydrodynamic_friction)
     np.testing.assert_array_equal(line(axes, "friction").get_ydata(), curve.friction)
-    law = line(axes, "hydrodynamic law")
+    law = line(axes, "as smooth surfaces")
     np.testing.assert_array_equal(law.get_xdata(), law.get_ydata())
 
 

@@ -107,7 +107,7 @@ def plot_curve(
     law = curve.hydrodynamic_friction
     if (law > 0).all() and curve.over != "roughness":
         _draw_friction(right, curve, law, parts=False)
-        right.set_xlabel("friction coefficient from the hydrodynamic law")
+        right.set_xlabel("friction coefficient of smooth surfaces at the same speed")
         right.set_ylim(left.get_ylim())
         ends = np.array(right.get_ylim())
         right.plot(
@@ -117,7 +117,7 @@ def plot_curve(
             lw=1.2,
             ls=(0, (5, 3)),
             zorder=2,
-            label="hydrodynamic law",
+            label="as smooth surfaces",
             scalex=False,
         )
     else:

@@ -43,7 +43,7 @@ USUAL_ALPHA, USUAL_BETA = 2.0, 0.05
 NEGLIGIBLE_SHARE = 0.01
 """Share of load and of friction up to which it does not matter by which law asperities carry them."""
 
-ADVICE = ", by 10 to 20 % (stribeck check tells by how much)."
+ADVICE = ", by 10 to 20 % (stribeck check gives the amount)."
 """How the sentence on a minimum ends that only the tail of the law decides."""
 
 ATMOSPHERE = 1.01325e5
