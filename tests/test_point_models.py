@@ -9,7 +9,7 @@ from scipy.special import j0, jv
 import stribeck as sb
 from stribeck.contact_laws.exponential import ExponentialLaw
 from stribeck.contacts.groups import Groups
-from stribeck.equations.point.films import plane_of
+from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.fluids.effective_medium import EffectiveMedium
 from stribeck.fluids.flow_factors import PatirCheng

@@ -95,8 +95,8 @@ def stiffness(linear: Linear) -> Array:
     mesh = linear.equations.operators.mesh
     squares = np.tile(lobatto(mesh.degree).derivative ** 2, (mesh.panels, 1, 1))
     squares[0] = radau(mesh.degree).derivative ** 2
-    radial = np.matmul((linear.radial_of_pressure / mesh.stretch**2)[:, :, None, :], squares)[:, :, 0, :]
-    return np.asarray(mesh.gathered(radial) + (mesh.angular_derivative**2).T @ linear.angular_of_pressure)
+    radial = np.matmul((linear.film.radial_of_pressure / mesh.stretch**2)[:, :, None, :], squares)[:, :, 0, :]
+    return np.asarray(mesh.gathered(radial) + (mesh.angular_derivative**2).T @ linear.film.angular_of_pressure)
 
 
 class TornLinear(Linear):

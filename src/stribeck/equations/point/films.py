@@ -4,21 +4,21 @@ r"""What the equations of a ball ask of a film: the flow in the plane under a pr
     M = \frac{\rho \, \phi \, h^3}{\eta}, \quad C = \rho \, (h + s S)
 
 in Hertz units, with viscosity, density and flow factors as functions of pressure and gap; M is the same in all directions.
-:data:`PLANES` holds the flow in the plane of each kind of film of the line.
+A fluid that thins has an M that depends on the gradient too (:mod:`stribeck.equations.point.thinning`): equations ask for
+what flows and for its derivatives, whatever the law.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.fluids.fluid import Film
 from stribeck.fluids.laws import FlowFactors
 from stribeck.fluids.newtonian import Newtonian
+from stribeck.numerics.fourier_panels import PolarMesh
 
 
 class Flow(NamedTuple):
@@ -32,31 +32,130 @@ class Flow(NamedTuple):
     carried_by_pressure: Array | None = None
 
 
+class Fluxes(NamedTuple):
+    """What flows, times the weights of the weak form, and mobility and what is carried at the rim.
+
+    Attributes
+    ----------
+    radial : ndarray, shape (modes, panels, degree + 1)
+        Along the radius, panel by panel, as gradients differ on both sides of an edge.
+    angular : ndarray, shape (modes, rings)
+        Across the radius.
+    rim : tuple of ndarray, shape (modes,)
+        Mobility and what is carried there.
+    """
+
+    radial: Array
+    angular: Array
+    rim: tuple[Array, Array]
+
+
+class FluxSlopes(NamedTuple):
+    """The derivatives of :class:`Fluxes`, with the same weights.
+
+    Attributes
+    ----------
+    radial_of_pressure, radial_of_gap : ndarray, shape (modes, panels, degree + 1)
+        Along the radius, by the radial derivative of the pressure and by the gap.
+    angular_of_pressure, angular_of_gap : ndarray, shape (modes, rings)
+        Across the radius, by the derivative of the pressure in the angle and by the gap.
+    of_value : tuple of ndarray or None
+        By the pressure itself, along the radius and across it; None for nothing.
+    crossed : ndarray, shape (modes, panels, degree + 1), or None
+        Along the radius by the derivative in the angle, and across it by that in the radius; None for nothing.
+    rim : tuple of ndarray, shape (modes,)
+        Mobility at the rim, and derivatives by the gap of mobility and of what is carried there.
+    """
+
+    radial_of_pressure: Array
+    angular_of_pressure: Array
+    radial_of_gap: Array
+    angular_of_gap: Array
+    of_value: tuple[Array, Array] | None
+    crossed: Array | None
+    rim: tuple[Array, Array, Array]
+
+
 class PlaneFilm(Protocol):
     """A film between surfaces that move along x, in the plane."""
 
+    def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
+        """Return what flows."""
+
+    def slopes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> FluxSlopes:
+        """Return its derivatives."""
+
+    def shear(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Array:
+        """Return the drag of sliding over that of a fluid of the viscosity at ambient pressure and low rates, at the nodes."""
+
+
+def weights_of(mesh: PolarMesh) -> tuple[Array, Array]:
+    """Return the weights of ``r dr dtheta`` panel by panel and of ``dr dtheta`` on rings, for half a turn."""
+    part = np.pi / mesh.modes
+    return part * mesh.local_weights * mesh.local_radii, part * mesh.ring_weights
+
+
+class LinearPlane:
+    """A film whose flow is linear in the pressure gradient."""
+
     def flow(self, gap: Array, pressure: Array) -> Flow:
         """Return the flow at nodes."""
+        raise NotImplementedError
 
-    def shear(self, gap: Array, pressure: Array) -> Array:
-        """Return the drag of sliding over that of a fluid of the viscosity at ambient pressure, times the gap."""
+    def viscosity(self, gap: Array, pressure: Array) -> Array:
+        """Return the viscosity over that at ambient pressure."""
+        return np.ones_like(gap)
+
+    def shear(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Array:
+        """Return the viscosity over that at ambient pressure."""
+        return self.viscosity(gap, pressure)
+
+    def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
+        """Return what flows."""
+        cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
+        wide, carried = self.flow(gap, pressure)[:2]
+        weight, angle = weights_of(mesh)
+        gradient = mesh.radial_derivative(pressure)
+        radial = weight * (mesh.scattered(wide) * gradient - speed * cos[..., None] * mesh.scattered(carried))
+        angular = (angle / mesh.radii) * wide * (mesh.angular_derivative @ pressure) + speed * angle * sin * carried
+        return Fluxes(radial, angular, (wide[:, -1], carried[:, -1]))
+
+    def slopes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> FluxSlopes:
+        """Return its derivatives."""
+        cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
+        weight, angle = weights_of(mesh)
+        flow = self.flow(gap, pressure)
+        in_radius, in_angle = mesh.radial_derivative(pressure), (mesh.angular_derivative @ pressure) / mesh.radii
+
+        def moves(mobility: Array, carried: Array) -> tuple[Array, Array]:
+            """Return what changes of mobility and of what is carried do to the flow along the radius and across it."""
+            along = mesh.scattered(mobility) * in_radius - speed * cos[..., None] * mesh.scattered(carried)
+            return weight * along, angle * (mobility * in_angle + speed * sin * carried)
+
+        of_value = None
+        if flow.mobility_by_pressure is not None and flow.carried_by_pressure is not None:
+            of_value = moves(flow.mobility_by_pressure, flow.carried_by_pressure)
+        return FluxSlopes(
+            weight * mesh.scattered(flow.mobility),
+            (angle / mesh.radii) * flow.mobility,
+            *moves(flow.mobility_by_gap, flow.carried_by_gap),
+            of_value,
+            None,
+            (flow.mobility[:, -1], flow.mobility_by_gap[:, -1], flow.carried_by_gap[:, -1]),
+        )
 
 
 @dataclass(frozen=True)
-class PlainPlane:
+class PlainPlane(LinearPlane):
     """A Newtonian fluid of constant viscosity between smooth walls."""
 
     def flow(self, gap: Array, pressure: Array) -> Flow:
         """Return the flow at nodes."""
         return Flow(gap**3, gap, 3 * gap**2, np.ones_like(gap))
 
-    def shear(self, gap: Array, pressure: Array) -> Array:
-        """Return one."""
-        return np.ones_like(gap)
-
 
 @dataclass(frozen=True)
-class NewtonianPlane:
+class NewtonianPlane(LinearPlane):
     """A Newtonian fluid with laws of viscosity, density and rough flow.
 
     Parameters
@@ -88,7 +187,7 @@ class NewtonianPlane:
             rho_slope * width,
         )
 
-    def shear(self, gap: Array, pressure: Array) -> Array:
+    def viscosity(self, gap: Array, pressure: Array) -> Array:
         """Return the viscosity over that at ambient pressure."""
         if not self.film.uses_pressure:
             return np.ones_like(gap)
@@ -102,12 +201,3 @@ def is_isotropic(factors: FlowFactors) -> bool:
 
 PLAIN = PlainPlane()
 """The fluid of the article."""
-
-
-def plane_of(film: Film) -> PlaneFilm:
-    """Return the flow in the plane of a film; a KeyError for one that has none."""
-    return PLAIN if isinstance(film, Newtonian) and film.is_plain else PLANES[type(film)](film)
-
-
-PLANES: dict[type, Callable[[Any], PlaneFilm]] = {Newtonian: NewtonianPlane}
-"""The flow in the plane, by the kind of film."""

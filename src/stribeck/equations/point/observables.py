@@ -57,7 +57,7 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
     turn = 2.0 * np.pi / mesh.modes
     radial = turn * mesh.local_weights * mesh.local_radii * mesh.scattered(h * cos) * mesh.radial_derivative(p)
     tangential = turn * mesh.ring_weights * sin * h * (mesh.angular_derivative @ p)
-    shear = equations.film.shear(h, p) / h
+    shear = equations.film.shear(mesh, speed, h, p) / h
     couette = speed / 6.0 * (float((shear @ mesh.area_weights).sum()) - equations.shear_missing(y))
     poiseuille = 0.5 * float(radial.sum() - tangential.sum())
     of_fluid, of_contact = float((moment * p).sum()), float((moment * contact).sum())

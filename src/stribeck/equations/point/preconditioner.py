@@ -74,13 +74,13 @@ class Coupling:
         derivative[0] = radau(mesh.degree).derivative
         derivative = derivative / mesh.stretch[:, :, None]
         transposed = derivative.transpose(0, 2, 1)
-        slope, wide = linear.contact_slope, linear.angular_of_pressure
-        of_pressure = np.matmul(transposed * linear.radial_of_pressure[:, :, None, :], derivative)
-        of_gap = transposed * linear.radial_of_gap[:, :, None, :] - of_pressure * mesh.scattered(slope)[:, :, None, :]
-        tangential = linear.angular_of_gap - wide * (mesh.angular_derivative @ slope)
+        film, slope, wide = linear.film, linear.contact_slope, linear.film.angular_of_pressure
+        of_pressure = np.matmul(transposed * film.radial_of_pressure[:, :, None, :], derivative)
+        of_gap = transposed * film.radial_of_gap[:, :, None, :] - of_pressure * mesh.scattered(slope)[:, :, None, :]
+        tangential = film.angular_of_gap - wide * (mesh.angular_derivative @ slope)
         value = np.zeros_like(wide)
-        if linear.of_value is not None:
-            by_value, value = linear.of_value
+        if film.of_value is not None:
+            by_value, value = film.of_value
             of_pressure = of_pressure + transposed * by_value[:, :, None, :]
             of_gap = of_gap - transposed * (by_value * mesh.scattered(slope))[:, :, None, :]
             tangential = tangential - value * slope

@@ -136,15 +136,11 @@ class Equations:
 
     def flow(self, h: Array, p: Array, offset: float) -> Array:
         """Return the weak residual of Reynolds' equation, R_2."""
-        mesh, speed = self.operators.mesh, self.speed
-        cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
-        wide, carried = self.film.flow(h, p)[:2]
-        weight, angle = _weights(mesh)
-        radial = weight * (mesh.scattered(wide) * mesh.radial_derivative(p) - speed * cos[..., None] * mesh.scattered(carried))
-        tangential = (angle / mesh.radii) * wide * (mesh.angular_derivative @ p) + speed * angle * sin * carried
-        found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ tangential
-        x, part = mesh.rim, np.pi / mesh.modes
-        found[:, -1] += part * x * (speed * cos[:, 0] * carried[:, -1] - wide[:, -1] * self.rim_slope(p[:, -1], offset))
+        mesh = self.operators.mesh
+        radial, angular, (wide, carried) = self.film.fluxes(mesh, self.speed, h, p)
+        found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ angular
+        cos, x, part = np.cos(mesh.angles), mesh.rim, np.pi / mesh.modes
+        found[:, -1] += part * x * (self.speed * cos * carried - wide * self.rim_slope(p[:, -1], offset))
         return found
 
     def rim_slope(self, p: Array, offset: float) -> Array:
@@ -159,51 +155,33 @@ class Equations:
         return self.operators.rim_rates
 
 
-def _weights(mesh: PolarMesh) -> tuple[Array, Array]:
-    """Return the weights of ``r dr dtheta`` panel by panel and of ``dr dtheta`` on rings, for half a turn."""
-    part = np.pi / mesh.modes
-    return part * mesh.local_weights * mesh.local_radii, part * mesh.ring_weights
-
-
 class Linear:
     """The Jacobian at a state, reduced to the total pressure by mode and the offset."""
 
     def __init__(self, equations: Equations, y: Unknowns) -> None:
         self.equations, self.y = equations, y
         mesh, speed, h = equations.operators.mesh, equations.speed, y.gap
-        cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
-        weight, angle = _weights(mesh)
         self.contact_slope = equations.law.slope(h, equations.law.pressure(h))
-        flow = equations.film.flow(h, y.fluid)
-        in_radius, in_angle = mesh.radial_derivative(y.fluid), (mesh.angular_derivative @ y.fluid) / mesh.radii
-
-        def moves(mobility: Array, carried: Array) -> tuple[Array, Array]:
-            """Return what changes of mobility and of what is carried do to the flow along the radius and across it."""
-            along = mesh.scattered(mobility) * in_radius - speed * cos[..., None] * mesh.scattered(carried)
-            return weight * along, angle * (mobility * in_angle + speed * sin * carried)
-
-        self.radial_of_pressure = weight * mesh.scattered(flow.mobility)
-        self.angular_of_pressure = (angle / mesh.radii) * flow.mobility
-        self.radial_of_gap, self.angular_of_gap = moves(flow.mobility_by_gap, flow.carried_by_gap)
-        self.of_value: tuple[Array, Array] | None = None
-        """What the pressure itself does, along the radius and across it, beside its gradient; None for nothing."""
-        if flow.mobility_by_pressure is not None and flow.carried_by_pressure is not None:
-            self.of_value = moves(flow.mobility_by_pressure, flow.carried_by_pressure)
+        self.film = equations.film.slopes(mesh, speed, h, y.fluid)
         # At the rim the film is that at ambient pressure.
+        mobility, by_gap, carried_by_gap = self.film.rim
         x, part = mesh.rim, np.pi / mesh.modes
         slope = equations.rim_slope(y.fluid[:, -1], y.offset)
-        self.rim_of_pressure = -part * x * flow.mobility[:, -1]
-        at_rim = speed * cos[:, 0] * flow.carried_by_gap[:, -1] - flow.mobility_by_gap[:, -1] * slope
-        self.rim_of_gap = part * x * at_rim
+        self.rim_of_pressure = -part * x * mobility
+        self.rim_of_gap = part * x * (speed * np.cos(mesh.angles) * carried_by_gap - by_gap * slope)
 
     def flow(self, dp: Array, dh: Array) -> Array:
         """Return the change of R_2 under changes of fluid pressure and gap at the nodes."""
         mesh = self.equations.operators.mesh
-        radial = self.radial_of_pressure * mesh.radial_derivative(dp) + self.radial_of_gap * mesh.scattered(dh)
-        angular = self.angular_of_pressure * (mesh.angular_derivative @ dp) + self.angular_of_gap * dh
-        if self.of_value is not None:
-            radial += self.of_value[0] * mesh.scattered(dp)
-            angular += self.of_value[1] * dp
+        film, in_radius, in_angle = self.film, mesh.radial_derivative(dp), mesh.angular_derivative @ dp
+        radial = film.radial_of_pressure * in_radius + film.radial_of_gap * mesh.scattered(dh)
+        angular = film.angular_of_pressure * in_angle + film.angular_of_gap * dh
+        if film.of_value is not None:
+            radial += film.of_value[0] * mesh.scattered(dp)
+            angular += film.of_value[1] * dp
+        if film.crossed is not None:
+            radial += film.crossed * mesh.scattered(in_angle)
+            angular += mesh.gathered(film.crossed * in_radius)
         found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ angular
         rates_at_rim = self.equations.rim_rates(self.y.offset)
         found[:, -1] += self.rim_of_pressure * (rates_at_rim @ dp[:, -1]) + self.rim_of_gap * dh[:, -1]

@@ -11,7 +11,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.point.cavitation import CavitatedEquations, iterate_cavitated
-from stribeck.equations.point.films import plane_of
+from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.iteration import Iterated, distance, iterate
 from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, operators_of
 from stribeck.equations.point.system import Equations, Unknowns

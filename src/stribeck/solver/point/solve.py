@@ -16,10 +16,11 @@ from stribeck.contacts.cut_off import FAR
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.dry import dry_contact, hertz_gap
-from stribeck.equations.point.films import PLANES, is_isotropic
+from stribeck.equations.point.films import is_isotropic
 from stribeck.equations.point.iteration import Iterated
 from stribeck.equations.point.mesh_choice import MeshTooLargeError, operators_of, resolution
 from stribeck.equations.point.observables import identity_error
+from stribeck.equations.point.planes import PLANES
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
@@ -171,11 +172,8 @@ def check_model(model: Model) -> None:
             "'none'; a cavity at another pressure is not modelled."
         )
     if type(model.film) not in PLANES:
-        raise InputError(
-            f"fluid = {model.film.name}: of a ball the viscosity may depend on the pressure, not on the shear rate."
-        )
-    assert isinstance(model.film, Newtonian)
-    if not is_isotropic(model.film.flow):
+        raise InputError(f"fluid = {model.film.name}: its flow in the plane, below a ball, is not known.")
+    if isinstance(model.film, Newtonian) and not is_isotropic(model.film.flow):
         raise InputError(
             f"flow_factors = {model.film.flow.name}: of a ball they must be those of isotropic roughness, gamma = 1, without "
             "friction factors."

@@ -1,0 +1,259 @@
+r"""The flow across a film in the plane of a fluid that thins: a vector problem at each node, without an average viscosity.
+
+The stress is linear across the film, :math:`\mathbf g(\zeta) = \mathbf T + \mathbf Q \zeta` for
+:math:`-1/2 \le \zeta \le 1/2`, and the rate has its direction, :math:`\mathbf x = \varphi(g) \, \mathbf g` with
+:math:`\varphi = x(g)/g`: pressure gradient and sliding thin the fluid for each other, whatever the angle between them.
+With a given pressure gradient Q and slip the mean stress follows from
+
+.. math:: \mathbf r_0 = \int \varphi \, \mathbf g \, d\zeta, \qquad
+    \mathbf r_1 = \int \zeta \, \varphi \, \mathbf g \, d\zeta ,
+
+a convex problem in two unknowns; :math:`\mathbf r_1` is what the film carries.  With the moments :math:`K_k` of
+:math:`\zeta^k \, d\mathbf x/d\mathbf g`
+
+.. math:: d\mathbf T = K_0^{-1} (d\mathbf r_0 - K_1 \, d\mathbf Q), \qquad
+    d\mathbf r_1 = K_1 K_0^{-1} d\mathbf r_0 + (K_2 - K_1 K_0^{-1} K_1) \, d\mathbf Q .
+
+The integrals are Gauss's on both sides of the place of the smallest stress, in the root of the distance from it, and moments
+are about that place: nothing cancels.  In one direction this is :mod:`stribeck.fluids.local_flow`.
+
+Source: ours; the generalised Reynolds equation in integrals of the fluidity is [Dowson 1962].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from stribeck._types import Array, Flags
+from stribeck.fluids.laws import RateLaw
+
+POINTS = 14
+"""Gauss points on each side of the smallest stress."""
+
+SPACING = 0.0025
+"""Of the table of a law in ln(stress): cubics between its points are good to 1e-13."""
+
+NEWTONIAN, WITHOUT_PLATEAU, HIGHEST = 1e-9, 1e-60, 1e13
+"""Rate over that at which thinning begins below which the viscosity is constant; the same for laws that have no such rate;
+and the highest rate of the table."""
+
+CLOSE = 1e-7
+"""Step over the largest stress after which the next would be below rounding."""
+
+NEAR = 0.3
+"""Change of the stress over the largest one up to which first order is a good start."""
+
+LONGEST = 1.0
+"""Step over the largest stress at most."""
+
+OVERSHOT = 0.9
+"""Slope of the potential after a step, over that before it, from which the step was too long."""
+
+MOST_STEPS = 80
+
+TINY = 1e-150
+
+_nodes, _weights = legendre.leggauss(POINTS)
+ROOTS = 0.5 * (1 + _nodes)
+MOMENTS = (ROOTS[:, None] ** (2 * np.arange(5) + 1)) * _weights[:, None]
+"""Values at the points -> moments of the order k = 0 ... 4 over a side of length one."""
+
+SIGNS = np.array([1.0, -1.0, 1.0, -1.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class FlowCurve:
+    """Fluidity as a function of the stress, from a table.
+
+    Attributes
+    ----------
+    lowest : float
+        Logarithm of the smallest stress of the table.
+    log_fluidity, slopes : ndarray
+        ``ln(x/g)`` and its derivative by ``ln g`` at even spacings; constant slopes at both ends go on.
+    """
+
+    lowest: float
+    log_fluidity: Array
+    slopes: Array
+
+    def __call__(self, square: Array) -> tuple[Array, Array]:
+        """Return ``x/g`` and the derivative of its logarithm by ``ln g`` at squares of stresses."""
+        place = (0.5 * np.log(np.maximum(square, TINY**2)) - self.lowest) / SPACING
+        inside = np.clip(place, 0.0, self.slopes.size - 1.000001)
+        i = inside.astype(np.intp)
+        t = inside - i
+        y, s = self.log_fluidity, self.slopes * SPACING
+        left, right, s_left, s_right = y[i], y[i + 1], s[i], s[i + 1]
+        rise = right - left
+        bend, twist = 3 * rise - 2 * s_left - s_right, s_left + s_right - 2 * rise
+        log = left + t * (s_left + t * (bend + t * twist))
+        slope = (s_left + t * (2 * bend + 3 * t * twist)) / SPACING
+        log += (place - inside) * (SPACING * slope)
+        return np.exp(log), slope
+
+
+@lru_cache(maxsize=32)
+def flow_curve(law: RateLaw) -> FlowCurve:
+    """Return the flow curve of a law; fits and sweeps ask for many."""
+    ends = np.array([law.plateau * NEWTONIAN if law.plateau > 0 else WITHOUT_PLATEAU, HIGHEST])
+    lowest, highest = np.log(law.stress(ends)[0])
+    stress = np.exp(lowest + SPACING * np.arange(int((highest - lowest) / SPACING) + 2))
+    rate = law.rate(stress)
+    return FlowCurve(float(lowest), np.log(rate / stress), stress / (rate * law.stress(rate)[1]) - 1)
+
+
+class Column(NamedTuple):
+    """The flow across the film at many nodes; vectors have the shape (2, n), symmetric matrices (3, n): xx, xy, yy.
+
+    Attributes
+    ----------
+    mean : ndarray, shape (2, n)
+        T, the mean stress.
+    carried : ndarray, shape (2, n)
+        The moment r_1 of the rate.
+    by_slope : ndarray, shape (3, n)
+        The derivative of r_1 by Q.
+    by_slip : ndarray, shape (2, 2, n)
+        The derivative of r_1 by r_0.
+    ease : ndarray, shape (3, n)
+        The inverse of K_0: the derivative of T by r_0.
+    """
+
+    mean: Array
+    carried: Array
+    by_slope: Array
+    by_slip: Array
+    ease: Array
+
+
+def column(law: RateLaw, slope: Array, slip: Array, start: Array | None = None) -> Column:
+    """Return the flow with a pressure gradient and a slip.
+
+    Parameters
+    ----------
+    law : RateLaw
+        The law.
+    slope : ndarray, shape (2, n)
+        Q.
+    slip : ndarray, shape (2, n)
+        r_0.
+    start : ndarray, shape (2, n), optional
+        Mean stress to start from.
+
+    Returns
+    -------
+    Column
+        nan where the iteration does not end, as for a stress that is not finite.
+    """
+    curve = flow_curve(law)
+    n = slope.shape[1]
+    found = np.full((14, n), np.nan)
+    at = first_guess(law, curve, slope, slip) if start is None else start
+    left = np.flatnonzero(np.isfinite(slope).all(axis=0) & np.isfinite(slip).all(axis=0) & np.isfinite(at).all(axis=0))
+    here = _Integrals.at(curve, at[:, left], slope[:, left], slip[:, left])
+    part = np.ones(left.size)
+    for _ in range(MOST_STEPS):
+        if not left.size:
+            break
+        done = (here.size < CLOSE) & (part == 1.0)
+        if done.any():
+            found[:, left[done]] = here.of(done).ending()
+            left, here, part = left[~done], here.of(~done), part[~done]
+            continue
+        there = _Integrals.at(curve, here.mean + part * here.step, here.slope, here.slip)
+        before, after = (here.missing * here.step).sum(axis=0), -(there.missing * here.step).sum(axis=0)
+        too_far = ~(after <= OVERSHOT * before)
+        part = np.where(too_far, 0.5 * part, 1.0)
+        here = there if not too_far.any() else here.where(too_far, there)
+    return Column(found[:2], found[2:4], found[4:7], found[7:11].reshape(2, 2, n), found[11:])
+
+
+def first_guess(law: RateLaw, curve: FlowCurve, slope: Array, slip: Array) -> Array:
+    """Return a mean stress at which the fluid is thinned by the larger one of slip and pressure gradient."""
+    size = np.sqrt((slip * slip).sum(axis=0))
+    by_slope = curve((slope * slope).sum(axis=0) / 12)[0]
+    alone = law.stress(size)[0] / np.maximum(size, TINY)
+    return np.asarray(slip * np.minimum(np.where(size > 0, alone, 1.0), 1 / by_slope))
+
+
+class _Integrals(NamedTuple):
+    """What is known at a mean stress: moments about the smallest stress, the step to take, and what is missing of r_0."""
+
+    mean: Array
+    slope: Array
+    slip: Array
+    place: Array
+    carried: Array
+    zeroth: Array
+    first: Array
+    second: Array
+    missing: Array
+    step: Array
+    size: Array
+
+    @classmethod
+    def at(cls, curve: FlowCurve, mean: Array, slope: Array, slip: Array) -> _Integrals:
+        """Return what is known at a mean stress."""
+        steepness = (slope * slope).sum(axis=0)
+        place = np.clip(-(mean * slope).sum(axis=0) / np.maximum(steepness, TINY), -0.5, 0.5)
+        least = mean + place * slope
+        lengths = np.stack([0.5 - place, -0.5 - place])
+        away = lengths[..., None] * ROOTS**2
+        square = (least * least).sum(axis=0)[:, None] + away * (
+            2 * (least * slope).sum(axis=0)[:, None] + away * steepness[:, None]
+        )
+        ease, bend = curve(square)
+        powers = np.abs(lengths[..., None]) * lengths[..., None] ** np.arange(5)
+        a = ((ease @ MOMENTS[:, :3]) * powers[..., :3]).sum(axis=0).T
+        b = (((ease * bend / np.maximum(square, TINY)) @ MOMENTS) * powers).sum(axis=0).T
+        products = (_product(least, least), _product(least, slope) + _product(slope, least), _product(slope, slope))
+        matrices = []
+        for k in range(3):
+            matrix = b[k] * products[0] + b[k + 1] * products[1] + b[k + 2] * products[2]
+            matrix[[0, 2]] += a[k]
+            matrices.append(matrix)
+        missing = slip - (a[0] * least + a[1] * slope)
+        step = _times(_inverse(matrices[0]), missing)
+        largest = np.sqrt(np.maximum(*(((mean + side * slope) ** 2).sum(axis=0) for side in (-0.5, 0.5))))
+        size = np.sqrt((step * step).sum(axis=0)) / np.maximum(largest, TINY)
+        size = np.where((largest == 0) & (missing == 0).all(axis=0), 0.0, size)
+        step = step * np.minimum(1.0, LONGEST / np.maximum(size, TINY))
+        return cls(mean, slope, slip, place, a[1] * least + a[2] * slope, *matrices, missing, step, size)
+
+    def of(self, chosen: Flags) -> _Integrals:
+        """Return the chosen nodes."""
+        return _Integrals(*(each[..., chosen] for each in self))
+
+    def where(self, kept: Flags, other: _Integrals) -> _Integrals:
+        """Return the kept nodes, and the others of ``other``."""
+        return _Integrals(*(np.where(kept, mine, its) for mine, its in zip(self, other, strict=True)))
+
+    def ending(self) -> Array:
+        """Return the fields of the column after a last step."""
+        inverse = _inverse(self.zeroth)
+        carried = self.carried + _times(self.first, self.step) + self.place * self.slip
+        by_slip = np.stack([_times(inverse, self.first[[0, 1]]), _times(inverse, self.first[[1, 2]])])
+        through = np.stack([_times(self.first, by_slip[0]), _times(self.first, by_slip[1])])
+        by_slope = self.second - np.stack([through[0, 0], through[0, 1], through[1, 1]])
+        by_slip[0, 0] += self.place
+        by_slip[1, 1] += self.place
+        return np.concatenate([self.mean + self.step, carried, by_slope, by_slip.reshape(4, -1), inverse])
+
+
+def _product(first: Array, second: Array) -> Array:
+    return np.stack([first[0] * second[0], first[0] * second[1], first[1] * second[1]])
+
+
+def _times(matrix: Array, vector: Array) -> Array:
+    return np.stack([matrix[0] * vector[0] + matrix[1] * vector[1], matrix[1] * vector[0] + matrix[2] * vector[1]])
+
+
+def _inverse(matrix: Array) -> Array:
+    xx, xy, yy = matrix
+    return np.stack([yy, -xy, xx]) / np.maximum(xx * yy - xy * xy, TINY)

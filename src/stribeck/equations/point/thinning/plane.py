@@ -1,0 +1,163 @@
+r"""The flow in the plane of a film that thins.
+
+With :math:`\mathbf Q = 6 h t \nabla p_f`, :math:`\mathbf r_0 = -\lambda t \eta s \mathbf e_x/h`, the relaxation time t and what
+:mod:`stribeck.equations.point.thinning.column` makes of them, what flows is
+
+.. math:: \mathbf F = \rho \left[\frac{2 h^2}{\eta t} \mathbf r_1 - \lambda h \, \mathbf e_x\right],
+
+:math:`\rho [h^3 \nabla p_f/\eta - \lambda h \mathbf e_x]` for a Newtonian fluid.  The walls feel the stresses
+:math:`-(\mathbf T \mp \mathbf Q/2)/6t`, whose difference is the pull of the pressure gradient, whatever the fluid: what thinning
+changes of the drag is T.  The pressure divides the rate at a given stress by :math:`\eta(p)`, as on the line.
+
+At the rim, and beyond, the fluid is at rest but for rates far below those of thinning.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.equations.point.films import Fluxes, FluxSlopes, weights_of
+from stribeck.equations.point.thinning.column import NEAR, Column, column
+from stribeck.fluids.shear_thinning import ShearThinning
+from stribeck.numerics.fourier_panels import PolarMesh
+
+
+class _Local(NamedTuple):
+    """The flow across the film at the nodes of each panel, and what it was made for; vectors along and across the radius."""
+
+    key: tuple[Array, Array]
+    gap: Array
+    along: Array
+    """The direction of the motion."""
+    slope: Array
+    slip: Array
+    flow: Column
+    eta: Array
+    eta_slope: Array
+    rho: Array
+    rho_slope: Array
+
+
+@dataclass(frozen=True)
+class ThinningPlane:
+    """A fluid that thins, between smooth walls.
+
+    Parameters
+    ----------
+    film : ShearThinning
+        That of the line, at a speed.
+    """
+
+    film: ShearThinning
+    _last: list[_Local] = field(init=False, repr=False, compare=False, default_factory=list)
+
+    def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
+        """Return what flows."""
+        at = self._local(mesh, speed, gap, pressure)
+        radial, angular = _local_weights(mesh)
+        flux = self._flux(at, speed)
+        shape = radial.shape
+        return Fluxes(
+            radial * flux[0].reshape(-1, *shape),
+            mesh.gathered(angular * flux[1].reshape(-1, *shape)),
+            (gap[:, -1] ** 3, gap[:, -1]),
+        )
+
+    def slopes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> FluxSlopes:
+        """Return its derivatives."""
+        at = self._local(mesh, speed, gap, pressure)
+        radial, angular = _local_weights(mesh)
+        shape = radial.shape
+        h, flow = at.gap, at.flow
+        unit = self._unit(at)
+
+        def local(values: Array) -> Array:
+            return values.reshape(-1, *shape)
+
+        def both(values: Array) -> tuple[Array, Array]:
+            return radial * local(values[0]), mesh.gathered(angular * local(values[1]))
+
+        # A change of the gap by its relative part: r_0 falls with it and Q grows with it.
+        by_gap = unit / h * (2 * flow.carried - _by(flow.by_slip, at.slip) + _symmetric(flow.by_slope, at.slope))
+        by_gap -= at.rho * speed * at.along
+        of_value = None
+        if self.film.uses_pressure:
+            by_viscosity = unit * at.eta_slope * (_by(flow.by_slip, at.slip) - flow.carried)
+            of_value = both(by_viscosity + at.rho_slope / at.rho * self._flux(at, speed))
+        rr, rt, tt = 6 * self.film.law.time * h * unit * flow.by_slope
+        rim = gap[:, -1]
+        return FluxSlopes(
+            radial * local(rr),
+            mesh.gathered(angular / mesh.local_radii * local(tt)),
+            *both(by_gap),
+            of_value,
+            angular * local(rt),
+            (rim**3, 3 * rim**2, np.ones_like(rim)),
+        )
+
+    def shear(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Array:
+        """Return the mean of the stresses at both walls over that of a fluid that does not thin."""
+        at = self._local(mesh, speed, gap, pressure)
+        if self.film.slide:
+            found = -(at.flow.mean * at.along).sum(axis=0) * at.gap / (self.film.law.time * speed * self.film.slide)
+        else:
+            found = at.eta * (_symmetric(at.flow.ease, at.along) * at.along).sum(axis=0)
+        weights = mesh.local_weights
+        return mesh.gathered(weights * found.reshape(-1, *weights.shape)) / mesh.ring_weights
+
+    def _unit(self, at: _Local) -> Array:
+        return at.rho * 2 * at.gap**2 / (at.eta * self.film.law.time)
+
+    def _flux(self, at: _Local, speed: float) -> Array:
+        return np.asarray(self._unit(at) * at.flow.carried - at.rho * speed * at.gap * at.along)
+
+    def _local(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> _Local:
+        """Return the local solutions, those of the last call if it was for the same film."""
+        last = self._last[0] if self._last else None
+        if last is not None and np.array_equal(last.key[0], gap) and np.array_equal(last.key[1], pressure):
+            return last
+        h, ones = mesh.scattered(gap).ravel(), np.ones((1, *mesh.local_radii.shape))
+        cos, sin = (each[:, None, None] * ones for each in (np.cos(mesh.angles), np.sin(mesh.angles)))
+        along = np.stack([cos.ravel(), -sin.ravel()])
+        in_angle = mesh.scattered((mesh.angular_derivative @ pressure) / mesh.radii)
+        gradient = np.stack([mesh.radial_derivative(pressure).ravel(), in_angle.ravel()])
+        of_pressure = self.film._of_pressure(h, mesh.scattered(pressure).ravel())
+        time = self.film.law.time
+        slope = 6 * time * h * gradient
+        slip = -(speed * time * self.film.slide) * of_pressure[0] / h * along
+        start = None
+        if last is not None and last.slope.shape == slope.shape:
+            start = _moved(last, slope, slip)
+        flow = column(self.film.law, slope, slip, start)
+        found = _Local((gap.copy(), pressure.copy()), h, along, slope, slip, flow, *of_pressure)
+        self._last[:] = [found]
+        return found
+
+
+def _local_weights(mesh: PolarMesh) -> tuple[Array, Array]:
+    """Return the weights of ``r dr dtheta`` and of ``dr dtheta`` panel by panel, for half a turn."""
+    radial = weights_of(mesh)[0]
+    return radial, radial / mesh.local_radii
+
+
+def _by(matrix: Array, vector: Array) -> Array:
+    """Return the products of matrices with vectors."""
+    return np.stack([(row * vector).sum(axis=0) for row in matrix])
+
+
+def _symmetric(matrix: Array, vector: Array) -> Array:
+    xx, xy, yy = matrix
+    return np.stack([xx * vector[0] + xy * vector[1], xy * vector[0] + yy * vector[1]])
+
+
+def _moved(last: _Local, slope: Array, slip: Array) -> Array | None:
+    """Return mean stresses to start from: those of the last film, to first order; None where one is far from it."""
+    change = slope - last.slope
+    step = _symmetric(last.flow.ease, slip - last.slip) - _by(last.flow.by_slip.swapaxes(0, 1), change)
+    largest = np.maximum(*(np.hypot(*(last.flow.mean + side * last.slope)) for side in (-0.5, 0.5)))
+    far = ~(np.hypot(*step) + np.hypot(*change) < NEAR * largest)
+    return None if far.any() else last.flow.mean + step
