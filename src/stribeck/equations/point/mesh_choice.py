@@ -19,6 +19,7 @@ from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.system import Operators
 from stribeck.fluids.cavitation import Cavitation
+from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.plane import BODIES
@@ -31,6 +32,10 @@ GROWTH = 2.5
 
 REACH = 50.0
 """Radius of the rim over the scale of the contact."""
+
+ROLLING, FILM_ROUNDS = 0.3, 20
+"""Rate in a film between walls that roll, over the mean speed and the film, as the pressure drives it; and rounds in which a
+film that is thinned by its own rate is found."""
 
 FAR_PANELS = 2
 """Panels in ln r beyond twice the scale."""
@@ -121,6 +126,18 @@ def film_scale(speed: float) -> float:
     return float(max(thin, 0.18 * speed**0.8))
 
 
+def film_speed(speed: float, model: Model) -> float:
+    """Return the speed at which a Newtonian fluid has about the film of a smooth contact with the fluid of a model."""
+    film = model.film
+    if not isinstance(film, ShearThinning) or not speed > 0.0:
+        return speed
+    found = speed
+    for _ in range(FILM_ROUNDS):  # a thinner film is sheared faster
+        rate = np.array([film.law.time * speed * max(abs(film.slide), ROLLING) / film_scale(found)])
+        found = math.sqrt(found * speed * float(film.law.stress(rate)[0][0] / rate[0]))
+    return found
+
+
 def gaps_at(law: ContactLaw, log_pressures: Array) -> Array:
     """Return the positive gaps at which a law has these contact pressures, by bisection; tiny where it has them at none."""
     decay = float(np.max(law.decay_length))
@@ -139,6 +156,7 @@ RIGID_CAVITATED = 0.2249
 
 def layout(speed: float, law: ContactLaw, model: Model = ARTICLE) -> tuple[float, float]:
     """Return the width of the smallest panel over the scale of the contact, and that scale [a]."""
+    speed = film_speed(speed, model)
     decay = float(np.max(law.decay_length))
     height = film_scale(speed) + CAVITATED_FILM[model.cavitation] * speed**2
     if decay > 0.0:

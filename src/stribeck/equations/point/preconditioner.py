@@ -84,6 +84,17 @@ class Coupling:
             of_pressure = of_pressure + transposed * by_value[:, :, None, :]
             of_gap = of_gap - transposed * (by_value * mesh.scattered(slope))[:, :, None, :]
             tangential = tangential - value * slope
+        self.crossed: tuple[Array, Array] | None = None
+        """Sums of what waves of the pressure, and of the gap, across the radius do along it, and the other way round."""
+        if film.crossed is not None:
+            across = film.crossed[:, :, None, :] * transposed
+            of_gap = of_gap - across * mesh.scattered(mesh.angular_derivative @ slope)[:, :, None, :]
+            at_gap = mesh.scattered(slope)[:, :, None, :]
+            back = across.swapaxes(2, 3)
+            self.crossed = (
+                _sums(mesh.sines, np.stack([across, back], axis=1), 1.0),
+                _sums(mesh.sines, np.stack([across * at_gap, back * at_gap], axis=1), 1.0),
+            )
         self.rates = rates(mesh.modes) / mesh.rim
         # The contact pressure at the rim is nil but for the softest laws; its mode is taken for the first.
         rim_of_gap = linear.rim_of_gap - linear.rim_of_pressure * slope[:, -1] * self.rates[0]
@@ -100,6 +111,15 @@ class Coupling:
         found[-1] += 0.5 * (self.rim_h[d] + self.rim_h[s])
         return np.asarray(found)
 
+    def _crossed(self, which: int, m: Array, k: int) -> Array | float:
+        """Return what mode k does to modes m through derivatives in the radius and in the angle, panel by panel."""
+        if self.crossed is None:
+            return 0.0
+        sums = self.crossed[which]
+        d, s, sign = abs(m - k), m + k, np.sign(m - k)[:, None, None, None]
+        along = k * (sums[s, 0] - sign * sums[d, 0])
+        return np.asarray(-0.5 * (along + m[:, None, None, None] * (sums[s, 1] + sign * sums[d, 1])))
+
     def columns(self, band: int) -> Iterator[tuple[range, Array]]:
         """Yield for each mode of the pressure the modes of the residual that it reaches, and the blocks."""
         mesh = self.mesh
@@ -107,8 +127,8 @@ class Coupling:
         for k in range(mesh.modes):
             reached = range(max(0, k - band), min(mesh.modes, k + band + 1))
             d, s = [abs(m - k) for m in reached], [m + k for m in reached]
-            local_h = 0.5 * (self.radial_h[d] + self.radial_h[s])
-            local_p = 0.5 * (self.radial_p[d] + self.radial_p[s])
+            local_h = 0.5 * (self.radial_h[d] + self.radial_h[s]) - self._crossed(1, np.array(reached), k)
+            local_p = 0.5 * (self.radial_p[d] + self.radial_p[s]) + self._crossed(0, np.array(reached), k)
             blocks = np.stack([self._of_gap(m, k) for m in reached])[:, :, None] * self.deflection[k]
             for panel, at in enumerate(mesh.of_panel):
                 acting = local_h[:, panel].reshape(-1, n) @ self.deflection[k, at]
@@ -125,7 +145,8 @@ class Coupling:
     def of_offset(self) -> Array:
         """Return the column of the offset, shape (modes, rings)."""
         modes = range(self.mesh.modes)
-        radial = self.mesh.gathered(self.radial_h[: len(modes)].sum(axis=3))
+        local = self.radial_h[: len(modes)] - self._crossed(1, np.arange(len(modes)), 0)
+        radial = self.mesh.gathered(local.sum(axis=3))
         return np.asarray(radial + np.stack([self._of_gap(m, 0) for m in modes]))
 
 

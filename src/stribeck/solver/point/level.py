@@ -10,10 +10,11 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.cavitation import CavitatedEquations, iterate_cavitated
 from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.iteration import Iterated, distance, iterate
-from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, operators_of
+from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, film_speed, operators_of
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
@@ -54,8 +55,9 @@ class Level:
         return self.equations.law.pressure(self.unknowns.gap)
 
 
-def band_for(speed: float, law: ContactLaw) -> int:
+def band_for(speed: float, law: ContactLaw, model: Model = ARTICLE) -> int:
     """Return the band of modes that the preconditioner keeps: thin films of smooth contacts couple more of them."""
+    speed = film_speed(speed, model)
     if float(np.max(law.decay_length)) > speed**0.6 or speed >= 1e-3:
         return 5
     return int(min(16, round(5.0 * (1e-3 / speed) ** 0.17)))
@@ -97,7 +99,7 @@ def solve_level(
     MeshTooLargeError
         If the mesh takes more than ``largest`` bytes.
     """
-    band = band_for(speed, law)
+    band = band_for(speed, law, resolution.model)
     if bytes_of(resolution, band) > largest:
         raise MeshTooLargeError
     operators = operators_of(resolution)

@@ -214,7 +214,7 @@ def first_resolution(level: Level, rtol: float, band: int, slack: float, ahead: 
     degree = math.ceil(math.log(0.25 / (rtol * scale)) / PANEL_RATE)
     modes = max(1.4 * modes_for(level, 0.7 * math.sqrt(rtol)), modes_for(level, 0.5 * slack * rtol / UNSEEN), 8)
     if level.contact_pressure.max() < 1e-3:
-        width = layout(ahead * level.equations.speed, level.equations.law)[0] / EDGE
+        width = layout(ahead * level.equations.speed, level.equations.law, level.resolution.model)[0] / EDGE
         modes = max(modes, SIDE_LOBES * width**-0.675 * math.log(slack * rtol) / math.log(1e-4))
     degree = min(MOST_DEGREE, max(7, degree))
     return affordable(replace(level.resolution, degree=degree, modes=2 * math.ceil(0.5 * modes)), band)
@@ -226,7 +226,7 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair
     ``known`` is the state with a larger error, as found along a path.
     """
     slack = MINIMUM_SLACK if known is None else PATH_SLACK
-    band = band_for(speed, law)
+    band = band_for(speed, law, guess.resolution.model)
     tolerance = newton_tolerance(rtol)
     best = known
     coarse: Level | None = None
@@ -363,7 +363,7 @@ def follow(
 def meshes_for(speed: float, law: ContactLaw, neighbour: Pair, rtol: float) -> tuple[Resolution, bool]:
     """Return the finer mesh for a state beside a neighbour, and whether it is that of the neighbour."""
     now, fine = neighbour.fine.resolution, neighbour.fine
-    band = band_for(speed, law)
+    band = band_for(speed, law, now.model)
     # What is made for states on the way serves longer.
     ahead = AHEAD * speed if speed < fine.equations.speed else speed
     wasteful = neighbour.total < WASTE * rtol and neighbour.minimum < WASTE * PATH_SLACK * rtol

@@ -21,6 +21,7 @@ from stribeck.equations.point.mesh_choice import (
     MeshTooLargeError,
     Resolution,
     film_scale,
+    film_speed,
     gaps_at,
     layout,
     operators_of,
@@ -57,10 +58,11 @@ LONGEST_PATH = 60
 """States on a path after which it is given up."""
 
 
-def first_modes(speed: float, law: ContactLaw) -> int:
+def first_modes(speed: float, law: ContactLaw, model: Model) -> int:
     """Return the number of angular modes of a first state."""
-    width, _ = layout(speed, law)
-    return int(min(40, max(8, round(1.2 * (width / 0.6) ** -0.6)))) if film_scale(speed) > _dry_gap(law) else 8
+    width, _ = layout(speed, law, model)
+    film = film_scale(film_speed(speed, model))
+    return int(min(40, max(8, round(1.2 * (width / 0.6) ** -0.6)))) if film > _dry_gap(law) else 8
 
 
 def _dry_gap(law: ContactLaw) -> float:
@@ -117,7 +119,7 @@ def first_guess(found: Resolution, speed: float, law: ContactLaw, lift: float = 
 
     None where the dry contact fails.
     """
-    cushioned = WithCushion(law, lift * film_scale(speed))
+    cushioned = WithCushion(law, lift * film_scale(film_speed(speed, found.model)))
     for _ in range(MOST_ROUNDS):
         solved, operators = found, operators_of(found)
         dry = dry_contact(operators, cushioned, 1e-6)
@@ -148,7 +150,7 @@ def first_state(speed: float, law: ContactLaw, model: Model = ARTICLE) -> Level 
 
 def _direct(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     for lift in (1.0, 1.5, 0.7):
-        guess = first_guess(resolution(speed, law, DEGREE, first_modes(speed, law), model), speed, law, lift)
+        guess = first_guess(resolution(speed, law, DEGREE, first_modes(speed, law, model), model), speed, law, lift)
         if guess is not None:
             found, y = guess
             yield solve_level(found, speed, law, y, operators_of(found).mesh, TOLERANCE, max_steps=MAX_STEPS)
@@ -157,7 +159,7 @@ def _direct(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
 def _upward(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     """Yield the state at the end of the path from slow to the speed, if it gets there."""
     slow = speed
-    while film_scale(slow) > 0.1 * _dry_gap(law) and slow > SLOW * speed:
+    while film_scale(film_speed(slow, model)) > 0.1 * _dry_gap(law) and slow > SLOW * speed:
         slow /= 4.0
     yield from _path(slow, speed, law, model)
 
@@ -171,7 +173,7 @@ def _milder(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
     """Yield the state at the end of the path from a Newtonian fluid between smooth walls to the film of the model."""
     if model.film == ARTICLE.film:
         return
-    here = resolution(speed, law, DEGREE, first_modes(speed, law), model)
+    here = resolution(speed, law, DEGREE, first_modes(speed, law, model), model)
 
     def correct(part: float, history: Sequence[tuple[float, Level]]) -> Level | None:
         if not history:
@@ -198,7 +200,7 @@ def _path(begin: float, end: float, law: ContactLaw, model: Model) -> Iterator[L
         if count > LONGEST_PATH:
             return None
         speed = math.exp(s)
-        here = resolution(speed, law, DEGREE, first_modes(speed, law), model)
+        here = resolution(speed, law, DEGREE, first_modes(speed, law, model), model)
         if history:
             here = replace(here, splits=history[-1][1].resolution.splits)
             weights = extrapolation_weights([at for at, _ in history], s)
