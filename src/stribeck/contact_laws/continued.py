@@ -1,7 +1,7 @@
-"""Contact laws in the complex plane near the separations of a state, where series of it are sampled.
+"""Contact laws near the separations of a state, where series of it are made.
 
 Laws are known as functions of real numbers, by tables and splines too.  Around each separation such a law is the polynomial
-through its values nearby, which is analytic whatever the law is.
+through its values nearby, which has a series whatever the law is.
 """
 
 from __future__ import annotations
@@ -57,14 +57,11 @@ class ContinuedLaw:
         values = shape.log_pressure(np.exp(points) if logarithmic else points)
         return cls(shape.name, logarithmic, centre, reach, _to_powers() @ values)
 
-    def log_pressure(self, separation: Array) -> Array:
-        """Return ln(Phi) at complex separations, shape (..., n)."""
-        z = ((np.log(separation) if self.logarithmic else separation) - self.centre) / self.reach
-        found: Array = self.coefficients[-1] + np.zeros_like(z)
-        for coefficients in self.coefficients[-2::-1]:
-            found *= z
-            found += coefficients
-        return found
+    @classmethod
+    def exponential(cls, separation: Array) -> ContinuedLaw:
+        """Return that of the exponential law, which is linear."""
+        one = np.ones_like(separation)
+        return cls("exponential", False, separation, one, np.stack([-separation, -one]))
 
 
 @lru_cache(maxsize=1)

@@ -147,7 +147,7 @@ def friction_integrals(
     order = mesh.order
     inner_slopes = None if slopes is None else slopes[..., :-order]
     inner = friction_integrands(mesh.nodes[:-order], h[..., :-order], h_star, inner_slopes) @ mesh.weights[:-order]
-    x, weights, h_tail = _tail(mesh, h, far)
+    x, weights, h_tail = beyond_panels(mesh, h, far)
     tail = friction_integrands(x, h_tail, h_star) @ weights
     return np.asarray(inner + tail)
 
@@ -155,13 +155,13 @@ def friction_integrals(
 def upper_integral(mesh: Mesh, h: Array, h_star: Numbers, far: Callable[[Array], Array] = far_gap) -> Array:
     """Return the integral of the drag on the cylinder, ``(3 h*/h - 2)/h``, of each row."""
     order = mesh.order
-    _, weights, h_tail = _tail(mesh, h, far)
+    _, weights, h_tail = beyond_panels(mesh, h, far)
     inner, tail = 1 / h[..., :-order], 1 / h_tail
     found = (inner * (3 * h_star * inner - 2)) @ mesh.weights[:-order] + (tail * (3 * h_star * tail - 2)) @ weights
     return np.asarray(found)
 
 
-def _tail(mesh: Mesh, h: Array, far: Callable[[Array], Array]) -> tuple[Array, Array, Array]:
+def beyond_panels(mesh: Mesh, h: Array, far: Callable[[Array], Array]) -> tuple[Array, Array, Array]:
     """Return nodes beyond the panels in ``x``, the weights of integrals there, and the gap at these nodes."""
     t, weights, to_tail = towards_infinity(mesh.order)
     t = t * mesh.half_widths[-1]

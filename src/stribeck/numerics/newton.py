@@ -31,6 +31,7 @@ from stribeck.quantities.outcome import Outcome
 SMALLEST_FRACTION = 1e-8  # a step damped below this part of Newton's makes no progress
 HALVINGS = 12  # trials to get back to where the residual is finite
 LAST_CHORD = 0.5  # a chord step within the tolerance is trusted if it contracted at least so much
+FIRST_CHORD = 0.02  # the caller's inverse is taken to be good for a first step of this size
 ROUNDING_SIZE = 1e-5  # steps that stop contracting below this size are rounding, above it they wander
 STALE_STEPS = 3  # so many Newton steps without a halving mean that steps have stopped contracting
 
@@ -307,7 +308,7 @@ def root_find(problem: Problem, start: npt.ArrayLike, control: StepControl | Non
             if reusable and inverse is not None:
                 dx, t = step(inverse, r), 1.0
                 s_new = problem.size(x, dx)
-                rate = s_new / s if steps else 0.0  # the caller's inverse is taken to be good
+                rate = s_new / s if steps else s_new / FIRST_CHORD * (chord or 0.0)
                 contracts = rate <= (chord or 0.0) or (s_new <= tolerance and rate <= LAST_CHORD)
                 chord_step = contracts and (steps > 0 or problem.admissible(x, dx) >= 1.0)
             if not chord_step:

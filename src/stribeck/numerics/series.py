@@ -1,19 +1,17 @@
-r"""Taylor series of solutions, order by order, of equations that are known by their values alone.
+r"""Taylor series: arithmetic, and solutions of equations order by order.
 
 A solution of :math:`R(w(t), t) = 0` is expanded about t = 0.  The coefficient of order k of the residual is linear in that of
 the solution,
 
 .. math:: J w_k = -R_k|_{w_k = 0},
 
-with the Jacobian at the solution: one factorisation serves all orders.  The coefficients of what is nonlinear come from its
-values around zero: on a circle of radius r in the complex plane, by Cauchy's integral, where it is analytic,
+with the Jacobian at the solution: one factorisation serves all orders.  What is nonlinear is either composed of products,
+quotients and exponentials, whose coefficients follow from those of lower order, or known by its values alone: then the
+coefficients are those of the polynomial through its values on [-r, r], which has them also where the function is not quite
+smooth, with fewer digits.
 
-.. math:: f_k = \frac{1}{2\pi} \int_0^{2\pi} f(r e^{i\theta}) \, (r e^{i\theta})^{-k} d\theta,
-
-else those of the polynomial through its values on [-r, r], which has them also where the function is not quite smooth, with
-fewer digits.  Nothing is asked of a function but that it takes arrays.
-
-The module knows no physics.  Source: [Trefethen & Weideman 2014] SIAM Review 56, 385, for the trapezoidal rule on a circle.
+Coefficients are in the first axis, order by order.  The module knows no physics.
+Source: [Griewank & Walther 2008] Evaluating Derivatives, chapter 13.
 """
 
 from __future__ import annotations
@@ -27,7 +25,7 @@ from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
 
-__all__ = ["Samples", "circle", "implicit_series", "interval", "radius"]
+__all__ = ["Samples", "along", "exponential", "implicit_series", "interval", "logarithm", "product", "radius", "reciprocal"]
 
 LARGEST_RADIUS = 6.0
 """Radius of series whose higher coefficients vanish."""
@@ -39,6 +37,54 @@ ON_INTERVAL = 20
 """Values on an interval."""
 
 
+def exponential_term(logs: Array, values: Array, k: int) -> Array:
+    """Return the coefficient of order k >= 1 of an exponential, those of its argument and its own lower ones given."""
+    return np.asarray(np.einsum("j,j...,j...->...", np.arange(1, k + 1) / k, logs[1 : k + 1], values[k - 1 :: -1][:k]))
+
+
+def product_term(a: Array, b: Array, k: int) -> Array:
+    """Return the coefficient of order k of a product."""
+    return np.asarray(np.einsum("j...,j...->...", a[: k + 1], b[k::-1]))
+
+
+def exponential(logs: Array) -> Array:
+    """Return the series of the exponential of a series."""
+    found = np.exp(logs)
+    for k in range(1, len(logs)):
+        found[k] = exponential_term(logs, found, k)
+    return found
+
+
+def along(rate: float, order: int) -> Array:
+    """Return the series of ``exp(rate t)``."""
+    logs = np.zeros(order + 1)
+    logs[1:2] = rate
+    return exponential(logs)
+
+
+def logarithm(values: Array) -> Array:
+    """Return the series of the logarithm of a series."""
+    found = np.log(values[:1]) + np.zeros_like(values)
+    for k in range(1, len(values)):
+        j = np.arange(1, k)
+        found[k] = (values[k] - np.einsum("j,j...,j...->...", j / k, found[1:k], values[k - 1 : 0 : -1])) / values[0]
+    return found
+
+
+def product(a: Array, b: Array) -> Array:
+    """Return the series of a product of two."""
+    return np.stack([product_term(a, b, k) for k in range(len(a))])
+
+
+def reciprocal(values: Array) -> Array:
+    """Return the series of one over a series."""
+    found = np.zeros_like(values)
+    found[0] = 1.0 / values[0]
+    for k in range(1, len(values)):
+        found[k] = -found[0] * product_term(values[1:], found, k - 1)
+    return found
+
+
 @dataclass(frozen=True, eq=False)
 class Samples:
     """Where a function is evaluated for its Taylor coefficients about zero.
@@ -46,9 +92,9 @@ class Samples:
     Attributes
     ----------
     places : ndarray, shape (n,)
-        The places, complex on a circle.
+        The places.
     weights : ndarray, shape (orders, n)
-        What the values are multiplied by; the real part of the sum is the coefficient.
+        What the values are multiplied by; the sum is the coefficient.
     """
 
     places: Array
@@ -56,30 +102,11 @@ class Samples:
 
     def taylor(self, values: Array, order: int) -> Array:
         """Return the Taylor coefficients up to ``order``, shape (order + 1, ...), of values, shape (n, ...)."""
-        return np.tensordot(self.weights[: order + 1], values, 1).real
-
-    def aliased(self, values: Array) -> float:
-        """Return how large the highest of the coefficients are that the samples on a circle tell, on the circle.
-
-        What lies beyond adds itself to the lower ones; zero for an interval.
-        """
-        if not np.iscomplexobj(self.places):
-            return 0.0
-        last = len(self.weights) - 1
-        return float(np.abs((self.weights[last - 1 :] @ values).real).max() * abs(self.places[0]) ** (last - 1))
+        return np.asarray(np.tensordot(self.weights[: order + 1], values, 1))
 
     def powers(self, order: int) -> Array:
         """Return the powers of the places up to ``order``, shape (n, order + 1)."""
         return np.asarray(self.places[:, None] ** np.arange(order + 1))
-
-
-def circle(reach: float, count: int) -> Samples:
-    """Return ``count`` samples of an analytic function on the upper half of a circle; the lower half mirrors them.
-
-    With the radius of convergence R they leave a relative error of ``(reach/R)**(2 count)``.
-    """
-    places = reach * np.exp(1j * np.pi * (np.arange(count) + 0.5) / count)
-    return Samples(places, places ** -np.arange(2 * count)[:, None] / count)
 
 
 def interval(reach: float) -> Samples:
@@ -134,11 +161,11 @@ def implicit_series(
     found = np.zeros((order + 1, *start.shape))
     found[0] = start
     for k in range(1, order + 1):
-        found[k] = inverse(residual(k, found, (samples.weights[k] @ local(k, found)).real))
+        found[k] = inverse(residual(k, found, samples.weights[k] @ local(k, found)))
     return found
 
 
-def radius(coefficients: Array, reach: float) -> float:
+def radius(coefficients: Array, reach: float = 1.0) -> float:
     """Return about the radius of convergence of series: that by which their coefficients fall.
 
     Parameters

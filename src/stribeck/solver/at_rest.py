@@ -12,6 +12,7 @@ from stribeck.contact_laws.law import AsperityLaw, has_constant_decay
 from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE, Model
+from stribeck.numerics.series import along, product
 
 STATIC_LOAD = 0.01
 """Load at which heavier contacts at rest are solved: all gaps are positive there."""
@@ -65,19 +66,19 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
 
 
 def shift_along(
-    groups: Groups, base: Groups, direction: tuple[float, float, float], places: Array
+    groups: Groups, base: Groups, direction: tuple[float, float, float], order: int
 ) -> tuple[tuple[float, float, float], Array]:
-    """Return the direction in which the groups that are solved for move, and what their gap lacks at ``places`` of the path.
+    """Return the direction in which the groups that are solved for move, and the series of what their gap lacks.
 
     ``base`` are those of ``groups`` by :func:`with_positive_gap`; load and shift of the law are held along the path.
     """
     _, by_load, by_roughness = direction
     exponents = groups.scaling
     rate = by_roughness - exponents.roughness_exponent * by_load
-    kappa = float(base.relative_roughness) * np.exp(rate * places)
+    line = np.zeros(order + 1)  # the shift over kappa
     if base.load != groups.load:
-        heavier = math.log(float(groups.load / base.load)) + by_load * places
-        return (0.0, 0.0, rate), np.asarray(-exponents.pressure_exponent * kappa * heavier)
-    if isinstance(base.law, ShiftedLaw) and not isinstance(groups.law, ShiftedLaw):
-        return direction, np.asarray(-base.law.shift * kappa)
-    return direction, np.zeros_like(places)
+        line[:2] = math.log(float(groups.load / base.load)), by_load
+        direction, line = (0.0, 0.0, rate), -exponents.pressure_exponent * line
+    elif isinstance(base.law, ShiftedLaw) and not isinstance(groups.law, ShiftedLaw):
+        line[0] = -base.law.shift
+    return direction, float(base.relative_roughness) * product(line, along(rate, order))

@@ -1,13 +1,14 @@
 r"""Taylor series of a state of the line in the logarithm of what varies, and of its observables.
 
-The unknowns are those of the equations, the gap by its logarithm.  In a film of the article an order costs the evaluation of
-film and contact law around the state, two matrix-vector products and one back-substitution, in any other that of the whole
-residual, see :func:`stribeck.numerics.series.implicit_series`.
+The unknowns are those of the equations, the gap by its logarithm.  In a film of the article all is composed of products and
+exponentials, whose coefficients follow order by order, for two matrix-vector products and one back-substitution each; the
+contact law is a polynomial around each separation.  Of any other film the whole residual is sampled, see
+:func:`stribeck.numerics.series.implicit_series`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -19,40 +20,33 @@ from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
 from stribeck.contact_laws.scaled import ScaledLaw
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import Model
+from stribeck.equations.gap import central_gap
 from stribeck.equations.line import LOAD, Equations, Operators
-from stribeck.equations.observables import ROW, observables, observables_of_stacked, smooth_observables
-from stribeck.fluids import newtonian
+from stribeck.equations.observables import ROW, VISCOUS, beyond_panels, friction_scale, observables, observables_of_stacked
 from stribeck.numerics.newton import Inverse
-from stribeck.numerics.series import Samples, implicit_series
-from stribeck.quantities.outputs import ALL_NAMES
+from stribeck.numerics.panels import reference
+from stribeck.numerics.series import (
+    Samples,
+    along,
+    exponential,
+    exponential_term,
+    implicit_series,
+    logarithm,
+    product,
+    product_term,
+    reciprocal,
+)
+from stribeck.quantities.outputs import ALL_NAMES, NAMES
 
-__all__ = ["Direction", "Expanded", "expand"]
+__all__ = ["Direction", "Expanded", "corrected", "expand_any_film", "expand_article"]
 
 SHIFTED = [ROW["central_gap"], ROW["offset"]]
 
+GAP_POWERS = np.array([1.0, -1.0, -2.0, -3.0])
+"""Powers of the gap that film and friction are composed of."""
+
 Direction = tuple[float, float, float]
 """Derivatives of ln(speed), ln(load), ln(roughness) along a curve."""
-
-
-class Around(NamedTuple):
-    """What is solved around a state, at samples in rows.
-
-    Attributes
-    ----------
-    equations : Equations
-        The equations, all speeds and laws in columns; None where the model varies along the path.
-    load : ndarray
-        Load groups, a column.
-    shifts : ndarray
-        What the gap lacks, see :func:`stribeck.solver.at_rest.with_positive_gap`.
-    each : tuple of Equations
-        Those of each sample where the model varies, else none.
-    """
-
-    equations: Equations | None
-    load: Array
-    shifts: Array
-    each: tuple[Equations, ...] = ()
 
 
 class Expanded(NamedTuple):
@@ -60,109 +54,21 @@ class Expanded(NamedTuple):
 
     Attributes
     ----------
-    y : ndarray
-        Unknowns of the state, corrected once more with the Jacobian at it.
-    inverse : Inverse
-        That of this Jacobian.
     unknowns : ndarray, shape (K + 1, unknowns)
         Those of the unknowns, of the gap its logarithm.
-    aliased : float
-        What coefficients beyond those that the samples tell may add to the pressures at the samples.
     observables, logs : ndarray, shape (K + 1, n)
         Those of the observables, none of the minimum gap; of the share of asperities its logarithm too, else nan.
     """
 
-    y: Array
-    inverse: Inverse
     unknowns: Array
-    aliased: float
     observables: Array
     logs: Array
 
 
-def around(
-    equations: Equations,
-    gap: Array,
-    groups: Groups,
-    direction: Direction,
-    samples: Samples,
-    shifts: Array,
-    models: Sequence[Model],
-) -> Around:
-    """Return the equations around those of a state.
-
-    Parameters
-    ----------
-    equations : Equations
-        Of the state.
-    gap : ndarray
-        Its gap at the nodes.
-    groups : Groups
-        Its groups.
-    direction : tuple of float
-        Derivatives of ln(speed), ln(load), ln(roughness).
-    samples : Samples
-        Where along the path.
-    shifts : ndarray
-        What the gap lacks there.
-    models : sequence of Model
-        The model there; none where it does not vary.
-    """
-    speed, load, roughness = np.exp(np.outer(samples.places, direction)).T[..., None]
-    speed, load, law = float(groups.speed) * speed, float(groups.load) * load, contact_law(groups)
-    assert isinstance(law, ExponentialLaw | ScaledLaw | NoContact)
-    changes: dict[str, Any] = {}
-    if groups.roughness > 0:
-        changes = {"load": load, "decay_length": float(groups.roughness) * roughness / load**groups.scaling.roughness_exponent}
-        if isinstance(law, ScaledLaw) and np.iscomplexobj(samples.places):
-            changes["shape"] = ContinuedLaw.of(law.shape, gap / float(groups.relative_roughness))
-    if not models:
-        return Around(Equations(equations.operators, speed, replace(law, **changes), equations.flux_scale), load, shifts)
-    each = []
-    for row, model in enumerate(models):
-        operators = Operators(equations.operators.mesh, model)
-        if model.solid == equations.operators.model.solid:
-            vars(operators)["deflection"] = equations.operators.deflection
-        here: dict[str, Any] = {name: float(value[row, 0]) for name, value in changes.items()}
-        alone = replace(law, **here)
-        each.append(Equations(operators, float(speed[row, 0]), alone, equations.flux_scale))
-    return Around(None, load, shifts, tuple(each))
-
-
-def expand(equations: Equations, y: Array, around: Around, samples: Samples, order: int) -> Expanded:
-    """Return the series of a state.
-
-    Parameters
-    ----------
-    equations : Equations
-        Of the state.
-    y : ndarray
-        Its unknowns, converged.
-    around : Around
-        The equations around it.
-    samples : Samples
-        Where these are.
-    order : int
-        The highest order.
-
-    Returns
-    -------
-    Expanded
-        The coefficients.
-    """
-    inverse, units = equations.inverse(y), equations.units(y)
-    y = y + units * inverse(equations.residual(y))
-    at = equations.layout
-    start = y.copy()
-    start[at.gap] = np.log(y[at.gap])
-    units[at.gap] = 1.0
-
-    def correct(r: Array) -> Array:
-        return np.asarray(units * inverse(r))
-
-    series = _of_article if around.equations is not None and equations.operators.is_article else _of_any_film
-    found, aliased = series(equations, start, around, samples, correct, order)
-    return Expanded(y, inverse, found, aliased, *_observables(equations, around, found, samples))
+def corrected(equations: Equations, y: Array) -> tuple[Array, Inverse]:
+    """Return the unknowns of a converged state, corrected once more with the Jacobian at it, and the inverse of this."""
+    inverse = equations.inverse(y)
+    return y + equations.units(y) * inverse(equations.residual(y)), inverse
 
 
 def from_logs(equations: Equations, w: Array) -> Array:
@@ -172,92 +78,260 @@ def from_logs(equations: Equations, w: Array) -> Array:
     return found
 
 
-def _of_article(
-    equations: Equations, start: Array, around: Around, samples: Samples, correct: Callable[[Array], Array], order: int
-) -> tuple[Array, float]:
-    """Return the series of the unknowns of a film of the article, and what is aliased.
+def _started(equations: Equations, y: Array) -> tuple[Array, Array]:
+    """Return the unknowns with the logarithm of the gap, and their units."""
+    start, units, at = y.copy(), equations.units(y), equations.layout
+    start[at.gap] = np.log(y[at.gap])
+    units[at.gap] = 1.0
+    return start, units
 
-    What is nonlinear is local: the gradient of the film and the contact law, each at its node.  They alone are sampled.
+
+class _Contact:
+    """The series of the contact pressure over its largest value, order by order with that of the gap."""
+
+    def __init__(self, groups: Groups, gap: Array, direction: Direction, order: int) -> None:
+        law, kappa, scaling = contact_law(groups), float(groups.relative_roughness), groups.scaling
+        self.rate = direction[2] - scaling.roughness_exponent * direction[1]  # of ln(kappa)
+        self.exists = not isinstance(law, NoContact)
+        self.pressure, self.logs = np.zeros((2, order + 1, gap.size))
+        self.top = -np.inf
+        if not self.exists:
+            return
+        assert isinstance(law, ExponentialLaw | ScaledLaw)
+        of = ContinuedLaw.exponential if isinstance(law, ExponentialLaw) else lambda s: ContinuedLaw.of(law.shape, s)
+        self.near = of(gap / kappa)
+        self.by_load = -law.pressure_exponent * direction[1]
+        log_pressure = law.log_pressure(gap)
+        self.top = float(log_pressure.max())
+        self.pressure[0] = np.exp(log_pressure - self.top)
+        self.separation, self.place = np.zeros((2, order + 1, gap.size))
+        self.separation[0] = gap / kappa
+        self.powers = np.zeros((len(self.near.coefficients), order + 1, gap.size))
+        self.powers[:, 0] = self.near.coefficients
+
+    def extend(self, k: int, w: Array) -> None:
+        """Find order k, ``w`` being the logarithm of the gap, of which the coefficient of order k may still be zero."""
+        if not self.exists:
+            return
+        logs = w[: k + 1].copy()
+        logs[1] -= self.rate
+        self.separation[k] = exponential_term(logs, self.separation, k)
+        self.place[k] = (logs[k] if self.near.logarithmic else self.separation[k]) / self.near.reach
+        self.powers[:-1, k] = np.einsum("mjn,jn->mn", self.powers[1:, :k], self.place[k:0:-1])
+        self.logs[k] = self.powers[0, k] + (self.by_load if k == 1 else 0.0)
+        self.pressure[k] = exponential_term(self.logs, self.pressure, k)
+
+    def add(self, k: int, change: Array) -> None:
+        """Add what a coefficient of order k of the logarithm of the gap changes, which was zero."""
+        if not self.exists:
+            return
+        of_separation = self.separation[0] * change
+        self.separation[k] += of_separation
+        of_place = (change if self.near.logarithmic else of_separation) / self.near.reach
+        self.place[k] += of_place
+        self.powers[:-1, k] += self.powers[1:, 0] * of_place
+        self.logs[k] += self.powers[1, 0] * of_place
+        self.pressure[k] += self.pressure[0] * self.powers[1, 0] * of_place
+
+    def share(self, weights: Array) -> tuple[Array, Array]:
+        """Return the series of the integral of the pressure over the load, and of its logarithm."""
+        if not self.exists:
+            return np.zeros(len(self.pressure)), np.full(len(self.pressure), np.nan)
+        relative = self.pressure @ weights / LOAD
+        logs = logarithm(relative)
+        logs[0] += self.top
+        return np.exp(self.top) * relative, logs
+
+
+def expand_article(
+    equations: Equations, y: Array, inverse: Inverse, groups: Groups, direction: Direction, shifts: Array, order: int
+) -> Expanded:
+    """Return the series of a state with the film of the article.
+
+    Parameters
+    ----------
+    equations : Equations
+        Of the state.
+    y : ndarray
+        Its unknowns, converged.
+    inverse : Inverse
+        That of the Jacobian at it.
+    groups : Groups
+        Its groups.
+    direction : tuple of float
+        Derivatives of ln(speed), ln(load), ln(roughness).
+    shifts : ndarray, shape (order + 1,)
+        Series of what the gap lacks, see :func:`stribeck.solver.at_rest.with_positive_gap`.
+    order : int
+        The highest order.
+
+    Returns
+    -------
+    Expanded
+        The coefficients.
     """
-    assert around.equations is not None
-    op, at, law, speed = equations.operators, equations.layout, around.equations.law, around.equations.speed
-    n, powers = op.mesh.size, samples.powers(order)
-    contact, gradient, flow = (slice(k * n, (k + 1) * n) for k in range(3))
-    last: list[Array] = []
-    gap = np.zeros((order + 1, n))
-    gap[0] = np.exp(start[at.gap])
-
-    def local(k: int, w: Array) -> Array:
-        for i in range(max(1, k - 1), k + 1):  # that before was without the last coefficient of the logarithm
-            gap[i] = _exponential(w[:, at.gap], gap, i)
-        h, m = powers[:, : k + 1] @ gap[: k + 1], powers[:, :k] @ w[:k, at.flux_gap]
-        found = np.empty((len(h), 3 * n), dtype=h.dtype)
-        found[:, contact] = law.pressure(h)
-        found[:, gradient] = newtonian.gradient(h, m)
-        np.multiply(speed, found[:, gradient], out=found[:, flow])
-        last[:] = [found]
-        return found
-
-    def residual(k: int, w: Array, v: Array) -> Array:
-        r = np.empty(at.size)
-        r[at.gap] = gap[k] - op.deflection @ v[contact]
-        r[at.offset] = op.mesh.weights @ v[contact]
-        r[at.flux_gap] = equations.flux_scale * (op.mesh.weights @ v[gradient])
+    op, at = equations.operators, equations.layout
+    start, units = _started(equations, y)
+    w = np.zeros((order + 1, at.size))
+    w[0] = start
+    speed = float(equations.speed) * along(direction[0], order)
+    contact = _Contact(groups, y[at.gap], direction, order)
+    logs, powers = np.zeros((2, order + 1, len(GAP_POWERS), op.mesh.size))
+    powers[0] = np.exp(GAP_POWERS[:, None] * start[at.gap])
+    gradient, flow = np.zeros((2, order + 1, op.mesh.size))
+    gradient[0] = powers[0, 2] - powers[0, 3] * start[at.flux_gap]
+    flow[0] = speed[0] * gradient[0]
+    flux, top = w[:, at.flux_gap], np.exp(contact.top)
+    for k in range(1, order + 1):
+        powers[k] = exponential_term(logs, powers, k)
+        contact.extend(k, w[:, at.gap])
+        gradient[k] = powers[k, 2] - product_term(powers[:, 3], flux, k)
+        r, pressure = np.zeros(at.size), top * contact.pressure[k]
+        r[at.gap] = powers[k, 0] - op.deflection @ pressure
+        r[at.offset] = op.mesh.weights @ pressure
+        r[at.flux_gap] = equations.flux_scale * (op.mesh.weights @ gradient[k])
         if equations.is_sliding:
-            r[at.gap] -= op.deflection_of_gradient @ v[flow]
-            r[at.offset] += op.load_of_gradient @ v[flow]
-        return r
+            flow[k] = speed[k::-1][: k + 1] @ gradient[: k + 1]
+            r[at.gap] -= op.deflection_of_gradient @ flow[k]
+            r[at.offset] += op.load_of_gradient @ flow[k]
+        w[k] = units * inverse(r)
+        change = w[k, at.gap]
+        contact.add(k, change)
+        logs[k] = GAP_POWERS[:, None] * change
+        of_powers = logs[k] * powers[0]
+        powers[k] += of_powers
+        of_gradient = of_powers[2] - of_powers[3] * flux[0] - powers[0, 3] * flux[k]
+        gradient[k] += of_gradient
+        flow[k] += speed[0] * of_gradient
+    found, found_logs = np.zeros((2, order + 1, len(ALL_NAMES)))
+    found[:, len(NAMES) + 1 :] = np.nan
+    found_logs[:] = np.nan
+    share, found_logs[:, ROW["contact_load_share"]] = contact.share(op.mesh.weights)
+    found[:, ROW["contact_load_share"]] = share
+    found[:, ROW["fluid_load_share"]] = flow @ op.load_of_gradient / LOAD
+    found[:, ROW["central_gap"]] = _central_gap(equations, y, w[:, at.gap])
+    found[:, ROW["flux_gap"]] = flux[:, 0]
+    found[:, ROW["offset"]] = w[:, at.offset.start]
+    if equations.is_sliding:
+        scale = friction_scale(float(groups.load), float(equations.speed)) * along(direction[0] + 0.5 * direction[1], order)
+        for name, integral in zip(VISCOUS, _friction_integrals(equations, powers, gradient, flux), strict=True):
+            found[:, ROW[name]] = product(scale, integral)
+    else:
+        found[:, SHIFTED] += shifts[:, None]
+        found[:, ROW["flux_gap"]] = _flux_gap(powers[:, 0] + shifts[:, None], op.mesh.weights)
+        found[:, ROW["minimum_gap"]] = found[:, ROW["central_gap"]]
+    return Expanded(w, found, found_logs)
 
-    found = implicit_series(start, samples, local, residual, correct, order)
-    pressures = np.hstack([last[0][:, contact], last[0][:, flow]])
-    return found, samples.aliased(pressures)
+
+def _central_gap(equations: Equations, y: Array, logs: Array) -> Array:
+    """Return the series of the gap at zero."""
+    mesh = equations.operators.mesh
+    first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
+    at_zero = logs[:, first : first + mesh.order] @ reference(mesh.order).left_end
+    at_zero[0] = np.log(central_gap(mesh, y[equations.layout.gap]))
+    return exponential(at_zero)
 
 
-def _of_any_film(
-    equations: Equations, start: Array, around: Around, samples: Samples, correct: Callable[[Array], Array], order: int
-) -> tuple[Array, float]:
-    """Return the series of the unknowns of any film, of which the whole residual is sampled, and zero."""
+def _flux_gap(gap: Array, weights: Array) -> Array:
+    """Return the series of the flux gap of a film at rest; nan where the gap closes."""
+    if not gap[0].min() > 0:
+        return np.full(len(gap), np.nan)
+    u = reciprocal(gap)
+    square = product(u, u)
+    return product(square @ weights, reciprocal(product(square, u) @ weights))
+
+
+def _friction_integrals(equations: Equations, powers: Array, gradient: Array, flux: Array) -> tuple[Array, Array, Array]:
+    """Return the series of the integrals of :func:`stribeck.equations.observables.friction_integrands`, and of the upper wall.
+
+    Inside from the ``powers`` of the gap at the nodes; beyond the panels in x the gap is interpolated first.
+    """
+    op = equations.operators
+    mesh, inner = op.mesh, slice(0, -op.mesh.order)
+    x, weights, gap = beyond_panels(mesh, powers[0, 0], op.model.solid.far_gap)
+    linear = [beyond_panels(mesh, each, np.zeros_like)[2] for each in powers[1:, 0]]
+    u = reciprocal(np.stack([gap, *linear]))
+    square = product(u, u)
+    slopes = square - product(np.broadcast_to(flux, (len(flux), x.size)), product(square, u))
+    own = mesh.weights[inner]
+    first = powers[:, 1, inner] @ own + u @ weights
+    second = product(3 * flux[:, 0], powers[:, 2, inner] @ own + square @ weights)
+    moment = gradient[:, inner] @ (3 * mesh.nodes[inner] ** 2 * own) + slopes @ (3 * x**2 * weights)
+    return second - 2 * first + moment, 4 * first - second, second - 2 * first
+
+
+def expand_any_film(
+    equations: Equations,
+    y: Array,
+    inverse: Inverse,
+    groups: Groups,
+    direction: Direction,
+    shifts: Array,
+    samples: Samples,
+    models: Sequence[Model],
+    order: int,
+) -> Expanded:
+    """Return the series of a state with any film, of which the whole residual is sampled.
+
+    Parameters
+    ----------
+    equations, y, inverse, groups, direction, shifts, order
+        As for :func:`expand_article`.
+    samples : Samples
+        Where along the path.
+    models : sequence of Model
+        The model there; none where it does not vary.
+
+    Returns
+    -------
+    Expanded
+        The coefficients.
+    """
+    start, units = _started(equations, y)
+    around, load = _around(equations, groups, direction, samples, models)
     powers = samples.powers(order)
 
     def local(k: int, w: Array) -> Array:
         y = from_logs(equations, powers[:, :k] @ w[:k])
-        if around.equations is not None:
-            return around.equations.residual(y)
-        return np.stack([one.residual(row) for one, row in zip(around.each, y, strict=True)])
+        if len(around) == 1:
+            return around[0].residual(y)
+        return np.stack([one.residual(row) for one, row in zip(around, y, strict=True)])
 
-    return implicit_series(start, samples, local, lambda k, w, v: v, correct, order), 0.0
-
-
-def _exponential(logs: Array, values: Array, k: int) -> Array:
-    """Return the coefficient of order k of an exponential, those of its argument and the lower ones of itself given."""
-    return np.asarray(np.einsum("k,kn,kn->n", np.arange(1, k + 1) / k, logs[1 : k + 1], values[k - 1 :: -1][:k]))
-
-
-def _observables(equations: Equations, around: Around, found: Array, samples: Samples) -> tuple[Array, Array]:
-    """Return the coefficients of the observables and of their logarithms."""
-    order = len(found) - 1
-    y = from_logs(equations, samples.powers(order) @ found)
-    if around.equations is not None and equations.operators.is_article:
-        values = smooth_observables(around.equations, y, around.load).T
+    unknowns = implicit_series(start, samples, local, lambda k, w, v: v, lambda r: units * inverse(r), order)
+    y = from_logs(equations, powers @ unknowns)
+    if len(around) == 1:
+        each = observables_of_stacked(around[0], y, load)
     else:
-        rows = zip(around.each, y, around.load[:, 0].tolist(), strict=False)
-        found_each = [observables(one, row, load) for one, row, load in rows]
-        if around.equations is not None:
-            found_each = observables_of_stacked(around.equations, y, around.load)
-        values = np.array([one.array(in_article=False) for one in found_each])
+        each = [observables(one, row, own) for one, row, own in zip(around, y, load[:, 0].tolist(), strict=True)]
+    values = np.array([one.array(in_article=False) for one in each])
     if not equations.is_sliding:
-        gap = y[:, equations.layout.gap] + around.shifts[:, None]
+        lacks = samples.powers(len(shifts) - 1) @ shifts
+        gap = y[:, equations.layout.gap] + lacks[:, None]
         weights = equations.operators.mesh.weights
-        values[:, SHIFTED] += around.shifts[:, None]
-        values[:, ROW["flux_gap"]] = (gap**-2 @ weights) / (gap**-3 @ weights) if np.all(gap.real > 0) else np.nan
+        values[:, SHIFTED] += lacks[:, None]
+        values[:, ROW["flux_gap"]] = (gap**-2 @ weights) / (gap**-3 @ weights) if np.all(gap > 0) else np.nan
         values[:, ROW["minimum_gap"]] = values[:, ROW["central_gap"]]
-    values = np.hstack([values, np.full((len(values), len(ALL_NAMES) - values.shape[1]), np.nan)])
-    series, logs = samples.taylor(values, order), np.full((order + 1, len(ALL_NAMES)), np.nan)
-    law = None if around.equations is None else around.equations.law
-    if law is not None and np.any(law.decay_length) and equations.operators.is_article:
-        # Relative to the pressure where it is largest, that of a tiny share neither underflows nor winds around zero.
-        log_p = law.log_pressure(y[:, equations.layout.gap])
-        largest = log_p[:, int(np.argmax(log_p.real.mean(axis=0)))]
-        share = np.exp(log_p - largest[:, None]) @ equations.operators.mesh.weights / LOAD
-        logs[:, ROW["contact_load_share"]] = samples.taylor(largest + np.log(share), order)
-    return series, logs
+    found = samples.taylor(values, order)
+    return Expanded(unknowns, found, np.full_like(found, np.nan))
+
+
+def _around(
+    equations: Equations, groups: Groups, direction: Direction, samples: Samples, models: Sequence[Model]
+) -> tuple[list[Equations], Array]:
+    """Return the equations around those of a state, all speeds and laws in columns or one by one, and the load groups."""
+    speed, load, roughness = np.exp(np.outer(samples.places, direction)).T[..., None]
+    speed, load, law = float(groups.speed) * speed, float(groups.load) * load, contact_law(groups)
+    assert isinstance(law, ExponentialLaw | ScaledLaw | NoContact)
+    changes: dict[str, Any] = {}
+    if groups.roughness > 0:
+        changes = {"load": load, "decay_length": float(groups.roughness) * roughness / load**groups.scaling.roughness_exponent}
+    if not models:
+        return [Equations(equations.operators, speed, replace(law, **changes), equations.flux_scale)], load
+    each = []
+    for row, model in enumerate(models):
+        operators = Operators(equations.operators.mesh, model)
+        if model.solid == equations.operators.model.solid:
+            vars(operators)["deflection"] = equations.operators.deflection
+        here: dict[str, Any] = {name: float(value[row, 0]) for name, value in changes.items()}
+        each.append(Equations(operators, float(speed[row, 0]), replace(law, **here), equations.flux_scale))
+    return each, load

@@ -20,12 +20,12 @@ from stribeck.equations.state import State, solve_state
 from stribeck.numerics.hermite import hermite_weights
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.numerics.panels import Mesh
-from stribeck.numerics.series import Samples, circle, interval, radius
+from stribeck.numerics.series import interval, radius
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
 from stribeck.solver.at_rest import shift_along, with_positive_gap
 from stribeck.solver.corrector import Corrector
-from stribeck.solver.expansion import Around, Direction, around, expand, from_logs
+from stribeck.solver.expansion import Direction, Expanded, corrected, expand_any_film, expand_article, from_logs
 from stribeck.solver.path import KNOT_PART, Expansion
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
 
@@ -43,9 +43,6 @@ SHORTEST_REACH = 0.02
 
 MOST_TRIALS = 4
 """Expansions of a state after which the distance is left as it is."""
-
-ALIASED = 3e-3
-"""Largest aliasing of the pressures, in units of the tolerance."""
 
 SPREAD = 1.6
 """Part of the way of the minimum gap from the state before on which a mesh also resolves the gap."""
@@ -95,7 +92,6 @@ class LineProblem:
         self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
         self.exact = self.analytic and is_exponential(start.law)
         self.order = ORDER if self.analytic else ORDER_OF_ANY_FILM
-        self.count = 9 if rtol >= 1e-7 else 11
         self.corrector = Corrector(groups_at, self.rtol)
         self.failure: RefinedState | None = None
 
@@ -149,26 +145,21 @@ class LineProblem:
     def _expanded(self, s: float, refined: RefinedState, near: float) -> Expansion:
         state, values, estimate = refined.state, refined.values, refined.estimate
         assert state is not None and values is not None and estimate is not None and refined.fine is not None
-        reach = max(SHORTEST_REACH, REACH * near)
-        exists = [column for column in (SMOOTH if self.moves else []) if np.isfinite(values.array(in_article=False)[column])]
-        for trial in range(MOST_TRIALS):
-            samples = circle(reach, self.count) if self.analytic else interval(INTERVAL * reach)
-            with np.errstate(all="ignore"):  # what is not finite is cut off below
-                found = expand(state.equations, state.y, self._around(s, state, samples), samples, self.order)
-            of_values = found.observables[:, SMOOTH] / self.scales(found.observables[:1], np.array([s]))[:, SMOOTH]
-            known = min(radius(found.unknowns[:, : state.mesh.size], reach), radius(of_values, reach))
-            finite = np.isfinite(np.hstack([found.unknowns, found.observables[:, exists]])).all(axis=1)
-            if not finite.all():  # a law is too steep for so wide a neighbourhood
-                known = reach
-                reach = max(SHORTEST_REACH, 0.25 * reach)
-            elif found.aliased > ALIASED * self.rtol:  # a law changes much faster than the gap
-                reach = max(SHORTEST_REACH, min(0.5 * reach, REACH * known))
-            elif reach > FARTHEST * known or (trial == 0 and reach < NEAREST * known):
-                reach = max(SHORTEST_REACH, REACH * known)
+        y, inverse = corrected(state.equations, state.y)
+        state = replace(state, y=y, root=replace(state.root, x=y, inverse=None))
+        with np.errstate(all="ignore"):  # what is not finite is cut off below
+            if self.analytic:
+                direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, self.order)
+                found = expand_article(state.equations, y, inverse, state.groups, direction, shifts, self.order)
+                known = self._radius(s, state, found, 1.0)
             else:
-                break
-        nothing = np.full((self.order + 1, 1), np.nan)
-        series, logs = np.hstack([found.observables, nothing]), np.hstack([found.logs, nothing])
+                found, known = self._sampled(s, state, inverse, near)
+        exists = [column for column in (SMOOTH if self.moves else []) if np.isfinite(values.array(in_article=False)[column])]
+        finite = np.isfinite(np.hstack([found.unknowns, found.observables[:, exists]])).all(axis=1)
+        order = self.order if finite.all() else max(1, int(np.argmin(finite)) - 1)
+        unknowns, observed, logs = (part[: order + 1] for part in found)
+        nothing = np.full((order + 1, 1), np.nan)
+        series, logs = np.hstack([observed, nothing]), np.hstack([logs, nothing])
         series[0] = *values.array(in_article=False), values.minimum_position
         positive = np.isfinite(logs[0]) & (series[0] > 0)
         logs[0, positive] = np.log(series[0, positive])
@@ -176,20 +167,32 @@ class LineProblem:
         errors[: len(estimate.relative)], errors[POSITION] = estimate.relative, estimate.minimum_position
         if state.equations.operators.is_article:
             errors[ROW["viscous_upper"]] = errors[ROW["viscous_balanced"]]
-        unknowns = found.unknowns
-        if not finite.all():
-            order = max(1, int(np.argmin(finite)) - 1)
-            unknowns, series, logs = (part[: order + 1] for part in (unknowns, series, logs))
-        state = replace(state, y=found.y, root=replace(state.root, x=found.y, inverse=None))
-        point = LinePoint(replace(refined, state=state), state, unknowns, found.inverse, refined.fine)
+        point = LinePoint(replace(refined, state=state), state, unknowns, inverse, refined.fine)
         return Expansion(s, point, series, logs, errors, known)
 
-    def _around(self, s: float, state: State, samples: Samples) -> Around:
-        """Return the equations around a place."""
-        groups = self.groups_at(s)
-        direction, shifts = shift_along(groups, state.groups, self.direction, samples.places)
-        models = [] if self.uniform else [_as_in(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
-        return around(state.equations, state.gap, state.groups, direction, samples, shifts, models)
+    def _radius(self, s: float, state: State, found: Expanded, reach: float) -> float:
+        """Return about the radius of convergence of gap and observables."""
+        of_values = found.observables[:, SMOOTH] / self.scales(found.observables[:1], np.array([s]))[:, SMOOTH]
+        return min(radius(found.unknowns[:, : state.mesh.size], reach), radius(of_values, reach))
+
+    def _sampled(self, s: float, state: State, inverse: Inverse, near: float) -> tuple[Expanded, float]:
+        """Return the series of a film that is sampled, and about its radius; samples as far off as it allows."""
+        reach = max(SHORTEST_REACH, REACH * near)
+        for trial in range(MOST_TRIALS):
+            samples = interval(INTERVAL * reach)
+            direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, len(samples.weights) - 1)
+            models = [] if self.uniform else [_as_in(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
+            around = (state.equations, state.y, inverse, state.groups, direction, shifts)
+            found = expand_any_film(*around, samples, models, self.order)
+            known = self._radius(s, state, found, reach)
+            if not (np.isfinite(found.unknowns).all() and np.isfinite(known)):  # a law is too steep for so wide a neighbourhood
+                known = reach
+                reach = max(SHORTEST_REACH, 0.25 * reach)
+            elif reach > FARTHEST * known or (trial == 0 and reach < NEAREST * known):
+                reach = max(SHORTEST_REACH, REACH * known)
+            else:
+                break
+        return found, known
 
     def _guess(self, s: float, groups: Groups, near: Sequence[Expansion]) -> State:
         base = with_positive_gap(groups)[0]
@@ -221,16 +224,17 @@ class LineProblem:
     def state_at(self, left: Expansion, right: Expansion, s: float) -> State:
         """Return the state between two expansions, corrected with the Jacobian of the nearer one."""
         guess = self.guess_at(left, right, s)
-        kept = next((end.point.inverse for end in (left, right) if end.point.state.mesh is guess.mesh), None)
-        return solve_state(guess.groups, guess.equations.operators, guess, newton_tolerance(self.rtol), kept=kept)
+        kept = on(guess.mesh, (left, right))
+        tolerance = newton_tolerance(self.rtol)
+        return solve_state(guess.groups, guess.equations.operators, guess, tolerance, kept=kept.inverse if kept else None)
 
     def point_at(self, left: Expansion, right: Expansion, s: float, rtol: float | None = None) -> RefinedState:
         """Return the same, verified, and refined where its mesh is too coarse for the tolerance."""
         rtol = self.allowed if rtol is None else rtol
         state, groups = self.state_at(left, right, s), self.groups_at(s)
-        fine = next((end.point.fine for end in (left, right) if end.point.fine.coarse is state.mesh), None)
-        if state.outcome.ok and fine is not None:
-            point = verify(state, groups, fine, rtol)
+        end = on(state.mesh, (left, right))
+        if state.outcome.ok and end is not None:
+            point = verify(state, groups, end.fine, rtol)
             if point.outcome.ok:
                 return point
         return converge(state, groups, rtol)
@@ -254,9 +258,10 @@ class LineProblem:
         s = 0.5 * (left.coordinate + right.coordinate)
         guess = self._guess(s, self.groups_at(s), [left, right])
         equations, y, load = guess.equations, guess.y, float(guess.groups.load)
-        inverse = next(end.point.inverse for end in (right, left) if end.point.state.mesh is guess.mesh)
+        end = on(guess.mesh, (right, left))
+        assert end is not None
         with np.errstate(all="ignore"):  # what is not finite is as wrong as can be
-            change = equations.units(y) * inverse(equations.residual(y))
+            change = equations.units(y) * end.inverse(equations.residual(y))
             corrected = observables(equations, y + change, load).array(in_article=False)
             wrong = np.abs(corrected - values[:POSITION]) / self.scales(values[None], np.array([s]))[0, :POSITION]
         wrong[READ[0]] = 0.0
@@ -302,6 +307,11 @@ class LineProblem:
             error = np.where(better, unresolved[1] + errors[1][1], unresolved[0] + errors[0][1])
         at_ends = np.maximum(left.errors[READ], right.errors[READ])
         return values.T, np.stack([np.maximum(at_ends[0], error), np.full(len(parts), at_ends[1])], axis=1), READ
+
+
+def on(mesh: Mesh, near: Sequence[Expansion]) -> LinePoint | None:
+    """Return the first point that is on a mesh."""
+    return next((one.point for one in near if one.point.state.mesh is mesh), None)
 
 
 def _alike(*near: Expansion) -> bool:
