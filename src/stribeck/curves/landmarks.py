@@ -10,10 +10,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.curves.coordinate import Coordinate
-from stribeck.curves.function import guess_at
+from stribeck.curves.function import solved_at
 from stribeck.numerics.newton import root_between
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.solver.corrector import Corrector
 from stribeck.solver.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
@@ -23,9 +22,6 @@ __all__ = ["Landmark", "Landmarks"]
 
 LOCATION_TOLERANCE = 1e-9
 """Relative tolerance to which a minimum or a transition is located; its own error is that of the solved states."""
-
-STATES_RTOL = 1e-8
-"""Largest tolerance of these states."""
 
 PARTS = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 9)
 """Where a function is looked at in an interval between two solved states, in parts of it."""
@@ -65,7 +61,6 @@ class Landmarks:
     def __init__(self, path: SolvedPath, coordinate: Coordinate, rtol: float) -> None:
         self.path, self.coordinate, self.rtol = path, coordinate, rtol
         self.moves = bool(coordinate.groups_at(float(path.coordinates[0])).speed > 0)
-        self.corrector = Corrector(coordinate.groups_at, min(rtol, STATES_RTOL))
         inside = [interval.left.coordinate + PARTS * interval.length for interval in path.intervals]
         self.places = np.append(np.concatenate(inside), path.coordinates[-1])
         self.rows = path.smooth(self.places)
@@ -103,22 +98,19 @@ class Landmarks:
         def at(s: float) -> float:
             return float(function(np.array([s]))[0])
 
-        found = root_between(at, low, high, LOCATION_TOLERANCE)
-        if found is None:
+        s = root_between(at, low, high, LOCATION_TOLERANCE)
+        if s is None:
             return None
-        s = found
         width = min(1e-3, 0.1 * (high - low))
         slope = (at(s + width) - at(s - width)) / (2 * width)
-        guess = guess_at(self.path, s)
         for _ in range(MOST_POLISHES):
-            groups = self.coordinate.groups_at(s)
-            point = self.corrector.solve(guess, groups)
+            point = solved_at(self.path, s, self.rtol)
             if point.state is None or point.values is None:
-                raise SolveError(point.outcome, None, f"{describe(groups)}: {point.outcome.value}")
+                raise SolveError(point.outcome, None, f"{describe(self.coordinate.groups_at(s))}: {point.outcome.value}")
             step = -of(point) / slope
             if abs(step) <= LOCATION_TOLERANCE or not abs(step) < high - low:
                 break
-            s, guess = s + step, point.state
+            s = s + step
         solution = solution_of(point, self.coordinate.contact_at(s), self.rtol)
         assert solution is not None
         return math.exp(s), solution

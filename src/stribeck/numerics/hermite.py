@@ -19,7 +19,15 @@ import numpy as np
 
 from stribeck._types import Array
 
-__all__ = ["chebyshev_basis", "chebyshev_form", "chebyshev_nodes", "hermite", "hermite_weights"]
+__all__ = [
+    "chebyshev_basis",
+    "chebyshev_form",
+    "chebyshev_nodes",
+    "hermite",
+    "hermite_form",
+    "hermite_weights",
+    "highest_order",
+]
 
 
 @lru_cache(maxsize=64)
@@ -74,6 +82,25 @@ def hermite(left: Array, right: Array, length: float, tau: Array) -> Array:
     of_left, of_right = hermite_weights(order, tau)
     scale = length ** np.arange(order + 1)
     return np.asarray(np.tensordot(of_left * scale, left, 1) + np.tensordot(of_right * scale, right, 1))
+
+
+@lru_cache(maxsize=64)
+def hermite_form(order: int) -> Array:
+    """Return the matrix from the coefficients of both ends, one under the other, to those of Chebyshev polynomials."""
+    return chebyshev_form(np.hstack(hermite_weights(order, chebyshev_nodes(2 * order + 2))))
+
+
+@lru_cache(maxsize=64)
+def highest_order(order: int) -> Array:
+    r"""Return the rows that give what the highest order changes, at both ends over :math:`(\tau (1 - \tau))^K`.
+
+    The change over that is linear: it is followed from inside to the ends.
+    """
+    at = np.array([0.25, 0.75])
+    left, right = hermite_weights(order, at)
+    without = [np.pad(part, ((0, 0), (0, 1))) for part in hermite_weights(order - 1, at)]
+    inside = np.hstack([left - without[0], right - without[1]]) / (3 / 16) ** order
+    return np.asarray(np.array([[1.5, -0.5], [-0.5, 1.5]]) @ inside)
 
 
 @lru_cache(maxsize=64)

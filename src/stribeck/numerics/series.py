@@ -37,21 +37,21 @@ ON_INTERVAL = 20
 """Values on an interval."""
 
 
-def exponential_term(logs: Array, values: Array, k: int) -> Array:
-    """Return the coefficient of order k >= 1 of an exponential, those of its argument and its own lower ones given."""
-    return np.asarray(np.einsum("j,j...,j...->...", np.arange(1, k + 1) / k, logs[1 : k + 1], values[k - 1 :: -1][:k]))
-
-
 def product_term(a: Array, b: Array, k: int) -> Array:
     """Return the coefficient of order k of a product."""
     return np.asarray(np.einsum("j...,j...->...", a[: k + 1], b[k::-1]))
 
 
+def exponential_term(slopes: Array, values: Array, k: int) -> Array:
+    """Return the coefficient of order k >= 1 of an exponential from its own lower ones and those of its argument, times k."""
+    return product_term(slopes[1:], values, k - 1) / k
+
+
 def exponential(logs: Array) -> Array:
     """Return the series of the exponential of a series."""
-    found = np.exp(logs)
+    found, slopes = np.exp(logs), (logs.T * np.arange(len(logs))).T
     for k in range(1, len(logs)):
-        found[k] = exponential_term(logs, found, k)
+        found[k] = exponential_term(slopes, found, k)
     return found
 
 
@@ -64,15 +64,17 @@ def along(rate: float, order: int) -> Array:
 
 def logarithm(values: Array) -> Array:
     """Return the series of the logarithm of a series."""
-    found = np.log(values[:1]) + np.zeros_like(values)
+    found, slopes = np.log(values[:1]) + np.zeros_like(values), np.zeros_like(values)
     for k in range(1, len(values)):
-        j = np.arange(1, k)
-        found[k] = (values[k] - np.einsum("j,j...,j...->...", j / k, found[1:k], values[k - 1 : 0 : -1])) / values[0]
+        found[k] = (values[k] - exponential_term(slopes, values, k)) / values[0]
+        slopes[k] = k * found[k]
     return found
 
 
 def product(a: Array, b: Array) -> Array:
     """Return the series of a product of two."""
+    if a.ndim == 1:
+        return np.convolve(a, b)[: len(a)]
     return np.stack([product_term(a, b, k) for k in range(len(a))])
 
 

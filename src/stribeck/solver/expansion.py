@@ -93,7 +93,7 @@ class _Contact:
         law, kappa, scaling = contact_law(groups), float(groups.relative_roughness), groups.scaling
         self.rate = direction[2] - scaling.roughness_exponent * direction[1]  # of ln(kappa)
         self.exists = not isinstance(law, NoContact)
-        self.pressure, self.logs = np.zeros((2, order + 1, gap.size))
+        self.pressure = np.zeros((order + 1, gap.size))
         self.top = -np.inf
         if not self.exists:
             return
@@ -104,34 +104,35 @@ class _Contact:
         log_pressure = law.log_pressure(gap)
         self.top = float(log_pressure.max())
         self.pressure[0] = np.exp(log_pressure - self.top)
-        self.separation, self.place = np.zeros((2, order + 1, gap.size))
+        self.separation, self.place, self.slopes, self.of_pressure = np.zeros((4, order + 1, gap.size))
         self.separation[0] = gap / kappa
+        self.slopes[1] = -self.rate
         self.powers = np.zeros((len(self.near.coefficients), order + 1, gap.size))
         self.powers[:, 0] = self.near.coefficients
 
-    def extend(self, k: int, w: Array) -> None:
-        """Find order k, ``w`` being the logarithm of the gap, of which the coefficient of order k may still be zero."""
+    def extend(self, k: int) -> None:
+        """Find order k as if the logarithm of the gap had no coefficient of that order."""
         if not self.exists:
             return
-        logs = w[: k + 1].copy()
-        logs[1] -= self.rate
-        self.separation[k] = exponential_term(logs, self.separation, k)
-        self.place[k] = (logs[k] if self.near.logarithmic else self.separation[k]) / self.near.reach
+        self.separation[k] = exponential_term(self.slopes, self.separation, k)
+        self.place[k] = (self.slopes[k] / k if self.near.logarithmic else self.separation[k]) / self.near.reach
         self.powers[:-1, k] = np.einsum("mjn,jn->mn", self.powers[1:, :k], self.place[k:0:-1])
-        self.logs[k] = self.powers[0, k] + (self.by_load if k == 1 else 0.0)
-        self.pressure[k] = exponential_term(self.logs, self.pressure, k)
+        self.of_pressure[k] = k * self.powers[0, k] + (self.by_load if k == 1 else 0.0)
+        self.pressure[k] = exponential_term(self.of_pressure, self.pressure, k)
 
     def add(self, k: int, change: Array) -> None:
-        """Add what a coefficient of order k of the logarithm of the gap changes, which was zero."""
+        """Add what that coefficient changes."""
         if not self.exists:
             return
         of_separation = self.separation[0] * change
+        self.slopes[k] += k * change
         self.separation[k] += of_separation
         of_place = (change if self.near.logarithmic else of_separation) / self.near.reach
         self.place[k] += of_place
         self.powers[:-1, k] += self.powers[1:, 0] * of_place
-        self.logs[k] += self.powers[1, 0] * of_place
-        self.pressure[k] += self.pressure[0] * self.powers[1, 0] * of_place
+        of_log = self.powers[1, 0] * of_place
+        self.of_pressure[k] += k * of_log
+        self.pressure[k] += self.pressure[0] * of_log
 
     def share(self, weights: Array) -> tuple[Array, Array]:
         """Return the series of the integral of the pressure over the load, and of its logarithm."""
@@ -176,15 +177,15 @@ def expand_article(
     w[0] = start
     speed = float(equations.speed) * along(direction[0], order)
     contact = _Contact(groups, y[at.gap], direction, order)
-    logs, powers = np.zeros((2, order + 1, len(GAP_POWERS), op.mesh.size))
+    slopes, powers = np.zeros((2, order + 1, len(GAP_POWERS), op.mesh.size))
     powers[0] = np.exp(GAP_POWERS[:, None] * start[at.gap])
     gradient, flow = np.zeros((2, order + 1, op.mesh.size))
     gradient[0] = powers[0, 2] - powers[0, 3] * start[at.flux_gap]
     flow[0] = speed[0] * gradient[0]
     flux, top = w[:, at.flux_gap], np.exp(contact.top)
     for k in range(1, order + 1):
-        powers[k] = exponential_term(logs, powers, k)
-        contact.extend(k, w[:, at.gap])
+        powers[k] = exponential_term(slopes, powers, k)
+        contact.extend(k)
         gradient[k] = powers[k, 2] - product_term(powers[:, 3], flux, k)
         r, pressure = np.zeros(at.size), top * contact.pressure[k]
         r[at.gap] = powers[k, 0] - op.deflection @ pressure
@@ -197,8 +198,9 @@ def expand_article(
         w[k] = units * inverse(r)
         change = w[k, at.gap]
         contact.add(k, change)
-        logs[k] = GAP_POWERS[:, None] * change
-        of_powers = logs[k] * powers[0]
+        of_logs = GAP_POWERS[:, None] * change
+        slopes[k] = k * of_logs
+        of_powers = of_logs * powers[0]
         powers[k] += of_powers
         of_gradient = of_powers[2] - of_powers[3] * flux[0] - powers[0, 3] * flux[k]
         gradient[k] += of_gradient
@@ -248,9 +250,8 @@ def _friction_integrals(equations: Equations, powers: Array, gradient: Array, fl
     """
     op = equations.operators
     mesh, inner = op.mesh, slice(0, -op.mesh.order)
-    x, weights, gap = beyond_panels(mesh, powers[0, 0], op.model.solid.far_gap)
-    linear = [beyond_panels(mesh, each, np.zeros_like)[2] for each in powers[1:, 0]]
-    u = reciprocal(np.stack([gap, *linear]))
+    x, weights, gap = beyond_panels(mesh, powers[:1, 0], op.model.solid.far_gap)
+    u = reciprocal(np.concatenate([gap, beyond_panels(mesh, powers[1:, 0], np.zeros_like)[2]]))
     square = product(u, u)
     slopes = square - product(np.broadcast_to(flux, (len(flux), x.size)), product(square, u))
     own = mesh.weights[inner]

@@ -19,7 +19,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from stribeck._types import Array, Flags
-from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite
+from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, highest_order
 from stribeck.quantities.outcome import Outcome
 
 LONGEST_STEP = 4.0
@@ -49,7 +49,9 @@ CHECKS = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 30) / 30)
 LOST = 1e3
 """Value over what its interpolation misses below which a share goes by its logarithm."""
 
-MIDDLE = np.array([0.5])
+TINY = 1e-300
+
+MIDDLE, ALONE = np.array([0.5]), np.array([0])
 
 LONGEST_END = 0.05
 """Longest interval on which an observable may cease to exist."""
@@ -127,16 +129,6 @@ class Problem(Protocol):
         """Return observables that have no series, at parts of an interval: values, errors, and their columns."""
 
 
-def _missed(left: Array, right: Array) -> Array:
-    r"""Return by how much the interpolation changes with its highest order K, at most, over :math:`(\tau (1 - \tau))^K`.
-
-    The change is that times a linear function, which may vanish anywhere: its larger end counts.
-    """
-    at = np.array([0.25, 0.75])
-    a, b = (hermite(left, right, 1.0, at) - hermite(left[:-1], right[:-1], 1.0, at)) / (3 / 16) ** (len(left) - 1)
-    return np.asarray(np.maximum(np.abs(1.5 * a - 0.5 * b), np.abs(1.5 * b - 0.5 * a)))
-
-
 @dataclass(frozen=True, eq=False)
 class Interval:
     """What lies between two expansions."""
@@ -150,58 +142,38 @@ class Interval:
         """Length, positive; zero where a single state is both ends."""
         return self.right.coordinate - self.left.coordinate
 
-    def parts(self, s: Array) -> Array:
-        """Return coordinates as parts of the interval."""
-        return np.asarray((s - self.left.coordinate) / (self.length or 1.0))
-
     @property
     def order(self) -> int:
         """K, that both ends have."""
         return min(self.left.order, self.right.order)
 
     @cached_property
-    def _forms(self) -> tuple[Array, Array, Array, list[int]]:
-        """The polynomials of the observables and what they miss, those of logarithms, and the columns that these are for."""
+    def ends(self) -> Array:
+        """Coefficients at both ends, one under the other, of the observables and of their logarithms."""
         scale = self.length ** np.arange(self.order + 1.0)[:, None]
-        ends = self.left.series, self.right.series, self.left.logs, self.right.logs
-        left, right, log_left, log_right = (form[: self.order + 1] * scale for form in ends)
-        columns = np.nonzero(np.isfinite(log_left + log_right).all(axis=0))[0].tolist()
-        nodes = chebyshev_nodes(2 * self.order + 2)
-        logs = hermite(log_left[:, columns], log_right[:, columns], 1.0, nodes)
-        return chebyshev_form(hermite(left, right, 1.0, nodes)), _missed(left, right), chebyshev_form(logs), columns
-
-    def _interpolated(self, parts: Array) -> tuple[Array, Array]:
-        """Return the observables and what the interpolation misses.
-
-        A share that is lost in that goes by its logarithm, which keeps it positive and its digits.
-        """
-        form, size, logs, columns = self._forms
-        basis = chebyshev_basis(parts, len(form))
-        found, missed = basis @ form, (parts.real * (1 - parts.real))[:, None] ** self.order * size
-        if columns:
-            shares, limit = found[:, columns], LOST * missed[:, columns]
-            lost = shares.real < limit
-            if lost.any():
-                with np.errstate(over="ignore", invalid="ignore"):
-                    tiny = np.exp(basis @ logs)
-                found[:, columns] = np.where(lost & (np.abs(tiny) < limit), tiny, shares)
-        return found, missed
+        return np.vstack([np.hstack([end.series, end.logs])[: self.order + 1] * scale for end in (self.left, self.right)])
 
     @cached_property
-    def _at_ends(self) -> tuple[Array, Array]:
+    def missed(self) -> Array:
+        """What the interpolation of the observables changes with its highest order, at most, over ``(tau (1 - tau))**K``."""
+        values = self.ends[:, : self.left.series.shape[1]]
+        return np.asarray(np.abs(highest_order(self.order) @ values).max(axis=0)) if self.order else 0.0 * values[0]
+
+    @cached_property
+    def at_ends(self) -> Array:
         """Errors at the ends, the larger: in units of the scales there, and absolute, for what crosses zero between."""
         relative = np.stack([self.left.errors, self.right.errors])
         values = np.stack([self.left.series[0], self.right.series[0]])
         scales = self.problem.scales(values, np.array([self.left.coordinate, self.right.coordinate]))
-        return relative.max(axis=0), (relative * scales).max(axis=0)
+        return np.stack([relative.max(axis=0), (relative * scales).max(axis=0)])
 
     @cached_property
-    def _in_the_middle(self) -> Array:
+    def in_the_middle(self) -> Array:
         """What the problem itself finds wrong in the middle."""
-        return self.problem.missed(self.left, self.right, self.smooth(MIDDLE)[0])
+        return self.problem.missed(self.left, self.right, _Pieces([self]).smooth(ALONE, MIDDLE)[0][0])
 
     @cached_property
-    def _read(self) -> tuple[Array, Array, Sequence[int], bool]:
+    def read(self) -> tuple[Array, Array, Sequence[int], bool]:
         """Polynomials of what has no series, their errors and columns, and whether they are good enough."""
         nodes = chebyshev_nodes(READ_AT)
         values, errors, columns = self.problem.read(self.left, self.right, nodes)
@@ -211,21 +183,71 @@ class Interval:
         scales = self.problem.read_scales(values)
         return form, largest + tails / scales, columns, bool((tails <= 0.5 * largest * scales).all())
 
-    def smooth(self, parts: Array) -> Array:
-        """Return what :meth:`at` does, without errors and without what has no series."""
-        return self._interpolated(parts)[0]
-
     def at(self, parts: Array) -> tuple[Array, Array]:
         """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
-        found, missed = self._interpolated(parts)
-        scales = self.problem.scales(found, self.left.coordinate + parts * self.length)
-        relative, absolute = self._at_ends
-        errors = self._in_the_middle + np.where(self.problem.signed, absolute / scales, relative) + missed / scales
-        form, largest, columns, is_smooth = self._read
-        if is_smooth:
-            found[:, columns], errors[:, columns] = chebyshev_basis(parts, len(form)) @ form, largest
-        else:
-            found[:, columns], errors[:, columns], _ = self.problem.read(self.left, self.right, parts)
+        return _Pieces([self]).at(np.zeros(len(parts), dtype=int), parts)
+
+
+class _Pieces:
+    """Intervals side by side, to be evaluated at many places at once."""
+
+    def __init__(self, intervals: Sequence[Interval]) -> None:
+        self.intervals, self.problem = intervals, intervals[0].problem
+        self.count = intervals[0].left.series.shape[1]
+        self.orders = np.array([one.order for one in intervals])
+        self.degree = 2 * int(self.orders.max()) + 2
+        self.forms = [hermite_form(one.order) @ one.ends for one in intervals]
+        self.missed = np.stack([one.missed for one in intervals])
+        with_logs = np.stack([np.isfinite(form[:, self.count :]).all(axis=0) for form in self.forms])
+        self.starts = np.array([one.left.coordinate for one in intervals])
+        self.lengths = np.array([one.length for one in intervals])
+        self.logs = np.nonzero(with_logs.any(axis=0))[0].tolist()
+
+    def smooth(self, where: Array, parts: Array) -> tuple[Array, Array]:
+        """Return the observables at parts of the intervals of these numbers, and what their interpolation misses.
+
+        A share that is lost in that goes by its logarithm, which keeps it positive and its digits.
+        """
+        basis = chebyshev_basis(parts, self.degree)
+        both = np.empty((len(parts), 2 * self.count), dtype=parts.dtype)
+        for k in np.unique(where).tolist() if len(where) > 1 else where.tolist():
+            mine, form = slice(None) if len(where) == 1 else where == k, self.forms[k]
+            both[mine] = basis[mine, : len(form)] @ form
+        found = both[:, : self.count]
+        missed = self.missed[where] * ((parts.real * (1 - parts.real)) ** self.orders[where])[:, None]
+        if self.logs:
+            shares, limit = found[:, self.logs], LOST * missed[:, self.logs]
+            lost = shares.real < limit
+            if lost.any():
+                with np.errstate(all="ignore"):
+                    tiny = np.exp(both[:, [self.count + column for column in self.logs]])
+                found[:, self.logs] = np.where(lost & (np.abs(tiny) < limit), tiny, shares)
+        return found, missed
+
+    @cached_property
+    def _errors(self) -> tuple[Array, Array]:
+        """Errors of the intervals whatever the place: relative ones, and absolute ones of what may cross zero."""
+        ends, middle = np.stack([one.at_ends for one in self.intervals]), [one.in_the_middle for one in self.intervals]
+        signed = self.problem.signed
+        return np.where(signed, 0.0, ends[:, 0]) + np.stack(middle), np.where(signed, ends[:, 1], 0.0)
+
+    def at(self, where: Array, parts: Array) -> tuple[Array, Array]:
+        """Return the observables at parts of the intervals of these numbers, and their errors in units of the scales."""
+        found, missed = self.smooth(where, parts)
+        scales = self.problem.scales(found, self.starts[where] + parts * self.lengths[where])
+        relative, absolute = self._errors
+        errors = relative[where] + (absolute[where] + missed) / scales
+        basis = chebyshev_basis(parts, READ_AT)
+        for k in np.unique(where).tolist() if len(where) > 1 else where.tolist():
+            form, largest, columns, is_smooth = self.intervals[k].read
+            if not len(columns):
+                continue
+            mine = np.nonzero(where == k)[0][:, None]
+            if is_smooth:
+                found[mine, columns], errors[mine, columns] = basis[mine[:, 0]] @ form, largest
+            else:
+                one = self.intervals[k]
+                found[mine, columns], errors[mine, columns], _ = self.problem.read(one.left, one.right, parts[mine[:, 0]])
         return found, errors
 
 
@@ -258,31 +280,27 @@ class SolvedPath:
         """Where the solved states are."""
         return np.array([one.coordinate for one in self.expansions])
 
-    def smooth(self, s: Array) -> Array:
-        """Return what :meth:`at` does, without errors and without what has no series, at complex coordinates too."""
-        values = np.empty((len(s), self.expansions[0].series.shape[1]), dtype=s.dtype)
-        for interval, mine in self._shared(s.real):
-            values[mine] = interval.smooth(interval.parts(s[mine]))
-        return values
+    @cached_property
+    def _pieces(self) -> _Pieces:
+        return _Pieces(self.intervals)
 
     def interval_of(self, s: Array) -> Array:
         """Return the number of the interval of each coordinate."""
         return np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, len(self.intervals) - 1)
 
-    def _shared(self, s: Array) -> list[tuple[Interval, Any]]:
-        """Return the intervals that hold coordinates, each with the indices of its own."""
-        where = self.interval_of(s)
-        if len(where) == 1:
-            return [(self.intervals[int(where[0])], slice(None))]
-        return [(self.intervals[k], np.nonzero(where == k)[0]) for k in np.unique(where).tolist()]
+    def _parts(self, s: Array) -> tuple[Array, Array]:
+        """Return the interval of each coordinate, and which part of it."""
+        where = self.interval_of(s.real)
+        return where, (s - self._pieces.starts[where]) / np.fmax(self._pieces.lengths[where], TINY)
+
+    def smooth(self, s: Array) -> Array:
+        """Return what :meth:`at` does, without errors and without what has no series, at complex coordinates too."""
+        return self._pieces.smooth(*self._parts(s))[0]
 
     def at(self, s: Array) -> tuple[Array, Array]:
         """Return the observables at coordinates, shape (len(s), n), and their errors in units of the scales."""
-        values = np.empty((len(s), self.expansions[0].series.shape[1]))
-        errors = np.empty_like(values)
-        for interval, mine in self._shared(s):
-            values[mine], errors[mine] = interval.at(np.clip(interval.parts(s[mine]), 0.0, 1.0))
-        return values, errors
+        where, parts = self._parts(s)
+        return self._pieces.at(where, np.clip(parts, 0.0, 1.0))
 
 
 def follow(
