@@ -6,8 +6,8 @@ Usage::
 
 Of ten states four have the exponential law, three that of Persson (H = 0.8, q1/q0 = 1000, gamma = 0.45), two are smooth and
 one is at rest.  Groups are even in the logarithm: speed 1e-7 to 1e3, load 1e-8 to 10 (Persson to 1e4), kappa 1e-5 to 10,
-smooth speeds 1e-5 to 1e4.  Each state is solved once more on a mesh with panels half as wide at the edge, three degrees and
-1.4 times the modes more; by how much it differs from that is taken for its error, where that mesh takes no more MB than
+smooth speeds 1e-5 to 1e4.  Each state is solved once more on a mesh with panels half as wide at the edge and in the middle,
+three degrees and 1.4 times the modes more; by how much it differs from that is taken for its error, where that mesh takes no more MB than
 ``--largest``, as it costs three times the state.  States that are done are kept in the file and not solved again, those that
 are not judged neither as long as their mesh is too large: an interrupted run goes on.  300 states take about an hour; prints
 the table that docs/numerics.md shows.
@@ -67,8 +67,10 @@ def finer_mesh(state: PointState) -> Resolution:
     """Return the mesh of the judge."""
     fine = state.work.fine
     modes = max(fine.mesh.modes, min(MOST_MODES, round(FINER_MODES * fine.mesh.modes)))
-    now = fine.resolution
-    return replace(now, halvings=now.halvings + 1, degree=now.degree + FINER_DEGREE, modes=modes)
+    # Narrower panels at the edge may leave a wider one in the middle: it is halved besides.
+    now, middle = fine.resolution, float(fine.mesh.edges[1])
+    splits = tuple(sorted({*now.splits, middle, 0.5 * middle}))
+    return replace(now, halvings=now.halvings + 1, degree=now.degree + FINER_DEGREE, modes=modes, splits=splits)
 
 
 def better_values(state: PointState, finer: Resolution) -> dict[str, float] | None:

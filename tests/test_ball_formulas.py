@@ -32,7 +32,8 @@ AT_REST = {1e-4: (-0.9996697160, 2.302726719e-4), 1e-2: (-0.966814228, 2.3169272
 
 SOLVED = json.loads((Path(__file__).parent / "data" / "ball_states.json").read_text())
 """States of the solver that the fitted laws were made from; mixed: speed, load, kappa, contact share, central gap, J;
-smooth: speed, central gap, minimum, minimum on the middle line, J; slow: speed, load, kappa, fluid share, J, J_pcx."""
+both: speed, load, kappa, contact share, J, J_pcx; smooth: speed, central gap, minimum, minimum on the middle line, J;
+slow: speed, load, kappa, fluid share, J, J_pcx."""
 
 
 def ball(speed, load=1e-3, kappa=0.0):
@@ -362,6 +363,41 @@ def test_share_and_friction_at_any_speed_are_within_their_stated_errors():
     assert np.abs(found / viscous(groups, J, 0.1) - 1)[inside].max() <= friction.viscous_friction.worst
 
 
+@pytest.mark.parametrize("definition", ["balanced", "published"])
+def test_friction_by_both_definitions_is_within_its_stated_error_over_the_whole_box(definition):
+    speed, load, kappa, share, J, pcx = columns("both")
+    groups = ball(speed, load, kappa)
+    J = J if definition == "balanced" else J - pcx
+    worst = []
+    for beta in (1.0, 0.3, 0.1):
+        found = friction.friction.function(groups, 1.0, beta, definition)
+        worst.append(np.abs(found / (share + viscous(groups, J, beta)) - 1).max())
+    assert 0.12 < max(worst) <= friction.friction.worst
+    inside = friction.viscous_friction.valid(groups)
+    found = friction.viscous_friction.function(groups, 0.1, definition)
+    error = np.abs(found / viscous(groups, J, 0.1) - 1)[inside]
+    assert error.max() <= (friction.viscous_friction.worst if definition == "balanced" else 0.08)
+
+
+def test_the_moment_of_slow_contact_pressure_is_that_of_its_quadrature_and_vanishes_with_the_contact():
+    for A in (0.1, 1.0, 10.0):
+        assert float(friction.first_moment(A)) == pytest.approx(-slow_contact.slow_contact(A).moment, rel=3e-3)
+    thick = ball(10.0, 1e-3, 3e-4)
+    assert friction.viscous_friction.function(thick, 0.1, "published") == friction.viscous_friction.function(thick, 0.1)
+
+
+@pytest.mark.quick
+def test_a_disc_of_liquid_ends_with_a_pressure_that_the_published_definition_has():
+    for groups in (ball(1e-2), ball(1e-2, 0.1, 1e-9)):
+        balanced, published = (
+            float(friction.viscous_friction.function(groups, 0.2, definition, 5.0)) for definition in ("balanced", "published")
+        )
+        added = 0.75 * 0.2 * groups.load ** (1 / 3) * 0.4 * math.pi * groups.speed
+        assert published - balanced == pytest.approx(added, rel=1e-9)
+    with pytest.raises(sb.InputError, match="definition = 'paper'"):
+        friction.viscous_friction_smooth(ball(1e-2), 0.2, "paper")
+
+
 def test_the_speed_of_a_share_and_the_smooth_integral_are_as_near_as_they_were_fitted():
     speed, load, kappa, share, _, _ = columns("mixed")
     shared = (share > 0.05) & (share < 0.95)
@@ -423,3 +459,7 @@ def test_the_states_of_the_fitted_laws_are_those_of_the_solver_of_today():
         assert abs(found["contact_load_share"] - share[i]) < 1e-3
         assert math.isclose(found["central_gap"], central[i], rel_tol=2e-3)
         assert math.isclose(found["J_balanced"], J[i], rel_tol=4e-3)
+    for speed, load, kappa, share, _, pcx in columns("both").T[8::16]:
+        found = solve_cold(ball(speed, load, kappa), 1e-3).values
+        assert abs(found["contact_load_share"] - share) < 1e-3
+        assert math.isclose(found["J_pcx"], pcx, rel_tol=4e-3)
