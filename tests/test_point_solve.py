@@ -11,9 +11,11 @@ import pytest
 from stribeck import surfaces
 from stribeck.contacts.groups import Groups
 from stribeck.equations.point.observables import observables
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
 from stribeck.solver.point.level import solve_level
 from stribeck.solver.point.solve import solve_cold, solve_from
+from stribeck.solver.solve import SolveError, solve
 
 DATA = json.loads((Path(__file__).parent / "data" / "point_states.json").read_text())
 MINIMUM = ("minimum_gap", "minimum_gap_on_axis")
@@ -157,3 +159,19 @@ def test_the_minimum_film_of_a_very_thin_smooth_film_states_what_its_slow_series
     missed = abs(state.values["minimum_gap"] - row["values"]["minimum_gap"])
     assert missed <= state.absolute_errors["minimum_gap"] + row["uncertainty"]["minimum_gap"]
     assert abs(state.values["central_gap"] / row["values"]["central_gap"] - 1) < 1e-6
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("speed", [1e-9, 1e-20])
+def test_a_film_too_thin_for_any_mesh_is_refused_at_once_and_says_what_to_ask_for(speed):
+    state = solve_cold(ball(speed, 1e-3, 0.0), 1e-3)
+    assert state.outcome is Outcome.MESH_LIMIT
+    assert math.isnan(state.values["central_gap"])
+    with pytest.raises(SolveError, match="takes more memory than a solve may use; ask for a larger speed, roughness or rtol"):
+        solve(ball(speed, 1e-3, 0.0), rtol=1e-3)
+    assert solve_cold(ball(speed, 1e-3, 1e-4), 1e-2).outcome.ok
+
+
+def test_a_mesh_beyond_the_memory_is_said_to_be(monkeypatch):
+    monkeypatch.setattr("stribeck.solver.point.level.bytes_of", lambda found, band: 1e12)
+    assert solve_cold(ball(1e-2, 1e-3, 0.0), 1e-4).outcome is Outcome.MESH_LIMIT

@@ -16,6 +16,10 @@ class Outcome(Enum):
     NOT_FINITE = "The residual or its Jacobian is not finite; try a closer initial guess."
     STALLED = "The damped Newton step became too small to make progress; try a closer initial guess."
     REFINEMENT_LIMIT = "Mesh refinement reached its limit before the tolerance was met; ask for a larger rtol."
+    MESH_LIMIT = (
+        "The mesh that resolves this state takes more memory than a solve may use; "
+        "ask for a larger speed, roughness or rtol: films and edges that are less thin."
+    )
     ROUNDING = (
         "Double precision keeps the error of this state above the requested rtol; "
         "ask for a larger rtol, or use the value with its error estimate."

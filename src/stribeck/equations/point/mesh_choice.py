@@ -53,6 +53,15 @@ EDGE_PRESSURE = 0.2
 """Contact pressure at the edge, where its decay is taken from [p_Hz]."""
 
 
+SIDE_LOBES = 7.5
+"""Number of modes over the width of the edge to the power -0.675 that resolves the minimum film of smooth contacts to 1e-4."""
+
+MOST_MODES = 200
+"""The most modes of a mesh."""
+
+COARSEST = 0.25
+"""Modes over those of the minimum film with which the other observables are good to 1e-2."""
+
 UNRESOLVED = 2.6
 """A panel of degree n is split where its last Legendre coefficients exceed this to the power -n; pressures with the square
 root of an edge fall with 4.4**-n on the panels that lead to it."""
@@ -64,7 +73,7 @@ NARROWEST, MOST_SPLITS = 1e-3, 16
 class MeshTooLargeError(Exception):
     """A mesh would take more than :data:`MOST_BYTES`."""
 
-    outcome = Outcome.REFINEMENT_LIMIT
+    outcome = Outcome.MESH_LIMIT
 
 
 @dataclass(frozen=True)
@@ -166,6 +175,12 @@ def layout(speed: float, law: ContactLaw, model: Model = ARTICLE) -> tuple[float
     scale = math.sqrt(1.0 + 2.0 * height)
     scale = 1.0 if scale < 1.5 else scale
     return min(0.5, EDGE * max(speed**0.4, decay ** (2.0 / 3.0))), scale
+
+
+def is_too_thin(speed: float, law: ContactLaw) -> bool:
+    """Return whether the film is so thin, and so little held open by asperities, that no allowed mesh has the angles for it."""
+    width = layout(speed, law)[0] / EDGE
+    return COARSEST * SIDE_LOBES * width**-0.675 > MOST_MODES and film_scale(speed) > float(np.max(law.decay_length))
 
 
 CAVITATED_FILM = {Cavitation.NONE: 0.0, Cavitation.EXIT: RIGID_CAVITATED}

@@ -17,6 +17,8 @@ from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.point.mesh_choice import (
     EDGE,
     MOST_BYTES,
+    MOST_MODES,
+    SIDE_LOBES,
     MeshTooLargeError,
     Resolution,
     bytes_of,
@@ -62,16 +64,13 @@ MINIMUM_SLACK, PATH_SLACK = 100.0, 1000.0
 PANEL_RATE = 1.49
 """Logarithm by which one degree more reduces the error of a pressure that has a square root at one panel's distance."""
 
-SIDE_LOBES = 7.5
-"""Number of modes over the width of the edge to the power -0.675 that resolves the minimum film of smooth contacts to 1e-4."""
-
 FINER_DEGREE, FINER_MODES = 2, 1.4
 """By how much the finer mesh of two has a higher degree, and how many times as many modes."""
 
 THICK = 0.05
 """Film above which the degree of a first mesh does not fall: the pressures of thick films are of order one."""
 
-MOST_DEGREE, MOST_MODES = 18, 200
+MOST_DEGREE = 18
 MOST_ROUNDS = 6
 
 LARGE = 200_000_000
@@ -256,8 +255,9 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair
             wanted, coarse = next_meshes(pair, rtol, band, slack)
             if wanted.degree <= before.degree and wanted.modes <= before.modes:
                 break
-    except MeshTooLargeError:
-        pass
+    except MeshTooLargeError as problem:
+        if best is None:
+            return problem.outcome
     if best is None:
         return Outcome.REFINEMENT_LIMIT
     return best if best.total <= rtol else replace(best, outcome=Outcome.REFINEMENT_LIMIT)

@@ -23,6 +23,7 @@ from stribeck.equations.point.mesh_choice import (
     film_scale,
     film_speed,
     gaps_at,
+    is_too_thin,
     layout,
     operators_of,
     resolution,
@@ -136,6 +137,8 @@ def first_guess(found: Resolution, speed: float, law: ContactLaw, lift: float = 
 
 def first_state(speed: float, law: ContactLaw, model: Model = ARTICLE) -> Level | Outcome:
     """Return a coarse state at a speed, or why there is none."""
+    if is_too_thin(speed, law):
+        return Outcome.MESH_LIMIT
     last: Outcome = Outcome.STALLED
     for path in (_direct, _upward, _downward, _milder):
         try:
@@ -143,8 +146,8 @@ def first_state(speed: float, law: ContactLaw, model: Model = ARTICLE) -> Level 
                 if level.outcome.ok:
                     return level
                 last = level.outcome
-        except MeshTooLargeError:
-            return Outcome.REFINEMENT_LIMIT
+        except MeshTooLargeError as problem:
+            return problem.outcome
     return last
 
 
