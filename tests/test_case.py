@@ -172,10 +172,10 @@ def test_a_case_knows_every_quantity(write):
             {"contact": {"density": "900"}},
             "[contact] density = 900 needs kinematic_viscosity too",
         ),
-        ({"contact": {"shear_modulus": "1"}}, "[contact] shear_modulus = 1 is not a known key; of the solid give modulus"),
+        ({"contact": {"shear_modulus": "1"}}, "[contact] shear_modulus = 1 is not a known key; for the solid give modulus"),
         (
             {"contact": {"normal_force": "1"}},
-            "[contact] normal_force = 1 is not a known key; give load: of a cylinder in N/m, or force",
+            "[contact] normal_force = 1 is not a known key; give load: for a cylinder in N/m, or force",
         ),
         ({"contact": {"surface_speed_ratio": "1"}}, "[contact] surface_speed_ratio = 1 is not a known key; known are radius"),
         ({"contact": {"deviation": "1"}}, "[contact] deviation = 1 is not a known key; it belongs in the table [asperities]."),

@@ -6,13 +6,17 @@ import re
 
 import numpy as np
 import pytest
+from command_line import EXAMPLES
 
 import stribeck as sb
 from stribeck import cli
 from stribeck.curves import sensitivities
+from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import friction_sensitivities, sensitivities_if_known
 from stribeck.quantities.inputs import GROUP_EXPONENTS
-from stribeck.regimes.margins import BOX, regime_margins
+from stribeck.regimes.margin_intervals import with_intervals
+from stribeck.regimes.margins import BOX, Crossing, Margin, RegimeMargins, regime_margins
+from stribeck.regimes.sentences import ways_to
 
 CONTACT = sb.LineContact(
     radius="10 mm",
@@ -337,6 +341,63 @@ def test_the_command_has_words_for_the_corners(capsys, tmp_path, changes, senten
     text = command(capsys, tmp_path, **changes)
     assert sentence in text
     assert ("Speed and viscosity" in text) == bool(re.search("viscosity [x/]", text))
+
+
+def crossing_along(name, contact, regime, value):
+    """Return margins that hold one crossing: hydrodynamic or boundary lubrication at a value of an input."""
+    mark = Crossing(regime, value, value / getattr(contact, name))
+    return RegimeMargins("mixed", (Margin(name, None, mark, (0.0, math.inf)),), ())
+
+
+def sensitivity_of(name, contact, regime, value, uncertain):
+    """Return by which power a factor moves with an input, from its interval, up to the sign."""
+    error = 0.01
+    [margin] = with_intervals(contact, crossing_along(name, contact, regime, value), {uncertain: error}).margins
+    low, high = margin.more.interval_95
+    return math.log(high / low) / 2 / 1.959964 / math.sqrt(math.log1p(error**2))
+
+
+@pytest.mark.parametrize("uncertain", ["roughness", "boundary_friction"])
+def test_the_interval_of_a_margin_is_that_of_transitions_solved_again(uncertain):
+    contact = CONTACT.replace(speed="5 mm/s")
+    curves = [
+        sb.stribeck_curve(
+            contact.replace(**{uncertain: getattr(contact, uncertain) * math.exp(step)}),
+            speed=("0.1 mm/s", "0.1 m/s"),
+            points=11,
+            rtol=1e-5,
+        )
+        for step in (-0.02, 0.0, 0.02)
+    ]
+    for mark, regime in ((Transition.HYDRODYNAMIC_START, "hydrodynamic"), (Transition.BOUNDARY_END, "boundary")):
+        low, here, high = (curve.landmark(mark).value for curve in curves)
+        found = sensitivity_of("speed", contact, regime, here, uncertain)
+        assert found == pytest.approx(abs(math.log(high / low)) / 0.04, rel=1e-2, abs=1e-3)
+
+
+def test_an_uncertain_input_moves_the_factor_by_which_it_is_to_be_changed_itself():
+    contact = CONTACT.replace(speed="5 mm/s")
+    assert sensitivity_of("speed", contact, "hydrodynamic", 0.03, "speed") == pytest.approx(1)
+    assert sensitivity_of("speed", contact, "hydrodynamic", 0.03, "viscosity") == pytest.approx(1)
+    there = contact.replace(speed="30.46 mm/s")
+    along_roughness = sensitivity_of("roughness", there, "hydrodynamic", there.roughness, "speed")
+    assert along_roughness * sensitivity_of("speed", there, "hydrodynamic", there.speed, "roughness") == pytest.approx(1)
+
+
+def test_the_interval_of_a_margin_in_roughness_counts_the_beta_that_moves_with_it():
+    seal = sb.load_case(EXAMPLES / "rod_seal.toml").contact
+    arguments = "roughness", seal, "hydrodynamic", 2.9865e-7
+    by_roughness, by_beta = (sensitivity_of(*arguments, uncertain) for uncertain in ("roughness", "beta"))
+    assert by_beta > 0.1
+    assert by_roughness == pytest.approx(1 + by_beta)
+
+
+@pytest.mark.quick
+def test_margins_have_no_interval_without_errors_and_say_it_in_the_sentence_with():
+    margins = crossing_along("speed", CONTACT, "hydrodynamic", 0.03)
+    assert with_intervals(CONTACT, margins, {}) == margins
+    _, sentence = ways_to(with_intervals(CONTACT, margins, {"speed": 0.1}))
+    assert sentence == "To reach hydrodynamic lubrication: speed x 30 (to 30 mm/s; 95 %: 24.7 to 36.5)."
 
 
 @pytest.mark.quick

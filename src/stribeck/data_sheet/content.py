@@ -22,6 +22,7 @@ from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.units import format_percent, format_share, format_si
+from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margins import regime_margins
 from stribeck.regimes.sentences import ways_to
 from stribeck.solver.solution import Solution
@@ -156,7 +157,7 @@ def content_of(
     step(2, 5)
     found = propagate(contact, case.errors, definition=definition) if case.errors else None
     step(3, 5)
-    margins = regime_margins(contact, rtol=case.rtol, definition=definition)
+    margins = with_intervals(contact, regime_margins(contact, rtol=case.rtol, definition=definition), case.errors, definition)
     step(4, 5)
     levers = _levers(case, solution, slopes)
     step(5, 5)

@@ -96,11 +96,14 @@ class Crossing:
         Value of the input there [SI].
     factor : float
         The same over its present value; infinite where that is zero.
+    interval_95 : tuple of float or None
+        Interval that holds the factor with 95 % probability; None if no input has an error.
     """
 
     regime: Regime
     value: float
     factor: float
+    interval_95: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,10 @@ def _step(name: str, mark: Crossing, table: InputTable) -> str:
     if math.isinf(mark.factor):
         return f"from zero to {value}"
     larger = mark.factor >= 1
-    return f"{'x' if larger else '/'} {format_factor(mark.factor if larger else 1 / mark.factor)} (to {value})"
+    ends = () if mark.interval_95 is None else mark.interval_95
+    low, high = (0.0, 0.0) if not ends else sorted(ends if larger else (1 / end for end in ends))
+    interval = f"; 95 %: {format_factor(low)} to {format_factor(high)}" if ends else ""
+    return f"{'x' if larger else '/'} {format_factor(mark.factor if larger else 1 / mark.factor)} (to {value}{interval})"
 
 
 def _searched(margin: Margin, table: InputTable) -> str:

@@ -21,7 +21,7 @@ from stribeck.quantities.units import InputError, show
 from stribeck.uncertainty.result import Spread, Uncertainty
 from stribeck.uncertainty.states import films_of, states_of
 
-__all__ = ["kept_errors", "propagate"]
+__all__ = ["RTOLS", "kept_errors", "moving_with", "propagate"]
 
 SAMPLES, SEED = 20_000, 20261122
 """Random samples of the inputs; the seed is fixed, so that results repeat."""
@@ -93,7 +93,7 @@ def propagate(
     names = list(sigmas)
     draws = np.random.default_rng(SEED).standard_normal((SAMPLES, max(1, len(names))))
     offsets = draws[:, : len(names)] * np.array([sigmas[name] for name in names])
-    moves = [_tied(contact, name, sigmas) for name in names]
+    moves = [moving_with(contact, name, sigmas) for name in names]
 
     def power(function: Any) -> Array:
         """Return the powers with which the inputs enter a power law."""
@@ -183,8 +183,23 @@ def kept_errors(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]
     return {name: found[name] for name in contact.INPUTS.names if name in found}
 
 
-def _tied(contact: Contact, name: str, sigmas: Mapping[str, float]) -> tuple[str, ...]:
-    """Return the inputs that move together with one."""
+def moving_with(contact: Contact, name: str, sigmas: Mapping[str, float]) -> tuple[str, ...]:
+    """Return the inputs that move together with one.
+
+    Parameters
+    ----------
+    contact : Contact
+        The contact.
+    name : str
+        The input.
+    sigmas : mapping
+        The uncertain inputs.
+
+    Returns
+    -------
+    tuple of str
+        The input itself, and beta with the roughness under Persson's law unless beta has an error of its own.
+    """
     follows = name == "roughness" and "beta" not in sigmas and contact.law is not None and contact.law.name == "persson"
     return ("roughness", "beta") if follows else (name,)
 
@@ -235,7 +250,9 @@ def _transitions(contact: Contact, sigmas: Mapping[str, float], definition: Defi
         if name == "speed":
             continue
         factor = math.exp(sigma)
-        moved = marks(contact.replace(**{each: getattr(contact, each) * factor for each in _tied(contact, name, sigmas)}))
+        moved = marks(
+            contact.replace(**{each: getattr(contact, each) * factor for each in moving_with(contact, name, sigmas)})
+        )
         for mark, value in start.items():
             if mark in moved:
                 variances[mark] += math.log(moved[mark] / value) ** 2

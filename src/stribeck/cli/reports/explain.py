@@ -20,6 +20,7 @@ from stribeck.curves.result import StribeckCurve
 from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
+from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margins import RegimeMargins, regime_margins
 from stribeck.solver.solution import Solution
 
@@ -101,6 +102,7 @@ def regimes_of(case: sb.Case, on_point: Callable[[int, int], object] | None = No
     if curve.outcome is sb.Outcome.INTERRUPTED:
         raise KeyboardInterrupt
     margins = regime_margins(contact, rtol=rtol, definition=definition, on_point=on_point)
+    margins = with_intervals(contact, margins, case.errors, definition)
     errors = sb.propagate(contact, case.errors, definition=definition) if case.errors else None
     checks = checks_of_curve(curve, case.facts, solution)
     return Regimes(solution, sensitivities, curve, margins, checks, errors, reason)

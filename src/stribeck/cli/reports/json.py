@@ -241,7 +241,8 @@ def _margin(margin: Margin, contact: Contact) -> dict[str, Any]:
 
 
 def _crossing(mark: Crossing) -> dict[str, Any]:
-    return {"regime": mark.regime, "value": mark.value, "factor": mark.factor}
+    found: dict[str, Any] = {"regime": mark.regime, "value": mark.value, "factor": mark.factor}
+    return found if mark.interval_95 is None else found | {"interval_95": list(mark.interval_95)}
 
 
 def _landmark(mark: Landmark) -> dict[str, Any]:

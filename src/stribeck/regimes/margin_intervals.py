@@ -1,0 +1,117 @@
+r"""Intervals of margins where inputs have errors.
+
+The next regime begins at the value :math:`X^*` of an input X where a share g passes its bound.  Other inputs Y move that value,
+
+.. math::
+    \frac{\partial \ln X^*}{\partial \ln Y} = -\frac{\partial g/\partial \ln Y}{\partial g/\partial \ln X}, \qquad
+    \sigma^2 = \sum_Y \left(\frac{\partial \ln (X^*/X)}{\partial \ln Y} \, \sigma_Y\right)^2,
+
+with the exact derivatives of the state there, to first order in the errors.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import Definition
+from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.quantities.units import InputError
+from stribeck.regimes.margins import Crossing, RegimeMargins
+from stribeck.solver.solve import SolveError
+from stribeck.uncertainty.propagate import RTOLS, kept_errors, moving_with
+
+__all__ = ["with_intervals"]
+
+QUANTILE = 1.959964
+"""Standard deviations on each side that hold 95 % of a normal distribution."""
+
+
+def with_intervals(
+    contact: Contact, margins: RegimeMargins, errors: Mapping[str, Any], definition: Definition = "balanced"
+) -> RegimeMargins:
+    """Return margins with the 95 % interval of each factor.
+
+    Parameters
+    ----------
+    contact : Contact
+        The contact.
+    margins : RegimeMargins
+        Its margins.
+    errors : mapping
+        Standard errors of inputs, as :func:`stribeck.propagate` takes them.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+
+    Returns
+    -------
+    RegimeMargins
+        The same; a factor has an interval where its state has exact derivatives and its input is above zero.
+
+    Raises
+    ------
+    InputError
+        If an input is unknown, or its error no positive number.
+
+    Notes
+    -----
+    To first order, so that an interval is lognormal.  For both example seals, with errors of 10 to 30 %, margins solved again
+    at one standard error to either side of each input agree with the standard deviation of the logarithm within 1 %; in
+    speed towards boundary lubrication, factors of 800 and 190 000 away, within a fifth.
+    """
+    sigmas = kept_errors(contact, errors)
+    if not sigmas:
+        return margins
+
+    def known(name: str, mark: Crossing | None) -> Crossing | None:
+        if mark is None or mark.value <= 0 or not math.isfinite(mark.factor):
+            return mark
+        try:
+            sigma = _sigma(contact, name, mark, sigmas, "hydrodynamic" in (mark.regime, margins.regime), definition)
+        except (InputError, SolveError):
+            return mark
+        reach = math.exp(QUANTILE * sigma)
+        return replace(mark, interval_95=(mark.factor / reach, mark.factor * reach))
+
+    found = (replace(each, less=known(each.name, each.less), more=known(each.name, each.more)) for each in margins.margins)
+    return replace(margins, margins=tuple(found))
+
+
+def _sigma(
+    contact: Contact, name: str, mark: Crossing, sigmas: Mapping[str, float], by_friction: bool, definition: Definition
+) -> float:
+    """Return the standard deviation of the logarithm of a factor."""
+    slopes = _slopes(contact.replace(**{name: mark.value}), by_friction, definition)
+    total = 0.0
+    for each, sigma in sigmas.items():
+        moved = moving_with(contact, each, sigmas)
+        change = -sum(slopes[other] for other in moved if other != name) / slopes[name]
+        total += ((change - (name in moved)) * sigma) ** 2
+    return math.sqrt(total)
+
+
+def _slopes(there: Contact, by_friction: bool, definition: Definition) -> dict[str, float]:
+    r"""Return the derivatives of the share that decides on the regime, over a factor that all have in common.
+
+    Friction is :math:`\mu = \mu_0 S + V`, so that its derivatives at :math:`\mu_0` and :math:`\mu_0/2` hold those of S and V.
+    """
+    whole, half = (
+        friction_sensitivities(
+            there.replace(boundary_friction=factor * there.boundary_friction),
+            rtol=RTOLS[there.groups.geometry],
+            definition=definition,
+        )
+        for factor in (1.0, 0.5)
+    )
+    friction, halved = (solution.friction(definition=definition) for solution, _ in (whole, half))
+    found = {}
+    for name in whole[1]:
+        first, second = friction.total * whole[1][name], halved.total * half[1][name]
+        share = 2 * (first - second) / friction.contact  # d ln S
+        viscous = (2 * second - first) / friction.viscous  # d ln V
+        found[name] = share - viscous if by_friction else share
+    found["boundary_friction"] = 1.0 if by_friction else 0.0
+    return found
