@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,8 +10,8 @@ from command_line import EXAMPLES, call
 from fit_data import TRUE, exact, measured, noisy
 
 import stribeck as sb
-from stribeck.experiments.compare import CAVEATS, _aicc
-from stribeck.experiments.next_runs import _information, _row
+from stribeck.experiments.compare import CAVEATS, Candidate, Comparison, _aicc
+from stribeck.experiments.next_runs import NextRun, Plan, _information, _row
 
 
 @pytest.fixture(scope="module")
@@ -112,3 +113,18 @@ def test_the_criterion_is_that_of_akaike_for_small_samples(found):
     sigma = found.noise * math.sqrt((n - 2) / n)
     expected = n * math.log(sigma**2) + 2 * k + 2 * k * (k + 1) / (n - k - 1)
     assert _aicc(found, 2) == pytest.approx(expected)
+
+
+@pytest.mark.quick
+def test_a_comparison_and_a_plan_show_themselves_in_a_screen(found):
+    law = Candidate("exponential", found, -12.0, 0.0, 0.9)
+    comparison = Comparison((law, replace(law, name="table", difference=5.0, weight=0.1)), {"persson": "no spectrum"})
+    run = NextRun("first", 1e-3, 30.0, 0.05, 0.6, 0.4, 1.0, {"roughness": 0.07})
+    plan = Plan((run,), {"roughness": 0.1}, 0.03, (run,))
+    for shown, said in ((comparison, "table: AICc -12.0, difference 5.0"), (plan, "gain 0.4, then roughness 7 %")):
+        text = repr(shown)
+        assert said in text and len(text.splitlines()) < 25 and len(text) < 2500
+        assert text.startswith(type(shown).__name__) and shown._repr_html_().count("<tr>") == len(text.splitlines()) - (
+            1 + len(shown._card().notes)
+        )
+    assert repr(comparison).splitlines()[0].endswith(comparison.sentence)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from command_line import EXAMPLES
 from sweep_files import CONTACT, GRID, RANDOM, write
 
 import stribeck as sb
@@ -239,3 +240,9 @@ def test_resting_and_smooth_states_have_chains_of_their_own(tmp_path):
     assert sorted(np.concatenate(chains)) == list(range(18))
     for chain in chains:
         assert len({tuple(state == 0) for state in design.groups[chain]}) == 1
+
+
+def test_a_design_shows_itself_in_a_screen():
+    text = repr(sb.load_sweep(EXAMPLES / "sweep.toml"))
+    assert text.startswith("SweepDesign: PDMS cylinder over speed, roughness and load: grid, ")
+    assert len(text.splitlines()) < 15 and "load: 2 values, 15 N/m to 30 N/m" in text

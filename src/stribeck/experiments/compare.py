@@ -20,6 +20,7 @@ from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.result import Fit
 from stribeck.quantities.keywords import answers_typos
+from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, format_percent, show
 from stribeck.solver.solve import SolveError
 
@@ -61,8 +62,8 @@ class Candidate:
     weight: float
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, repr=False)
+class Comparison(Shown):
     """Laws fitted to the same data, the preferred first.
 
     Attributes
@@ -88,6 +89,13 @@ class Comparison:
         out = [each.name for each in others if each.difference > CLEAR]
         excluded = f"; practically excluded: {', '.join(out)}" if out else ""
         return f"The data prefer {best.name}, by {others[0].difference:.1f} in AICc over {others[0].name}{excluded}."
+
+    def _card(self) -> Card:
+        rows = [
+            (each.name, f"AICc {each.aicc:.1f}, difference {each.difference:.1f}, weight {each.weight:.2g}")
+            for each in self.candidates
+        ]
+        return Card(self.sentence, [*rows, *self.failed.items()], CAVEATS)
 
     def __str__(self) -> str:
         """Return the table as text."""

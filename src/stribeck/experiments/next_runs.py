@@ -23,6 +23,7 @@ from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.fits.result import Fit
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import quantity
+from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, format_percent, format_si, show
 from stribeck.solver.solve import SolveError
 
@@ -77,8 +78,8 @@ class NextRun:
     errors: dict[str, float]
 
 
-@dataclass(frozen=True)
-class Plan:
+@dataclass(frozen=True, repr=False)
+class Plan(Shown):
     """Runs worth measuring, the best first.
 
     Attributes
@@ -101,19 +102,27 @@ class Plan:
     scanned: tuple[NextRun, ...] = field(repr=False)
     load_dimension: str = "load"
 
+    def _card(self) -> Card:
+        rows = [
+            (
+                f"run {i}",
+                f"{format_si(each.speed, 'speed')}, {format_si(each.load, self.load_dimension)}, "
+                f"{format_si(each.viscosity, 'viscosity')}: gain {each.gain:.2g}, then {_percents(each.errors)}",
+            )
+            for i, each in enumerate(self.runs, 1)
+        ]
+        return Card(f"{len(self.runs)} runs worth measuring, the best first", [("now", _percents(self.before)), *rows])
+
     def __str__(self) -> str:
         """Return the table as text."""
         columns = (("run", 5), ("speed", 14), ("load", 14), ("viscosity", 14), ("friction", 11), ("gain", 8), ("cost", 7))
         lines = ["".join(f"{name:<{width}}" for name, width in columns) + "standard errors after it"]
         for i, each in enumerate(self.runs, 1):
-            after = ", ".join(f"{name} {format_percent(error)}" for name, error in each.errors.items())
             place = f"{format_si(each.speed, 'speed'):<14}{format_si(each.load, self.load_dimension):<14}"
             place += f"{format_si(each.viscosity, 'viscosity'):<14}"
-            lines.append(f"{i:<5}{place}{each.friction:<11.3g}{each.gain:<8.2g}{each.cost:<7.3g}{after}")
-        now = ", ".join(f"{name} {format_percent(error)}" for name, error in self.before.items())
-        return "\n".join(
-            [*lines, f"Standard errors now: {now}; a run is assumed to be accurate to {format_percent(self.noise)}."]
-        )
+            lines.append(f"{i:<5}{place}{each.friction:<11.3g}{each.gain:<8.2g}{each.cost:<7.3g}{_percents(each.errors)}")
+        noise = f"a run is assumed to be accurate to {format_percent(self.noise)}"
+        return "\n".join([*lines, f"Standard errors now: {_percents(self.before)}; {noise}."])
 
     def to_dict(self) -> dict[str, Any]:
         """Return the runs and the errors before and after them, ready for JSON.
@@ -313,6 +322,11 @@ def _row(fit: Fit, curve: str, contact: Contact) -> tuple[Array, float] | None:
         return None
     row = [slopes[each.name] if each.curve in (None, curve) else 0.0 for each in fit.inputs]
     return (np.array(row), friction) if np.isfinite(row).all() else None
+
+
+def _percents(errors: Mapping[str, float]) -> str:
+    """Return standard errors as text."""
+    return ", ".join(f"{name} {format_percent(error)}" for name, error in errors.items())
 
 
 def _price(fit: Fit, contact: Contact, prices: Mapping[str, float]) -> float:

@@ -1,6 +1,6 @@
 r"""Intervals of margins where inputs have errors.
 
-The next regime begins at the value :math:`X^*` of an input X where a share g passes its bound.  Other inputs Y move that value,
+The next regime begins at the value :math:`X^*` of an input X where a share g passes its bound.  Other inputs Y move it,
 
 .. math::
     \frac{\partial \ln X^*}{\partial \ln Y} = -\frac{\partial g/\partial \ln Y}{\partial g/\partial \ln X}, \qquad

@@ -35,7 +35,8 @@ from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.parts import DEFAULT, Parts
 from stribeck.quantities.hints import advice_on
 from stribeck.quantities.inputs import INPUT_TABLES, InputTable, check_alternatives, quantity
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.results import Card, Shown
+from stribeck.quantities.units import InputError, format_si, show
 from stribeck.sweeps.points import KINDS, RANDOM, Axis, Kind, points_of
 
 __all__ = ["SweepDesign", "load_sweep"]
@@ -47,8 +48,8 @@ COEFFICIENTS = ("boundary_friction", "beta")
 """What friction needs beside groups."""
 
 
-@dataclass(frozen=True, eq=False)
-class SweepDesign:
+@dataclass(frozen=True, eq=False, repr=False)
+class SweepDesign(Shown):
     """The states that a sweep is to solve, each checked.
 
     Attributes
@@ -94,6 +95,19 @@ class SweepDesign:
     law: Law
     physics: Physics = field(repr=False)
     parts: Parts = field(default=DEFAULT, repr=False)
+
+    def _card(self) -> Card:
+        points = " x ".join(map(str, self.shape))
+        rows = [(name, self._range(name)) for name in self.varied]
+        settings = (("law", self.law), ("rtol", f"{self.rtol:g}"), ("file", str(self.path)))
+        return Card(f"{self.title or 'a sweep'}: {self.kind}, {points} states", [*rows, *settings])
+
+    def _range(self, name: str) -> str:
+        """Return how many values an input takes, and between which."""
+        values = np.unique(self.inputs[name])
+        dimension = INPUT_TABLES[self.physics["geometry"]].quantities[name].dimension if self.si else "number"
+        low, high = (format_si(float(end), dimension) for end in (values[0], values[-1]))
+        return f"{len(values)} values, {low} to {high}"
 
     @property
     def contact_law(self) -> AsperityLaw | None:
