@@ -14,11 +14,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from command_line import EXAMPLES
 
 import stribeck as sb
 from stribeck.cli import main
+from stribeck.explorer import curves, server, table
 from stribeck.explorer import downloads as files
-from stribeck.explorer import server, table
 from stribeck.explorer.answer import Answerer, asymptotic_fields, round_down, round_up
 from stribeck.explorer.asked import carried, choices, inputs, url
 from stribeck.explorer.asked.history import History
@@ -819,10 +820,16 @@ def test_present_point_minimum_and_measured_points_have_colours_of_their_own(ans
         assert series["other"]["color"] != series["friction"]["color"]
 
 
-def test_an_empty_map_says_why_in_its_place():
-    ball = Answerer()(choices.choose(START, "geometry", "point"))
-    assert charts.diagram_chart(ball, LIGHT)["title"]["text"].startswith("Regime map unavailable: it would take an hour")
-    assert charts.diagram_chart(Answerer()(START), LIGHT)["title"]["text"] == ""
+def test_the_map_of_a_ball_is_solved_row_by_row(monkeypatch):
+    monkeypatch.setitem(curves.SOLVED_ROWS, "point", curves.SolvedRows(31, 5, 1e-2))
+    contact = sb.load_case(EXAMPLES / "pdms_ball.toml").contact
+    told = []
+    [found] = curves.solved_diagram(contact, "balanced", (1e-2, 10.0), -5, told.append)
+    assert found.part == 1 and told[-1] == 1
+    row = contact.replace(roughness=float(found.roughness[0]))
+    friction = sb.solve(row.replace(speed=found.hydrodynamic[0]), rtol=1e-3).friction()
+    assert friction.contact / friction.total == pytest.approx(0.1, rel=0.05)
+    assert found.boundary[0] == 0  # the fluid carries more than a twentieth at the slowest speed
 
 
 def test_a_refused_value_is_told_in_the_unit_of_its_field():

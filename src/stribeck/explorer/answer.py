@@ -140,7 +140,7 @@ class Answerer:
         self._last: tuple[Contact, Solution | PointSolution] | None = None
         self._kept: dict[Any, Any] = {}
         self._last_solved: Curve | None = None
-        self._last_diagram: Diagram | None = None
+        self._last_diagrams: dict[str, Diagram] = {}
 
     def __call__(self, inputs: Inputs) -> Answer:
         """Return the answer at once; outside the atlas with the last curve, marked stale, until :meth:`settle` solved its own.
@@ -214,16 +214,16 @@ class Answerer:
         return True
 
     def diagrams(self, inputs: Inputs, report: Report) -> Iterator[None]:
-        """Solve the diagram of inputs outside the atlas row by row, and stop after each to show it; that of balls never."""
+        """Solve the diagram of inputs outside the atlas row by row, and stop after each to show it."""
         contact, definition = inputs.contact, inputs.definition
-        if in_atlas(contact) or contact.INPUTS.geometry == "point":
+        if in_atlas(contact):
             return
         _, speeds = self._curve_now(contact, definition)
         key = _diagram_key(contact, definition, speeds)
         if key in self._kept and self._kept[key].part == 1.0:
             return
         for found in solved_diagram(contact, definition, speeds, decade_of_roughness(contact), report):
-            self._kept[key] = self._last_diagram = found
+            self._kept[key] = self._last_diagrams[contact.INPUTS.geometry] = found
             yield
 
     def settle_checks(self, inputs: Inputs) -> bool:
@@ -306,9 +306,8 @@ class Answerer:
             decade = decade_of_roughness(contact)
             return self._keep(key, lambda: diagram_from_atlas(contact, definition, speeds, decade))
         found: Diagram | None = self._kept.get(key)
-        if found is None and self._last_diagram is not None and contact.INPUTS.geometry == "line":
-            return replace(self._last_diagram, stale=True)
-        return found
+        last = self._last_diagrams.get(contact.INPUTS.geometry)
+        return replace(last, stale=True) if found is None and last is not None else found
 
     def _keep(self, key: Any, make: Callable[[], T]) -> T:
         if key not in self._kept:

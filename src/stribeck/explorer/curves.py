@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -47,8 +48,27 @@ SOLVED_RTOL = 1e-4
 SOLVED_POINTS = {"line": 200, "point": 15}
 """Points of curves that are solved."""
 
-ROW_POINTS, ROW_STEP = 25, 3
-"""Points of a row of a diagram that is solved, and of how many rows one is."""
+
+class SolvedRows(NamedTuple):
+    """How a diagram of one geometry is solved.
+
+    Attributes
+    ----------
+    step : int
+        One of how many of the :data:`ROWS` roughnesses is solved.
+    points : int
+        Points of a row.
+    rtol : float
+        Tolerance of its states.
+    """
+
+    step: int
+    points: int
+    rtol: float
+
+
+SOLVED_ROWS = {"line": SolvedRows(3, 25, SOLVED_RTOL), "point": SolvedRows(5, 9, 1e-3)}
+"""By geometry: a ball takes a tenth of a second or more for each state."""
 
 Report = Callable[[float], object]
 """Called with the finished part; an exception that it raises ends the work."""
@@ -119,8 +139,6 @@ class Diagram:
     boundary, hydrodynamic, minimum : ndarray, shape (n,)
         Speeds at which boundary lubrication ends, hydrodynamic lubrication begins and friction is at its minimum;
         zero, infinite or nan where there are none [m/s].
-    message : str
-        Why there is no diagram, or empty.
     stale : bool
         Whether it belongs to inputs before the present ones.
     part : float
@@ -131,7 +149,6 @@ class Diagram:
     boundary: Array
     hydrodynamic: Array
     minimum: Array
-    message: str = ""
     stale: bool = False
     part: float = 1.0
 
@@ -279,7 +296,7 @@ def solved_diagram(
     Diagram
         With nan in the rows that are still missing.
     """
-    roughness = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)[::ROW_STEP]
+    roughness = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)[:: SOLVED_ROWS[contact.INPUTS.geometry].step]
     lines = np.full((3, len(roughness)), math.nan)
     own = contact.roughness or roughness[0]
     order = sorted(range(len(roughness)), key=lambda i: abs(math.log(roughness[i] / own)))
@@ -293,11 +310,12 @@ def solved_diagram(
 
 def _row(contact: Contact, definition: Definition, speeds: tuple[float, float], report: Report) -> tuple[float, float, float]:
     """Return the speeds at which boundary lubrication ends, hydrodynamic begins, and friction is at its minimum."""
+    solved = SOLVED_ROWS[contact.INPUTS.geometry]
     found = stribeck_curve(
         contact,
         speed=speeds,
-        points=ROW_POINTS,
-        rtol=SOLVED_RTOL,
+        points=solved.points,
+        rtol=solved.rtol,
         definition=definition,
         on_point=lambda done, of: report(done / of),
     )

@@ -445,14 +445,14 @@ class Tab:
                 self.page.progress = self.model.why_no_curve(now)
                 if self.page.progress:
                     self.page.show_progress()
+                if await self.run(CHECKS, self.checks, now):
+                    await self.refresh(now)
                 rows = self.model.diagrams(now, report)
                 while await self.run(SLOW, next, rows, False) is not False:
                     await self.refresh(now)
                 found = await self.run(SLOW, self.ways, now)
                 if found is not None and self.inputs is now:
                     self.page.show_margins(found if isinstance(found, str) else table.margins_html(found), now)
-                if await self.run(CHECKS, self.checks, now):
-                    await self.refresh(now)
             except Superseded:
                 return
 

@@ -233,14 +233,13 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
     series: list[Options] = []
     decade = decade_of_roughness(contact)
     roughness = np.array([10.0 ** (decade + 6), 10.0 ** (decade + 9)])
-    message = diagram.message if diagram is not None else WITHOUT_MAP[contact.INPUTS.geometry]
     lines = np.empty((3, 0)) if diagram is None else np.stack([diagram.boundary, diagram.hydrodynamic, diagram.minimum])
     known = ~np.isnan(lines[:2]).any(axis=0)
     if diagram is not None:
         roughness = 1e6 * diagram.roughness
     begin = np.clip(lines[1], low, high)
     end = np.minimum(np.clip(lines[0], low, high), begin)
-    if known.sum() > 1 and diagram is not None and not message:
+    if known.sum() > 1 and diagram is not None:
         rows = roughness[known]
         left, right = np.full(len(rows), low), np.full(len(rows), high)
         b, h = end[known], begin[known]
@@ -283,20 +282,8 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
     y = log_axis("roughness (µm)", float(roughness[0]), float(roughness[-1]), palette)
     options = chart(palette, x, y, series)
     listed = ["boundary ends", "hydrodynamic begins", "minimum friction"]
-    why = {"text": message, "left": "center", "top": "middle", "textStyle": _words(palette)}
     names = [name for name in listed if any(s["name"] == name for s in series)]
-    return options | {"title": why, "legend": legend(palette, names)}
-
-
-WITHOUT_MAP = {
-    "line": "",
-    "point": "Regime map unavailable: it would take an hour to solve for a ball, and no lookup table holds this one.",
-}
-"""Text in place of a missing map; empty while it is being solved."""
-
-
-def _words(palette: Palette) -> Options:
-    return {"color": palette.ink, "fontSize": 13, "fontWeight": "normal", "width": 230, "overflow": "break", "lineHeight": 18}
+    return options | {"legend": legend(palette, names)}
 
 
 def _region_name(name: str, one: Array, two: Array, rows: Array, palette: Palette) -> Options:
