@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from stribeck.numerics.series import circle, radius
+from stribeck.numerics.series import radius
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.path import Expansion, Interval, follow
 
@@ -38,10 +38,10 @@ class Known:
         if s < self.fails_below or (near and max(abs(s - one.coordinate) for one in near) > self.longest):
             return Outcome.STEP_LIMIT
         self.solved.append(s)
-        samples = circle(0.15, 12)
-        around = values(s + samples.places)
-        series, logs = samples.taylor(around, self.order), np.full((self.order + 1, 3), np.nan)
-        logs[:, [0, 2]] = samples.taylor(np.log(around[:, [0, 2]]), self.order)
+        places = 0.15 * np.exp(1j * np.pi * (np.arange(12) + 0.5) / 12)  # on a circle: Cauchy's integral
+        around, to_series = values(s + places), places ** -np.arange(self.order + 1)[:, None] / 12
+        series, logs = (to_series @ around).real, np.full((self.order + 1, 3), np.nan)
+        logs[:, [0, 2]] = (to_series @ np.log(around[:, [0, 2]])).real
         return Expansion(s, None, series, logs, np.full(3, self.error), radius(series, 0.15))
 
     @property

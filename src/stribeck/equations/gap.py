@@ -104,24 +104,25 @@ def minimum_gaps(mesh: Mesh, log_gap: Array) -> tuple[Array, Array, Array, Indic
     node = np.argmin(log_gap[:, :-order], axis=1)
     panel, inside = np.divmod(node, order)
     beside = panel - (inside == 0) + (inside == order - 1)
-    rows = np.arange(len(log_gap))
-    first, second = rule.derivative @ rule.to_legendre, rule.derivative @ rule.derivative @ rule.to_legendre
+    rows, powers = np.arange(len(log_gap)), np.arange(order)
     found = []
-    sides = [(panel, rule.nodes[inside]), (beside, np.where(inside == 0, 1.0, -1.0))]
-    for k, start in sides if (beside != panel).any() else sides[:1]:
+    # Beside the panel of the lowest node begins where the two meet.
+    sides = [(panel, inside, rule.nodes[inside]), (beside, np.where(inside == 0, order - 1, 0), np.where(inside == 0, 1.0, -1.0))]
+    for k, about, start in sides if (beside != panel).any() else sides[:1]:
         k = np.clip(k, 0, mesh.panels - 2)
         own = shape.reshape(len(rows), mesh.panels, order)[rows, k]
-        slopes, bends, values = own @ first.T, own @ second.T, own @ rule.to_legendre.T
-        c, d, s = mesh.centres[k], mesh.half_widths[k], start
+        polynomial = np.einsum("rnj,rj->rn", _taylor(order)[about], own)
+        slopes, bends = polynomial[:, 1:] * powers[1:], polynomial[:, 2:] * powers[2:] * powers[1:-1]
+        c, d, s, origin = mesh.centres[k], mesh.half_widths[k], start, rule.nodes[about]
         for _ in range(NEWTON_STEPS):
-            basis, x = legendre.legvander(s, order - 1), c + d * s
+            basis, x = (s - origin)[:, None] ** powers, c + d * s
             far = mesh.scale**2 + x * x
-            slope = (basis * slopes).sum(axis=1) + 2 * d * x / far
-            bend = (basis * bends).sum(axis=1) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
+            slope = (basis[:, :-1] * slopes).sum(axis=1) + 2 * d * x / far
+            bend = (basis[:, :-2] * bends).sum(axis=1) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
             step = -slope / np.maximum(np.maximum(bend, np.abs(slope) / LARGEST_STEP), 1e-300)
             s = np.clip(s + step, -1.0, 1.0)
         x = c + d * s
-        value = (legendre.legvander(s, order - 1) * values).sum(axis=1) + np.log(mesh.scale**2 + x * x)
+        value = ((s - origin)[:, None] ** powers * polynomial).sum(axis=1) + np.log(mesh.scale**2 + x * x)
         found.append((value, x, k, 2 * interpolation_error(own)))
     lower = found[-1][0] < found[0][0]
     value, x, k, missed = (np.where(lower, b, a) for a, b in zip(found[0], found[-1], strict=True))

@@ -19,7 +19,7 @@ from stribeck.equations.observables import ROW, observables
 from stribeck.equations.state import State, solve_state
 from stribeck.numerics.hermite import hermite_weights
 from stribeck.numerics.newton import Inverse, Root
-from stribeck.numerics.panels import Mesh
+from stribeck.numerics.panels import Mesh, interpolation_error
 from stribeck.numerics.series import interval, radius
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
@@ -279,34 +279,44 @@ class LineProblem:
             a, b = (end.series[0, READ] for end in ends)
             at_ends = np.maximum(left.errors[READ], right.errors[READ])
             return a + parts[:, None] * (b - a), np.abs((b - a) / [a[0], 1.0]) + at_ends + np.zeros((len(parts), 1)), READ
-        of_left, of_right = hermite_weights(min(left.order, right.order), parts)
-        found, errors = [], []
-        for of in ends[:1] if left.point.state.mesh is right.point.state.mesh else ends:
-            mesh = of.point.state.mesh
-            unknowns = between(left, right, of.point, parts)
-            rows = unknowns[:, : mesh.size]
-            lower = between(left, right, of.point, parts, 1)[:, : mesh.size]
-            position, lowest, missed, panel = minimum_gaps(mesh, rows)
-            at = of.point.state.equations.layout
-            for block in (at.dilation, at.exit):  # of a frame that moves with the end of the film
-                if block.stop > block.start:
-                    position = (
-                        position * unknowns[:, block.start] if block is at.dilation else position + unknowns[:, block.start]
-                    )
-            nodes = panel[:, None] * mesh.order + np.arange(mesh.order)
-            differ = np.abs(np.take_along_axis(rows - lower, nodes, axis=1)).max(axis=1)
-            found.append(np.stack([lowest, position]))
-            errors.append(np.stack([missed, differ]))
-        if len(found) == 1:
-            values, error = found[0], errors[0].sum(axis=0)
-        else:
-            # What comes from the other mesh was interpolated there.
-            unresolved = [errors[0][0] + of_right[:, 0] * errors[1][0], errors[1][0] + of_left[:, 0] * errors[0][0]]
-            better = unresolved[1] < unresolved[0]
-            values = np.asarray(np.where(better, found[1], found[0]))
-            error = np.where(better, unresolved[1] + errors[1][1], unresolved[0] + errors[0][1])
         at_ends = np.maximum(left.errors[READ], right.errors[READ])
+        values, error = _minimum_on(left, right, left.point, parts)
+        if left.point.state.mesh is not right.point.state.mesh and (error > at_ends[0]).any():
+            others, of_others = _minimum_on(left, right, right.point, parts)
+            better = of_others < error
+            values, error = np.where(better, others, values), np.where(better, of_others, error)
         return values.T, np.stack([np.maximum(at_ends[0], error), np.full(len(parts), at_ends[1])], axis=1), READ
+
+
+def _minimum_on(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> tuple[Array, Array]:
+    """Return minimum gap and its position between two expansions, read on the mesh of one, and the error of the gap."""
+    order, mesh, at = min(left.order, right.order), of.state.mesh, of.state.equations.layout
+    weights = hermite_weights(order, parts)
+    lower = [np.pad(each, ((0, 0), (0, 1))) for each in hermite_weights(order - 1, parts)]
+    scaled = _scaled(left, right, order)
+    a, b = (on_mesh(end.point, each, of) for end, each in zip((left, right), scaled, strict=True))
+    unknowns = weights[0] @ a + weights[1] @ b
+    change = (weights[0] - lower[0]) @ a[:, at.gap] + (weights[1] - lower[1]) @ b[:, at.gap]
+    place, lowest, error, panel = minimum_gaps(mesh, unknowns[:, at.gap])
+    nodes = panel[:, None] * mesh.order + np.arange(mesh.order)
+    error = error + np.abs(np.take_along_axis(change, nodes, axis=1)).max(axis=1)
+    for end, each, w in zip((left, right), scaled, weights, strict=True):
+        if end.point.state.mesh is not mesh:  # what comes from there was interpolated there
+            error = error + 2 * _unresolved(end.point, each, w, place * _stretch(end.point, of))
+    position = place
+    for block in (at.dilation, at.exit):  # of a frame that moves with the end of the film
+        if block.stop > block.start:
+            position = position * unknowns[:, block.start] if block is at.dilation else position + unknowns[:, block.start]
+    return np.stack([lowest, position]), error
+
+
+def _unresolved(point: LinePoint, coefficients: Array, weights: Array, places: Array) -> Array:
+    """Return what polynomials of the mesh of a point miss, at places, of what it has in the logarithms of gaps."""
+    mesh = point.state.mesh
+    shapes = coefficients[:, point.state.equations.layout.gap].copy()
+    shapes[0] -= np.log(mesh.far)
+    own = shapes.reshape(len(shapes), mesh.panels, mesh.order)[:, mesh.locate(places)[0]]
+    return interpolation_error(np.einsum("rj,jrn->rn", weights, own))
 
 
 def on(mesh: Mesh, near: Sequence[Expansion]) -> LinePoint | None:
@@ -327,33 +337,42 @@ def _as_in(state: State, model: Model) -> Model:
     return replace(model, cavitation=cavitation, cavity_pressure=0.0)
 
 
-def between(left: Expansion, right: Expansion, of: LinePoint, parts: Array, lower: int = 0) -> Array:
+def between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> Array:
     """Return the unknowns between two expansions on the mesh of one of them, gaps as logarithms."""
-    order = min(left.order, right.order) - lower
-    length = right.coordinate - left.coordinate
-    scale = length ** np.arange(order + 1.0)[:, None]
-    a, b = (on_mesh(end.point, of)[: order + 1] * scale for end in (left, right))
+    order = min(left.order, right.order)
+    a, b = (on_mesh(end.point, each, of) for end, each in zip((left, right), _scaled(left, right, order), strict=True))
     of_left, of_right = hermite_weights(order, parts)
     return np.asarray(of_left @ a + of_right @ b)
 
 
-def on_mesh(point: LinePoint, of: LinePoint) -> Array:
-    """Return the coefficients of the unknowns of a point on the mesh of another."""
+def _scaled(left: Expansion, right: Expansion, order: int) -> list[Array]:
+    """Return the coefficients of the unknowns of both ends, of an interval of length one."""
+    scale = (right.coordinate - left.coordinate) ** np.arange(order + 1.0)[:, None]
+    return [end.point.unknowns[: order + 1] * scale for end in (left, right)]
+
+
+def _stretch(point: LinePoint, of: LinePoint) -> float:
+    """Return by how much the coordinate of the mesh of a point is larger than that of another."""
+    own, other = point.state.mesh.restart, of.state.mesh.restart
+    return 1.0 if own == other else own / other
+
+
+def on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
+    """Return coefficients of the unknowns of a point on the mesh of another."""
     mesh, other = point.state.mesh, of.state.mesh
     if mesh is other:
-        return point.unknowns
-    at, there = point.state.equations.layout, of.state.equations.layout
-    found = np.empty((len(point.unknowns), there.size))
-    stretch = 1.0 if mesh.restart == other.restart else mesh.restart / other.restart
-    found[:, there.numbers] = point.unknowns[:, at.numbers]
-    gap = point.unknowns[:, at.gap].copy()
+        return coefficients
+    at, there, stretch = point.state.equations.layout, of.state.equations.layout, _stretch(point, of)
+    found = np.empty((len(coefficients), there.size))
+    found[:, there.numbers] = coefficients[:, at.numbers]
+    gap = coefficients[:, at.gap].copy()
     gap[0] -= np.log(mesh.far)
     nodes = stretch * other.nodes
     found[:, there.gap] = mesh.interpolate(gap, nodes)
     found[0, there.gap] += np.log(mesh.scale**2 + nodes**2)
     found[:, there.dilation] *= stretch
     if there.pressure.stop > there.pressure.start:
-        found[:, there.pressure] = mesh.interpolate(point.unknowns[:, at.pressure], nodes)
+        found[:, there.pressure] = mesh.interpolate(coefficients[:, at.pressure], nodes)
     return found
 
 
