@@ -14,7 +14,8 @@ from fit_data import EXAMPLES, TRUE, exact, measured, noisy
 from rich.console import Console
 
 import stribeck as sb
-from stribeck.cases.fit_settings import FREE, FitSettings, Prior
+from stribeck.cases.fit_settings import OF_CONTACT as FREE
+from stribeck.cases.fit_settings import FitSettings, Prior
 from stribeck.cli.reports.fit import print_fit
 from stribeck.contact_laws.persson import persson_law
 from stribeck.contact_laws.spectrum import SelfAffine

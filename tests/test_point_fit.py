@@ -40,7 +40,7 @@ def frictions(contact, values=SPEEDS):
 def made_up(definition):
     """Return parts of friction that are smooth formulas of the groups, in place of solved ones."""
 
-    def parts(groups):
+    def parts(groups, changes):
         s, F, h = (np.broadcast_to(np.log(g), groups.shape) for g in (groups.speed, groups.load, groups.roughness))
         exponents = np.array([[-0.2, 0.1, 0.3], [0.6, 0.0, -0.1], [0.7, 0.05, 0.0], [0.3, 0.2, 0.1]])
         sizes = np.array([0.05, 0.3, 0.1, 0.02])

@@ -10,17 +10,24 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from stribeck.cases.model_parts import take_parts
 from stribeck.quantities.hints import advice_on
 from stribeck.quantities.inputs import INPUT_TABLES, LETTERS, LINE, ROWS, InputTable, quantity
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.part_inputs import PART_INPUTS, PART_LETTERS
+from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["FREE", "FitSettings", "Prior", "check_fit_table", "free_names"]
 
 Noise = Literal["relative", "absolute"]
 
-FREE = tuple(row.name for row in sorted(ROWS, key=lambda row: row.known) if not row.derived and row.name != "speed")
-"""Inputs that may be fitted, from what a fit is mostly after to what is mostly known; all of them enter friction through
-groups, boundary friction and beta."""
+OF_CONTACT = tuple(row.name for row in sorted(ROWS, key=lambda row: row.known) if not row.derived and row.name != "speed")
+"""Inputs of all contacts that may be fitted, from what a fit is mostly after to what is mostly known."""
+
+FREE = (*OF_CONTACT, *PART_INPUTS)
+"""These, and numbers of fluids and solids."""
+
+MEANT = {**PART_LETTERS, **LETTERS}
+"""Other names of what may be fitted."""
 
 DEFAULT_FREE = ("boundary_friction", "roughness")
 
@@ -28,7 +35,7 @@ COLUMNS = (
     *("speed", "speed_viscosity", "hersey_number", "friction", "error", "curve"),
     *("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "friction_force", "normal_force", "run"),
 )
-"""Kinds of columns of the data, beside the inputs of :data:`FREE`, which distinguish curves."""
+"""Kinds of columns of the data, beside the inputs of :data:`OF_CONTACT`, which distinguish curves."""
 
 KEYS = (
     *("free", "per_curve", "noise", "relative_error", "absolute_error", "robust", "magnitudes", "header_row"),
@@ -89,7 +96,7 @@ class FitSettings:
     priors : dict
         Input -> :class:`Prior`.
     curves : dict
-        Name of a curve -> inputs in SI units in which it differs from the case.
+        Name of a curve -> inputs in SI units in which it differs from the case, and its own fluid or solid.
     geometry : {"line", "point"}
         What was measured: a cylinder or a ball.
     """
@@ -108,7 +115,7 @@ class FitSettings:
     units: dict[str, str] = field(default_factory=dict)
     bounds: dict[str, tuple[float, float]] = field(default_factory=dict)
     priors: dict[str, Prior] = field(default_factory=dict)
-    curves: dict[str, dict[str, float]] = field(default_factory=dict)
+    curves: dict[str, dict[str, Any]] = field(default_factory=dict)
     geometry: str = "line"
 
     @property
@@ -198,7 +205,7 @@ def free_names(names: Iterable[Any], where: str = "free") -> tuple[str, ...]:
     """
     found = []
     for name in names:
-        meant = LETTERS.get(name, name) if isinstance(name, str) else name
+        meant = MEANT.get(name, name) if isinstance(name, str) else name
         if meant in ("speed", "U"):
             raise InputError(f"{where} has {show(name)}, which is measured; a common factor on it is that of the viscosity.")
         if meant not in FREE:
@@ -241,7 +248,7 @@ def _entry(table: str, name: str, value: Any, inputs: InputTable = LINE) -> tupl
     if table in ("bounds", "priors"):
         [meant] = free_names([name], f"[fit.{table}]")
         return meant, _bounds(meant, value, inputs) if table == "bounds" else _prior(meant, value, inputs)
-    known = (*COLUMNS, *(each for each in FREE if each != "boundary_friction"))
+    known = (*COLUMNS, *(each for each in OF_CONTACT if each != "boundary_friction"))
     meant = LETTERS.get(name, name)
     if meant not in known:
         raise InputError(_unknown(name, value, known))
@@ -255,7 +262,7 @@ def _entry(table: str, name: str, value: Any, inputs: InputTable = LINE) -> tupl
 def _bounds(name: str, value: Any, inputs: InputTable) -> tuple[float, float]:
     if not isinstance(value, list) or len(value) != 2:
         raise InputError(f"{name} = {show(value)} must be a list of two values, the lowest and the highest.")
-    low, high = (quantity(name, each, inputs) for each in value)
+    low, high = (_value(name, each, inputs) for each in value)
     if not 0 < low < high:
         raise InputError(f"{name} = {show(value)} must be two positive values, the lowest first.")
     return low, high
@@ -264,7 +271,7 @@ def _bounds(name: str, value: Any, inputs: InputTable) -> tuple[float, float]:
 def _prior(name: str, value: Any, inputs: InputTable) -> Prior:
     if not isinstance(value, dict) or set(value) != {"value", "factor"}:
         raise InputError(f"{name} = {show(value)} must be a table such as {{ value = ..., factor = 1.2 }}.")
-    factor, median = value["factor"], quantity(name, value["value"], inputs)
+    factor, median = value["factor"], _value(name, value["value"], inputs)
     if isinstance(factor, bool) or not isinstance(factor, int | float) or not 1 < factor <= LARGEST_FACTOR:
         raise InputError(f"{name} has factor = {show(factor)}, which must be a number above 1: 1.2 is 'known within 20 %'.")
     if median == 0:
@@ -272,16 +279,32 @@ def _prior(name: str, value: Any, inputs: InputTable) -> Prior:
     return Prior(median, float(factor))
 
 
-def _curve(name: str, entry: Any, inputs: InputTable) -> dict[str, float]:
+def _value(name: str, value: Any, inputs: InputTable) -> float:
+    """Return what may be fitted in SI units."""
+    if name not in PART_INPUTS:
+        return quantity(name, value, inputs)
+    found = to_si(value, PART_INPUTS[name].dimension, name)
+    if found <= 0:
+        raise InputError(f"{name} = {show(value)} must be positive.")
+    return found
+
+
+def _curve(name: str, entry: Any, inputs: InputTable) -> dict[str, Any]:
+    """Return the inputs of a curve, and its own fluid, solid and so on as the tables of its name have them."""
     if not isinstance(entry, dict):
         raise InputError(f"{name} = {show(entry)} must be a table of inputs, [fit.curves.{name}].")
-    found = {}
-    for key, value in entry.items():
-        meant = LETTERS.get(key, key)
-        known = tuple(each for each in inputs.names if each != "speed")
+    rest, parts, wrong = take_parts({**entry, "contact": {}}, inputs.geometry)
+    if wrong:
+        raise InputError("\n".join(f"{name}: {each}" for each in wrong))
+    found: dict[str, Any] = {**rest.pop("contact"), **parts}
+    known = (*(each for each in inputs.names if each != "speed"), *PART_INPUTS)
+    for key, value in rest.items():
+        meant = MEANT.get(key, key)
         if meant not in known:
             raise InputError(f"{name}: {_unknown(key, value, known)}")
-        found[meant] = quantity(meant, value, inputs)
+        if meant in found:
+            raise InputError(f"{name}: {meant} = {show(value)} is given beside a preset, which has its own; remove one of them.")
+        found[meant] = _value(meant, value, inputs)
     return found
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Self
 
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
@@ -17,6 +17,7 @@ from stribeck.contacts.model import ARTICLE, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
 from stribeck.fluids.laws import FilmUnits, FlowFactors
+from stribeck.quantities.part_inputs import PART_INPUTS, part_value, with_part_value
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.solid import Solid
@@ -146,14 +147,53 @@ class WithParts(Contact):
 
     parts: Parts
 
+    @property
+    def _part_names(self) -> frozenset[str]:
+        """The parts that are no inputs of its geometry."""
+        return NAMES - set(self.INPUTS.names)
+
     def _keep(self, law: AsperityLaw | None, inputs: Mapping[str, Any]) -> None:
-        names = NAMES - set(self.INPUTS.names)
+        names = self._part_names
         parts: Parts = inputs.get("parts", DEFAULT)
         object.__setattr__(self, "parts", DEFAULT)
         super()._keep(law, {name: value for name, value in inputs.items() if name not in names and name != "parts"})
         given = {name: inputs[name] for name in names & inputs.keys()}
         object.__setattr__(self, "parts", Parts(**{**parts.items(), **given}) if given else parts)
         _ = self.groups.model
+
+    def replace(self, **changes: Any) -> Self:
+        """Return a copy with some of the inputs changed.
+
+        Parameters
+        ----------
+        **changes : str or float
+            Arguments of the contact, and numbers of its fluid and solid by name, such as ``relaxation_time`` or
+            ``layer_thickness``.
+
+        Returns
+        -------
+        LineContact or PointContact
+            The changed contact, of the same kind.
+
+        Raises
+        ------
+        InputError
+            Where a value is impossible, or the fluid or solid has no such number.
+        """
+        numbers = {name: changes.pop(name) for name in PART_INPUTS if name in changes}
+        if numbers:
+            parts = Parts(**{**self.parts.items(), **{name: changes.pop(name) for name in self._part_names & changes.keys()}})
+            for name, value in numbers.items():
+                parts = with_part_value(parts, name, value)
+            changes["parts"] = parts
+        return super().replace(**changes)
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a number of the fluid or the solid by its name, in SI units."""
+        found = part_value(self.parts, name) if name in PART_INPUTS else None
+        if found is None:
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
+        return found
 
     @property
     def film_units(self) -> FilmUnits:

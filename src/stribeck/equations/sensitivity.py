@@ -8,14 +8,16 @@ for each group G, with the factors of Newton's Jacobian made anew at the state.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contacts.groups import contact_law
+from stribeck.contacts.model import Model
 from stribeck.equations.line import LOAD, Equations
-from stribeck.equations.observables import friction_integrals, friction_scale, observables
+from stribeck.equations.observables import ROW, friction_integrals, friction_scale, gradients, observables
+from stribeck.equations.operators import Operators
 from stribeck.equations.state import State
 
 GROUPS = ("speed", "load", "roughness")
@@ -25,26 +27,32 @@ STEP = 1e-5
 """Relative step of the central differences that carry the change of the unknowns to the friction integrals."""
 
 
-def log_derivatives(state: State) -> dict[str, Array]:
+Change = tuple[Model, Model, float]
+"""Two models and the distance of what they are functions of."""
+
+
+def log_derivatives(state: State, changes: Sequence[Change] = ()) -> dict[str, Array]:
     """Return the derivatives of contact share and both viscous frictions with respect to ln(group).
 
     Parameters
     ----------
     state : State
         A converged state with positive speed.
+    changes : sequence of tuple
+        Models below and above that of the state, and their distance.
 
     Returns
     -------
-    dict of str to ndarray, shape (3,)
+    dict of str to ndarray, shape (3 + changes,)
         Those of ``contact_load_share`` and of the two viscous frictions for beta = 1, by name, with respect to speed, load and
-        roughness, the other two groups held.
+        roughness, the other two groups held, and along the changes of the model.
 
     Notes
     -----
     Relative error about 1e-8 beyond that of the state (``test_sensitivity.py``).
     """
-    if not state.equations.operators.is_article:
-        return _of_any_film(state)
+    if changes or not state.equations.operators.is_article:
+        return _of_any_film(state, changes)
     equations, y = state.equations, state.y
     mesh, law, load = state.mesh, equations.law, float(state.groups.load)
     at = equations.layout
@@ -73,28 +81,39 @@ def log_derivatives(state: State) -> dict[str, Array]:
     return {"contact_load_share": share} | dict(zip(FRICTIONS, frictions, strict=True))
 
 
-def _of_any_film(state: State) -> dict[str, Array]:
-    """Return the same for a film that is not that of the article, by differences along the change of the whole state."""
-    equations, y, groups = state.equations, state.y, state.groups
+def _of_any_film(state: State, changes: Sequence[Change] = ()) -> dict[str, Array]:
+    """Return the same for a film that is not that of the article.
+
+    What the speed or the model changes by itself, at fixed unknowns, is a difference; the rest goes through the unknowns.
+    """
+    equations, y, load = state.equations, state.y, float(state.groups.load)
     inverse, units = equations.inverse(y), equations.units(y)
     names = ("contact_load_share", *FRICTIONS)
-    found = np.empty((len(names), len(GROUPS)))
+    through = gradients(equations, y, load)[[ROW[name] for name in names]]
+    found = np.zeros((len(names), len(GROUPS) + len(changes)))
     for column, name in enumerate(GROUPS):
-        if float(getattr(groups, name)) == 0.0:
-            found[:, column] = 0.0
-            continue
-        dy = units * inverse(equations.parameter_derivative(y, name))
-        size = STEP / max(1.0, float(np.abs(dy / units).max()))
-        values = []
-        for sign in (1.0, -1.0):
-            factor = math.exp(sign * size)
-            # The relative roughness is the ratio of roughness and load: each group is changed with the others held.
-            here = replace(groups, **{name: float(getattr(groups, name)) * factor})  # type: ignore[arg-type]
-            beside = Equations(equations.operators, float(here.speed), contact_law(here), equations.flux_scale)
-            observed = observables(beside, y + sign * size * dy, float(here.load))
-            values.append([getattr(observed, each) for each in names])
-        found[:, column] = (np.array(values[0]) - np.array(values[1])) / (2 * size)
+        if float(getattr(state.groups, name)) > 0:
+            found[:, column] = through @ (units * inverse(equations.parameter_derivative(y, name)))
+    speed = float(state.groups.speed)
+    slower, faster = (replace(equations, speed=speed * math.exp(step)) for step in (-STEP, STEP))
+    found[:, 0] += _difference(slower, faster, y, load, names) / (2 * STEP)
+    h, d = y[equations.layout.gap], equations.dilation(y)
+    pressure, weights = equations.law.pressure(h), state.mesh.weights * (1.0 if d is None else float(d[0])) / LOAD
+    found[0, 1] += weights @ equations.law.load_derivative(h, pressure)
+    found[0, 2] += weights @ equations.law.roughness_derivative(h, pressure) if state.groups.roughness else 0.0
+    here = observables(equations, y, load)
+    found[1:, 1] += [0.5 * getattr(here, name) for name in FRICTIONS]  # friction_scale
+    for column, (below, above, width) in enumerate(changes, len(GROUPS)):
+        ends = [replace(equations, operators=Operators(state.mesh, model)) for model in (below, above)]
+        dy = units * inverse((ends[1].residual(y) - ends[0].residual(y)) / width)
+        found[:, column] = through @ dy + _difference(*ends, y, load, names) / width
     return dict(zip(names, found, strict=True))
+
+
+def _difference(below: Equations, above: Equations, y: Array, load: float, names: Sequence[str]) -> Array:
+    """Return the difference of observables of the same unknowns under two equations."""
+    first, second = (observables(each, y, load) for each in (below, above))
+    return np.array([getattr(second, name) - getattr(first, name) for name in names])
 
 
 def friction_slopes(state: State, boundary_friction: float, beta: float, definition: str) -> Array:

@@ -13,6 +13,7 @@ from stribeck.cases.case import Case, load_case, read_toml
 from stribeck.contacts.line import InputError
 from stribeck.files.writing import PathLike, atomic_write
 from stribeck.fits.result import Fit, FittedInput
+from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
 from stribeck.quantities.units import format_si
 
 __all__ = ["format_interval", "format_value", "load_fit_case", "write_fitted_case"]
@@ -90,17 +91,20 @@ def write_fitted_case(fit: Fit, case: Case, path: PathLike, *, force: bool = Fal
             back = load_case(temporary).contact
         except InputError as problem:
             raise InputError(str(problem).replace(str(temporary), str(path))) from None
-        for name in fit.contact.INPUTS.quantities:
+        for name in fitted_rows(fit.contact.INPUTS):
             kept = getattr(back, name, None)
             if kept is not None and not math.isclose(kept, getattr(fit.contact, name), rel_tol=AGREEMENT):
+                table, key = _place(name)
                 raise InputError(
-                    f"{path} cannot be written, as {case.path} does not have {name} on a line of its own in [contact]; "
+                    f"{path} cannot be written, as {case.path} does not have {key} on a line of its own in [{table}]; "
                     "write it there."
                 )
 
 
 def _fitted_text(text: str, fit: Fit) -> str:
-    new = {each.name: getattr(fit.contact, each.name) for each in fit.inputs}
+    values = {each.name: getattr(fit.contact, each.name, None) for each in fit.inputs}
+    new = {name: value for name, value in values.items() if value is not None}
+    names = {_place(name): name for name in new}
     table, lines = "", list[str]()
     written = set[str]()
     for line in text.splitlines():
@@ -110,7 +114,7 @@ def _fitted_text(text: str, fit: Fit) -> str:
                 lines += _added(new, written, fit)
             table = head[1]
         key = re.match(r"\s*(\w+)\s*=", line)
-        name = key[1] if key and table == "contact" else ""
+        name = names.get((table, key[1]), key[1] if table == "contact" else "") if key else ""
         if name == "youngs_modulus" and "modulus" in new:
             youngs = fit.contact.modulus * (1 - _poisson(text) ** 2)
             lines += [
@@ -140,7 +144,7 @@ def _added(new: dict[str, float], written: set[str], fit: Fit) -> list[str]:
     """Return lines for inputs that the table did not have, as those of a surface."""
     lines = []
     for name, value in new.items():
-        if name not in written:
+        if name not in written and name not in PART_INPUTS:
             lines += [*_comments(name, fit), _entry(name, value, fit)]
             written.add(name)
     return lines
@@ -155,9 +159,15 @@ def _comments(name: str, fit: Fit) -> list[str]:
 
 
 def _entry(name: str, value: float, fit: Fit) -> str:
-    dimension = fit.contact.INPUTS.quantities[name].dimension
+    dimension, (_, key) = fitted_rows(fit.contact.INPUTS)[name].dimension, _place(name)
     text = format_si(value, dimension, DIGITS)
-    return f"{name} = {text}" if dimension == "number" else f'{name} = "{text}"'
+    return f"{key} = {text}" if dimension == "number" else f'{key} = "{text}"'
+
+
+def _place(name: str) -> tuple[str, str]:
+    """Return the table and the key under which a case file has an input."""
+    row = PART_INPUTS.get(name)
+    return ("contact", name) if row is None else (row.table, row.key)
 
 
 def format_value(each: FittedInput, value: float | None = None, digits: int = 4) -> str:

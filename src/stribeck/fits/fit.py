@@ -32,6 +32,7 @@ from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_e
 from stribeck.fits.residuals import judge_residuals
 from stribeck.fits.result import Fit, FitOutcome, FittedInput, unit_of
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.part_inputs import fitted_rows
 from stribeck.quantities.units import InputError, format_si, show
 
 __all__ = ["fit"]
@@ -326,7 +327,7 @@ def _result(
             interval_68=_interval(free, ends[i][0]),
             interval_95=_interval(free, ends[i][1]),
             at_bound=bool(bound[i]),
-            dimension="number" if free.is_factor else contact.INPUTS.quantities[free.name].dimension,
+            dimension="number" if free.is_factor else fitted_rows(contact.INPUTS)[free.name].dimension,
         )
         for i, free in enumerate(model.free)
     )
@@ -338,14 +339,18 @@ def _result(
         correlation = covariance / np.outer(width, width)
         moved = np.abs(shift) / width if shift is not None else np.array([math.nan])
     contacts = tuple(model.contact_of(k, at.theta) for k in range(len(data.curves)))
-    shared = {each.name: each.value for each in inputs if not each.is_factor and each.curve is None}
-    shared |= {each.name: getattr(contact, each.name) * each.value for each in inputs if each.is_factor}
-    shared |= {each.name: getattr(contacts[0], each.name) for each in inputs if each.curve is not None}
+    shared: dict[str, float | None] = {each.name: each.value for each in inputs if not each.is_factor and each.curve is None}
+    factors = {each.name: each.value for each in inputs if each.is_factor}
+    first = [(each.name, getattr(contact, each.name, None)) for each in inputs if each.is_factor]
+    shared |= {name: value * factors[name] for name, value in first if value is not None}
+    shared |= {each.name: getattr(contacts[0], each.name, None) for each in inputs if each.curve is not None}
     errors = at.prediction.error / at.prediction.friction
     return Fit(
         inputs=inputs,
         outcome=outcome,
-        contact=contact.replace(**shared),
+        contact=contact.replace(
+            **{name: value for name, value in shared.items() if getattr(contact, name, None) is not None and value is not None}
+        ),
         contacts=contacts,
         data=data,
         definition=problem.definition,

@@ -6,9 +6,9 @@ state to state: :mod:`stribeck.contacts.friction_rules` puts them together.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -19,17 +19,23 @@ from stribeck.batches.lattice import PARTS, STEPS, Lattice
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups, Physics
+from stribeck.contacts.model import ARTICLE, Model
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.equations.sensitivity import log_derivatives
+from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outputs import NAMES
 from stribeck.quantities.units import InputError
+from stribeck.solver.nearby import WarmStartSolver
 from stribeck.solver.solve import SolveError
 
 if TYPE_CHECKING:
     from stribeck.fits.model import FrictionModel
 
-__all__ = ["FrictionParts", "PartsOf", "Ways", "atlas_parts", "atlas_or_solved_parts", "solved_parts", "ways_of"]
+__all__ = ["FrictionParts", "ModelChange", "PartsOf", "Ways", "atlas_parts", "atlas_or_solved_parts", "solved_parts", "ways_of"]
 
+
+MOST_KEPT = 60
+"""Rows from which the states of another fluid or solid are solved as a curve: fewer are solved one by one."""
 
 LATTICE_RTOL, BALL_RTOL = 3e-4, 1e-4
 """Tolerances of solved balls in the search, and the smallest in the values that a fit returns: far below what rigs resolve."""
@@ -52,8 +58,8 @@ class FrictionParts:
     ----------
     values : ndarray, shape (1 + parts, n)
         Contact load share, and the observables that the rule of the geometry names [-].
-    slopes : ndarray, shape (1 + parts, 3, n)
-        Derivatives of each by the logarithms of the groups of speed, load and roughness [-].
+    slopes : ndarray, shape (1 + parts, 3 + changes, n)
+        Derivatives of each by the logarithms of the groups of speed, load and roughness, and along changes of the model [-].
     errors : ndarray, shape (1 + parts, n)
         Estimated absolute error of the contact load share, and errors of the others as a solution states them.
     definition : {"balanced", "published"}
@@ -66,14 +72,33 @@ class FrictionParts:
     definition: Definition
 
 
-PartsOf = Callable[[Groups], FrictionParts]
-"""What gives the parts of the friction of states in a row."""
+class ModelChange(NamedTuple):
+    """What a free input changes of the model, in Hertz units.
+
+    Attributes
+    ----------
+    input : int
+        Number of the input.
+    below, above : Model
+        The model at two values of its logarithm.
+    width : float
+        Their distance.
+    """
+
+    input: int
+    below: Model
+    above: Model
+    width: float
+
+
+PartsOf = Callable[[Groups, Sequence[ModelChange]], FrictionParts]
+"""What gives the parts of the friction of states in a row, with their derivatives along changes of the model."""
 
 
 def atlas_parts(definition: Definition) -> PartsOf:
     """Return the function that reads states off the atlas; it raises InputError outside."""
 
-    def parts(groups: Groups) -> FrictionParts:
+    def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
         values, by_contact, by_viscous = atlas.friction_parts(groups, definition)
         error = np.full(values.shape, table_for(groups).error)
         return FrictionParts(values, np.stack([by_contact, by_viscous]), error, definition)
@@ -97,36 +122,100 @@ def solved_parts(definition: Definition, rtol: float) -> PartsOf:
         Groups of many states -> their :class:`FrictionParts`; raises SolveError where a state cannot be solved.
     """
 
-    def parts(groups: Groups) -> FrictionParts:
+    def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
         speed, load, roughness = (np.broadcast_to(g, groups.shape) for g in (groups.speed, groups.load, groups.roughness))
         n = groups.shape[0]
-        values, slopes, errors = np.empty((2, n)), np.empty((2, 3, n)), np.empty((2, n))
+        values, slopes, errors = np.empty((2, n)), np.empty((2, 3 + len(changes), n)), np.empty((2, n))
         pairs, pair_of = np.unique(np.stack([load, roughness], axis=1), axis=0, return_inverse=True)
         for k, (F, h_rms) in enumerate(pairs):
             rows = np.nonzero(pair_of.ravel() == k)[0]
             speeds, at = np.unique(speed[rows], return_inverse=True)
-            found = _along(speeds, float(F), float(h_rms), definition, rtol, groups.physics)
+            found = _along(speeds, float(F), float(h_rms), definition, rtol, groups.physics, changes)
             values[:, rows], slopes[:, :, rows], errors[:, rows] = (array[..., at.ravel()] for array in found)
         return FrictionParts(values, slopes, errors, definition)
 
     return parts
 
 
+def kept_parts(definition: Definition, rtol: float) -> PartsOf:
+    """Return the function that solves states each from the nearest one of those before, for searches that come near again.
+
+    Parameters
+    ----------
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+    rtol : float
+        Relative tolerance of each state.
+
+    Returns
+    -------
+    callable
+        Groups of many states -> their :class:`FrictionParts`; raises SolveError where a state cannot be solved.
+    """
+    pools: dict[Any, list[_Kept]] = {}
+    along, row = solved_parts(definition, rtol), NAMES.index(f"viscous_{definition}")
+
+    @one_blas_thread
+    def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
+        if groups.shape[0] > MOST_KEPT:
+            return along(groups, changes)
+        states = np.stack(np.broadcast_arrays(groups.speed, groups.load, groups.roughness), axis=1)
+        n, model, places = len(states), groups.model, np.log(np.maximum(states, 1e-300))
+        values, slopes, errors = np.empty((2, n)), np.empty((2, 3 + len(changes), n)), np.empty((2, n))
+        pool = pools.setdefault((model.film.name, model.cavitation, model.solid.name), [])
+        unused = list(pool)
+        for i in np.argsort(-places[:, 0]).tolist():
+            if unused:
+                kept = min(unused, key=lambda each: each.distance(places[i]))
+                unused.remove(kept)
+            else:
+                near = min(pool, key=lambda each: each.distance(places[i]), default=None)
+                kept = _Kept(places[i], near.solver.beside() if near else WarmStartSolver(rtol))
+                pool.append(kept)
+            kept.place = places[i]
+            solution = kept.solver(Groups(*states[i].tolist(), **groups.physics))
+            found = solution.observables.array()
+            values[:, i], errors[:, i] = found[[0, row]], solution.relative_errors[[0, row]]
+            derivatives = log_derivatives(kept.solver.state, [each[1:] for each in changes])
+            slopes[:, :, i] = derivatives["contact_load_share"], derivatives[f"viscous_{definition}"]
+        return FrictionParts(values, slopes, errors, definition)
+
+    return parts
+
+
+@dataclass
+class _Kept:
+    """A solver, and the logarithms of the groups that it last solved."""
+
+    place: Array
+    solver: WarmStartSolver
+
+    def distance(self, place: Array) -> float:
+        """Return the largest change of a logarithm from there to another place."""
+        return float(np.abs(self.place - place).max())
+
+
 def atlas_or_solved_parts(definition: Definition, rtol: float) -> PartsOf:
     """Return the function that reads the states off the atlas where it holds all of them, and else solves them."""
     quick, slow = atlas_parts(definition), solved_parts(definition, rtol)
 
-    def parts(groups: Groups) -> FrictionParts:
+    def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
         try:
-            return quick(groups)
+            return quick(groups, changes)
         except InputError:
-            return slow(groups)
+            return slow(groups, changes)
 
     return parts
 
 
 def _along(
-    speeds: Array, load: float, roughness: float, definition: Definition, rtol: float, physics: Physics
+    speeds: Array,
+    load: float,
+    roughness: float,
+    definition: Definition,
+    rtol: float,
+    physics: Physics,
+    changes: Sequence[ModelChange],
 ) -> tuple[Array, Array, Array]:
     """Return values, slopes and errors of the states of a curve at ascending speeds."""
     # A pair would be taken as a range, and one speed is no curve.
@@ -137,11 +226,11 @@ def _along(
     n = len(speeds)
     if len(curve) < len(points):
         raise SolveError(curve.outcome, None, f"load {load:.6g}, roughness {roughness:.6g}: {curve.outcome.value}")
-    values, slopes, errors = np.empty((2, n)), np.empty((2, 3, n)), np.empty((2, n))
+    values, slopes, errors = np.empty((2, n)), np.empty((2, 3 + len(changes), n)), np.empty((2, n))
     for i, solution in enumerate(curve.solutions[:n]):
         found = solution.observables.array()
         values[:, i] = found[0], found[row]
-        derivatives = log_derivatives(curve.state(i))
+        derivatives = log_derivatives(curve.state(i), [each[1:] for each in changes])
         slopes[:, :, i] = derivatives["contact_load_share"], derivatives[f"viscous_{definition}"]
         errors[:, i] = solution.relative_errors[[0, row]]
     return values, slopes, errors
@@ -185,6 +274,9 @@ def ways_of(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
 
 def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
     solved = solved_parts(definition, rtol)
+    if any(each.groups.model != ARTICLE for each in model.contacts):
+        kept = kept_parts(definition, rtol)
+        return Ways(None, kept, kept)
     if atlas.for_groups(model.contact.groups) is None:
         return Ways(None, solved, solved)
     return Ways(atlas_parts(definition), atlas_or_solved_parts(definition, rtol), solved)
@@ -218,7 +310,8 @@ def lattice_parts(starts: Array, varies: Array, definition: Definition) -> Parts
     """
     lattices: list[Lattice] = []
 
-    def parts(groups: Groups) -> FrictionParts:
+    def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
+        _refuse(changes)
         logs = _coordinates(groups)
         is_smooth = not np.any(groups.roughness)
         if not lattices:
@@ -256,7 +349,8 @@ def curve_parts(definition: Definition, rtol: float) -> PartsOf:
     """
     curves: list[Lattice] = []
 
-    def parts(groups: Groups) -> FrictionParts:
+    def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
+        _refuse(changes)
         logs = _coordinates(groups)
         values, slopes = np.empty((4, len(logs))), np.empty((4, 3, len(logs)))
         pairs, of_row = np.unique(logs[:, 1:], axis=0, return_inverse=True)
@@ -275,6 +369,15 @@ def curve_parts(definition: Definition, rtol: float) -> PartsOf:
         return _of_values(values, slopes, rtol, groups, definition)
 
     return parts
+
+
+def _refuse(changes: Sequence[ModelChange]) -> None:
+    """Refuse what lattices of balls do not have."""
+    if changes:
+        raise InputError(
+            "a free input changes the fluid or the solid of the ball over its Hertz contact, which fits of balls do not "
+            "follow; free boundary_friction, roughness or beta, or leave the fluid and the solid of the case out."
+        )
 
 
 def _coordinates(groups: Groups) -> Array:

@@ -10,13 +10,16 @@ A free input is the common factor :math:`e^\theta` on what the case or the curve
 
 with a constant matrix A of exponents for each curve c: those of the inputs of the contact in the groups, and in what the
 friction of its geometry takes beside them, see :mod:`stribeck.contacts.friction_rules`.
+
+Numbers of fluids and solids are in the model that the groups carry, in Hertz units: there they depend on their own free inputs
+and on those of the Hertz contact, and give the friction a further derivative at fixed groups.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,9 +28,10 @@ from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.groups import Groups
-from stribeck.fits.friction_parts import FrictionParts, PartsOf
+from stribeck.contacts.groups import Groups, Physics
+from stribeck.fits.friction_parts import FrictionParts, ModelChange, PartsOf
 from stribeck.fits.measurements import Measurements
+from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
 from stribeck.quantities.units import InputError, format_si
 
 __all__ = ["FreeInput", "FrictionModel", "Prediction", "free_inputs"]
@@ -37,6 +41,9 @@ DEFAULT_FACTOR = 1e3
 
 IMAGINARY = 1e-30
 """Step along the imaginary axis, whose derivatives are exact."""
+
+MODEL_STEP = 1e-5
+"""Change of a logarithm to both sides by which the model is differentiated."""
 
 
 @dataclass(frozen=True)
@@ -97,17 +104,38 @@ def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], sett
         If one cannot be told from these data at all, starts at zero, or starts outside its bounds.
     """
     found = []
+    contacts = [contact.replace(**inputs) for inputs in data.inputs]
     for name in names:
         _check_matters(name, data)
-        values = [inputs.get(name, getattr(contact, name)) for inputs in data.inputs]
-        alone = name in settings.per_curve and len(values) > 1
-        differ = max(values) > min(values)
-        for curve in range(len(values)) if alone else (None,):
-            start = values[curve] if curve is not None else 1.0 if differ else values[0]
+        values = {curve: value for curve, each in enumerate(contacts) if (value := getattr(each, name, None)) is not None}
+        if not values:
+            raise InputError(f"{name} is free, but no curve has one: it belongs to {_owner(name)}; give it in the case.")
+        alone = name in settings.per_curve and len(data.inputs) > 1
+        differ = max(values.values()) > min(values.values())
+        for curve in values if alone else (None,):
+            start = values[curve] if curve is not None else 1.0 if differ else next(iter(values.values()))
             if start == 0:
                 raise InputError(f"{name} is 0 in the case; a fit looks for factors on it, so give it a first value.")
-            found.append(_free_input(name, curve, start, differ and not alone, settings, contact))
+            largest = start if curve is not None else max(values.values())
+            smallest = start if curve is not None else min(values.values())
+            each_free = _free_input(name, curve, start, differ and not alone, settings, contact)
+            found.append(_in_range(each_free, smallest, largest))
     return tuple(found)
+
+
+def _owner(name: str) -> str:
+    """Return what has a number of this name."""
+    return PART_INPUTS[name].of if name in PART_INPUTS else "another contact"
+
+
+def _in_range(free: FreeInput, smallest: float, largest: float) -> FreeInput:
+    """Return a free input whose bounds leave all its values in the range of its law."""
+    row = PART_INPUTS.get(free.name)
+    if row is None:
+        return free
+    low, high = row.range
+    low = max(free.low, math.log(low / smallest)) if low > 0 else free.low
+    return replace(free, low=low, high=min(free.high, math.log(high / largest)))
 
 
 def _free_input(
@@ -131,7 +159,7 @@ def _free_input(
 
 
 def _text(name: str, value: float, contact: Contact) -> str:
-    return format_si(value, contact.INPUTS.quantities[name].dimension)
+    return format_si(value, fitted_rows(contact.INPUTS)[name].dimension)
 
 
 def _check_matters(name: str, data: Measurements) -> None:
@@ -190,12 +218,53 @@ class FrictionModel:
         exponents = [self._exponents(curve) for curve in range(len(data.curves))]
         self.exponents = np.array(exponents).reshape(len(data.curves), len(self.free), 4 + len(self.rule.inputs))
         self.logs = self.logs_at(data.curve, data.values)
+        still = np.zeros(len(self.free))
+        self.moving = tuple(self._moving(curve, still) for curve in range(len(data.curves)))
+
+    def _moving(self, curve: int, theta: Array) -> tuple[int, ...]:
+        """Return the free inputs on which the model of a curve depends at fixed groups."""
+        return tuple(change.input for change in self._changes(curve, theta, range(len(self.free))))
+
+    def _changes(self, curve: int, theta: Array, of: Iterable[int]) -> tuple[ModelChange, ...]:
+        """Return what each of some free inputs changes of the model of a curve, those that change nothing left out."""
+        found = []
+        for k in of:
+            ends = [min(max(theta[k] + step, self.free[k].low), self.free[k].high) for step in (-MODEL_STEP, MODEL_STEP)]
+            moved = [np.where(np.arange(len(theta)) == k, end, theta) for end in ends]
+            below, above = (self.contact_of(curve, each).groups.model for each in moved)
+            if below != above:
+                found.append(ModelChange(k, below, above, ends[1] - ends[0]))
+        return tuple(found)
+
+    def _parts(self, theta: Array, x: Array, curve: Indices, parts_of: PartsOf) -> FrictionParts:
+        """Return the parts of the friction of all rows, those of curves with different models on their own."""
+        groups: dict[Any, tuple[Physics, tuple[ModelChange, ...], list[int]]] = {}
+        for c in np.unique(curve).tolist():
+            moving = self.moving[c]
+            contact = self.contact_of(c, theta) if moving else self.contacts[c]
+            physics, changes = contact.groups.physics, self._changes(c, theta, moving)
+            same = next((key for key, each in groups.items() if each[:2] == (physics, changes)), c)
+            groups.setdefault(same, (physics, changes, []))[2].append(c)
+        found = []
+        for physics, changes, curves in groups.values():
+            rows = np.nonzero(np.isin(curve, curves))[0]
+            each = parts_of(Groups(x[rows, 0], x[rows, 1], x[rows, 2], **physics), changes)
+            slopes = np.zeros((len(each.values), 3 + len(self.free), len(rows)))
+            slopes[:, :3] = each.slopes[:, :3]
+            slopes[:, [3 + change.input for change in changes]] = each.slopes[:, 3:]
+            found.append((rows, replace(each, slopes=slopes)))
+        order = np.argsort(np.concatenate([rows for rows, _ in found]))
+        joined = [
+            np.concatenate([getattr(each, name) for _, each in found], axis=-1)[..., order]
+            for name in ("values", "slopes", "errors")
+        ]
+        return FrictionParts(*joined, found[0][1].definition)
 
     def _exponents(self, curve: int) -> list[list[float]]:
         """Return the exponents with which each free input enters the groups, boundary_friction and what else there is."""
         rows = []
         for free in self.free:
-            speed, load, roughness = self.contact.INPUTS.exponents[free.name]
+            speed, load, roughness = self.contact.INPUTS.exponents.get(free.name, (0.0, 0.0, 0.0))
             if self.data.abscissa == "hersey_number" and free.name != "viscosity":
                 speed += self.rule.hersey_exponents.get(free.name, 0.0)
             row = [speed, load, roughness, free.name == "boundary_friction"]
@@ -256,8 +325,9 @@ class FrictionModel:
             if free.curve in (None, curve):
                 factors[free.name] = math.exp(t)
         contact = self.contacts[curve]
+        values = {name: getattr(contact, name, None) for name in factors}
         return contact.replace(
-            speed=self.contact.speed, **{name: getattr(contact, name) * factor for name, factor in factors.items()}
+            speed=self.contact.speed, **{name: value * factors[name] for name, value in values.items() if value is not None}
         )
 
     def predict(self, theta: Array, parts_of: PartsOf, at: tuple[Indices, Array] | None = None) -> Prediction:
@@ -280,7 +350,7 @@ class FrictionModel:
         curve, logs = (self.data.curve, self.logs) if at is None else (at[0], self.logs_at(*at))
         A = self.exponents[curve]
         x = np.exp(logs + np.einsum("p,npk->nk", theta, A))
-        found: FrictionParts = parts_of(Groups(x[:, 0], x[:, 1], x[:, 2], **self.contact.groups.physics))
+        found = self._parts(theta, x, curve, parts_of)
         names = self.rule.parts(found.definition)
         parts, inputs = dict(zip(names, found.values[1:], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
 
@@ -298,11 +368,15 @@ class FrictionModel:
             x[:, 3] * found.slopes[0, d] + viscous(step * found.slopes[1:, d], step * np.eye(3)[d], no_input).imag / IMAGINARY
             for d in range(3)
         ]
+        by_model = np.zeros((len(x), len(self.free)))
+        for k in {k for moving in self.moving for k in moving}:
+            through = viscous(step * found.slopes[1:, 3 + k], no_group, no_input).imag / IMAGINARY
+            by_model[:, k] = x[:, 3] * found.slopes[0, 3 + k] + through
         by_inputs = [viscous(still, no_group, step * row).imag / IMAGINARY for row in np.eye(len(inputs))]
         errors = dict(zip(names, found.errors[1:], strict=True))
         return Prediction(
             friction=contact + fluid,
-            jacobian=np.einsum("kn,npk->np", np.array([*by_groups, contact, *by_inputs]), A),
+            jacobian=np.einsum("kn,npk->np", np.array([*by_groups, contact, *by_inputs]), A) + by_model,
             contact_share=contact / (contact + fluid),
             fluid_share=fluid / (contact + fluid),
             load_share=found.values[0],

@@ -19,6 +19,7 @@ from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
 from stribeck.quantities.inputs import LINE, InputTable
+from stribeck.quantities.part_inputs import fitted_rows
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import DIMENSIONS
 
@@ -174,7 +175,8 @@ class Fit(Exported, Shown, ByValue):
         """Names of the inputs that were not fitted: they count as known exactly, and no interval holds their uncertainty."""
         fitted = {each.name for each in self.inputs}
         measured = () if self.data.abscissa == "speed" else ("viscosity",)
-        return tuple(name for name in FREE if name not in fitted and name not in measured)
+        there = {name for name in FREE for contact in self.contacts if getattr(contact, name, None) is not None}
+        return tuple(name for name in FREE if name in there and name not in fitted and name not in measured)
 
     def __getitem__(self, name: str) -> FittedInput:
         """Return a fitted input by its name, or by name and curve as in its label.
@@ -254,7 +256,7 @@ class Fit(Exported, Shown, ByValue):
                 {
                     "name": name,
                     "unit": unit_of(name, False, self.contact.INPUTS),
-                    "values": [getattr(each, name) for each in self.contacts],
+                    "values": [getattr(each, name, None) for each in self.contacts],
                 }
                 for name in self.held
             ],
@@ -276,7 +278,8 @@ class Fit(Exported, Shown, ByValue):
             "model_error": self.model_error,
             "evaluations": self.evaluations,
             "curves": [
-                {"name": name} | {key: getattr(contact, key) for key in (*FREE, "speed")}
+                {"name": name}
+                | {key: value for key in (*FREE, "speed") if (value := getattr(contact, key, None)) is not None}
                 for name, contact in zip(self.data.curves, self.contacts, strict=True)
             ],
             "rows": {
@@ -345,4 +348,4 @@ class Fit(Exported, Shown, ByValue):
 
 def unit_of(name: str, is_factor: bool, table: InputTable = LINE) -> str:
     """Return the SI unit of a fitted input."""
-    return "" if is_factor else DIMENSIONS[table.quantities[name].dimension].unit
+    return "" if is_factor else DIMENSIONS[fitted_rows(table)[name].dimension].unit

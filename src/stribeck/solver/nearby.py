@@ -8,6 +8,7 @@ import numpy as np
 
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
+from stribeck.equations.state import State
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.corrector import Corrector
@@ -78,6 +79,19 @@ class WarmStartSolver:
         solution = finish(point, groups, contact, self.rtol)
         self._last = point
         return solution
+
+    @property
+    def state(self) -> State:
+        """The last state, as the equations know it."""
+        if self._last is None or self._last.state is None:
+            raise ValueError("no state has been solved yet")
+        return self._last.state
+
+    def beside(self) -> WarmStartSolver:
+        """Return another solver that starts from the last state of this one."""
+        other = WarmStartSolver(self.rtol)
+        other._last = self._last
+        return other
 
     def _from_last(self, groups: Groups) -> RefinedState | None:
         """Return the state that Newton's iteration finds from the last one, or None."""

@@ -10,6 +10,7 @@ from stribeck.cli.reports.words import print_first
 from stribeck.fits.case_file import format_interval, format_value
 from stribeck.fits.posterior import Posterior
 from stribeck.fits.result import Fit, FitOutcome, FittedInput
+from stribeck.quantities.part_inputs import fitted_rows
 from stribeck.quantities.units import format_percent, format_si
 
 if TYPE_CHECKING:
@@ -127,10 +128,9 @@ def _error(each: FittedInput) -> str:
 def _held(fit: Fit) -> str:
     shown = []
     for name in fit.held:
-        values = {getattr(contact, name) for contact in fit.contacts}
-        known = (
-            format_si(values.pop(), fit.contact.INPUTS.quantities[name].dimension, 4) if len(values) == 1 else "of each curve"
-        )
+        values = {getattr(contact, name, None) for contact in fit.contacts}
+        dimension = fitted_rows(fit.contact.INPUTS)[name].dimension
+        known = format_si(values.pop(), dimension, 4) if len(values) == 1 else "of each curve"
         shown.append(f"{name} {known}")
     return (
         f"Held fixed: {', '.join(shown)}. "

@@ -1,0 +1,182 @@
+"""Fits of numbers of the fluid and the solid: derivatives, exact values from exact data, and what is said of them."""
+
+import numpy as np
+import pytest
+from fit_data import TRUE, measured
+
+import stribeck as sb
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.fits.case_file import write_fitted_case
+from stribeck.fits.friction_parts import kept_parts, solved_parts
+from stribeck.fits.model import FrictionModel, free_inputs
+
+SPEEDS = np.geomspace(1e-3, 0.3, 6)
+EXIT_AND_BARUS = {"fluid": sb.fluids.Barus("500 1/GPa"), "cavitation": "exit"}
+LAYER = {"solid": sb.solids.Layer("1 mm")}
+
+
+def friction_of(contact, speeds=SPEEDS):
+    return np.asarray(sb.stribeck_curve(contact, speed=speeds, points=len(speeds), rtol=1e-5).friction)
+
+
+@pytest.mark.parametrize(
+    ("parts", "free"),
+    [
+        (EXIT_AND_BARUS, ("pressure_coefficient", "modulus", "beta")),
+        pytest.param(LAYER, ("layer_thickness", "radius"), marks=pytest.mark.slow),
+        ({"flow_factors": "effective-medium"}, ("roughness", "alpha")),
+        ({"fluid": sb.fluids.Eyring("2 kPa")}, ("eyring_stress", "load")),
+        pytest.param(
+            {"fluid": sb.fluids.Cross("1 ms", 0.5, "1 mPa*s"), "cavitation": "exit"},
+            ("relaxation_time", "exponent", "infinite_viscosity", "viscosity"),
+            marks=pytest.mark.slow,
+        ),
+    ],
+)
+def test_the_derivatives_along_numbers_of_the_model_are_its_differences(parts, free):
+    contact = TRUE.replace(**parts)
+    speeds = SPEEDS[2:4]
+    data = measured(speeds, np.ones(2))
+    model = FrictionModel(contact, data, free_inputs(contact, data, free, FitSettings()))
+    theta, solved, step = np.full(len(free), -0.1), kept_parts("balanced", 1e-7), 1e-3
+    found = model.predict(theta, solved)
+    for k in range(len(free)):
+        ends = [model.predict(theta + sign * step * np.eye(len(free))[k], solved).friction for sign in (1, -1)]
+        difference = (ends[0] - ends[1]) / (2 * step)
+        assert found.jacobian[:, k] == pytest.approx(difference, abs=1e-4 * float(found.friction.max()))
+
+
+def test_states_from_those_before_are_those_of_the_curve():
+    contact = TRUE.replace(**EXIT_AND_BARUS)
+    data, kept = measured(SPEEDS, np.ones(6)), kept_parts("balanced", 1e-6)
+    model = FrictionModel(contact, data, free_inputs(contact, data, ("pressure_coefficient", "roughness"), FitSettings()))
+    model.predict(np.array([0.3, -0.2]), kept)
+    found, curve = (model.predict(np.zeros(2), parts) for parts in (kept, solved_parts("balanced", 1e-6)))
+    assert found.friction == pytest.approx(curve.friction, rel=2e-6)
+    assert found.jacobian == pytest.approx(curve.jacobian, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("parts", "free"),
+    [
+        (EXIT_AND_BARUS, ("boundary_friction", "pressure_coefficient")),
+        pytest.param(LAYER, ("roughness", "layer_thickness"), marks=pytest.mark.slow),
+        pytest.param({"fluid": sb.fluids.Carreau("1 ms", 0.5)}, ("relaxation_time", "exponent"), marks=pytest.mark.slow),
+        pytest.param({"fluid": sb.fluids.Cross("1 ms", 0.5)}, ("relaxation_time", "exponent"), marks=pytest.mark.slow),
+        pytest.param({"fluid": sb.fluids.Eyring("2 kPa")}, ("eyring_stress",), marks=pytest.mark.slow),
+    ],
+)
+def test_a_fit_to_exact_data_finds_the_numbers_of_fluid_and_solid(parts, free):
+    true = TRUE.replace(**parts)
+    data = measured(SPEEDS, friction_of(true), error=1e-4)
+    start = true.replace(**{name: getattr(true, name) * factor for name, factor in zip(free, (1.3, 0.8), strict=False)})
+    found = sb.fit(data, start, free=free, intervals=False)
+    assert found.converged
+    for name in free:
+        assert found[name].value == pytest.approx(getattr(true, name), rel=3e-3)
+        assert getattr(found.contact, name) == found[name].value
+    assert set(free).isdisjoint(found.held)
+
+
+def test_curves_with_different_fluids_are_fitted_together():
+    thick = TRUE.replace(viscosity="0.5 Pa*s", fluid=sb.fluids.Barus("500 1/GPa"))
+    friction = np.append(friction_of(TRUE, SPEEDS[:5]), friction_of(thick, SPEEDS[:5]))
+    inputs = ({}, {"viscosity": 0.5, "fluid": sb.fluids.Barus("400 1/GPa")})
+    data = measured(np.tile(SPEEDS[:5], 2), friction, error=1e-4, curve=np.repeat([0, 1], 5), curves=("a", "b"), inputs=inputs)
+    found = sb.fit(data, TRUE, free=["roughness", "pressure_coefficient"], intervals=False)
+    assert found.converged
+    assert found["pressure_coefficient"].value == pytest.approx(5e-7, rel=3e-3)
+    assert found["roughness"].value == pytest.approx(TRUE.roughness, rel=1e-4)
+    assert found.contacts[0].fluid == TRUE.fluid
+    assert found.contacts[1].pressure_coefficient == found["pressure_coefficient"].value
+
+
+def test_what_the_contact_does_not_have_cannot_be_free():
+    data = measured(SPEEDS, np.ones(6))
+    with pytest.raises(sb.InputError, match=r"relaxation_time is free, but no curve has one.*thins"):
+        sb.fit(data, TRUE, free=["relaxation_time"])
+    with pytest.raises(sb.InputError, match="layer_thickness = 1, but this contact has none"):
+        TRUE.replace(layer_thickness=1)
+
+
+def test_an_exponent_stays_in_the_range_of_its_law():
+    contact = TRUE.replace(fluid=sb.fluids.Carreau("1 ms", 0.5))
+    data = measured(SPEEDS, np.ones(6))
+    [free] = free_inputs(contact, data, ("exponent",), FitSettings())
+    assert (free.value(free.low), free.value(free.high)) == pytest.approx((0.05, 1.0))
+
+
+def test_the_films_of_data_that_do_not_reach_them_say_nothing_of_the_fluid():
+    contact = TRUE.replace(**EXIT_AND_BARUS)
+    speeds = np.geomspace(1e-8, 1e-7, 4)
+    found = sb.fit(
+        measured(speeds, friction_of(contact, speeds), error=0.01),
+        contact,
+        free=["boundary_friction", "pressure_coefficient"],
+        intervals=False,
+    )
+    [weak] = found.undetermined
+    assert weak.names == ("pressure_coefficient",)
+    assert found["pressure_coefficient"].value == pytest.approx(5e-7)
+
+
+CASE = """
+[contact]
+radius = "10 mm"
+modulus = "2.7 MPa"
+load = "30 N/m"
+viscosity = "50 mPa*s"
+speed = "1 mm/s"
+roughness = "1 um"
+alpha = 2.0
+beta = 0.06
+boundary_friction = 0.7
+
+[fluid]
+pressure_viscosity = "600 1/GPa"
+
+[fit]
+free = ["boundary_friction", "pressure_viscosity"]
+
+[fit.bounds]
+pressure_coefficient = ["10 1/GPa", "1000 1/GPa"]
+
+[fit.curves.second]
+viscosity = "20 mPa*s"
+
+[fit.curves.second.fluid]
+model = "eyring"
+stress = "1 kPa"
+"""
+
+
+def test_a_case_file_names_numbers_of_its_fluid_and_gets_them_back(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE)
+    case = sb.load_case(path)
+    assert case.fit.free == ("boundary_friction", "pressure_coefficient")
+    assert case.fit.bounds == {"pressure_coefficient": pytest.approx((1e-8, 1e-6))}
+    second = case.fit.curves["second"]
+    assert (second["viscosity"], second["fluid"].rheology.eyring_stress) == pytest.approx((0.02, 1000.0))
+    true = case.contact.replace(pressure_coefficient="500 1/GPa")
+    found = sb.fit(measured(SPEEDS, friction_of(true), error=1e-4), case, intervals=False)
+    write_fitted_case(found, case, tmp_path / "fitted.toml")
+    text = (tmp_path / "fitted.toml").read_text()
+    assert '# before the fit: pressure_viscosity = "600 1/GPa"' in text
+    assert sb.load_case(tmp_path / "fitted.toml").contact.pressure_coefficient == pytest.approx(5e-7, rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        ('["10 1/GPa", "1000 1/GPa"]', '["0 1/GPa", "1 1/GPa"]', "pressure_coefficient = '0 1/GPa' must be positive"),
+        ('model = "eyring"', 'model = "eyrin"', r"second: \[fluid\] model = 'eyrin' must be one of"),
+        ('viscosity = "20 mPa*s"', 'speedy = "20 mm/s"', "second: speedy = '20 mm/s' is not a known key"),
+        ('"pressure_viscosity"]', '"relaxation_tim"]', "did you mean relaxation_time"),
+    ],
+)
+def test_what_is_wrong_with_numbers_of_the_fluid_is_said(tmp_path, before, after, said):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE.replace(before, after))
+    with pytest.raises(sb.InputError, match=said):
+        sb.load_case(path)
