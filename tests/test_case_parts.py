@@ -65,6 +65,24 @@ def test_every_model_of_a_fluid_is_read(table, fluid):
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize(
+    ("table", "solid"),
+    [
+        ({"retardation_time": "10 ms", "modulus_ratio": 3}, sb.solids.StandardLinearSolid(0.01, 3.0)),
+        ({"relaxation_times": ["1 ms", 0.01], "moduli": [1.0, 0.5]}, sb.solids.Prony((1e-3, 0.01), (1.0, 0.5))),
+        (
+            {"retardation_time": "10 ms", "modulus_ratio": 3, "layer_thickness": "2 mm", "poisson_ratio": 0.4},
+            sb.solids.StandardLinearSolid(0.01, 3.0, sb.solids.Layer(2e-3, 0.4)),
+        ),
+    ],
+)
+def test_every_solid_is_read(table, solid):
+    contact = case_of(solid=table).contact
+    assert contact.solid == solid
+    assert contact.groups.model.solid.uses_speed
+
+
+@pytest.mark.quick
 def test_a_preset_gives_the_viscosity_too():
     contact = {name: value for name, value in CONTACT.items() if name != "viscosity"}
     liquid = {"preset": "glycerol-water", "weight_fraction": 0.8, "temperature": "20 degC"}
@@ -103,6 +121,10 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
         ({"motion": {}}, r"\[motion\] slide_to_roll is missing"),
         ({"flow_factors": {"model": "effective-medium", "gamma": 1}}, r"\[flow_factors\] gamma = 1 is given"),
         ({"solid": {"poisson_ratio": 0.5}}, r"\[solid\] layer_thickness is missing"),
+        ({"solid": {"modulus_ratio": 3}}, r"\[solid\] retardation_time is missing beside modulus_ratio; add .* = \"10 ms\""),
+        ({"solid": {"retardation_time": "1 s", "modulus_ratio": 0.5}}, r"\[solid\] ratio = 0.5 must be above 1"),
+        ({"solid": {"retardation_time": "1 s", "moduli": [1]}}, r"\[solid\] .* two descriptions"),
+        ({"solid": {"relaxation_times": "1 s", "moduli": [1]}}, r"\[solid\] times = '1 s' and moduli = \[1\] must be lists"),
         ({"solid": {"layer_thickness": "-1 mm"}}, r"\[solid\] thickness = '-1 mm'"),
     ],
 )

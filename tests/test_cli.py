@@ -59,6 +59,37 @@ def opened(path):
 
 
 @pytest.mark.quick
+def test_parts_of_the_model_are_options_too(capsys):
+    options = ("--slide-to-roll", "-1", "--cavitation", "reform", "--cavity-pressure", "-0.01", "--rtol", "1e-4", "--json")
+    answer = call(capsys, "solve", *GROUPS, *options)
+    found = strict_json(answer.out)
+    groups = sb.Groups(1e-4, 0.1, 1e-3)
+    state = sb.solve(groups, slide_to_roll=-1.0, cavitation="reform", cavity_pressure=-0.01, rtol=1e-4)
+    assert answer.code == 0
+    assert found["minimum_gap"] == state.minimum_gap
+    assert found["friction_balanced"]["viscous"] == state.friction().viscous < 0
+    answer = call(capsys, "curve", *FAST, "--slide-to-roll", "0.5", "--definition", "published", "--json")
+    curve = sb.stribeck_curve(sb.Groups(0.1, 0.1, 1e-3), speed=(0.1, 1), points=3, slide_to_roll=0.5, definition="published")
+    assert strict_json(answer.out)["friction"] == pytest.approx(list(curve.friction))
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--slide-to-roll", "fast"), "slide_to_roll"),
+        (("--cavitation", "swift"), "cavitation = 'swift' must be one of"),
+        (("--cavity-pressure", "-1"), "needs cavitation = 'reform'"),
+        (("--flow-factors", "patir"), "flow_factors = 'patir'"),
+    ],
+)
+def test_impossible_parts_of_the_model_are_refused(capsys, options, said):
+    answer = call(capsys, "solve", *GROUPS, *options)
+    assert (answer.code, answer.out) == (2, "")
+    assert said in answer.err
+
+
+@pytest.mark.quick
 def test_solve_prints_the_dictionary_of_the_solution_as_json(capsys):
     answer = call(capsys, "solve", *GROUPS, "--json")
     assert (answer.code, answer.err) == (0, "")

@@ -17,6 +17,7 @@ from stribeck.fluids.rate_laws import Carreau, Cross, Eyring, PowerLaw
 from stribeck.fluids.viscosity import Barus, DowsonHigginson, Roelands
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.layer import Layer
+from stribeck.solids.viscoelastic import Prony, StandardLinearSolid
 
 __all__ = ["KEYS", "take_parts"]
 
@@ -53,7 +54,7 @@ KEYS = {
     "cavitation": ("model", "pressure"),
     "motion": ("slide_to_roll",),
     "flow_factors": ("model", "gamma", "substrate_share", "friction_factors", "argument"),
-    "solid": ("layer_thickness", "poisson_ratio"),
+    "solid": ("layer_thickness", "poisson_ratio", "retardation_time", "modulus_ratio", "relaxation_times", "moduli"),
 }
 """Table -> its keys."""
 
@@ -208,10 +209,33 @@ def _flow_factors(table: dict[str, Any], contact: Any) -> dict[str, Any]:
 
 
 def _solid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
+    one, many = ("retardation_time", "modulus_ratio"), ("relaxation_times", "moduli")
+    base = _layer(table)
+    given = [pair for pair in (one, many) if any(key in table for key in pair)]
+    if not given:
+        if base is None:
+            raise InputError(
+                'layer_thickness is missing; add it as "2 mm", or retardation_time and modulus_ratio of a viscoelastic body, or '
+                "leave the table out for a half-space."
+            )
+        return {"solid": base}
+    if len(given) > 1:
+        raise InputError("retardation_time and relaxation_times are two descriptions of the same; give one of them.")
+    for key, example in zip(given[0], ("\"10 ms\"", "3.0") if given[0] == one else ('["1 ms", "10 ms"]', "[1.0, 0.5]"), strict=True):
+        if key not in table:
+            raise InputError(f"{key} is missing beside {next(name for name in given[0] if name in table)}; add {key} = {example}.")
+    kind = StandardLinearSolid if given[0] == one else Prony
+    return {"solid": kind(*(table[key] for key in given[0]), base)}
+
+
+def _layer(table: dict[str, Any]) -> Layer | None:
+    """Return the layer that a table has; None where the body is a half-space."""
     if "layer_thickness" not in table:
-        raise InputError('layer_thickness is missing; add it as "2 mm", or leave the table out for a half-space.')
+        if "poisson_ratio" in table:
+            raise InputError('layer_thickness is missing beside poisson_ratio; add it as "2 mm".')
+        return None
     ratio = {"poisson_ratio": table["poisson_ratio"]} if "poisson_ratio" in table else {}
-    return {"solid": Layer(table["layer_thickness"], **ratio)}
+    return Layer(table["layer_thickness"], **ratio)
 
 
 READERS: dict[str, Callable[[dict[str, Any], Any], dict[str, Any]]] = {

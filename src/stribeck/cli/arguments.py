@@ -48,6 +48,19 @@ def read_case(
     return sb.load_case(path)
 
 
+def model_parts(
+    slide_to_roll: str | None, cavitation: str | None, cavity_pressure: str | None, flow_factors: str | None
+) -> dict[str, Any]:
+    """Return the parts of the model that options name, in place of those of a case."""
+    given = {
+        "slide_to_roll": as_number("slide_to_roll", slide_to_roll),
+        "cavitation": cavitation,
+        "cavity_pressure": None if cavity_pressure is None else _bare_or_text(cavity_pressure),
+        "flow_factors": flow_factors,
+    }
+    return {name: value for name, value in given.items() if value is not None}
+
+
 def as_number(name: str, text: str | None) -> float | None:
     """Return the number that an option holds, or None where it is not given."""
     return None if text is None else read_number(name, text)

@@ -24,6 +24,7 @@ from stribeck.cli.arguments import (
     check_outputs,
     check_pictures,
     curve_arguments,
+    model_parts,
     read_case,
 )
 from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain, stdout_console
@@ -40,6 +41,10 @@ def solve_command(
     boundary_friction: Number = None,
     beta: Number = None,
     law: Word = None,
+    slide_to_roll: Number = None,
+    cavitation: Word = None,
+    cavity_pressure: Number = None,
+    flow_factors: Word = None,
     rtol: Number = None,
     plot: File = None,
     json: Flag = False,
@@ -50,6 +55,8 @@ def solve_command(
     Example: stribeck solve examples/pdms_cylinder.toml --plot profile.png
 
     Example: stribeck solve --groups 1e-5 0.1 1e-4 --json
+
+    Example: stribeck solve examples/pdms_cylinder.toml --cavitation exit --slide-to-roll 0.5
 
     Parameters
     ----------
@@ -63,6 +70,15 @@ def solve_command(
         Contact-law beta; only with --groups, default 1.
     law
         Contact law: exponential (default), greenwood-williamson or greenwood-tripp; only with --groups.
+    slide_to_roll
+        Slide-to-roll ratio 2 (u1 - u2)/(u1 + u2): 2 is pure sliding, 0 pure rolling; defaults to the value in the case, or 2.
+    cavitation
+        How the film ends: none, exit (at ambient pressure) or reform (at the pressure of a cavity); defaults to the case, or
+        none.
+    cavity_pressure
+        Pressure of the cavity with --cavitation reform, above the ambient one, such as '-0.1 MPa'; with --groups over p_Hz.
+    flow_factors
+        What roughness does to the flow: none, effective-medium or patir-cheng; defaults to the case, or none.
     rtol
         Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6.
     plot
@@ -81,7 +97,8 @@ def solve_command(
         coefficients(None, mu, b)
     pictures = check_pictures(plot, force)
     problem = loaded.contact if loaded else sb.Groups(*map(as_group, AXES, groups or ()))
-    solution = sb.solve(problem, rtol=tolerance, law=law)
+    parts = model_parts(slide_to_roll, cavitation, cavity_pressure, flow_factors)
+    solution = sb.solve(problem, rtol=tolerance, law=law, **parts)
     title = loaded.title if loaded else ""
     for picture in pictures:
         from stribeck.curves.plot import plot_profile
@@ -119,6 +136,11 @@ def curve_command(
     boundary_friction: Number = None,
     beta: Number = None,
     law: Word = None,
+    slide_to_roll: Number = None,
+    cavitation: Word = None,
+    cavity_pressure: Number = None,
+    flow_factors: Word = None,
+    definition: Word = None,
     json: Flag = False,
     force: Flag = False,
 ) -> int:
@@ -157,6 +179,17 @@ def curve_command(
         Contact-law beta; only with --groups, default 1.
     law
         Contact law: exponential (default), greenwood-williamson or greenwood-tripp; only with --groups.
+    slide_to_roll
+        Slide-to-roll ratio 2 (u1 - u2)/(u1 + u2): 2 is pure sliding, 0 pure rolling; defaults to the value in the case, or 2.
+    cavitation
+        How the film ends: none, exit (at ambient pressure) or reform (at the pressure of a cavity); defaults to the case, or
+        none.
+    cavity_pressure
+        Pressure of the cavity with --cavitation reform, above the ambient one, such as '-0.1 MPa'; with --groups over p_Hz.
+    flow_factors
+        What roughness does to the flow: none, effective-medium or patir-cheng; defaults to the case, or none.
+    definition
+        Viscous friction: balanced (default) or published; defaults to the value in the case.
     json
         Print the curve as JSON.
     force
@@ -166,6 +199,8 @@ def curve_command(
     outputs, pictures = check_outputs(output or [], plot, force)
     arguments = curve_arguments(loaded, over, range, points, rtol, groups, boundary_friction, beta)
     arguments["law"] = law
+    arguments |= model_parts(slide_to_roll, cavitation, cavity_pressure, flow_factors)
+    arguments |= {} if definition is None else {"definition": definition}
     title = loaded.title if loaded else ""
     with interruptible() as progress:
         curve = sb.stribeck_curve(on_point=progress, **arguments)
