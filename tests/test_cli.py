@@ -59,7 +59,7 @@ def opened(path):
 
 
 @pytest.mark.quick
-def test_parts_of_the_model_are_options_too(capsys):
+def test_parts_of_the_model_are_options_too(capsys, tmp_path):
     options = ("--slide-to-roll", "-1", "--cavitation", "reform", "--cavity-pressure", "-0.01", "--rtol", "1e-4", "--json")
     answer = call(capsys, "solve", *GROUPS, *options)
     found = strict_json(answer.out)
@@ -68,9 +68,13 @@ def test_parts_of_the_model_are_options_too(capsys):
     assert answer.code == 0
     assert found["minimum_gap"] == state.minimum_gap
     assert found["friction_balanced"]["viscous"] == state.friction().viscous < 0
-    answer = call(capsys, "curve", *FAST, "--slide-to-roll", "0.5", "--definition", "published", "--json")
+    files = ("-o", tmp_path / "curve.nc", "--plot", tmp_path / "curve.png")
+    answer = call(capsys, "curve", *FAST, "--slide-to-roll", "0.5", "--definition", "published", "--json", *files)
     curve = sb.stribeck_curve(sb.Groups(0.1, 0.1, 1e-3), speed=(0.1, 1), points=3, slide_to_roll=0.5, definition="published")
-    assert strict_json(answer.out)["friction"] == pytest.approx(list(curve.friction))
+    found = strict_json(answer.out)["points"]
+    assert found["friction"] == pytest.approx(list(curve.friction))
+    assert found["hydrodynamic_friction"] == [None] * 3
+    assert opened(tmp_path / "curve.nc").friction.values == pytest.approx(list(curve.friction))
 
 
 @pytest.mark.quick

@@ -221,9 +221,13 @@ def _solid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
         return {"solid": base}
     if len(given) > 1:
         raise InputError("retardation_time and relaxation_times are two descriptions of the same; give one of them.")
-    for key, example in zip(given[0], ("\"10 ms\"", "3.0") if given[0] == one else ('["1 ms", "10 ms"]', "[1.0, 0.5]"), strict=True):
+    for key, example in zip(
+        given[0], ('"10 ms"', "3.0") if given[0] == one else ('["1 ms", "10 ms"]', "[1.0, 0.5]"), strict=True
+    ):
         if key not in table:
-            raise InputError(f"{key} is missing beside {next(name for name in given[0] if name in table)}; add {key} = {example}.")
+            raise InputError(
+                f"{key} is missing beside {next(name for name in given[0] if name in table)}; add {key} = {example}."
+            )
     kind = StandardLinearSolid if given[0] == one else Prony
     return {"solid": kind(*(table[key] for key in given[0]), base)}
 

@@ -16,6 +16,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, FrictionArray, check_definition, coefficients, sliding_part
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import ARTICLE
 from stribeck.curves.coordinate import Coordinate, Over, given_values
 from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at, state_at
 from stribeck.curves.landmarks import Landmark, Landmarks
@@ -280,7 +281,9 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @property
     def hydrodynamic_friction(self) -> Array:
-        """Friction of smooth surfaces by the paper's law, the abscissa of its second representation [-]."""
+        """Friction of smooth surfaces by the paper's law, the abscissa of its second representation [-]; nan of other models."""
+        if self.groups.model != ARTICLE:
+            return np.full(len(self), np.nan)
         return np.asarray(hydrodynamic.friction(self.groups, self.beta))
 
     @property

@@ -31,7 +31,16 @@ from stribeck.solver.solve import SolveError
 if TYPE_CHECKING:
     from stribeck.fits.model import FrictionModel
 
-__all__ = ["FrictionParts", "ModelChange", "PartsOf", "Ways", "atlas_parts", "atlas_or_solved_parts", "solved_parts", "ways_of"]
+__all__ = [
+    "FrictionParts",
+    "ModelChange",
+    "PartsOf",
+    "Ways",
+    "atlas_parts",
+    "atlas_or_solved_parts",
+    "solved_parts",
+    "ways_of",
+]
 
 
 MOST_KEPT = 60

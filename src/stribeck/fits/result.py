@@ -278,8 +278,7 @@ class Fit(Exported, Shown, ByValue):
             "model_error": self.model_error,
             "evaluations": self.evaluations,
             "curves": [
-                {"name": name}
-                | {key: value for key in (*FREE, "speed") if (value := getattr(contact, key, None)) is not None}
+                {"name": name} | {key: value for key in (*FREE, "speed") if (value := getattr(contact, key, None)) is not None}
                 for name, contact in zip(self.data.curves, self.contacts, strict=True)
             ],
             "rows": {
