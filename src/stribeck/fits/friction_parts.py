@@ -292,6 +292,12 @@ def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> W
 
 
 def _of_ball(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
+    film = model.contact.groups.model.film
+    if film.uses_speed:
+        raise InputError(
+            f"fluid = {film.name}: fits of a ball take a fluid whose viscosity does not depend on the rate; fit the curve of a "
+            "Newtonian fluid at speeds where it does not thin."
+        )
     logs, varies = model.start()
     return Ways(None, lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL)))
 

@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -85,9 +86,9 @@ class CavitatedEquations(Equations):
         first, slope = particular(np.array([mesh.rim]), offset, 1.0, bulge=self.operators.bulge)
         return np.eye(mesh.modes) * float(slope[0] / first[0])
 
-    def shear_missing(self, y: Unknowns) -> float:
-        """Return by how much the integral of 1/h is less for the streaks of the wake that are dry."""
-        return shear_missing(self.operators.mesh, y.gap, y.fluid)
+    def shear_missing(self, y: Unknowns) -> Array:
+        """Return by how much the shear over h on each ring is less for the streaks of the wake that are dry, shape (rings,)."""
+        return shear_missing(self.operators.mesh, y.gap, y.fluid, partial(self.film.sheared, self.speed))
 
 
 def stiffness(linear: Linear) -> Array:

@@ -88,6 +88,9 @@ class PlaneFilm(Protocol):
     def shear(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Array:
         """Return the drag of sliding over that of a fluid of the viscosity at ambient pressure and low rates, at the nodes."""
 
+    def sheared(self, speed: float, gap: Array) -> Array:
+        """Return the same where the walls alone shear the film, at ambient pressure."""
+
 
 def weights_of(mesh: PolarMesh) -> tuple[Array, Array]:
     """Return the weights of ``r dr dtheta`` panel by panel and of ``dr dtheta`` on rings, for half a turn."""
@@ -109,6 +112,10 @@ class LinearPlane:
     def shear(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Array:
         """Return the viscosity over that at ambient pressure."""
         return self.viscosity(gap, pressure)
+
+    def sheared(self, speed: float, gap: Array) -> Array:
+        """Return one."""
+        return np.ones_like(gap)
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
         """Return what flows."""

@@ -29,6 +29,9 @@ MAX_KRYLOV = 60
 WORN, WORN_NEAR = 12, 16
 """Steps of GMRES from which the next Newton step makes its own preconditioner: far from the solution, and near it."""
 
+WIDEST = 16
+"""Band of a preconditioner that is made anew where one of a narrower band does not serve."""
+
 NEAR = 0.03
 """Size of the steps from which the solution is near."""
 
@@ -125,6 +128,7 @@ def iterate(
     krylov = factorisations = steps = 0
     before = size = math.inf
     left = math.inf
+    widened = False
 
     def ended(outcome: Outcome) -> Iterated:
         return Iterated(y, outcome, steps, krylov, factorisations, left, preconditioner)
@@ -147,6 +151,11 @@ def iterate(
                 factorisations += 1
                 solved = _solved(linear, preconditioner, right, residual[0], wanted, MAX_KRYLOV)
                 krylov += solved.steps
+                if not solved.accepted and widened:
+                    return ended(Outcome.SINGULAR)
+                if not solved.accepted and band < min(WIDEST, preconditioner.shape[0] - 1):
+                    band, widened, preconditioner = WIDEST, True, None
+                    continue
             if not np.isfinite(solved.x).all():
                 return ended(Outcome.SINGULAR)
             step = solved.step

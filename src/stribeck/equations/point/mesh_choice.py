@@ -33,6 +33,9 @@ GROWTH = 2.5
 REACH = 50.0
 """Radius of the rim over the scale of the contact."""
 
+THINNED_BEYOND, MOST_FARTHER = 1e-7, 9
+"""Part of the viscosity that a fluid may lose to its rate at the rim, and the most panels beyond the usual one for it."""
+
 ROLLING, FILM_ROUNDS = 0.3, 20
 """Rate in a film between walls that roll, over the mean speed and the film, as the pressure drives it; and rounds in which a
 film that is thinned by its own rate is found."""
@@ -90,6 +93,8 @@ class Resolution:
         Degree of the polynomials, and number of cosines.
     splits : tuple of float
         Radii at which panels are split besides [a].
+    farther : int
+        Number of panels beyond the usual rim, where a fluid is thinned far out.
     model : Model
         Fluid, cavitation and solid, whose equations are solved on the mesh.
     """
@@ -100,6 +105,7 @@ class Resolution:
     modes: int
     splits: tuple[float, ...] = ()
     model: Model = ARTICLE
+    farther: int = 0
 
     @property
     def mesh(self) -> PolarMesh:
@@ -113,7 +119,7 @@ class Resolution:
         while outer[-1] + 1.4 * w < 2.0:
             outer.append(outer[-1] + w)
             w *= GROWTH
-        near, far = np.concatenate([[0.0], inner[::-1], outer[1:]]), np.geomspace(2.0, REACH, FAR_PANELS + 1)
+        near, far = np.concatenate([[0.0], inner[::-1], outer[1:]]), self._far
         scale = 2.0**self.doublings
         near = np.unique(np.concatenate([near * scale, [r for r in self.splits if 0.0 < r < 2.0 * scale]]))
         widest = BODIES[type(self.model.solid)].widest_panel(self.model.solid)
@@ -123,6 +129,12 @@ class Resolution:
         while (wide := np.flatnonzero(np.diff(far) > np.maximum(FAR_WIDTH * widest, FAR_GROWTH * far[:-1]))).size:
             far = np.sort(np.append(far, np.sqrt(far[wide] * far[wide + 1])))
         return PolarMesh(np.concatenate([near, far]), near.size, self.degree, self.modes)
+
+    @property
+    def _far(self) -> Array:
+        """Radii of the far panels over the scale."""
+        ratio = (REACH / 2.0) ** (1.0 / FAR_PANELS)
+        return np.append(np.geomspace(2.0, REACH, FAR_PANELS + 1), REACH * ratio ** np.arange(1, self.farther + 1))
 
     def coarser(self) -> Resolution:
         """Return the resolution whose results tell the error of this one's: coarser in radius and in angle."""
@@ -190,13 +202,28 @@ CAVITATED_FILM = {Cavitation.NONE: 0.0, Cavitation.EXIT: RIGID_CAVITATED}
 def resolution(speed: float, law: ContactLaw, degree: int, modes: int, model: Model = ARTICLE) -> Resolution:
     """Return the resolution of a state."""
     width, scale = layout(speed, law, model)
-    return Resolution(math.ceil(-math.log2(1.2 * width)), round(math.log2(scale)), degree, modes, model=model)
+    halvings, doublings = math.ceil(-math.log2(1.2 * width)), round(math.log2(scale))
+    return Resolution(halvings, doublings, degree, modes, model=model, farther=farther_panels(speed, model))
+
+
+def farther_panels(speed: float, model: Model) -> int:
+    """Return the number of panels beyond the usual rim until the fluid is thinned no more, where the rate is 2/r**2."""
+    film = model.film
+    if not isinstance(film, ShearThinning) or not speed > 0.0:
+        return 0
+    rates = np.logspace(-60.0, 0.0, 241)
+    plain = np.abs(film.law.stress(rates)[0] / rates - 1.0) < THINNED_BEYOND
+    rate = float(rates[plain][-1]) if plain.any() else float(rates[0])
+    radius = math.sqrt(2.0 * film.law.time * speed / rate)
+    return int(np.clip(math.ceil(FAR_PANELS * math.log(radius / REACH) / math.log(REACH / 2.0)), 0, MOST_FARTHER))
 
 
 def fits(found: Resolution, speed: float, law: ContactLaw) -> bool:
     """Return whether the panels of a neighbour serve a state."""
     width, scale = layout(speed, law, found.model)
     excess = math.log2(width) + found.halvings
+    if not 0 <= found.farther - farther_panels(speed, found.model) <= 2:
+        return False
     return -0.4 <= excess <= 2.1 and abs(math.log2(scale) - found.doublings) <= 0.8
 
 

@@ -13,7 +13,12 @@ Beyond the rim the film is that of :mod:`stribeck.equations.point.far_field`.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.polynomial import legendre
 
 from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL, FarFilm
@@ -21,6 +26,10 @@ from stribeck.equations.point.far_field import tails
 from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_axis
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh, radau
+
+FAR_ERROR = 10.0
+"""Error of a finite part over the speed and the part of the viscosity that is lost at the rim: 2 pi/3 times one over twice the
+power with which that part falls with the rate, 0.1 at least."""
 
 
 def at_centre(mesh: PolarMesh, field: Array) -> float:
@@ -58,7 +67,7 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
     radial = turn * mesh.local_weights * mesh.local_radii * mesh.scattered(h * cos) * mesh.radial_derivative(p)
     tangential = turn * mesh.ring_weights * sin * h * (mesh.angular_derivative @ p)
     shear = equations.film.shear(mesh, speed, h, p) / h
-    couette = speed / 6.0 * (float((shear @ mesh.area_weights).sum()) - equations.shear_missing(y))
+    couette = speed / 6.0 * (float((shear @ mesh.area_weights).sum()) - float(mesh.ring_weights @ equations.shear_missing(y)))
     poiseuille = 0.5 * float(radial.sum() - tangential.sum())
     of_fluid, of_contact = float((moment * p).sum()), float((moment * contact).sum())
     at_rim = float(mesh.to_modes[1] @ p[:, -1])
@@ -71,6 +80,67 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
         "J_published": couette - poiseuille - of_fluid,
         "J_pcx": -of_contact,
     }
+
+
+def thinned_beyond(equations: Equations, y: Unknowns) -> float:
+    """Return about by how much the finite parts are too large as the fluid is taken for one that does not thin beyond the rim."""
+    at_rim = equations.film.sheared(equations.speed, y.gap[:, -1])
+    return FAR_ERROR * equations.speed * float(np.abs(1.0 - at_rim).max())
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionWithin:
+    """The friction integrals of a film up to a radius, less those of a fluid that does not thin far away.
+
+    Attributes
+    ----------
+    mesh : PolarMesh
+        The mesh.
+    excess : ndarray, shape (3, panels, degree + 1)
+        At the nodes: both parts up to there less their finite parts and logarithms, and ``-oint h p_f cos(theta) r`` less the
+        same of the far film.
+    """
+
+    mesh: PolarMesh
+    excess: Array
+
+    @classmethod
+    def of(cls, equations: Equations, y: Unknowns, values: Mapping[str, float]) -> FrictionWithin:
+        """Return those of a state with these observables."""
+        mesh, h, p, speed = equations.operators.mesh, y.gap, y.fluid, equations.speed
+        cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
+        turn = 2.0 * np.pi / mesh.modes
+        shear = equations.film.shear(mesh, speed, h, p) / h
+        couette = speed / 6.0 * (turn * mesh.radii * shear.sum(axis=0) - equations.shear_missing(y))
+        along = (mesh.scattered(h * cos) * mesh.radial_derivative(p)).sum(axis=0) * mesh.local_radii
+        poiseuille = 0.5 * turn * (along - mesh.scattered((sin * h * (mesh.angular_derivative @ p)).sum(axis=0)))
+        up_to = _running(mesh, np.stack([mesh.scattered(couette), poiseuille]))
+        log, far = np.log(mesh.local_radii), equations.far
+        up_to[0] -= values["J_couette"] + far.couette * speed * log
+        up_to[1] -= values["J_poiseuille"] + far.poiseuille * speed * log
+        edge = -turn * mesh.scattered((h * p * cos).sum(axis=0)) * mesh.local_radii - far.poiseuille * speed
+        return cls(mesh, np.concatenate([up_to, edge[None]]))
+
+    def __call__(self, which: int, log_radius: float) -> float:
+        """Return one of the three at a radius; nothing beyond the rim."""
+        radius = math.exp(log_radius)
+        if radius >= self.mesh.rim:
+            return 0.0
+        panel, row = self.mesh.radial_interpolation(np.array([radius]))
+        return float(row[0] @ self.excess[which, panel[0]])
+
+
+def _running(mesh: PolarMesh, local: Array) -> Array:
+    """Return integrals over r from the centre to the nodes of each panel, of values of shape (..., panels, degree + 1)."""
+    found = np.empty_like(local)
+    integrals = legendre.legint(np.eye(mesh.degree + 1), lbnd=-1.0)
+    before = np.zeros(local.shape[:-2])
+    for panel in range(mesh.panels):
+        rule = mesh.rule(panel)
+        matrix = legendre.legval(rule.nodes, integrals).T @ rule.to_legendre
+        found[..., panel, :] = before[..., None] + (local[..., panel, :] * mesh.stretch[panel]) @ matrix.T
+        before = found[..., panel, -1]
+    return found
 
 
 def identity_error(values: dict[str, float], speed: float, far: FarFilm = FULL) -> float:

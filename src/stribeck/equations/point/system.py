@@ -122,9 +122,9 @@ class Equations:
         """Return the deflection by mode under a pressure by mode, shape (modes, rings)."""
         return self.operators.deflect(by_mode)
 
-    def shear_missing(self, y: Unknowns) -> float:
-        """Return by how much the integral of 1/h is less where the gap is not full of liquid."""
-        return 0.0
+    def shear_missing(self, y: Unknowns) -> Array:
+        """Return by how much the shear over h on each ring is less where the gap is not full of liquid, shape (rings,)."""
+        return np.zeros(self.operators.mesh.rings)
 
     def residual(self, y: Unknowns) -> tuple[Array, Array, float]:
         """Return R_1 at the nodes, R_2 by node, both of shape (modes, rings), and R_3."""

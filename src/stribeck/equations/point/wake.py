@@ -9,6 +9,7 @@ with the gap :math:`h_\mathrm{e}` at which the film ruptures; :math:`\phi` is th
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,11 +79,15 @@ def rupture_line(mesh: PolarMesh, gap: Array, fluid: Array) -> Rupture | None:
     return Rupture(rings, angles, np.append(0.0, distances[order]), np.append(gaps[order][:1], gaps[order]))
 
 
-def shear_missing(mesh: PolarMesh, gap: Array, fluid: Array) -> float:
-    r"""Return what the dry streaks of the wake take off the shear, :math:`\int (1 - \phi)/h` up to the rim [a**2/u_Hz]."""
+def shear_missing(mesh: PolarMesh, gap: Array, fluid: Array, sheared: Callable[[Array], Array] = np.ones_like) -> Array:
+    r"""Return what the dry streaks of the wake take off the shear on each ring, :math:`r \oint (1 - \phi) \, \tau/h`.
+
+    ``sheared`` gives the drag of sliding over that of a fluid that does not thin, by the gap.
+    """
+    found = np.zeros(mesh.rings)
     line = rupture_line(mesh, gap, fluid)
     if line is None:
-        return 0.0
+        return found
     t, w = legendre.leggauss(POINTS)
     angle = 0.5 * line.angles[:, None] * (1.0 + t)
     orders = np.arange(mesh.modes)
@@ -90,5 +95,5 @@ def shear_missing(mesh: PolarMesh, gap: Array, fluid: Array) -> float:
     h = np.exp(np.einsum("mr,mrk->rk", coefficients, np.cos(orders[:, None, None] * angle)))
     r = mesh.radii[line.rings]
     wet = np.minimum(1.0, line.gap_at(r[:, None] * np.sin(angle)) / h)
-    by_ring = ((1.0 - wet) / h) @ w * line.angles  # both halves of the plane
-    return float(by_ring @ (mesh.ring_weights[line.rings] * r))
+    found[line.rings] = ((1.0 - wet) * sheared(h) / h) @ w * line.angles * r  # both halves of the plane
+    return found

@@ -23,7 +23,7 @@ from stribeck.equations.point.mesh_choice import (
     resolution,
     split_where_poor,
 )
-from stribeck.equations.point.observables import identity_error, observables
+from stribeck.equations.point.observables import identity_error, observables, thinned_beyond
 from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
@@ -61,6 +61,9 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     balance = 0.3 * abs(identity_error(values, speed, FAR[Cavitation.EXIT]))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
+    beyond = thinned_beyond(fine.equations, fine.unknowns)
+    for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
+        errors[name] += beyond
     # Two meshes may agree by chance in one number, hardly in all.
     widest = max(errors[name] / scales[name] for name in errors if name not in (*WITHOUT_TOLERANCE, *LOOSE_WHERE_TORN))
     errors = {name: max(error, COMPANY * widest * scales[name]) for name, error in errors.items()}

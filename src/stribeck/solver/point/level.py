@@ -13,7 +13,7 @@ from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.cavitation import CavitatedEquations, iterate_cavitated
 from stribeck.equations.point.planes import plane_of
-from stribeck.equations.point.iteration import Iterated, distance, iterate
+from stribeck.equations.point.iteration import WIDEST, Iterated, distance, iterate
 from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, film_speed, operators_of
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
@@ -55,12 +55,17 @@ class Level:
         return self.equations.law.pressure(self.unknowns.gap)
 
 
+THINNED, LITTLE = 8, 0.8
+"""Band where a fluid thins, and the speed of a Newtonian film as thick over that of the film from which it does so little."""
+
+
 def band_for(speed: float, law: ContactLaw, model: Model = ARTICLE) -> int:
     """Return the band of modes that the preconditioner keeps: thin films of smooth contacts couple more of them."""
-    speed = film_speed(speed, model)
-    if float(np.max(law.decay_length)) > speed**0.6 or speed >= 1e-3:
-        return 5
-    return int(min(16, round(5.0 * (1e-3 / speed) ** 0.17)))
+    like = film_speed(speed, model)
+    least = 5 if like > LITTLE * speed else THINNED
+    if float(np.max(law.decay_length)) > like**0.6 or like >= 1e-3:
+        return least
+    return max(least, int(min(WIDEST, round(5.0 * (1e-3 / like) ** 0.17))))
 
 
 def moved(y: Unknowns, old: PolarMesh, new: PolarMesh) -> Unknowns:

@@ -27,7 +27,7 @@ from stribeck.equations.point.mesh_choice import (
     resolution,
     split_where_poor,
 )
-from stribeck.equations.point.observables import identity_error, observables
+from stribeck.equations.point.observables import identity_error, observables, thinned_beyond
 from stribeck.equations.point.system import Unknowns
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, band_for, extrapolated, moved, solve_level
@@ -182,6 +182,9 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     balance = 0.3 * abs(identity_error(values, fine.equations.speed))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
+    beyond = thinned_beyond(fine.equations, fine.unknowns)
+    for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
+        errors[name] += beyond
     for (name, factor), tail in zip(CENTRAL.items(), centre_tails(fine), strict=True):
         errors[name] = max(errors[name], factor * float(tail))
     # Two meshes may agree by chance in one number, hardly in all.

@@ -11,15 +11,17 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import FAR, friction_integral
+from stribeck.contacts.cut_off import FAR, friction_integral, log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.point import PURE_SLIDING, PointContact
+from stribeck.equations.point.observables import FrictionWithin
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
+from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.state import OBSERVABLES, PointState
 
 if TYPE_CHECKING:
@@ -88,27 +90,41 @@ class PointObservables:
     _groups: Groups = field(repr=False)
     _slide_to_roll: float = PURE_SLIDING
     _wetted_radius: float | None = None
+    _within: FrictionWithin | None = field(default=None, repr=False)
 
     @classmethod
     def of(cls, state: PointState, contact: Contact | None) -> PointObservables:
         """Return those of a state, and of the contact's motion and liquid."""
         values = {name: float(state.values[name]) for name in OBSERVABLES}
+        within = None
+        if state.groups.model.film.uses_speed and isinstance(state.work, Pair) and state.groups.speed > 0:
+            fine = state.work.fine
+            within = FrictionWithin.of(fine.equations, fine.unknowns, values)
         if not isinstance(contact, PointContact):
-            return cls(**values, _groups=state.groups, _slide_to_roll=2.0 * state.groups.model.film.slide)
+            return cls(**values, _groups=state.groups, _slide_to_roll=2.0 * state.groups.model.film.slide, _within=within)
         wetted = None if contact.wetted_radius is None else contact.wetted_radius / contact.hertz.half_width
-        return cls(**values, _groups=state.groups, _slide_to_roll=contact.slide_to_roll, _wetted_radius=wetted)
+        return cls(
+            **values, _groups=state.groups, _slide_to_roll=contact.slide_to_roll, _wetted_radius=wetted, _within=within
+        )
 
     def integral(self, slope: float, definition: Definition = "balanced") -> float:
         r"""Return the friction integral J up to where the liquid ends.
 
         .. math:: J = \frac S2 J^\mathrm{couette} + J^\mathrm{poiseuille}
 
-        each with its logarithm, see :func:`stribeck.contacts.cut_off.friction_integral`.
+        each with its logarithm, see :func:`stribeck.contacts.cut_off.friction_integral`; of a fluid that thins, which may do
+        so still at that radius, the integrals up to there.
         """
         parts = {name: getattr(self, name) for name in ("J_couette", "J_poiseuille", "J_pcx")}
         wetted = math.inf if self._wetted_radius is None else self._wetted_radius
         speed, far = float(self._groups.speed), FAR[self._groups.model.cavitation]
-        return float(friction_integral(parts, speed, slope, self._slide_to_roll, wetted, definition, far))
+        found = float(friction_integral(parts, speed, slope, self._slide_to_roll, wetted, definition, far))
+        if self._within is not None:
+            by_shear, by_pressure = (float(each) for each in log_cut_offs(slope, wetted))
+            found += 0.5 * self._slide_to_roll * self._within(0, by_shear) + self._within(1, by_pressure)
+            if definition == "published" and math.isfinite(wetted):
+                found += self._within(2, by_pressure)
+        return found
 
     def viscous_friction(self, beta: float, definition: Definition = "balanced") -> float:
         r"""Return the viscous friction coefficient.

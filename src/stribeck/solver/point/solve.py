@@ -20,10 +20,11 @@ from stribeck.equations.point.films import is_isotropic
 from stribeck.equations.point.iteration import Iterated
 from stribeck.equations.point.mesh_choice import MeshTooLargeError, operators_of, resolution
 from stribeck.equations.point.observables import identity_error
-from stribeck.equations.point.planes import PLANES
+from stribeck.equations.point.planes import PLANES, has_viscosity_at_rest
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
+from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.plane import BODIES
@@ -173,6 +174,11 @@ def check_model(model: Model) -> None:
         )
     if type(model.film) not in PLANES:
         raise InputError(f"fluid = {model.film.name}: its flow in the plane, below a ball, is not known.")
+    if isinstance(model.film, ShearThinning) and not has_viscosity_at_rest(model.film.law):
+        raise InputError(
+            f"fluid = {model.film.name}: far below a ball hardly anything moves, and the viscosity of a power law grows there "
+            "without bound; give Carreau or Cross, whose viscosity at low rates is that of the contact."
+        )
     if isinstance(model.film, Newtonian) and not is_isotropic(model.film.flow):
         raise InputError(
             f"flow_factors = {model.film.flow.name}: of a ball they must be those of isotropic roughness, gamma = 1, without "

@@ -109,6 +109,11 @@ class ThinningPlane:
         weights = mesh.local_weights
         return mesh.gathered(weights * found.reshape(-1, *weights.shape)) / mesh.ring_weights
 
+    def sheared(self, speed: float, gap: Array) -> Array:
+        """Return the stress over that of a fluid that does not thin, where the walls alone shear the film."""
+        rate = speed * self.film.law.time * abs(self.film.slide) / gap
+        return self.film.law.stress(rate)[0] / rate if self.film.slide else np.ones_like(gap)
+
     def _unit(self, at: _Local) -> Array:
         return at.rho * 2 * at.gap**2 / (at.eta * self.film.law.time)
 
