@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from ball_data import BALL
 from numpy.polynomial import legendre
 from test_point_fit import measured
 
 import stribeck as sb
-from ball_data import BALL
 from stribeck.contact_laws.exponential import ExponentialLaw
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import Model

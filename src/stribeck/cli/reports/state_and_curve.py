@@ -86,7 +86,11 @@ def _solution_rows(
         unit = " u_Hz" if math.isfinite(value) else ""
         yield row.label, f"{digits(value, error)}{unit}", si, error_text(error)
     for row in (row for row in rows if row.scale == "width" and not row.name.endswith("_error")):
-        place, wrong = getattr(solution, row.name), getattr(solution, f"{row.name}_error")
+        place = getattr(solution, row.name)
+        if math.isnan(place):  # a film whose suction ends no film
+            continue
+        # That of an end of the film is relative to the larger of its distance and the half-width.
+        wrong = errors[row.name] * max(1.0, abs(place)) if row.name in errors else getattr(solution, f"{row.name}_error")
         # To 1e-4 of the half-width: of a symmetric film only rounding remains, and a position in picometres says nothing.
         place = round(place, 4) + 0.0
         si = "" if scales is None else length(place * scales.half_width, 1e-4)
