@@ -13,12 +13,12 @@ from __future__ import annotations
 
 import argparse
 import math
-import resource
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from multiprocessing import get_context
+from pathlib import Path
 
 import numpy as np
 from scipy.linalg import lapack
@@ -121,7 +121,9 @@ def breakdown(runs: int) -> None:
 def peak(groups: sb.Groups, rtol: float) -> float:
     """Return the largest memory that a process had after one cold state [MB]; in a fresh process it is that state's."""
     solve_cold(groups, rtol)
-    return 1e-3 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    # Not ru_maxrss, which a process inherits from the one that started it.
+    status = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines())
+    return 1e-3 * float(status["VmHWM"].split()[0])
 
 
 def processes(count: int) -> ProcessPoolExecutor:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,8 +10,10 @@ import pytest
 import stribeck as sb
 from stribeck.contact_laws.persson import persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
-from stribeck.equations.point.sensitivity import GROUPS
-from stribeck.solver.point.sensitivity import state_derivatives
+from stribeck.contacts.model import Model
+from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.solver.point.sensitivity import GROUPS, state_derivatives
 from stribeck.solver.point.solve import solve_cold, solve_from
 
 SURFACE = persson_law(SelfAffine(h_rms=1e-6, q0=3e4, q1=3e6, hurst=0.8))
@@ -51,3 +54,54 @@ def test_derivatives_need_no_kept_preconditioner():
 def test_more_load_moves_shares_in_opposite_ways():
     found = state_derivatives(solve_cold(STATES["mixed"], 1e-3))
     np.testing.assert_allclose(found["contact_load_share"] + found["fluid_load_share"], 0, atol=1e-6)
+
+
+MODELS = {
+    "barus": {"fluid": sb.fluids.Barus("2e-7 1/Pa")},
+    "flow": {"flow_factors": sb.fluids.PatirCheng()},
+    "layer": {"solid": sb.solids.Layer("1 mm", 0.45)},
+}
+
+
+def ball_with(name):
+    groups = sb.Groups(1e-2, 1e-2, 5e-4, geometry="point")
+    contact = sb.PointContact.from_groups(
+        groups, radius=0.01, modulus=1e6, viscosity=0.1, alpha=2.0, beta=0.1, boundary_friction=0.8, slide_to_roll=0.6
+    )
+    return contact.replace(**MODELS[name])
+
+
+def slope_of_solved(contact, name):
+    ends = [contact.replace(**{name: getattr(contact, name) * math.exp(step)}) for step in (STEP, -STEP)]
+    more, less = (sb.solve(end, rtol=1e-6).friction().total for end in ends)
+    return math.log(more / less) / (2 * STEP)
+
+
+@pytest.mark.parametrize(
+    ("model", "inputs"), [("barus", ("load", "modulus")), ("flow", ("roughness",))], ids=["barus", "flow factors"]
+)
+def test_what_moves_the_numbers_of_fluid_and_solid_moves_the_friction_through_them(model, inputs):
+    contact = ball_with(model)
+    _, found = friction_sensitivities(contact, rtol=1e-6)
+    for name in inputs:
+        assert found[name] == pytest.approx(slope_of_solved(contact, name), abs=3e-4), name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("model", MODELS)
+def test_sensitivities_of_balls_with_other_fluids_and_solids_are_those_of_solved_states(model):
+    contact = ball_with(model)
+    _, found = friction_sensitivities(contact, rtol=1e-6)
+    for name in ("speed", "load", "modulus", "radius", "viscosity", "roughness", "alpha", "beta", "slide_to_roll"):
+        assert found[name] == pytest.approx(slope_of_solved(contact, name), abs=5e-4), name
+
+
+@pytest.mark.quick
+def test_a_film_that_breaks_has_no_derivatives_and_fits_say_what_they_leave_out():
+    from stribeck.fits.friction_parts import WAYS
+
+    broken = solve_cold(replace(STATES["smooth"], model=Model(cavitation=Cavitation.EXIT)), 1e-2)
+    with pytest.raises(sb.InputError, match="cavitation = 'exit': derivatives of a ball are for a film that does not break"):
+        state_derivatives(broken)
+    with pytest.raises(sb.InputError, match="fits of a ball are for a Newtonian fluid"):
+        WAYS["point"](SimpleNamespace(contact=ball_with("barus")), "balanced", 1e-4)

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.equations.point.sensitivity import GROUPS
+from stribeck.contacts.groups import Groups
 from stribeck.solver.point.finish import finish_point
 from stribeck.solver.point.path import next_state
-from stribeck.solver.point.sensitivity import state_derivatives
+from stribeck.solver.point.sensitivity import GROUPS, derivatives_along, state_derivatives
 from stribeck.solver.point.solution import PointObservables, PointSolution
 
 __all__ = ["point_sensitivities"]
@@ -58,7 +59,7 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
         more, less = (replace(values, **{name: here * math.exp(step)}) for step in (SMALL, -SMALL))
         return (total(more) - total(less)) / (2 * SMALL)
 
-    by_groups = dict.fromkeys(GROUPS, 0.0)
+    by_groups, by_model = dict.fromkeys(GROUPS, 0.0), dict[str, float]()
     if groups.speed > 0:
         changes = state_derivatives(state)
         for i, name in enumerate(GROUPS):
@@ -66,6 +67,10 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
             if here > 0:
                 ends = [total(_moved(values, changes, i, name, step)) for step in (SMALL, -SMALL)]
                 by_groups[name] = (ends[0] - ends[1]) / (2 * SMALL)
+        for name, along in _of_model(contact, groups).items():
+            changes = derivatives_along(state, {name: along})
+            ends = [total(_changed(values, changes, 0, step)) for step in (SMALL, -SMALL)]
+            by_model[name] = (ends[0] - ends[1]) / (2 * SMALL)
     by_beta = (total(values, beta * math.exp(SMALL)) - total(values, beta * math.exp(-SMALL))) / (2 * SMALL)
     direct = {"boundary_friction": rubbing * values.contact_load_share, "beta": by_beta}
     direct["slide_to_roll"] = slope("_slide_to_roll")
@@ -76,13 +81,27 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
     found = {}
     for name, _ in contact.inputs():
         moved = sum(n * slope for n, slope in zip(contact.INPUTS.exponents[name], by_groups.values(), strict=True))
-        found[name] = (moved + direct.get(name, 0.0)) / friction
+        found[name] = (moved + by_model.get(name, 0.0) + direct.get(name, 0.0)) / friction
     return solution, found
+
+
+def _of_model(contact: Contact, groups: Groups) -> dict[str, Callable[[float], Groups]]:
+    """Return the inputs that move numbers of fluid or solid in Hertz units, and how, the groups held."""
+
+    def along(name: str, value: float, step: float) -> Groups:
+        return replace(groups, model=contact.replace(**{name: value * math.exp(step)}).groups.model)
+
+    ways = {name: partial(along, name, value) for name, value in contact.inputs() if value > 0}
+    return {name: way for name, way in ways.items() if way(SMALL).model != groups.model}
 
 
 def _moved(values: PointObservables, changes: Mapping[str, Array], column: int, name: str, step: float) -> PointObservables:
     """Return the observables after a small step of the logarithm of a group, to first order."""
     groups = values._groups
     beside = replace(groups, **{name: float(getattr(groups, name)) * math.exp(step)})  # type: ignore[arg-type]
-    moved = {each: getattr(values, each) + step * float(change[column]) for each, change in changes.items()}
-    return replace(values, **moved, _groups=beside)
+    return replace(_changed(values, changes, column, step), _groups=beside)
+
+
+def _changed(values: PointObservables, changes: Mapping[str, Array], column: int, step: float) -> PointObservables:
+    """Return the observables after a small step along a direction, to first order."""
+    return replace(values, **{each: getattr(values, each) + step * float(change[column]) for each, change in changes.items()})

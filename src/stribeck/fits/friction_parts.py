@@ -292,11 +292,10 @@ def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> W
 
 
 def _of_ball(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
-    film = model.contact.groups.model.film
-    if film.uses_speed:
+    if model.contact.groups.model != ARTICLE:
         raise InputError(
-            f"fluid = {film.name}: fits of a ball take a fluid whose viscosity does not depend on the rate; fit the curve of a "
-            "Newtonian fluid at speeds where it does not thin."
+            "fits of a ball are for a Newtonian fluid that does not cavitate, on a half-space; leave fluid, cavitation, flow "
+            "factors and solid out."
         )
     logs, varies = model.start()
     return Ways(None, lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL)))

@@ -1,27 +1,30 @@
-r"""Derivatives of the observables of a ball with respect to the groups, by implicit differentiation of its equations.
+r"""Derivatives of the observables of a ball with respect to what it depends on, by implicit differentiation of its equations.
 
 .. math:: \frac{dy}{d\ln G} = -J^{-1} \frac{\partial R}{\partial \ln G}
 
-for each group G, with the products of Newton's Jacobian at the state and GMRES.
+for each group G, or an input of a contact that moves numbers of its fluid or solid, with the products of Newton's Jacobian at
+the state and GMRES.
 """
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
+from stribeck.equations.point.films import plane_of
 from stribeck.equations.point.observables import observables
 from stribeck.equations.point.preconditioner import BandedModes
-from stribeck.equations.point.system import Equations, Linear, Unknowns
+from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.numerics.krylov import gmres
 
-__all__ = ["GROUPS", "log_derivatives"]
+__all__ = ["Direction", "log_derivatives"]
 
-GROUPS = ("speed", "load", "roughness")
+Direction = Callable[[float], Groups]
+"""Groups, with their model, after a step of the logarithm of what moves them."""
 
 STEP = 1e-4
 """Step of the logarithm of a group in the central differences of the residual, whose error is its square."""
@@ -35,18 +38,18 @@ precision, and what it hides of the first residual the next round takes away."""
 
 
 def log_derivatives(
-    equations: Equations, y: Unknowns, groups: Groups, band: int, kept: BandedModes | None = None
+    equations: Equations, y: Unknowns, directions: Mapping[str, Direction], band: int, kept: BandedModes | None = None
 ) -> dict[str, Array]:
-    """Return the derivatives of all observables with respect to ln(speed), ln(load) and ln(roughness).
+    """Return the derivatives of all observables along directions.
 
     Parameters
     ----------
     equations : Equations
-        The discretised problem of the state.
+        The discretised problem of a state of positive speed.
     y : Unknowns
         Its solution.
-    groups : Groups
-        Its groups, of positive speed.
+    directions : mapping of str to callable
+        The groups after a step of a logarithm, by a name for messages.
     band : int
         Band of a preconditioner that is made.
     kept : BandedModes, optional
@@ -54,8 +57,8 @@ def log_derivatives(
 
     Returns
     -------
-    dict of str to ndarray, shape (3,)
-        By the names of the observables, the other two groups held; zero with respect to a group that is zero.
+    dict of str to ndarray
+        By the names of the observables, one number for each direction.
 
     Notes
     -----
@@ -64,12 +67,8 @@ def log_derivatives(
     linear = Linear(equations, y)
     preconditioner = BandedModes(linear, band) if kept is None else kept
     columns: dict[str, list[float]] = {}
-    for name in GROUPS:
-        if float(getattr(groups, name)) == 0:
-            for each in observables(equations, y):
-                columns.setdefault(each, []).append(0.0)
-            continue
-        ahead, behind = (_beside(equations, groups, name, sign * STEP).residual(y) for sign in (1.0, -1.0))
+    for name, moved in directions.items():
+        ahead, behind = (_beside(equations, moved(sign * STEP)).residual(y) for sign in (1.0, -1.0))
         shape, flow = ((a - b) / (2 * STEP) for a, b in zip(ahead[:2], behind[:2], strict=True))
         change = (np.asarray(shape), np.asarray(flow), (ahead[2] - behind[2]) / (2 * STEP))
         right = linear.right(change)
@@ -81,7 +80,7 @@ def log_derivatives(
             raise ArithmeticError(f"GMRES did not solve for the derivatives by {name}")
         dy = linear.changes(x, change[0])
         size = CHANGE / max(1.0, float(np.abs(dy.gap / y.gap).max()))
-        values = [observables(_beside(equations, groups, name, sign * size), y.moved(dy, sign * size)) for sign in (1.0, -1.0)]
+        values = [observables(_beside(equations, moved(sign * size)), y.moved(dy, sign * size)) for sign in (1.0, -1.0)]
         for each in values[0]:
             columns.setdefault(each, []).append((values[0][each] - values[1][each]) / (2 * size))
     return {name: np.array(column) for name, column in columns.items()}
@@ -99,7 +98,11 @@ def _solved(linear: Linear, preconditioner: BandedModes, right: Array) -> Array 
     return x
 
 
-def _beside(equations: Equations, groups: Groups, name: str, step: float) -> Equations:
-    """Return the equations on the same mesh with a step of the logarithm of one group."""
-    here = replace(groups, **{name: float(getattr(groups, name)) * math.exp(step)})  # type: ignore[arg-type]
-    return replace(equations, speed=float(here.speed), law=contact_law(here))
+def _beside(equations: Equations, here: Groups) -> Equations:
+    """Return the equations of other groups on the same mesh."""
+    speed, solid, operators = float(here.speed), here.model.solid, equations.operators
+    if solid != operators.solid:
+        operators = Operators(operators.mesh, solid)
+    return replace(
+        equations, operators=operators, speed=speed, law=contact_law(here), film=plane_of(here.model.film.at(speed))
+    )
