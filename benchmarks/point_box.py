@@ -7,10 +7,10 @@ Usage::
 Of ten states four have the exponential law, three that of Persson (H = 0.8, q1/q0 = 1000, gamma = 0.45), two are smooth and
 one is at rest.  Groups are even in the logarithm: speed 1e-7 to 1e3, load 1e-8 to 10 (Persson to 1e4), kappa 1e-5 to 10,
 smooth speeds 1e-5 to 1e4.  Each state is solved once more on a mesh with panels half as wide at the edge and in the middle,
-three degrees and 1.4 times the modes more; by how much it differs from that is taken for its error, where that mesh takes no more MB than
-``--largest``, as it costs three times the state.  States that are done are kept in the file and not solved again, those that
-are not judged neither as long as their mesh is too large: an interrupted run goes on.  300 states take about an hour; prints
-the table that docs/numerics.md shows.
+three degrees and 1.4 times the modes more; by how much it differs from that is taken for its error, where that mesh takes no
+more MB than ``--largest``, as it costs three times the state.  States that are done are kept in the file and not solved again,
+those that are not judged neither as long as their mesh is too large: an interrupted run goes on.  300 states take about an
+hour; prints the table that docs/numerics.md shows.
 """
 
 from __future__ import annotations
@@ -128,8 +128,8 @@ def judged(seed: int, number: int, rtol: float, largest: float = math.inf) -> di
 def table(rows: list[dict[str, Any]]) -> str:
     """Return the counts by kind."""
     lines = [
-        "| states | number | solved | judged | error covered | worst error/stated | minimum film covered | worst | load balance"
-        " | identity | CPU s, median | most |",
+        "| states | number | solved | judged | error covered | worst error/stated | minimum film covered | worst"
+        " | load balance | identity | CPU s, median | most |",
         "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for kind in (*dict.fromkeys(KINDS), "all"):
@@ -141,8 +141,8 @@ def table(rows: list[dict[str, Any]]) -> str:
         seconds = [row["seconds"] for row in some]
         solved = sum(row["outcome"] == "CONVERGED" for row in some)
         lines.append(
-            f"| {kind} | {len(some)} | {solved} | {len(checked)} | {np.mean(ratios <= 1):.1%} | {ratios.max():.1f} | {np.mean(minima <= 1):.1%}"
-            f" | {minima.max():.1f} | {max(row.get('load_error', 0.0) for row in some):.0e}"
+            f"| {kind} | {len(some)} | {solved} | {len(checked)} | {np.mean(ratios <= 1):.1%} | {ratios.max():.1f}"
+            f" | {np.mean(minima <= 1):.1%} | {minima.max():.1f} | {max(row.get('load_error', 0.0) for row in some):.0e}"
             f" | {max(row.get('identity', 0.0) for row in some):.0e} | {np.median(seconds):.1f} | {max(seconds):.0f} |"
         )
     return "\n".join(lines)

@@ -1,6 +1,7 @@
 r"""Friction of a ball at any speed, load and roughness in closed form, with the logarithm of section 11 of theory.md.
 
-.. math:: \mu = \mu_0 S + \tfrac34 \beta \bar F_N^{1/3} J, \qquad J = J_\mathrm{fp} + \tfrac{16}{15} \pi \lambda \ln X_c \; (+ J_m)
+.. math:: \mu = \mu_0 S + \tfrac34 \beta \bar F_N^{1/3} J, \qquad
+    J = J_\mathrm{fp} + \tfrac{16}{15} \pi \lambda \ln X_c \; (+ J_m)
 
 *Smooth.*  Slow, the horseshoe :math:`h = c \lambda^{3/5} (1-y^2)^{3/10}` is sheared, fast the rigid ball:
 
@@ -40,8 +41,8 @@ ROUGH = (0.55662, 0.017976, 0.30227, 0.013413, 0.0021505)
 FIRST_MOMENT = (0.158797, 0.621804, 3.214195, 1.305809, 0.380217)
 MOMENT = (2.0682, 1.3137, 37.592, 0.73164, 0.2153, 1.2369, 0.43489)
 MOMENT_EDGES = (-0.56624, 7.1791, 0.68051)
-"""Fitted coefficients of :func:`smooth_integral` and :func:`viscous_friction`; the moment of first order in the speed is within
-0.3 % of its quadrature (:mod:`stribeck.asymptotics.point.slow_contact`) for A from 0.08 to 20."""
+"""Fitted coefficients of :func:`smooth_integral` and :func:`viscous_friction`; the moment of first order in the speed is
+within 0.3 % of its quadrature (:mod:`stribeck.asymptotics.point.slow_contact`) for A from 0.08 to 20."""
 
 
 FIRST_SHARE = 1e-4
@@ -178,8 +179,8 @@ def friction(
 
     Notes
     -----
-    Against 1086 solved states over the whole box the error is below 0.03 % in the median, 5.5 % on 99 of 100 and 13.4 % at worst
-    for beta/mu0 = 0.1 to 1, by both definitions; the worst lies in the corner of the box, at load 1e-3, kappa 3e-4 and
+    Against 1086 solved states over the whole box the error is below 0.03 % in the median, 5.5 % on 99 of 100 and 13.4 % at
+    worst for beta/mu0 = 0.1 to 1, by both definitions; the worst lies in the corner of the box, at load 1e-3, kappa 3e-4 and
     speed 3e-4, where the few asperities under the sides of thick films count. At beta/mu0 = 0.01 it is 17 %.
 
     Source: this module and :mod:`stribeck.asymptotics.point.sharing`.

@@ -190,7 +190,7 @@ def layout(speed: float, law: ContactLaw, model: Model = ARTICLE) -> tuple[float
 
 
 def is_too_thin(speed: float, law: ContactLaw) -> bool:
-    """Return whether the film is so thin, and so little held open by asperities, that no allowed mesh has the angles for it."""
+    """Return whether the film is so thin, and asperities so low, that no mesh allowed has the angles for it."""
     width = layout(speed, law)[0] / EDGE
     return COARSEST * SIDE_LOBES * width**-0.675 > MOST_MODES and film_scale(speed) > float(np.max(law.decay_length))
 

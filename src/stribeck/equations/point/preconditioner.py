@@ -160,31 +160,35 @@ class BlockLU:
         self.pivots: list[tuple[Single, npt.NDArray[np.int32]]] = []
         self.right: list[Single] = []
         self.below: list[Single] = []
-        window: dict[tuple[int, int], Array | Single] = {}
+        window: dict[tuple[int, int], Single] = {}
+        waiting: list[tuple[int, int]] = []
         loaded = 0
         for k in range(self.count):
             last = min(self.count, k + band + 1)
             while loaded < last:
                 rows, blocks = next(columns)
-                window.update({(m, loaded): block for m, block in zip(rows, blocks, strict=True)})
-                self.scale[loaded] = 1.0 / np.abs(window[loaded, loaded]).max(axis=1)
+                self.scale[loaded] = 1.0 / np.abs(blocks[rows.index(loaded)]).max(axis=1)
+                window.update({(m, loaded): block.astype(np.float32) for m, block in zip(rows, blocks, strict=True)})
+                waiting += [(m, loaded) for m in rows]
                 loaded += 1
                 # Rows are scaled when the scale of theirs is known, and when the column has arrived.
-                for m, j in [key for key, block in window.items() if block.dtype == np.float64 and key[0] < loaded]:
-                    window[m, j] = (window[m, j] * self.scale[m][:, None]).astype(np.float32)
+                for m, j in waiting:
+                    if m < loaded:
+                        window[m, j] *= self.scale[m].astype(np.float32)[:, None]
+                waiting = [(m, j) for m, j in waiting if m >= loaded]
             self._eliminate(window, k, last, size)
 
-    def _eliminate(self, window: dict[tuple[int, int], Array | Single], k: int, last: int, size: int) -> None:
+    def _eliminate(self, window: dict[tuple[int, int], Single], k: int, last: int, size: int) -> None:
         lu, pivots, _ = lapack.sgetrf(window.pop((k, k)))
         self.pivots.append((lu, pivots))
         if last == k + 1:
             return
         right = lapack.sgetrs(lu, pivots, np.hstack([window.pop((k, j)) for j in range(k + 1, last)]))[0]
-        below: Single = np.vstack([window.pop((i, k)) for i in range(k + 1, last)]).astype(np.float32, copy=False)
-        update = below @ right
-        for i in range(k + 1, last):
+        below: Single = np.vstack([window.pop((i, k)) for i in range(k + 1, last)])
+        for i in range(k + 1, last):  # row by row: all at once would need as much memory as the window
+            update = below[(i - k - 1) * size : (i - k) * size] @ right
             for j in range(k + 1, last):
-                window[i, j] -= update[(i - k - 1) * size : (i - k) * size, (j - k - 1) * size : (j - k) * size]
+                window[i, j] -= update[:, (j - k - 1) * size : (j - k) * size]
         self.right.append(np.ascontiguousarray(right))
         self.below.append(below)
 

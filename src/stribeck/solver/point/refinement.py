@@ -74,7 +74,7 @@ MOST_DEGREE = 18
 MOST_ROUNDS = 6
 
 LARGE = 200_000_000
-"""Memory of the finer mesh from which the preconditioner of the coarser one is not kept for neighbours."""
+"""Memory of the finer mesh from which the preconditioners of coarser ones are not kept for neighbours."""
 
 BY_NAME_MINIMUM = ("minimum_gap", "minimum_radius", "minimum_angle", "minimum_gap_on_axis")
 
@@ -245,7 +245,8 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair
             if not coarse.outcome.ok:
                 return coarse.outcome if best is None else best
             if bytes_of(wanted, band) > LARGE:
-                coarse = replace(coarse, iterated=replace(coarse.iterated, preconditioner=None))
+                coarse, guess = bare(coarse), bare(guess)
+                best = None if best is None else replace(best, coarse=bare(best.coarse), fine=bare(best.fine))
             fine = solve_level(wanted, speed, law, guess.unknowns, guess.mesh, tolerance)
             if not fine.outcome.ok:
                 return fine.outcome if best is None else best
@@ -264,6 +265,11 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair
     if best is None:
         return Outcome.REFINEMENT_LIMIT
     return best if best.total <= rtol else replace(best, outcome=Outcome.REFINEMENT_LIMIT)
+
+
+def bare(level: Level) -> Level:
+    """Return a state without its preconditioner, which is most of its memory."""
+    return replace(level, iterated=replace(level.iterated, preconditioner=None))
 
 
 def split(guess: Level, speed: float, law: ContactLaw) -> Level:
