@@ -49,7 +49,7 @@ FAR_WIDTH, FAR_GROWTH = 4.0, 0.6
 MOST_BYTES = 700_000_000
 """Memory that operators and preconditioner of a mesh may take."""
 
-KEPT_BYTES = 120_000_000
+KEPT_BYTES = 60_000_000
 """Memory of the operators that are kept for later states."""
 
 EDGE_PRESSURE = 0.2
