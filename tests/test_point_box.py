@@ -29,4 +29,15 @@ def test_a_state_of_the_box_does_not_depend_on_the_others_and_none_is_solved_twi
     monkeypatch.setattr("sys.argv", ["point_box.py", "--number", "2", "--rtol", "1e-4", "--out", str(kept)])
     monkeypatch.setattr(box, "solve_cold", None)
     box.main()
-    assert "| rest | 2 | 2 | 100.0% |" in capsys.readouterr().out
+    assert "| rest | 2 | 2 | 2 | 100.0% |" in capsys.readouterr().out
+
+
+def test_a_state_whose_judge_is_too_large_is_solved_and_judged_later(box, tmp_path, monkeypatch, capsys):
+    kept = tmp_path / "kept.jsonl"
+    here = ["point_box.py", "--number", "1", "--rtol", "1e-2", "--out", str(kept), "--largest"]
+    for largest, judged in (("0", ""), ("1500", "| exponential | 1 | 1 | 1 | 100.0% |")):
+        monkeypatch.setattr("sys.argv", [*here, largest])
+        box.main()
+        assert judged in capsys.readouterr().out
+        assert ("ratio" in json.loads(kept.read_text().splitlines()[-1])) == bool(judged)
+    assert len(kept.read_text().splitlines()) == 2

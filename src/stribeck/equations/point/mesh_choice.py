@@ -46,10 +46,10 @@ FAR_PANELS = 2
 FAR_WIDTH, FAR_GROWTH = 4.0, 0.6
 """Width of the far panels over the widest panel that a body allows near the contact, and over their radius: the larger one."""
 
-MOST_BYTES = 700_000_000
+MOST_BYTES = 670_000_000
 """Memory that operators and preconditioner of a mesh may take."""
 
-KEPT_BYTES = 60_000_000
+KEPT_BYTES = 120_000_000
 """Memory of the operators that are kept for later states."""
 
 EDGE_PRESSURE = 0.2
