@@ -28,6 +28,8 @@ from stribeck.explorer.charts.drawing import drawing
 from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
 from stribeck.explorer.measured import fit_measured, read_measured
+from stribeck.explorer.reading import read_file
+from stribeck.explorer.scans import read_scan, with_scan
 
 START = server.example()
 
@@ -830,6 +832,29 @@ def test_the_map_of_a_ball_is_solved_row_by_row(monkeypatch):
     friction = sb.solve(row.replace(speed=found.hydrodynamic[0]), rtol=1e-3).friction()
     assert friction.contact / friction.total == pytest.approx(0.1, rel=0.05)
     assert found.boundary[0] == 0  # the fluid carries more than a twentieth at the slowest speed
+
+
+PROFILE = (EXAMPLES / "cylinder_profile.csv").read_bytes()
+
+
+def test_a_file_of_heights_becomes_the_surface_of_the_contact():
+    found = read_scan("../profile.csv", PROFILE)
+    assert found.words.startswith("Surface of profile.csv: rms height 611 nm, alpha 1.81 (1.74 to 1.84), beta 0.0197 (")
+    after = with_scan(START, found)
+    surface = sb.surfaces.analyse(sb.surfaces.read_topography(EXAMPLES / "cylinder_profile.csv"))
+    law = surface.law
+    assert after.contact.roughness == pytest.approx(surface.roughness.h_rms, rel=1e-6)
+    assert after.contact.law.name == "persson" and after.contact.beta == pytest.approx(law.beta, rel=1e-5)
+    separation = np.array([0.1, 1.0, 3.0])
+    np.testing.assert_allclose(after.contact.law.log_pressure(separation), law.log_pressure(separation), rtol=1e-5)
+    assert url.decode(parse_qsl(url.encode(after)), START).inputs.contact == after.contact
+
+
+def test_a_file_that_holds_neither_friction_nor_heights_is_refused_with_both_reasons():
+    with pytest.raises(sb.InputError, match=r"^a.csv.* As a file of heights: a.csv"):
+        read_file("measured", "a.csv", b"x, y\nno, numbers\n", START.contact)
+    with pytest.raises(sb.InputError, match=r"^a.x3p is damaged|^a.x3p does not start like"):
+        read_scan("a.x3p", b"no zip")
 
 
 def test_a_refused_value_is_told_in_the_unit_of_its_field():

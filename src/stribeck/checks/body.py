@@ -80,7 +80,7 @@ def width(subject: Subject) -> Check:
 def layer(subject: Subject) -> Check | None:
     """Return the check of the layer: half-width over its thickness; None where the thickness is not known."""
     thickness = subject.fact("layer_thickness")
-    modelled = getattr(subject.contact.solid, "thickness", None) if subject.models("solid") else None
+    modelled = getattr(getattr(subject.contact, "solid", None), "thickness", None) if subject.models("solid") else None
     thickness = thickness if modelled is None else modelled
     if thickness is None or thickness == 0:
         return None

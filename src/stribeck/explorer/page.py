@@ -26,6 +26,7 @@ from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
 from stribeck.explorer.downloads import View, examples
 from stribeck.explorer.measured import Measured
+from stribeck.explorer.scans import ENDINGS
 
 __all__ = ["UPDATING", "Page"]
 
@@ -158,16 +159,17 @@ class Page:
 
     def build_bar(self, now: Inputs) -> None:
         """Make the line of title and buttons."""
+        endings = ",".join((".toml", ".csv", ".txt", ".tsv", ".dat", *ENDINGS))
         with ui.element("header").classes("bar"):
             self.title = ui.html("", sanitize=True, tag="h1")
             self.upload = (
                 ui.element("input")
-                .props('type=file multiple accept=".toml,.csv,.txt" aria-hidden="true" tabindex=-1')
+                .props(f'type=file multiple accept="{endings}" aria-hidden="true" tabindex=-1')
                 .classes("hidden-upload")
                 .on("change", js_handler=f"event => explorerUpload(event.target, {self.client_name})")
             )
-            with button("Load", "upload_file", "Load a case, a measured curve or an example"), ui.menu():
-                item = ui.menu_item("File: a case (TOML) or a measured curve (CSV) ...")
+            with button("Load", "upload_file", "Load a case, a measured curve, a surface or an example"), ui.menu():
+                item = ui.menu_item("File: a case (TOML), a measured curve (CSV) or a height map ...")
                 item.on("click", js_handler=f"() => getHtmlElement({self.upload.id}).click()")
                 self.examples = {path: ui.menu_item(title) for title, path in examples().items()}
             with button("Save", "download", "Download picture, data or case"):

@@ -18,11 +18,12 @@ from stribeck.explorer.asked.inputs import from_case
 from stribeck.explorer.asked.url import check_length
 from stribeck.explorer.downloads import read_case
 from stribeck.explorer.measured import read_measured
+from stribeck.explorer.scans import read_scan
 from stribeck.quantities.units import InputError
 
 __all__ = ["LONGEST_TIME", "read_file"]
 
-Kind = Literal["case", "measured"]
+Kind = Literal["case", "measured", "scan"]
 
 LONGEST_TIME = 20.0
 """Seconds after which a file is given up."""
@@ -36,8 +37,8 @@ def read_file(kind: Kind, name: str, content: bytes, contact: Contact, seconds: 
 
     Parameters
     ----------
-    kind : {"case", "measured"}
-        What it is.
+    kind : {"case", "measured", "scan"}
+        What it is; a text file that holds no measured curve may hold heights.
     name : str
         Its name, for sentences.
     content : bytes
@@ -49,7 +50,7 @@ def read_file(kind: Kind, name: str, content: bytes, contact: Contact, seconds: 
 
     Returns
     -------
-    Inputs, or list of Measured
+    Inputs, list of Measured, or Scan
         What it holds.
 
     Raises
@@ -88,14 +89,27 @@ def main() -> None:
         if kind == "case":
             found = from_case(read_case(name, content))
             check_length(found)
+        elif kind == "scan":
+            found = read_scan(name, content)
         else:
-            found = read_measured(name, content, contact)
+            found = _of_text(name, content, contact)
         answer = True, found
     except InputError as problem:
         answer = False, str(problem)
     except (MemoryError, RecursionError):
         answer = False, f"{name} needs too much memory; send a smaller file."
     sys.stdout.buffer.write(pickle.dumps(answer))
+
+
+def _of_text(name: str, content: bytes, contact: Contact) -> Any:
+    """Return the measured curves of a text file, or else the surface whose heights it holds."""
+    try:
+        return read_measured(name, content, contact)
+    except InputError as problem:
+        try:
+            return read_scan(name, content)
+        except InputError as other:
+            raise InputError(f"{problem} As a file of heights: {other}") from None
 
 
 def _stop(*_: Any) -> None:

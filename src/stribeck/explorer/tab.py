@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from html import escape
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 from nicegui import background_tasks, events, ui
@@ -33,6 +33,7 @@ from stribeck.explorer.downloads import View
 from stribeck.explorer.measured import Measured, fit_measured
 from stribeck.explorer.page import UPDATING, Page
 from stribeck.explorer.reading import read_file
+from stribeck.explorer.scans import ENDINGS, Scan, with_scan
 from stribeck.explorer.serving.tidy import tidy_soon
 from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.units import InputError
@@ -301,8 +302,9 @@ class Tab:
         self.page.show_title(self.inputs)
 
     async def take_file(self, name: str, content: bytes) -> None:
-        """Take a case or a measured curve that the browser sent."""
-        kind = "case" if name.lower().endswith(".toml") else "measured"
+        """Take a case, a measured curve or a surface that the browser sent."""
+        kinds = {".toml": "case"} | dict.fromkeys(ENDINGS, "scan")
+        kind = kinds.get(PurePath(name.lower()).suffix, "measured")
         try:
             found = await self.run(FILES, read_file, kind, name, content, self.inputs.contact)
         except InputError as problem:
@@ -311,10 +313,21 @@ class Tab:
         with self.page.client:
             if kind == "case":
                 self.begin(found)
+            elif isinstance(found, Scan):
+                self.take_scan(found)
             else:
                 self.measured = [*self.measured, *found][-MOST_MEASURED:]
                 self.show_chips()
                 self.ask()
+
+    def take_scan(self, found: Scan) -> None:
+        """Show the contact on a measured surface; undo brings back the one before."""
+        try:
+            self.change(with_scan(self.inputs, found))
+        except InputError as problem:
+            self.page.complain(str(problem))
+        else:
+            self.said = found.words
 
     async def fit(self) -> None:
         """Fit the inputs to the measured curves of the last file; undo brings back those before."""

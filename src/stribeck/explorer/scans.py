@@ -1,0 +1,108 @@
+"""Measured surfaces on the page: a file of heights becomes the roughness and Persson's law of the contact."""
+
+from __future__ import annotations
+
+import tempfile
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from stribeck.cases.law import law_of_file
+from stribeck.explorer.asked.carried import json_text, tables_of
+from stribeck.explorer.asked.inputs import Inputs, with_model
+from stribeck.explorer.downloads import shown_name
+from stribeck.quantities.inputs import quantity
+from stribeck.quantities.units import InputError, format_si
+from stribeck.surfaces.analysis import analyse
+from stribeck.surfaces.case_table import surface_table
+from stribeck.surfaces.files import read_topography
+
+__all__ = ["ENDINGS", "Scan", "read_scan", "with_scan"]
+
+ENDINGS = (".x3p", ".sur", ".pro", ".al3d", ".sdf", ".opd", ".plux", ".xyz")
+"""Endings of files that hold heights and nothing else; text may also hold measured friction."""
+
+
+@dataclass(frozen=True)
+class Scan:
+    """A measured surface.
+
+    Attributes
+    ----------
+    table : dict
+        The table ``[surface]`` of a case.
+    words : str
+        What was found, in a sentence.
+    """
+
+    table: dict[str, Any]
+    words: str
+
+
+def read_scan(name: str, content: bytes) -> Scan:
+    """Return the surface of a file of heights.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file.
+    content : bytes
+        Its content.
+
+    Returns
+    -------
+    Scan
+        Its self-affine spectrum, as ``stribeck surface`` finds it.
+
+    Raises
+    ------
+    InputError
+        As :func:`stribeck.surfaces.read_topography` and :func:`stribeck.surfaces.analyse`.
+    """
+    shown = shown_name(name)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / shown
+        path.write_bytes(content)
+        try:
+            surface = analyse(read_topography(path))
+        except InputError as problem:
+            raise InputError(str(problem).replace(str(path), shown)) from None
+    alpha, beta = surface.fit.exponential_limit(surface.gamma)
+    notes = f" {' '.join(surface.notes)}" if surface.notes else ""
+    height = format_si(surface.roughness.h_rms, "length")
+    limit = f"alpha {alpha.value:.3g} ({alpha.interval}), beta {beta.value:.3g} ({beta.interval}), at 95 %"
+    words = f"Surface of {shown}: rms height {height}, {limit}.{notes}"
+    return Scan(tomllib.loads(surface_table(surface))["surface"], words.replace(str(path), shown))
+
+
+def with_scan(now: Inputs, scan: Scan) -> Inputs:
+    """Return the inputs on a measured surface: its roughness and Persson's law, with alpha and beta of its spectrum.
+
+    Parameters
+    ----------
+    now : Inputs
+        Those before.
+    scan : Scan
+        The surface.
+
+    Returns
+    -------
+    Inputs
+        Those after.
+
+    Raises
+    ------
+    InputError
+        If the roughness does not go with the contact.
+    """
+    tables = {name: table for name, table in tables_of(now.model).items() if name not in ("asperities", "table")}
+    tables |= {"law": "persson", "surface": scan.table}
+    found = law_of_file("persson", {}, {"surface": scan.table}, Path()).coefficients
+    return with_model(
+        now,
+        json_text(tables),
+        roughness=quantity("roughness", scan.table["h_rms"]),
+        alpha=found["alpha"],
+        beta=found["beta"],
+    )
