@@ -282,6 +282,17 @@ def test_a_case_is_loaded_and_a_wrong_one_is_refused_in_sentences(open_page, tmp
     assert contact_of(page) == now
 
 
+def test_a_file_of_heights_puts_the_contact_on_that_surface(open_page):
+    page = open_page()
+    now = at_rest(page, lambda: page.set_input_files("input[type=file]", EXAMPLES / "cylinder_profile.csv"))
+    assert now.contact.law.name == "persson"
+    assert 6.1e-7 < now.contact.roughness < 6.2e-7 and 0.019 < now.contact.beta < 0.020
+    check_numbers(page, now)
+    page.keyboard.press("Control+z")
+    page.wait_for_function("!location.search.includes('persson')")
+    assert contact_of(page).contact.law is None
+
+
 def test_a_measured_curve_is_shown_over_the_model(open_page, tmp_path):
     page = open_page()
     path = tmp_path / "lab.csv"
