@@ -21,7 +21,7 @@ from stribeck.contacts.groups import Geometry
 from stribeck.files.reading import read_bounded
 from stribeck.quantities.conversions import GIVEN, read_given
 from stribeck.quantities.facts import FACTS, fact_values
-from stribeck.quantities.hints import MEANT, advice_on
+from stribeck.quantities.hints import ELSEWHERE, MEANT, advice_on
 from stribeck.quantities.inputs import INPUT_TABLES, LINE, InputTable, check_alternatives, quantity
 from stribeck.quantities.uncertain import split_error
 from stribeck.quantities.units import DIMENSIONS, InputError, show
@@ -564,7 +564,8 @@ def example_of(key: str, inputs: InputTable = LINE) -> str:
     """Return the advice to add a quantity, with a typical value and where it is from."""
     wanted = inputs.quantities[key]
     value = f'"{wanted.typical}"' if DIMENSIONS[wanted.dimension].unit else wanted.typical
-    return f"add {DIMENSIONS[wanted.dimension].noun}, for example {key} = {value} ({wanted.source})"
+    other = f", {ELSEWHERE[key]}" if key in ELSEWHERE else ""
+    return f"add {DIMENSIONS[wanted.dimension].noun}, for example {key} = {value} ({wanted.source}){other}"
 
 
 def _nearest(file: Any, model: Any, key: str) -> str:

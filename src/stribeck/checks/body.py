@@ -72,8 +72,8 @@ def width(subject: Subject) -> Check:
     slope = contact.hertz.half_width / contact.radius
     verdict = verdict_of(slope, FINE_WIDTH, TOO_WIDE)
     notes = width_notes(contact)
-    about = f"The half-width is {slope:.2g} of the radius; a parabola on a half-space is accurate up to 0.1 and "
-    sentence = notes[0] if notes else f"{about}coarse at 0.3."
+    about = f"a/R is {slope:.2g}: a parabola on a half-space is accurate up to 0.1 and coarse at 0.3."
+    sentence = notes[0] if notes else about
     return Check("contact width a/R", slope, FINE_WIDTH, verdict, sentence)
 
 
@@ -93,7 +93,7 @@ def layer(subject: Subject) -> Check | None:
         "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than computed.",
         "outside": "The layer is thinner than the contact is wide: the half-space does not apply, and films differ.",
     }[verdict]
-    return Check("layer a/thickness", ratio, FINE_LAYER, verdict, f"The half-width is {ratio:.2g} of the thickness. {meaning}")
+    return Check("layer a/thickness", ratio, FINE_LAYER, verdict, f"The contact is {ratio:.2g} of the thickness wide to each side. {meaning}")
 
 
 def loss(subject: Subject) -> Check | None:

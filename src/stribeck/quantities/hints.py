@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from stribeck.quantities.inputs import FORMER, LETTERS
 from stribeck.quantities.units import FROM_HARDNESS
 
-__all__ = ["MEANT", "advice_on"]
+__all__ = ["ELSEWHERE", "MEANT", "advice_on"]
 
 MEANT = LETTERS | FORMER | {"poisson": "poisson_ratio", "mu": "boundary_friction", "cof": "boundary_friction"}
 """Meaning of symbols, former names and short names."""
@@ -19,6 +19,9 @@ ALIKE = 0.8
 
 SHORTEST = 4
 """Smallest number of letters of a word that stands for the key that begins with it."""
+
+ELSEWHERE = {"viscosity": 'or name the liquid in a table [fluid], for example preset = "water"'}
+"""Other places that give an input which is missing."""
 
 _RMS = "heights are root mean squares: rq or ra in [contact], h_rms in [surface]"
 _LINE = "give load: for a cylinder in N/m, or force in N with its width; for a ball, geometry = 'point', the force in N"
