@@ -32,7 +32,7 @@ def main() -> None:
             compare(light)
             light.screenshot(path=IMAGES / "explorer.png", full_page=True)
             dark = opened(
-                browser.new_page(color_scheme="dark", **DESK), address + "/?speed=20+µm/s&roughness=2+nm&alpha=2&beta=0.1"
+                browser.new_page(color_scheme="dark", **DESK), address + "&speed=20+µm/s&roughness=2+nm&alpha=2&beta=0.1"
             )
             dark.screenshot(path=IMAGES / "explorer_dark.png", full_page=True)
             phone = opened(browser.new_page(**PHONE), address)
@@ -45,6 +45,7 @@ def main() -> None:
 
 def opened(page: Page, address: str) -> Page:
     """Open the page and wait until it rests."""
+    page.set_default_timeout(120_000)  # of a machine with other work
     page.goto(address)
     page.wait_for_selector(".more tr[data-key=viscosity]")
     page.wait_for_timeout(1000)

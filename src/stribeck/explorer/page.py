@@ -340,7 +340,7 @@ class Page:
         self.client.run_javascript(f"explorerWorking({dumps(moved)})")
 
     def show_progress(self) -> None:
-        """Tell how far the curve is."""
+        """Show the progress of the curve."""
         words = self.shown[self.source.html_id] = escape(self.progress or UPDATING)
         self.client.run_javascript(f"document.getElementById({dumps(self.source.html_id)}).innerHTML = {dumps(words)}")
 

@@ -437,6 +437,7 @@ class Tab:
         """Solve the curve outside the atlas at once; at rest put the state into the address and do what takes longer."""
         now = self.inputs
         report = self.reporter(now)
+        self.page.progress = ""
         with self.page.client:
             try:
                 curve = asyncio.ensure_future(self.run(SLOW, self.model.settle, now, report))
@@ -451,21 +452,22 @@ class Tab:
                 self.page.show_ways(self.history.ways)
                 if not done:
                     while not curve.done():
-                        self.page.show_progress()
+                        if self.page.progress:  # it is being solved, and does not only wait for another page
+                            self.page.show_progress()
                         await asyncio.wait({curve}, timeout=REST)
                     if curve.result():
                         await self.refresh(now)
                 self.page.progress = self.model.why_no_curve(now)
                 if self.page.progress:
                     self.page.show_progress()
+                found = await self.run(SLOW, self.ways, now)
+                if found is not None and self.inputs is now:
+                    self.page.show_margins(found if isinstance(found, str) else table.margins_html(found), now)
                 if await self.run(CHECKS, self.checks, now):
                     await self.refresh(now)
                 rows = self.model.diagrams(now, report)
                 while await self.run(SLOW, next, rows, False) is not False:
                     await self.refresh(now)
-                found = await self.run(SLOW, self.ways, now)
-                if found is not None and self.inputs is now:
-                    self.page.show_margins(found if isinstance(found, str) else table.margins_html(found), now)
             except Superseded:
                 return
 

@@ -12,7 +12,7 @@ from stribeck.curves.regime import regime_of
 from stribeck.explorer.answer import Answer
 from stribeck.explorer.curves import Transition
 from stribeck.quantities.inputs import INPUT_TABLES
-from stribeck.quantities.units import format_si
+from stribeck.quantities.units import format_factor, format_si
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.solver.base_solution import BaseSolution
 
@@ -119,7 +119,7 @@ def _relative(mark: Transition) -> str:
 
 
 def _times(factor: float) -> str:
-    return f"× {factor:.3g}" if factor >= 1 else f"÷ {1 / factor:.3g}"
+    return f"× {format_factor(factor)}" if factor >= 1 else f"÷ {format_factor(1 / factor)}"
 
 
 def _share(key: str, label: str, value: float, error: float) -> Row:
