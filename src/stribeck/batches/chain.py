@@ -23,7 +23,7 @@ from stribeck.solver.solve import describe, hertz_solution, solution_of
 
 __all__ = ["Ended", "solve_in_order"]
 
-LONGEST_STEP, SHORTEST_STEP, PREDICTOR_ORDER = math.log(10.0), 1e-3, 4
+CHAIN_STEPS = Steps(0.5, math.log(10.0), 1e-3, 4)
 """Of the way from state to state: its steps, and the degree of the polynomial that predicts them."""
 
 LONGEST_JUMP = 5.0
@@ -199,7 +199,7 @@ class _Chain:
             correct,
             path.knots[0],
             path.knots[-1],
-            Steps(0.5, LONGEST_STEP, SHORTEST_STEP, PREDICTOR_ORDER),
+            CHAIN_STEPS,
             targets=path.knots,
             on_point=report,
         )

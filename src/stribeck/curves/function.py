@@ -12,8 +12,7 @@ from stribeck._types import Array
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import contact_law
 from stribeck.curves.coordinate import Coordinate
-from stribeck.equations.observables import Observables
-from stribeck.equations.state import State
+from stribeck.equations.observables import ROW, Observables
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
@@ -24,7 +23,7 @@ from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import minimum_estimate, solution_of, state_notes
 
-__all__ = ["CurvePoint", "CurveValues", "guess_at", "rows_of", "solved_at", "state_at"]
+__all__ = ["CurvePoint", "CurveValues", "rows_of", "solved_at"]
 
 COLUMNS = (*ALL_NAMES, "minimum_position")
 """Columns of a path by name."""
@@ -41,19 +40,6 @@ def solved_at(path: SolvedPath, s: float, rtol: float | None = None) -> RefinedS
     """Return the state at a coordinate of a path, verified, by the tolerance of the path unless another is given."""
     problem, left, right = _beside(path, s)
     return problem.point_at(left, right, s, rtol)
-
-
-def guess_at(path: SolvedPath, s: float) -> State:
-    """Return about the state at a coordinate of a path, interpolated."""
-    problem, left, right = _beside(path, s)
-    return problem.guess_at(left, right, s)
-
-
-@one_blas_thread
-def state_at(path: SolvedPath, s: float) -> State:
-    """Return the state at a coordinate of a path, corrected once."""
-    problem, left, right = _beside(path, s)
-    return problem.state_at(left, right, s)
 
 
 def rows_of(path: SolvedPath, s: Array, rtol: float) -> tuple[Array, Array]:
@@ -174,7 +160,7 @@ class CurveValues:
         """
         relative = np.maximum(errors[:, :POSITION], least)
         shown = (lambda column: column) if np.ndim(value) else (lambda column: float(column[0]))
-        values = {name: shown(found[:, i]) for i, name in enumerate(COLUMNS)}
+        values = dict(zip(COLUMNS, found.T if np.ndim(value) else found[0].tolist(), strict=True))
         nothing = np.nan
         return cls(
             value if np.ndim(value) else float(value),
@@ -203,7 +189,8 @@ class CurveValues:
         name = f"viscous_{definition}"
         rubbing = self._sliding * boundary_friction
         contact, viscous = rubbing * self.values["contact_load_share"], beta * self.values[name]
-        error = abs(rubbing) * self.errors["contact_load_share"] + np.abs(viscous) * self.errors[name]
+        of_share, of_viscous = (self.relative_errors[..., ROW[each]] for each in ("contact_load_share", name))
+        error = abs(rubbing) * of_share + abs(viscous) * of_viscous
         if not np.ndim(self.value):
             error = float(error)
         return replace(

@@ -18,12 +18,11 @@ from stribeck.contacts.friction import Definition, FrictionArray, check_definiti
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE
 from stribeck.curves.coordinate import Coordinate, Over, given_values
-from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at, state_at
+from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at
 from stribeck.curves.landmarks import Landmark, Landmarks
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.equations.observables import ROW, Observables
 from stribeck.equations.sensitivity import friction_slopes
-from stribeck.equations.state import State
 from stribeck.files.results import Exported
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Card, Shown
@@ -106,24 +105,14 @@ class StribeckCurve(Exported, Shown, ByValue):
         return self._function
 
     @property
+    def is_function(self) -> bool:
+        """Whether the curve is known anywhere, and not at its points alone."""
+        return self._function is not None
+
+    @property
     def states(self) -> int:
         """How many states were solved and expanded for the curve."""
         return len(self._solved_path.expansions)
-
-    def state(self, i: int) -> State:
-        """Return the solved state of a point, as the solver knows it.
-
-        Parameters
-        ----------
-        i : int
-            Number of the point.
-
-        Returns
-        -------
-        State
-            On the mesh of the nearer one of the states that the curve was made of.
-        """
-        return state_at(self._solved_path, float(np.log(self.values[i])))
 
     @property
     def groups(self) -> Groups:
@@ -217,12 +206,12 @@ class StribeckCurve(Exported, Shown, ByValue):
         point = solved_at(self._solved_path, s)
         return finish(point, self._path.groups_at(s), self._path.contact_at(s), self.rtol)
 
-    @property
+    @cached_property
     def _sliding(self) -> float:
         """Part and sign of the sliding friction of asperities that acts."""
         return sliding_part(2 * self._path.groups_at(0.0).model.film.slide)
 
-    @property
+    @cached_property
     def _least_error(self) -> float:
         """Smallest error that is stated."""
         return minimum_estimate(self.rtol, self._path.groups_at(0.0).model)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -18,7 +20,7 @@ from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_problem
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method
-from stribeck.curves.result import StribeckCurve
+from stribeck.curves.result import SLACK, StribeckCurve
 from stribeck.curves.speed_range import automatic_speed_range
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
@@ -196,6 +198,42 @@ def stribeck_curve(
         _path=coordinate,
         _function=path,
     )
+
+
+@one_blas_thread
+def continued(curve: StribeckCurve, end: float, points: int, on_point: Callable[[int, int], object] | None = None) -> StribeckCurve:
+    """Return the curve from that end of another which is nearer to ``end`` on to there, without a start from cold.
+
+    Parameters
+    ----------
+    curve : StribeckCurve
+        The other, of a contact or groups of a line.
+    end : float
+        What the curve runs over at its other end, outside of the other.
+    points : int
+        Number of points.
+    on_point : callable, optional
+        ``on_point(done, points)`` is called for progress.
+
+    Returns
+    -------
+    StribeckCurve
+        As of :func:`stribeck_curve`; as far as it was reached.
+    """
+    known = curve._solved_path
+    s = math.log(end)
+    here = min(known.expansions[0], known.expansions[-1], key=lambda one: abs(one.coordinate - s))
+
+    def report(low: float, high: float) -> None:
+        if on_point is not None:
+            on_point(0, points)
+
+    path = follow(known.problem, here, s, curve.rtol, report)
+    low, high = sorted((math.exp(here.coordinate), end))
+    values = np.geomspace(low, high, points)
+    reached = np.exp(path.coordinates[[0, -1]]) * (1 - SLACK, 1 + SLACK)
+    inside = values[(values >= reached[0]) & (values <= reached[1])]
+    return replace(curve, values=inside, outcome=path.outcome, requested=points, _function=path)
 
 
 def _of_ball() -> tuple[Callable[..., StribeckCurve], Callable[..., tuple[float, float]]]:

@@ -6,6 +6,7 @@ state to state: :mod:`stribeck.contacts.friction_rules` puts them together.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,18 +16,22 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import table_for
+from stribeck.batches.chain import CHAIN_STEPS
 from stribeck.batches.lattice import PARTS, STEPS, Lattice
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.model import ARTICLE, Model
-from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.equations.observables import ROW
 from stribeck.equations.sensitivity import log_derivatives
+from stribeck.numerics.continuation import march
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
 from stribeck.quantities.units import InputError
+from stribeck.solver.corrector import Corrector
 from stribeck.solver.nearby import WarmStartSolver
-from stribeck.solver.solve import SolveError
+from stribeck.solver.solve import SolveError, minimum_estimate
 
 if TYPE_CHECKING:
     from stribeck.fits.model import FrictionModel
@@ -226,22 +231,26 @@ def _along(
     physics: Physics,
     changes: Sequence[ModelChange],
 ) -> tuple[Array, Array, Array]:
-    """Return values, slopes and errors of the states of a curve at ascending speeds."""
-    # A pair would be taken as a range, and one speed is no curve.
-    points = speeds if len(speeds) > 1 else np.append(speeds, 1.1 * speeds)
-    groups = Groups(points[0], load, roughness, **physics)
-    curve = stribeck_curve(groups, speed=points, points=len(points), rtol=rtol, definition=definition)
-    row = NAMES.index(f"viscous_{definition}")
-    n = len(speeds)
-    if len(curve) < len(points):
-        raise SolveError(curve.outcome, None, f"load {load:.6g}, roughness {roughness:.6g}: {curve.outcome.value}")
+    """Return values, slopes and errors of states at ascending speeds, each solved from those before it."""
+
+    def groups_at(s: float) -> Groups:
+        return Groups(math.exp(s), load, roughness, **physics)
+
+    places, n = np.log(speeds).tolist(), len(speeds)
+    chain = march(Corrector(groups_at, rtol), places[-1], places[0], CHAIN_STEPS, targets=places)
+    if chain.outcome is Outcome.INTERRUPTED:
+        raise KeyboardInterrupt
+    if not chain.outcome.ok:
+        raise SolveError(chain.outcome, None, f"load {load:.6g}, roughness {roughness:.6g}: {chain.outcome.value}")
+    columns = [ROW["contact_load_share"], ROW[f"viscous_{definition}"]]
     values, slopes, errors = np.empty((2, n)), np.empty((2, 3 + len(changes), n)), np.empty((2, n))
-    for i, solution in enumerate(curve.solutions[:n]):
-        found = solution.observables.array()
-        values[:, i] = found[0], found[row]
-        derivatives = log_derivatives(curve.state(i), [each[1:] for each in changes])
+    for i, s in enumerate(places):
+        point = chain.at(s)
+        assert point.state is not None and point.values is not None and point.estimate is not None
+        derivatives = log_derivatives(point.state, [each[1:] for each in changes])
+        values[:, i] = point.values.array(in_article=False)[columns]
         slopes[:, :, i] = derivatives["contact_load_share"], derivatives[f"viscous_{definition}"]
-        errors[:, i] = solution.relative_errors[[0, row]]
+        errors[:, i] = np.maximum(point.estimate.relative[columns], minimum_estimate(rtol, point.groups.model))
     return values, slopes, errors
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +16,7 @@ from stribeck.contacts.groups import Geometry
 from stribeck.curves.coordinate import Over
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.curves.result import StribeckCurve
-from stribeck.curves.stribeck_curve import stribeck_curve
+from stribeck.curves.stribeck_curve import continued, stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
@@ -304,10 +304,12 @@ class _Scan:
     definition: Definition
     on_point: Callable[[int, int], object] | None
     done: int = 0
+    known: dict[float, StribeckCurve] = field(default_factory=dict)
 
     def along(self, name: Over) -> Margin:
         """Return the changes along one input."""
         value = float(getattr(self.contact, name))
+        self.known.clear()
         found = self._from_zero(name) if value == 0 else self._both_ways(name, value)
         self.done += 1
         return found
@@ -355,16 +357,22 @@ class _Scan:
 
     def _curve(self, start: Contact, name: Over, near: float, far: float, points: int) -> StribeckCurve | None:
         """Return the states between two values of an input; None where the solver does not reach them all."""
-        ends: Any = {name: (min(near, far), max(near, far))}
         try:
-            curve = stribeck_curve(
-                start, **ends, points=points, rtol=self.rtol, definition=self.definition, on_point=self._report
-            )
+            if near in self.known:  # where another curve begins or ends: a start from cold costs as much as a decade
+                curve = continued(self.known[near], far, points, self._report)
+            else:
+                ends: Any = {name: (min(near, far), max(near, far))}
+                settings: Any = {"rtol": self.rtol, "definition": self.definition, "on_point": self._report}
+                curve = stribeck_curve(start, **ends, points=points, **settings)
         except SolveError:
             return None
         if curve.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
-        return curve if curve.outcome.ok else None
+        if not curve.outcome.ok:
+            return None
+        if curve.is_function:
+            self.known |= {near: curve, far: curve}
+        return curve
 
     def _report(self, done: int, points: int) -> None:
         if self.on_point is not None:
@@ -386,7 +394,7 @@ class _Scan:
         """Return the regime entered first between two values, and the value where its share passes the bound."""
         if near == far:
             return regime, near
-        if points := FINER[curve.groups.geometry]:
+        if points := FINER[start.groups.geometry]:
             finer = self._curve(start, name, near, far, points)
             if finer is None:
                 return regime, math.sqrt(near * far)

@@ -29,8 +29,8 @@ from stribeck.solver.expansion import Direction, Expanded, corrected, expand_any
 from stribeck.solver.path import KNOT_PART, Expansion
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
 
-ORDER, ORDER_OF_ANY_FILM = 10, 6
-"""Highest orders of series: of the article, and of films of which the whole residual is sampled."""
+ORDER, FINE_ORDER, ORDER_OF_ANY_FILM = 10, 12, 6
+"""Highest orders of series: of the article to a tolerance of 1e-7 and below, and of films that are sampled."""
 
 REACH, NEAREST, FARTHEST = 0.2, 0.1, 0.27
 """Distance at which the equations are evaluated for the series, over the radius of convergence, and what it may be."""
@@ -91,7 +91,7 @@ class LineProblem:
         self.moves = bool(start.speed > 0)
         self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
         self.exact = self.analytic and is_exponential(start.law)
-        self.order = ORDER if self.analytic else ORDER_OF_ANY_FILM
+        self.order = (ORDER if rtol >= 1e-7 else FINE_ORDER) if self.analytic else ORDER_OF_ANY_FILM
         self.corrector = Corrector(groups_at, self.rtol)
         self.failure: RefinedState | None = None
 
@@ -109,7 +109,7 @@ class LineProblem:
         """Return what errors of observables are relative to: themselves but for what may vanish."""
         found = np.abs(values)
         found[:, SHARES] = 1.0
-        found[:, [column for column in UNLIMITED if column < found.shape[1]]] = 1.0
+        found[:, ROW["exit_position"] :] = 1.0
         found[:, ROW["offset"]] = np.maximum(found[:, ROW["offset"]], OFFSET_FLOOR)
         # What the upper wall feels is the small difference of larger numbers in thick films, and none at some slides.
         found[:, ROW["viscous_upper"]] = np.fmax(found[:, ROW["viscous_upper"]], found[:, ROW["viscous_balanced"]])

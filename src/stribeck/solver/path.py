@@ -195,7 +195,7 @@ class _Pieces:
         self.intervals, self.problem = intervals, intervals[0].problem
         self.count = intervals[0].left.series.shape[1]
         self.orders = np.array([one.order for one in intervals])
-        self.degree = 2 * int(self.orders.max()) + 2
+        self.degree = max(READ_AT, 2 * int(self.orders.max()) + 2)
         self.forms = [hermite_form(one.order) @ one.ends for one in intervals]
         self.missed = np.stack([one.missed for one in intervals])
         with_logs = np.stack([np.isfinite(form[:, self.count :]).all(axis=0) for form in self.forms])
@@ -203,8 +203,8 @@ class _Pieces:
         self.lengths = np.array([one.length for one in intervals])
         self.logs = np.nonzero(with_logs.any(axis=0))[0].tolist()
 
-    def smooth(self, where: Array, parts: Array) -> tuple[Array, Array]:
-        """Return the observables at parts of the intervals of these numbers, and what their interpolation misses.
+    def smooth(self, where: Array, parts: Array) -> tuple[Array, Array, Array]:
+        """Return the observables at parts of the intervals of these numbers, what their interpolation misses, and the basis.
 
         A share that is lost in that goes by its logarithm, which keeps it positive and its digits.
         """
@@ -222,7 +222,7 @@ class _Pieces:
                 with np.errstate(all="ignore"):
                     tiny = np.exp(both[:, [self.count + column for column in self.logs]])
                 found[:, self.logs] = np.where(lost & (np.abs(tiny) < limit), tiny, shares)
-        return found, missed
+        return found, missed, basis
 
     @cached_property
     def _errors(self) -> tuple[Array, Array]:
@@ -233,18 +233,17 @@ class _Pieces:
 
     def at(self, where: Array, parts: Array) -> tuple[Array, Array]:
         """Return the observables at parts of the intervals of these numbers, and their errors in units of the scales."""
-        found, missed = self.smooth(where, parts)
+        found, missed, basis = self.smooth(where, parts)
         scales = self.problem.scales(found, self.starts[where] + parts * self.lengths[where])
         relative, absolute = self._errors
         errors = relative[where] + (absolute[where] + missed) / scales
-        basis = chebyshev_basis(parts, READ_AT)
         for k in np.unique(where).tolist() if len(where) > 1 else where.tolist():
             form, largest, columns, is_smooth = self.intervals[k].read
             if not len(columns):
                 continue
             mine = np.nonzero(where == k)[0][:, None]
             if is_smooth:
-                found[mine, columns], errors[mine, columns] = basis[mine[:, 0]] @ form, largest
+                found[mine, columns], errors[mine, columns] = basis[mine[:, 0], :READ_AT] @ form, largest
             else:
                 one = self.intervals[k]
                 found[mine, columns], errors[mine, columns], _ = self.problem.read(one.left, one.right, parts[mine[:, 0]])
@@ -304,50 +303,67 @@ class SolvedPath:
 
 
 def follow(
-    problem: Problem, start: float, end: float, rtol: float, on_interval: Callable[[float, float], object] | None = None
+    problem: Problem,
+    start: float | Expansion,
+    end: float,
+    rtol: float,
+    on_interval: Callable[[float, float], object] | None = None,
 ) -> SolvedPath:
-    """Return the path from ``start`` down to ``end``.
+    """Return the path between ``start`` and ``end``.
 
     Parameters
     ----------
     problem : Problem
         What is followed.
-    start, end : float
-        Highest and lowest coordinate.
+    start : float or Expansion
+        Where the path begins, or the state there, which is then not solved again.
+    end : float
+        Where it ends, on either side.
     rtol : float
         Error allowed, in units of the scales.
     on_interval : callable, optional
-        ``on_interval(low, high)`` is called when the path from ``start`` is known down to ``low``.
+        ``on_interval(low, high)`` is called when the path is known between these too.
 
     Returns
     -------
     SolvedPath
         As far as it was reached.
     """
-    found: list[Interval] = []  # descending
+    found: list[Interval] = []  # in the order of the march
     alone: tuple[Interval, ...] = ()
     outcome = Outcome.CONVERGED
     try:
-        here = problem.solve(start, [])
+        here = start if isinstance(start, Expansion) else problem.solve(start, [])
         if isinstance(here, Outcome):
             return SolvedPath(problem, (), here)
         alone = (Interval(problem, here, here),)
-        while here.coordinate > end:
-            left = here.coordinate - end
+        upwards = end > here.coordinate
+        while (left := abs(here.coordinate - end)) > 0:
             step = min(left, LONGEST_STEP, max(SHORTEST_INTERVAL, _step(here, rtol)))
             if left < 2 * step:  # two like steps rather than a long and a short one
                 step = left if left <= step else 0.5 * left
-            while isinstance(new := problem.solve(end if step == left else here.coordinate - step, [here]), Outcome):
+            while isinstance(new := problem.solve(_beyond(here, end, step if upwards else -step), [here]), Outcome):
                 step *= 0.5
                 if step < SHORTEST_STEP or new is Outcome.INTERRUPTED:
-                    return SolvedPath(problem, tuple(found[::-1]) or alone, new)
-            found += _refined(Interval(problem, new, here), rtol)[::-1]
+                    return SolvedPath(problem, _ascending(found) or alone, new)
+            low, high = (here, new) if upwards else (new, here)
+            parts = _refined(Interval(problem, low, high), rtol)
+            found += parts if upwards else parts[::-1]
             if on_interval is not None:
-                on_interval(new.coordinate, here.coordinate)
+                on_interval(low.coordinate, high.coordinate)
             here = new
     except KeyboardInterrupt:
         outcome = Outcome.INTERRUPTED
-    return SolvedPath(problem, tuple(found[::-1]) or alone, outcome)
+    return SolvedPath(problem, _ascending(found) or alone, outcome)
+
+
+def _beyond(here: Expansion, end: float, step: float) -> float:
+    """Return the coordinate a step further, exactly the end where it is reached."""
+    return end if abs(step) == abs(here.coordinate - end) else here.coordinate + step
+
+
+def _ascending(intervals: list[Interval]) -> tuple[Interval, ...]:
+    return tuple(sorted(intervals, key=lambda one: one.left.coordinate))
 
 
 def _step(here: Expansion, rtol: float) -> float:
