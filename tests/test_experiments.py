@@ -128,3 +128,36 @@ def test_a_comparison_and_a_plan_show_themselves_in_a_screen(found):
             1 + len(shown._card().notes)
         )
     assert repr(comparison).splitlines()[0].endswith(comparison.sentence)
+
+
+@pytest.fixture(scope="module")
+def compared():
+    torn = TRUE.replace(cavitation="exit")
+    speeds, friction = exact(torn, low=3e-3, rows=8)
+    friction = friction * np.exp(0.003 * np.random.default_rng(5).standard_normal(len(speeds)))
+    return sb.compare(measured(speeds, friction), TRUE, models="cavitation", free=("boundary_friction", "roughness"))
+
+
+def test_the_cavitation_that_made_the_data_is_preferred(compared):
+    assert [each.name for each in compared.candidates] == ["exit", "full film"]
+    assert compared.candidates[1].difference > 4
+    best = compared.candidates[0].fit
+    assert best.contact.cavitation == "exit"
+    assert best["roughness"].value == pytest.approx(TRUE.roughness, rel=0.02)
+
+
+def test_inputs_of_one_model_alone_count_for_it():
+    speeds, friction = exact(TRUE.replace(fluid=sb.fluids.Barus("500 1/GPa")), low=3e-3, rows=6)
+    models = {"plain": {}, "stiff": {"fluid": sb.fluids.Barus("300 1/GPa"), "free": ("pressure_coefficient",)}}
+    friction = friction * np.exp(0.003 * np.random.default_rng(5).standard_normal(len(speeds)))
+    found = sb.compare(measured(speeds, friction), TRUE, models=models, free=("boundary_friction",))
+    assert {each.name: len(each.fit.inputs) for each in found.candidates} == {"plain": 1, "stiff": 2}
+    assert found.failed == {}
+
+
+def test_models_that_nobody_knows_are_refused():
+    data = noisy(11, rows=12)
+    with pytest.raises(sb.InputError, match="models = 'solid' must be 'cavitation' or 'fluid'"):
+        sb.compare(data, TRUE, models="solid")
+    with pytest.raises(sb.InputError, match="laws and models are both given"):
+        sb.compare(data, TRUE, models="fluid", laws={})

@@ -303,9 +303,7 @@ def _curve(name: str, entry: Any, inputs: InputTable) -> dict[str, Any]:
         if meant not in known:
             raise InputError(f"{name}: {_unknown(key, value, known)}")
         if meant in found:
-            raise InputError(
-                f"{name}: {meant} = {show(value)} is given beside a preset, which has its own; remove one of them."
-            )
+            raise InputError(f"{name}: {meant} = {show(value)} is given beside a preset, which has its own; remove one.")
         found[meant] = _value(meant, value, inputs)
     return found
 

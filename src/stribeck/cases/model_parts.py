@@ -208,28 +208,31 @@ def _flow_factors(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     return {"flow_factors": EffectiveMedium() if model == "effective-medium" else None}
 
 
+MEMORIES: tuple[tuple[Callable[..., Any], dict[str, str]], ...] = (
+    (StandardLinearSolid, {"retardation_time": '"10 ms"', "modulus_ratio": "3.0"}),
+    (Prony, {"relaxation_times": '["1 ms", "10 ms"]', "moduli": "[1.0, 0.5]"}),
+)
+"""Viscoelastic bodies, and their keys with examples."""
+
+
 def _solid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
-    one, many = ("retardation_time", "modulus_ratio"), ("relaxation_times", "moduli")
     base = _layer(table)
-    given = [pair for pair in (one, many) if any(key in table for key in pair)]
+    given = [(kind, keys) for kind, keys in MEMORIES if keys.keys() & table.keys()]
     if not given:
         if base is None:
             raise InputError(
-                'layer_thickness is missing; add it as "2 mm", or retardation_time and modulus_ratio of a viscoelastic body, or '
-                "leave the table out for a half-space."
+                'layer_thickness is missing; add it as "2 mm", or retardation_time and modulus_ratio of a viscoelastic body, '
+                "or leave the table out for a half-space."
             )
         return {"solid": base}
     if len(given) > 1:
         raise InputError("retardation_time and relaxation_times are two descriptions of the same; give one of them.")
-    for key, example in zip(
-        given[0], ('"10 ms"', "3.0") if given[0] == one else ('["1 ms", "10 ms"]', "[1.0, 0.5]"), strict=True
-    ):
+    [(kind, keys)] = given
+    there = next(key for key in keys if key in table)
+    for key, example in keys.items():
         if key not in table:
-            raise InputError(
-                f"{key} is missing beside {next(name for name in given[0] if name in table)}; add {key} = {example}."
-            )
-    kind = StandardLinearSolid if given[0] == one else Prony
-    return {"solid": kind(*(table[key] for key in given[0]), base)}
+            raise InputError(f"{key} is missing beside {there}; add {key} = {example}.")
+    return {"solid": kind(*(table[key] for key in keys), base)}
 
 
 def _layer(table: dict[str, Any]) -> Layer | None:

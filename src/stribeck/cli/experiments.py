@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.arguments import CaseFile, File, Flag, Number, as_whole, check_pictures
+from stribeck.cli.arguments import CaseFile, File, Flag, Number, Word, as_whole, check_pictures
 from stribeck.cli.exits import stdout_console
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.units import InputError
@@ -79,10 +79,12 @@ def next_command(
     return 0
 
 
-def compare_command(data: DataFile = None, case: CaseFile = None, /, *, json: Flag = False) -> int:
-    """Fit measured friction with several contact laws and report which the data prefer, and by how much.
+def compare_command(data: DataFile = None, case: CaseFile = None, /, *, models: Word = None, json: Flag = False) -> int:
+    """Fit measured friction with several contact laws or models and report which the data prefer, and by how much.
 
     Example: stribeck compare examples/pdms_measured.csv examples/pdms_fit.toml
+
+    Example: stribeck compare measured.csv case.toml --models cavitation
 
     Parameters
     ----------
@@ -90,12 +92,14 @@ def compare_command(data: DataFile = None, case: CaseFile = None, /, *, json: Fl
         Measured friction.
     case
         Case file (TOML) with the table [fit].
+    models
+        What is compared: contact laws (default), cavitation (full film, free exit) or fluid (Newtonian, Carreau, Eyring).
     json
         Print JSON.
     """
     data, loaded = _given("compare", data, case)
     with interruptible() as progress:
-        found = sb.compare(data, loaded, on_step=lambda what, n: progress(n, n + 1, what))
+        found = sb.compare(data, loaded, models=models, on_step=lambda what, n: progress(n, n + 1, what))
     if json:
         from stribeck.cli.reports import json as report_json
 

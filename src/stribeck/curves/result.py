@@ -270,7 +270,7 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @property
     def hydrodynamic_friction(self) -> Array:
-        """Friction of smooth surfaces by the paper's law, the abscissa of its second representation [-]; nan of other models."""
+        """Friction of smooth surfaces by the paper's law, the abscissa of its second representation; nan of other models."""
         if self.groups.model != ARTICLE:
             return np.full(len(self), np.nan)
         return np.asarray(hydrodynamic.friction(self.groups, self.beta))

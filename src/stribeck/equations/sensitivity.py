@@ -106,7 +106,7 @@ def _of_any_film(state: State, changes: Sequence[Change] = ()) -> dict[str, Arra
     for column, (below, above, width) in enumerate(changes, len(GROUPS)):
         ends = [replace(equations, operators=Operators(state.mesh, model)) for model in (below, above)]
         dy = units * inverse((ends[1].residual(y) - ends[0].residual(y)) / width)
-        found[:, column] = through @ dy + _difference(*ends, y, load, names) / width
+        found[:, column] = through @ dy + _difference(ends[0], ends[1], y, load, names) / width
     return dict(zip(names, found, strict=True))
 
 

@@ -1,4 +1,4 @@
-r"""Comparison of contact laws on measured friction.
+r"""Which contact law, cavitation or fluid measured friction prefers, and by how much.
 
 .. math:: \mathrm{AICc} = -2 \ln L + 2 k + \frac{2 k (k + 1)}{n - k - 1}, \qquad w \propto e^{-\mathrm{AICc}/2}
 """
@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from stribeck.cases.case import Case, load_case
+from stribeck.cases.fit_settings import DEFAULT_FREE
 from stribeck.contact_laws.finite_surface import FiniteSurface, has_endless_tail
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw
@@ -19,6 +20,7 @@ from stribeck.files.writing import PathLike
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.result import Fit
+from stribeck.fluids.rate_laws import Carreau, Eyring
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, format_percent, show
@@ -27,9 +29,9 @@ from stribeck.solver.solve import SolveError
 __all__ = ["CAVEATS", "Candidate", "Comparison", "compare"]
 
 CAVEATS = (
-    "The weights say which of these laws is nearest to the data, not that it is right: look at the residuals of the best.",
+    "The weights say which of these is nearest to the data, not that it is right: look at the residuals of the best.",
     "They hold if errors of rows are independent; a systematic error of the rig counts as evidence otherwise.",
-    "Laws differ most where asperities are few, near the minimum: without rows there the data cannot distinguish them.",
+    "Contact laws differ most where asperities are few, near the minimum: without rows there the data cannot distinguish them.",
 )
 """Caveats of a comparison."""
 
@@ -39,12 +41,12 @@ CLEAR = 10.0
 
 @dataclass(frozen=True)
 class Candidate:
-    """One law, fitted.
+    """One law or model, fitted.
 
     Attributes
     ----------
     name : str
-        Name of the law.
+        Its name.
     fit : Fit
         Its fit.
     aicc : float
@@ -52,7 +54,7 @@ class Candidate:
     difference : float
         Excess over the smallest.
     weight : float
-        Relative probability among the laws compared, 0 to 1.
+        Relative probability among what is compared, 0 to 1.
     """
 
     name: str
@@ -64,14 +66,14 @@ class Candidate:
 
 @dataclass(frozen=True, repr=False)
 class Comparison(Shown):
-    """Laws fitted to the same data, the preferred first.
+    """Laws or models fitted to the same data, the preferred first.
 
     Attributes
     ----------
     candidates : tuple of Candidate
-        The laws.
+        What was fitted.
     failed : dict of str to str
-        Laws that could not be fitted, and why.
+        What could not be fitted, and why.
     """
 
     candidates: tuple[Candidate, ...]
@@ -134,10 +136,11 @@ def compare(
     case: PathLike | Case | Contact,
     *,
     laws: Mapping[str, AsperityLaw | None] | None = None,
+    models: str | Mapping[str, Mapping[str, Any]] | None = None,
     free: tuple[str, ...] | None = None,
     on_step: Callable[[str, int], object] | None = None,
 ) -> Comparison:
-    """Fit measured friction with several contact laws, and return which it prefers, and by how much.
+    """Fit measured friction with several contact laws or models, and return which it prefers, and by how much.
 
     Parameters
     ----------
@@ -148,6 +151,11 @@ def compare(
     laws : mapping, optional
         Laws by name; by default that of the case, its variant with the tail of a finite surface, and those of Greenwood and
         Williamson and of Greenwood and Tripp (at alpha = 1: their separations are in heights).
+    models : {"cavitation", "fluid"} or mapping, optional
+        What is compared in place of laws: a full film and one that ends at a free exit; a Newtonian fluid and those of Carreau
+        and Eyring, with their numbers free; or what differs from the contact by name, as in
+        ``{"full film": {}, "exit": {"cavitation": "exit"}}``, arguments of :meth:`LineContact.replace`.  The key ``free`` then
+        names inputs that are free in this one beside the others.
     free : sequence of str, optional
         Inputs to fit; those of the case.  ``beta`` is freed with each law, as it has another meaning in each.
     on_step : callable, optional
@@ -156,7 +164,7 @@ def compare(
     Returns
     -------
     Comparison
-        The laws, the preferred first.
+        The laws or models, the preferred first.
 
     Raises
     ------
@@ -171,20 +179,17 @@ def compare(
     contact = loaded.contact if isinstance(loaded, Case) else loaded
     settings = loaded.fit if isinstance(loaded, Case) else None
     rows = data if isinstance(data, Measurements) else read_measurements(data, settings)
-    names = tuple(free or (settings.free if settings and settings.free else ("boundary_friction", "roughness")))
-    names = tuple(dict.fromkeys((*names, "beta")))
+    names = tuple(free or (settings.free if settings and settings.free else DEFAULT_FREE))
+    if models is not None and laws is not None:
+        raise InputError("laws and models are both given; a model may have a law: {'name': {'law': ...}}.")
     found: dict[str, Fit] = {}
     failed: dict[str, str] = {}
-    for name, law in (laws if laws is not None else _laws(contact)).items():
-        own = isinstance(law, GreenwoodWilliamson | GreenwoodTripp)
-        changed = contact.replace(law=law, **({"alpha": 1.0} if own else {}))
-        problem: Any = changed
-        if isinstance(loaded, Case):
-            from dataclasses import replace
-
-            problem = replace(loaded, contact=changed)
+    for name, model in (_of_laws(contact, laws) if models is None else _models(models, contact, rows)).items():
+        changed = contact.replace(**{key: value for key, value in model.items() if key != "free"})
+        problem = replace(loaded, contact=changed) if isinstance(loaded, Case) else changed
+        inputs = tuple(dict.fromkeys((*names, *model.get("free", ()))))
         try:
-            each = fit(rows, problem, free=names, intervals=False, on_step=on_step)
+            each = fit(rows, problem, free=inputs, intervals=False, on_step=on_step)
         except (InputError, SolveError) as why:
             failed[name] = str(why)
             continue
@@ -193,8 +198,8 @@ def compare(
         else:
             failed[name] = each.outcome.value
     if not found:
-        raise InputError(f"no contact law could be fitted: {show(failed)}")
-    criteria = {name: _aicc(each, len(names)) for name, each in found.items()}
+        raise InputError(f"nothing could be fitted: {show(failed)}")
+    criteria = {name: _aicc(each, len(each.inputs)) for name, each in found.items()}
     least = min(criteria.values())
     weights = {name: math.exp(-(value - least) / 2) for name, value in criteria.items()}
     total = sum(weights.values())
@@ -202,6 +207,44 @@ def compare(
     return Comparison(
         tuple(Candidate(n, found[n], criteria[n], criteria[n] - least, weights[n] / total) for n in order), failed
     )
+
+
+def _of_laws(contact: Contact, laws: Mapping[str, AsperityLaw | None] | None) -> dict[str, dict[str, Any]]:
+    """Return models that differ in their contact law, with beta free in each."""
+    found: dict[str, dict[str, Any]] = {}
+    for name, law in (_laws(contact) if laws is None else laws).items():
+        in_heights = isinstance(law, GreenwoodWilliamson | GreenwoodTripp)
+        found[name] = {"law": law, "free": ("beta",), **({"alpha": 1.0} if in_heights else {})}
+    return found
+
+
+def _models(models: str | Mapping[str, Mapping[str, Any]], contact: Contact, rows: Measurements) -> dict[str, Any]:
+    """Return the models that are compared: those given, or those of a name."""
+    if not isinstance(models, str):
+        return dict(models)
+    if models not in KINDS:
+        known = " or ".join(map(repr, KINDS))
+        raise InputError(f"models = {show(models)} must be {known}, or a mapping from names to models.")
+    return KINDS[models](contact, rows)
+
+
+def _cavitations(contact: Contact, rows: Measurements) -> dict[str, Any]:
+    return {name: {"cavitation": each, "cavity_pressure": 0.0} for name, each in (("full film", "none"), ("exit", "exit"))}
+
+
+def _fluids(contact: Contact, rows: Measurements) -> dict[str, Any]:
+    """Return fluids that begin to thin at the shear rate of a film as thick as the roughness, at the middle of the data."""
+    speed = contact.speed if rows.abscissa != "speed" else math.sqrt(float(rows.values.min() * rows.values.max()))
+    rate = speed / max(contact.roughness, 1e-3 * contact.hertz.indentation)
+    return {
+        "newtonian": {"fluid": "newtonian"},
+        "carreau": {"fluid": Carreau(1 / rate, 0.7), "free": ("relaxation_time", "exponent")},
+        "eyring": {"fluid": Eyring(contact.viscosity * rate), "free": ("eyring_stress",)},
+    }
+
+
+KINDS: dict[str, Callable[[Contact, Measurements], dict[str, Any]]] = {"cavitation": _cavitations, "fluid": _fluids}
+"""Models that are compared by a name."""
 
 
 def _laws(contact: Contact) -> dict[str, AsperityLaw | None]:

@@ -15,8 +15,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
-from stribeck.equations.point.films import plane_of
 from stribeck.equations.point.observables import observables
+from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.numerics.krylov import gmres

@@ -12,9 +12,9 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.cavitation import CavitatedEquations, iterate_cavitated
-from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.iteration import WIDEST, Iterated, distance, iterate
 from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, film_speed, operators_of
+from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.system import Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
