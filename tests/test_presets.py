@@ -1,0 +1,38 @@
+"""Liquids with numbers: measured viscosities, ranges and sources."""
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+
+# Dow Chemical, table of the viscosity of aqueous glycerine solutions [mPa s]: weight fraction against 0, 20 and 40 degC.
+DOW = {
+    0.0: (1.792, 1.005, 0.656),
+    0.3: (5.14, 2.5, 1.46),
+    0.5: (14.6, 6.0, 3.1),
+    0.7: (76.0, 22.5, 9.4),
+    0.8: (255.0, 60.1, 20.8),
+    0.9: (1310.0, 219.0, 60.0),
+    1.0: (12070.0, 1410.0, 284.0),
+}
+
+
+@pytest.mark.quick
+def test_glycerol_in_water_is_that_of_the_measured_table():
+    found = [[1e3 * sb.fluids.glycerol_water(part, T).viscosity for T in (0, 20, 40)] for part in DOW]
+    assert np.array(found) == pytest.approx(np.array(list(DOW.values())), rel=0.035)
+
+
+@pytest.mark.quick
+def test_silicone_oil_has_the_density_of_data_sheets():
+    silicone = sb.fluids.PRESETS["silicone-oil"]
+    for grade, density in ((5, 915), (50, 960), (100, 964), (1000, 970)):
+        assert silicone(grade=grade).viscosity == pytest.approx(1e-6 * grade * density, rel=0.01)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", sorted(sb.fluids.PRESETS))
+def test_every_liquid_has_a_source_and_a_range(name):
+    preset = sb.fluids.PRESETS[name]
+    assert preset.source and preset.range
+    assert preset().viscosity > 0
