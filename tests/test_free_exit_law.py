@@ -19,6 +19,27 @@ def test_the_first_order_of_boundary_lubrication_is_its_quadrature(row):
     assert tuple(boundary_film_with_free_exit(load)) == pytest.approx((x_c, flux_gap, share), rel=1e-8)
 
 
+@pytest.mark.quick
+@pytest.mark.parametrize(("load", "equal"), [(1e-3, 63.365), (0.01, 22.016), (0.1, 3.8192)])
+def test_the_first_order_exceeds_the_second_of_a_full_film_up_to_a_fluid_number(load, equal):
+    n = 1e-4
+    full = float(sb.asymptotics.boundary.fluid_load_share(sb.Groups(n * 1e-10, load, 1e-5 * load))) / n**2
+    assert boundary_film_with_free_exit(load).share / full == pytest.approx(equal, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("kappa", "speeds", "speed", "friction"),
+    [(1e-4, (1e-5, 1e-4), 0.00725, -0.02661), (1e-2, (5e-3, 0.1), 0.07987, -0.19735)],
+)
+def test_the_minimum_of_friction_is_lower_and_at_more_speed(kappa, speeds, speed, friction):
+    found = [
+        sb.stribeck_curve(load=0.1, roughness=0.1 * kappa, speed=speeds, points=5, rtol=1e-4, cavitation=cavitation).minimum
+        for cavitation in ("none", "exit")
+    ]
+    assert found[1].value / found[0].value - 1 == pytest.approx(speed, abs=2e-4)
+    assert found[1].friction / found[0].friction - 1 == pytest.approx(friction, abs=2e-4)
+
+
 def test_states_approach_the_first_order_as_the_roughness_falls():
     law = boundary_film_with_free_exit(0.1)
     excess = []
