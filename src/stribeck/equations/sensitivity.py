@@ -104,9 +104,9 @@ def _of_any_film(state: State, changes: Sequence[Change] = ()) -> dict[str, Arra
     here = observables(equations, y, load)
     found[1:, 1] += [0.5 * getattr(here, name) for name in FRICTIONS]  # friction_scale
     for column, (below, above, width) in enumerate(changes, len(GROUPS)):
-        ends = [replace(equations, operators=Operators(state.mesh, model)) for model in (below, above)]
-        dy = units * inverse((ends[1].residual(y) - ends[0].residual(y)) / width)
-        found[:, column] = through @ dy + _difference(ends[0], ends[1], y, load, names) / width
+        first, second = (replace(equations, operators=Operators(state.mesh, model)) for model in (below, above))
+        dy = units * inverse((second.residual(y) - first.residual(y)) / width)
+        found[:, column] = through @ dy + _difference(first, second, y, load, names) / width
     return dict(zip(names, found, strict=True))
 
 

@@ -254,11 +254,11 @@ class FrictionModel:
             slopes[:, [3 + change.input for change in changes]] = each.slopes[:, 3:]
             found.append((rows, replace(each, slopes=slopes)))
         order = np.argsort(np.concatenate([rows for rows, _ in found]))
-        joined = [
+        values, slopes, errors = (
             np.concatenate([getattr(each, name) for _, each in found], axis=-1)[..., order]
             for name in ("values", "slopes", "errors")
-        ]
-        return FrictionParts(*joined, found[0][1].definition)
+        )
+        return FrictionParts(values, slopes, errors, found[0][1].definition)
 
     def _exponents(self, curve: int) -> list[list[float]]:
         """Return the exponents with which each free input enters the groups, boundary_friction and what else there is."""

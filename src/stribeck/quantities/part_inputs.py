@@ -134,7 +134,7 @@ def part_value(parts: Any, name: str) -> float | None:
     found = parts
     for step in PART_INPUTS[name].path:
         found = getattr(found, step, None)
-    return found
+    return None if found is None else float(found)
 
 
 def with_part_value(parts: Any, name: str, value: str | float) -> Any:

@@ -129,8 +129,9 @@ def _held(fit: Fit) -> str:
     shown = []
     for name in fit.held:
         values = {getattr(contact, name, None) for contact in fit.contacts}
+        [value, *others] = values
         dimension = fitted_rows(fit.contact.INPUTS)[name].dimension
-        known = format_si(values.pop(), dimension, 4) if len(values) == 1 else "of each curve"
+        known = "of each curve" if others or value is None else format_si(value, dimension, 4)
         shown.append(f"{name} {known}")
     return (
         f"Held fixed: {', '.join(shown)}. "
