@@ -32,6 +32,9 @@ WORN, WORN_NEAR = 12, 16
 WIDEST = 16
 """Band of a preconditioner that is made anew where one of a narrower band does not serve."""
 
+MOST_POOR = 4
+"""Steps that such a one may leave poorly solved."""
+
 NEAR = 0.03
 """Size of the steps from which the solution is near."""
 
@@ -128,7 +131,7 @@ def iterate(
     krylov = factorisations = steps = 0
     before = size = math.inf
     left = math.inf
-    widened = False
+    widened, poor = False, 0
 
     def ended(outcome: Outcome) -> Iterated:
         return Iterated(y, outcome, steps, krylov, factorisations, left, preconditioner)
@@ -151,7 +154,8 @@ def iterate(
                 factorisations += 1
                 solved = _solved(linear, preconditioner, right, residual[0], wanted, MAX_KRYLOV)
                 krylov += solved.steps
-                if not solved.accepted and widened:
+                poor += not solved.accepted
+                if widened and poor > MOST_POOR:
                     return ended(Outcome.SINGULAR)
                 if not solved.accepted and band < min(WIDEST, preconditioner.shape[0] - 1):
                     band, widened, preconditioner = WIDEST, True, None

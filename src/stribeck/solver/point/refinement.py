@@ -55,6 +55,10 @@ UNSEEN, UNSEEN_RADIAL, UNSEEN_SERIES = 5.0, 0.5, 0.4
 """Stated error of the minimum film over the last coefficients of its series in the angle, and in the radius; and over what
 the angular one, going on as a geometric series, sums up to."""
 
+THINNED_MINIMUM, THINNED = 1.5, 1.5e-3
+"""Where a fluid thins: stated error of the minimum film over that of other fluids, and the least error of all else over it, as
+the viscosity has peaks where hardly anything is sheared."""
+
 SLOWEST_DECAY = 0.02
 """Smallest rate at which the coefficients are taken to fall."""
 
@@ -187,19 +191,22 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         errors[name] += beyond
     for (name, factor), tail in zip(CENTRAL.items(), centre_tails(fine), strict=True):
         errors[name] = max(errors[name], factor * float(tail))
-    # Two meshes may agree by chance in one number, hardly in all.
-    widest = max(errors[name] / scales[name] for name in errors if name not in BY_NAME_MINIMUM)
-    errors = {name: max(error, COMPANY * widest * scales[name]) for name, error in errors.items()}
     unseen = UNSEEN_RADIAL * legendre_tail(fine)
     if fine.equations.speed > 0:
         unseen += unseen_in_angle(fine)
+    # Two meshes may agree by chance in one number, hardly in all.
+    widest = max(errors[name] / scales[name] for name in errors if name not in BY_NAME_MINIMUM)
+    if fine.resolution.model.film.uses_speed:
+        unseen *= THINNED_MINIMUM
+        widest = max(widest, THINNED * unseen / COMPANY)
+    errors = {name: max(error, COMPANY * widest * scales[name]) for name, error in errors.items()}
     # The series of the side lobes falls from one mesh to the other as the error of the minimum does.
     last, before = (float(modal_amplitudes(level)[-2:].max()) for level in (fine, coarse))
     gained = 2.0 * min(PART, max(0.05, last / max(before, 1e-300)))
     for name in ("minimum_gap", "minimum_gap_on_axis"):
         errors[name] = max(gained * abs(values[name] - rough[name]), max(unseen, COMPANY * widest) * scales[name])
     for name in ("minimum_radius", "minimum_angle"):
-        errors[name] = max(4.0 * errors[name], unseen)
+        errors[name] = max(4.0 * errors[name], unseen * (2.0 if fine.resolution.model.film.uses_speed else 1.0))
     ok = coarse.outcome.ok and fine.outcome.ok
     outcome = Outcome.CONVERGED if ok else (fine.outcome if coarse.outcome.ok else coarse.outcome)
     steps = coarse.iterated.steps + fine.iterated.steps
