@@ -17,7 +17,6 @@ from stribeck.contacts.cut_off import FAR
 from stribeck.equations.point.mesh_choice import (
     RIGID_CAVITATED,
     MeshTooLargeError,
-    Resolution,
     fits,
     operators_of,
     resolution,
@@ -28,7 +27,7 @@ from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.point.level import Level, moved, solve_level
+from stribeck.solver.point.level import Level, extrapolated, moved, solve_level
 from stribeck.solver.point.refinement import COMPANY, Pair, scales_of
 from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
 
@@ -37,6 +36,9 @@ FINEST_RTOL = 1e-4
 
 FIRST_ANGLES, LADDER = 10, (20, 30, 45, 65)
 """Numbers of angles: of the first mesh, and of the meshes of which neighbours tell the error."""
+
+WASTE = 0.12
+"""Stated error over the tolerance below which a state is followed on the pair of meshes before the neighbour's."""
 
 DEGREE = 10
 """Degree of the panels of all but the finer of these, which has two more."""
@@ -99,7 +101,8 @@ def refine_cavitated(speed: float, law: ContactLaw, guess: Level, rtol: float, k
         if not last.outcome.ok:
             return last.outcome
         for few, many in zip(LADDER[:-1], LADDER[1:], strict=True):
-            pair = _pair(replace(base, modes=few), many, speed, law, last)
+            coarse = solve_level(replace(base, modes=few), speed, law, last.unknowns, last.mesh, TOLERANCE)
+            pair = _pair(coarse, many, speed, law)
             if isinstance(pair, Outcome):
                 return pair if best is None else replace(best, outcome=pair)
             best, last = pair, pair.fine
@@ -118,11 +121,10 @@ def rigid(mesh: PolarMesh, speed: float) -> Unknowns:
     return Unknowns(gap, np.maximum(-0.2 * speed * x / gap**2, 0.0), offset)
 
 
-def _pair(coarser: Resolution, angles: int, speed: float, law: ContactLaw, last: Level) -> Pair | Outcome:
-    coarse = solve_level(coarser, speed, law, last.unknowns, last.mesh, TOLERANCE)
+def _pair(coarse: Level, angles: int, speed: float, law: ContactLaw) -> Pair | Outcome:
     if not coarse.outcome.ok:
         return coarse.outcome
-    finer = replace(coarser, modes=angles, degree=DEGREE + 2)
+    finer = replace(coarse.resolution, modes=angles, degree=DEGREE + 2)
     fine = solve_level(finer, speed, law, coarse.unknowns, coarse.mesh, TOLERANCE)
     return pair_of(coarse, fine) if fine.outcome.ok else fine.outcome
 
@@ -130,28 +132,47 @@ def _pair(coarser: Resolution, angles: int, speed: float, law: ContactLaw, last:
 def follow_cavitated(
     speed: float, law: ContactLaw, neighbour: Pair, rtol: float, line: Sequence[tuple[float, Pair]] = ()
 ) -> Pair | None:
-    """Return the state of a neighbour's meshes at other groups, or None where it does not come from there."""
+    """Return the state of a neighbour's meshes at other groups, or None where it does not come from there.
+
+    ``line`` has neighbours, and the weights with which they predict the state, its line of rupture too.
+    """
     if not fits(neighbour.fine.resolution, speed, law):
         return None
-    old_coarse, old_fine = neighbour.coarse, neighbour.fine
-    kept = old_coarse.iterated.preconditioner
-    coarse = solve_level(
-        old_coarse.resolution, speed, law, old_coarse.unknowns, old_coarse.mesh, TOLERANCE, kept, max_steps=15
-    )
-    if not coarse.outcome.ok:
-        return None
-    # What the finer mesh had beyond the coarser one, the neighbour tells.
-    carried = moved(coarse.unknowns, coarse.mesh, old_fine.mesh)
-    known = moved(old_coarse.unknowns, old_coarse.mesh, old_fine.mesh)
-    fluid = np.maximum(carried.fluid + old_fine.unknowns.fluid - known.fluid, np.finfo(float).tiny)
-    guess = Unknowns(
-        carried.gap * (old_fine.unknowns.gap / known.gap),
+    now = neighbour.fine.resolution
+    if held(neighbour) < WASTE * rtol and now.modes in LADDER[2:]:
+        many = LADDER[LADDER.index(now.modes) - 1]
+        few = LADDER[LADDER.index(many) - 1]
+        start = neighbour.coarse
+        coarse = solve_level(replace(now, modes=few, degree=DEGREE), speed, law, start.unknowns, start.mesh, TOLERANCE)
+        found = _pair(coarse, many, speed, law)
+        return found if isinstance(found, Pair) else None
+    levels = []
+    for name in ("coarse", "fine"):
+        old: Level = getattr(neighbour, name)
+        guess = old.unknowns
+        if line:
+            guess = extrapolated([w for w, _ in line], [getattr(pair, name) for _, pair in line], old.mesh)
+        elif levels:
+            guess = _carried(levels[0], neighbour)
+        kept = old.iterated.preconditioner
+        level = solve_level(old.resolution, speed, law, guess, old.mesh, TOLERANCE, kept, max_steps=15)
+        if not level.outcome.ok:
+            return None
+        levels.append(level)
+    return pair_of(*levels)
+
+
+def _carried(coarse: Level, neighbour: Pair) -> Unknowns:
+    """Return a guess on the finer mesh: what that had beyond the coarser one, the neighbour tells."""
+    old, mesh = neighbour.fine.unknowns, neighbour.fine.mesh
+    carried = moved(coarse.unknowns, coarse.mesh, mesh)
+    known = moved(neighbour.coarse.unknowns, neighbour.coarse.mesh, mesh)
+    fluid = np.maximum(carried.fluid + old.fluid - known.fluid, np.finfo(float).tiny)
+    return Unknowns(
+        carried.gap * (old.gap / known.gap),
         np.where(carried.fluid == 0.0, 0.0, fluid),
-        carried.offset + (old_fine.unknowns.offset - known.offset),
+        carried.offset + (old.offset - known.offset),
     )
-    kept = old_fine.iterated.preconditioner
-    fine = solve_level(old_fine.resolution, speed, law, guess, old_fine.mesh, TOLERANCE, kept, max_steps=15)
-    return pair_of(coarse, fine) if fine.outcome.ok else None
 
 
 def tolerance_of(rtol: float) -> float:
