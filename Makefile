@@ -25,7 +25,7 @@ define install
 	@touch $@
 endef
 
-.PHONY: help demo test slow browser screenshots lint format types benchmark validity atlas certificate docs site notebooks
+.PHONY: help demo test slow browser screenshots lint format types benchmark validity atlas atlas-point certificate docs site notebooks
 .PHONY: clean quick quick-kernels quick-lowest quick-newest
 
 help:
@@ -40,6 +40,7 @@ help:
 	@echo "make notebooks  the notebooks with results, build/notebooks"
 	@echo "make validity   docs/validity.md: the maps of the errors of all formulas"
 	@echo "make atlas      the table of solved states, 6 minutes on two cores      make certificate  its errors"
+	@echo "make atlas-point  that of balls, 2 minutes                              make certificate TABLE=ball-exponential"
 	@echo "make clean      remove what make made"
 
 $(READY): pyproject.toml requirements.lock
@@ -136,6 +137,9 @@ validity: $(READY)
 TABLE = line-exponential
 atlas: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_build $(TABLE)
+
+atlas-point: $(READY)
+	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_build ball-exponential
 
 certificate: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_certificate $(TABLE)

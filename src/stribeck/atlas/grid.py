@@ -70,6 +70,9 @@ class Region:
         Nodes of each segment of speed.
     closing : float
         A constant delta; zero for ``2 kappa/(1 + kappa)``.
+    nested : bool
+        Whether the nodes in roughness are the zeros of a Chebyshev polynomial of the second kind. Every other one is a zero of
+        that of the first kind of half the degree, so that a table is refined with the states it has.
     """
 
     roughness: tuple[float, float]
@@ -78,6 +81,13 @@ class Region:
     nodes: tuple[int, int]
     speeds: tuple[int, ...]
     closing: float = 0.0
+    nested: bool = False
+
+    @property
+    def roughness_nodes(self) -> Array:
+        """Nodes of a piece in roughness, ascending in [-1, 1]."""
+        count = self.nodes[0]
+        return np.asarray(-np.cos(math.pi * np.arange(1, count + 1) / (count + 1))) if self.nested else nodes(count)
 
     @property
     def has_rest(self) -> bool:
@@ -197,6 +207,13 @@ LINE_PERSSON = Grid(
     heaviest=20.0,
 )
 """Cylinder, Persson's law, full film: L = ln(20/load), as nothing closes where the law goes on to full contact."""
+
+BALL_EXPONENTIAL = Grid(
+    (Region((1e-3, 1.0), (2 / 3 * math.log(2), 2 / 3 * math.log(1e7)), (1, 1), (11, 7), (4, 6, 6, 6, 7, 8)),),
+    load_factor=2 / 3,
+    films=(1e-3, 1e3),
+)
+"""Ball, exponential law, full film: L = -2/3 ln(load), as the pressure goes with the cube root of the load."""
 
 
 def chebyshev(x: Array, terms: int) -> Array:

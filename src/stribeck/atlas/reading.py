@@ -8,20 +8,31 @@ error, against states that the table was not made from, is in docs/atlas.md; for
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.atlas.grid import HEAVY, NEARLY_SMOOTH
-from stribeck.atlas.table import TABULATED, Values, solver_hash
-from stribeck.atlas.tables import BOX, SLACK, TABLES, covers, for_groups, holds_for, table_for
+from stribeck.atlas.lookup import (
+    CENTRAL,
+    DEFLECTION,
+    FLUX,
+    MINIMUM,
+    ODDS,
+    contact_share,
+    flat,
+    look_up,
+    read_friction,
+    slopes_of,
+)
+from stribeck.atlas.table import solver_hash
+from stribeck.atlas.tables import BOX, TABLES, covers, for_groups, holds_for
 from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.friction_rules import PURE_SLIDING, RULES
 from stribeck.contacts.line import Groups, InputError
-from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import quantity, refuse_former
 from stribeck.quantities.units import show
-from stribeck.solids import hertz
 
 __all__ = [
     "BOX",
@@ -35,6 +46,7 @@ __all__ = [
     "friction",
     "friction_derivatives",
     "friction_parts",
+    "friction_terms",
     "holds_for",
     "minimum_gap",
     "offset",
@@ -42,15 +54,19 @@ __all__ = [
     "viscous_friction",
 ]
 
-ODDS, CENTRAL, MINIMUM, FLUX, DEFLECTION = (
-    TABULATED.index(name) for name in ("log_odds", "central_gap", "minimum_gap", "flux_gap", "deflection")
-)
-
 Value = float | Array
 
 
 @refuse_former
-def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced") -> Value:
+def friction(
+    groups: Groups,
+    boundary_friction: float = 1.0,
+    beta: float = 1.0,
+    definition: Definition = "balanced",
+    *,
+    slide_to_roll: float = PURE_SLIDING,
+    wetted_radius: float | Array = math.inf,
+) -> Value:
     r"""Return the friction coefficient.
 
     .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \mu_f
@@ -63,6 +79,10 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
         Friction coefficient of the dry contact and coefficient of the contact law [-].
     definition : {"balanced", "published"}
         Definition of the viscous friction, theory.md, section 6.
+    slide_to_roll : float
+        Slide-to-roll ratio of a ball [-].
+    wetted_radius : float or ndarray
+        Radius of the disc of liquid around a ball, above 1 [a]; infinite where the whole ball is immersed.
 
     Returns
     -------
@@ -76,15 +96,22 @@ def friction(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, 
 
     Notes
     -----
-    Both parts are positive, so that its relative error is at most the larger of theirs.
+    Both parts are positive for surfaces of which one rests, so that its relative error is at most the larger of theirs.
     """
-    boundary_friction, beta, row = quantity("boundary_friction", boundary_friction), quantity("beta", beta), _row(definition)
-    flat, values = _read(groups, (ODDS, row))
-    odds, viscous = values.values
-    return _shaped(groups, boundary_friction * _contact(odds) + _viscous(flat, viscous, beta))
+    boundary_friction = quantity("boundary_friction", boundary_friction)
+    inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
+    contact, viscous = friction_terms(groups, inputs, check_definition(definition))
+    return _shaped(groups, boundary_friction * _rubbing(groups, inputs) * contact + viscous)
 
 
-def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition = "balanced") -> Value:
+def viscous_friction(
+    groups: Groups,
+    beta: float = 1.0,
+    definition: Definition = "balanced",
+    *,
+    slide_to_roll: float = PURE_SLIDING,
+    wetted_radius: float | Array = math.inf,
+) -> Value:
     """Return the part of the friction coefficient that the fluid causes.
 
     Parameters
@@ -95,6 +122,8 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
         Coefficient of the contact law [-].
     definition : {"balanced", "published"}
         Definition of the viscous friction, theory.md, section 6.
+    slide_to_roll, wetted_radius : float
+        As in :func:`friction`.
 
     Returns
     -------
@@ -106,14 +135,19 @@ def viscous_friction(groups: Groups, beta: float = 1.0, definition: Definition =
     InputError
         If a state is outside the box of its table, or an argument is wrong.
     """
-    beta, row = quantity("beta", beta), _row(definition)
-    flat, values = _read(groups, (row,))
-    return _shaped(groups, _viscous(flat, values.values[0], beta))
+    inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
+    return _shaped(groups, friction_terms(groups, inputs, check_definition(definition))[1])
 
 
 @refuse_former
 def friction_derivatives(
-    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced"
+    groups: Groups,
+    boundary_friction: float = 1.0,
+    beta: float = 1.0,
+    definition: Definition = "balanced",
+    *,
+    slide_to_roll: float = PURE_SLIDING,
+    wetted_radius: float | Array = math.inf,
 ) -> Array:
     r"""Return the derivatives of the friction coefficient with respect to the logarithms of the groups.
 
@@ -128,6 +162,8 @@ def friction_derivatives(
         Friction coefficient of the dry contact and coefficient of the contact law [-].
     definition : {"balanced", "published"}
         Definition of the viscous friction, theory.md, section 6.
+    slide_to_roll, wetted_radius : float
+        As in :func:`friction`; they are held.
 
     Returns
     -------
@@ -143,15 +179,15 @@ def friction_derivatives(
     -----
     Exact derivatives of :func:`friction`, shown by ``test_atlas.py``; zero at rest.
     """
-    boundary_friction, beta = quantity("boundary_friction", boundary_friction), quantity("beta", beta)
-    _, contact_slopes, viscous_slopes = friction_parts(groups, definition)
-    return boundary_friction * contact_slopes + beta * viscous_slopes
+    boundary_friction = quantity("boundary_friction", boundary_friction)
+    inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
+    reading = read_friction(groups, check_definition(definition), slopes=True)
+    contact, viscous = slopes_of(groups, reading, inputs, definition)
+    return (boundary_friction * _rubbing(groups, inputs) * contact + viscous).reshape(3, *groups.shape)
 
 
-def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple[Array, Array, Array]:
-    r"""Return both parts of the friction for boundary_friction = beta = 1, and the derivatives of each.
-
-    .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \beta \, \mu_f(\beta = 1)
+def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple[Array, Array]:
+    r"""Return what the friction is made of, without the coefficients that it takes beside, and the derivatives of each.
 
     Parameters
     ----------
@@ -162,12 +198,11 @@ def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple
 
     Returns
     -------
-    ndarray, shape (2, ...)
-        Contact load share, and viscous friction for beta = 1 [-].
-    ndarray, shape (3, ...)
-        Derivatives of the first by ln(speed), ln(load) and ln(roughness), the other two groups held [-].
-    ndarray, shape (3, ...)
-        Those of the second.
+    ndarray, shape (1 + parts, ...)
+        Contact load share and the observables that :data:`stribeck.contacts.friction_rules.RULES` names, of
+        cylinders the viscous friction for beta = 1 [-].
+    ndarray, shape (1 + parts, 3, ...)
+        Their derivatives by ln(speed), ln(load) and ln(roughness), the other two groups held [-].
 
     Raises
     ------
@@ -178,23 +213,50 @@ def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple
     -----
     One reading of the table gives all, for fits in which boundary_friction and beta differ from state to state.
     """
-    flat, values = _read(groups, (ODDS, _row(definition)), slopes=True)
-    assert values.slopes is not None
-    contact, viscous = _contact(values.values[0]), _viscous(flat, values.values[1], 1.0)
-    # By ln(speed), -ln(load), ln(kappa), with kappa = roughness/load.
-    of_contact = -contact * (1 - contact) * values.slopes[:, 0]
-    of_viscous = viscous * values.slopes[:, 1]
-    slopes = []
-    for (by_speed, by_log_load, by_kappa), part in ((of_contact, 0.0), (of_viscous, viscous)):
-        found = np.stack([by_speed + part, 0.5 * part - by_log_load - by_kappa, by_kappa])
-        found[:, flat[0] == 0] = 0.0
-        slopes.append(found.reshape(3, *groups.shape))
-    return np.stack([contact, viscous]).reshape(2, *groups.shape), slopes[0], slopes[1]
+    reading = read_friction(groups, check_definition(definition), slopes=True)
+    names = RULES[groups.geometry].parts(definition)
+    values = np.stack([reading.contact, *(reading.parts[name] for name in names)])
+    slopes = np.stack([reading.contact_slopes, *(reading.part_slopes[name] for name in names)])
+    slopes[:, :, reading.speed == 0] = 0.0
+    return values.reshape(len(values), *groups.shape), slopes.reshape(len(values), 3, *groups.shape)
+
+
+def friction_terms(groups: Groups, inputs: Mapping[str, Any], definition: Definition) -> tuple[Array, Array]:
+    """Return contact load share and viscous friction of states, by unchecked inputs that may be arrays, even complex.
+
+    Parameters
+    ----------
+    groups : Groups
+        The states [-]; arrays broadcast.
+    inputs : mapping
+        What the friction rule of the geometry takes, by name, each a number or an array of the shape of the groups.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+
+    Returns
+    -------
+    tuple of ndarray, each of shape (n,)
+        Both of the flattened states [-].
+
+    Raises
+    ------
+    InputError
+        If a state is outside the box of its table.
+    """
+    reading = read_friction(groups, definition)
+    arrays = {name: flat(groups, value) for name, value in inputs.items()}
+    return reading.contact, RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
 
 
 @refuse_former
 def shares_and_friction(
-    groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, definition: Definition = "balanced"
+    groups: Groups,
+    boundary_friction: float = 1.0,
+    beta: float = 1.0,
+    definition: Definition = "balanced",
+    *,
+    slide_to_roll: float = PURE_SLIDING,
+    wetted_radius: float | Array = math.inf,
 ) -> Array:
     """Return at once what tells the regimes apart, at the cost of one of its parts.
 
@@ -206,6 +268,8 @@ def shares_and_friction(
         Friction coefficient of the dry contact and coefficient of the contact law [-].
     definition : {"balanced", "published"}
         Definition of the viscous friction, theory.md, section 6.
+    slide_to_roll, wetted_radius : float
+        As in :func:`friction`.
 
     Returns
     -------
@@ -218,14 +282,14 @@ def shares_and_friction(
     InputError
         If a state is outside the box of its table, or an argument is wrong.
     """
-    boundary_friction, beta, row = quantity("boundary_friction", boundary_friction), quantity("beta", beta), _row(definition)
-    flat, values = _read(groups, (ODDS, row), slopes=True)
-    assert values.slopes is not None
-    odds = values.values[0]
-    contact, viscous = _contact(odds), _viscous(flat, values.values[1], beta)
-    by_speed = viscous * (1 + values.slopes[0, 1]) - boundary_friction * contact * (1 - contact) * values.slopes[0, 0]
-    by_speed[flat[0] == 0] = 0.0
-    return np.stack([_contact(-odds), contact, viscous, by_speed]).reshape(4, *groups.shape)
+    boundary_friction = quantity("boundary_friction", boundary_friction)
+    inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
+    reading = read_friction(groups, check_definition(definition), slopes=True)
+    arrays = {name: flat(groups, value) for name, value in inputs.items()}
+    viscous = RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
+    by_contact, by_viscous = slopes_of(groups, reading, inputs, definition, directions=1)
+    by_speed = boundary_friction * _rubbing(groups, inputs) * by_contact[0] + by_viscous[0]
+    return np.stack([contact_share(-reading.odds), reading.contact, viscous, by_speed]).reshape(4, *groups.shape)
 
 
 def contact_load_share(groups: Groups) -> Value:
@@ -246,7 +310,7 @@ def contact_load_share(groups: Groups) -> Value:
     InputError
         If a state is outside the box of its table.
     """
-    return _shaped(groups, _contact(_read(groups, (ODDS,))[1].values[0]))
+    return _shaped(groups, contact_share(look_up(groups, (ODDS,)).values.values[0]))
 
 
 def fluid_load_share(groups: Groups) -> Value:
@@ -267,7 +331,7 @@ def fluid_load_share(groups: Groups) -> Value:
     InputError
         If a state is outside the box of its table.
     """
-    return _shaped(groups, _contact(-_read(groups, (ODDS,))[1].values[0]))
+    return _shaped(groups, contact_share(-look_up(groups, (ODDS,)).values.values[0]))
 
 
 def central_gap(groups: Groups) -> Value:
@@ -328,7 +392,7 @@ def flux_gap(groups: Groups) -> Value:
     Raises
     ------
     InputError
-        If a state is outside the box of its table.
+        If a state is outside the box of its table, or it is a ball, whose film has no one flux.
     """
     return _gap(groups, FLUX)
 
@@ -344,14 +408,14 @@ def offset(groups: Groups) -> Value:
     Returns
     -------
     float or ndarray
-        Offset [u_Hz], in the gauge ln(abs(x-y)/a).
+        Offset [u_Hz], of cylinders in the gauge ln(abs(x-y)/a).
 
     Raises
     ------
     InputError
         If a state is outside the box of its table.
     """
-    _, values = _read(groups, (CENTRAL, DEFLECTION))
+    values = look_up(groups, (CENTRAL, DEFLECTION)).values
     return _shaped(groups, np.exp(values.values[0]) + values.values[1])
 
 
@@ -388,71 +452,29 @@ def info(name: str = TABLES[0].name) -> dict[str, Any]:
     return {**made, "same_solver": made["solver_hash"] == solver_hash(), **about, "tables": tuple(rows)}
 
 
-Flat = tuple[Array, Array, Array]
+def _inputs(groups: Groups, beta: float, slide_to_roll: float, wetted_radius: float | Array) -> dict[str, Any]:
+    """Return what the friction rule of the geometry takes, checked."""
+    if not isinstance(groups, Groups):
+        raise InputError(f"groups = {show(groups)}; it must be Groups(speed, load, roughness).")
+    wanted = RULES[groups.geometry].inputs
+    given = {"beta": quantity("beta", beta), "slide_to_roll": slide_to_roll, "wetted_radius": wetted_radius}
+    usual = {"beta": beta, "slide_to_roll": PURE_SLIDING, "wetted_radius": math.inf}
+    for name, value in given.items():
+        if name not in wanted and np.any(np.asarray(value) != usual[name]):
+            raise InputError(f"{name} = {show(value)} belongs to a ball, geometry = 'point'; these states are of a cylinder.")
+    if not np.all(np.asarray(wetted_radius) > 1):
+        raise InputError(f"wetted_radius = {show(wetted_radius)} must be above 1: the liquid reaches beyond the Hertz radius.")
+    return {name: given[name] for name in wanted}
 
 
-@one_blas_thread
-def _read(groups: Groups, functions: tuple[int, ...], slopes: bool = False) -> tuple[Flat, Values]:
-    """Return speed, load and relative roughness as flat arrays inside the box, and the functions of the table there."""
-    held = table_for(groups)
-    box, grid = held.box, held.grid
-    speed, load, kappa = (
-        np.broadcast_to(np.asarray(value, dtype=float), groups.shape).ravel()
-        for value in (groups.speed, groups.load, groups.relative_roughness)
-    )
-    for name, values in (("speed", speed), ("load", load), ("relative_roughness", kappa)):
-        _check(name, values, *box[name], zero=name != "load")
-    with np.errstate(divide="ignore"):
-        log_speed = np.log(speed)
-    log_load = grid.log_load(load)
-    inside = np.where(kappa > 0, np.clip(kappa, *box["relative_roughness"]), 0.0)
-    closing = (speed == 0) & (inside > 0) & ~grid.has_rest[grid.region_at(log_load, inside)]
-    if FLUX in functions and closing.any():
-        raise InputError(
-            f"load has the value {load[closing][0]:g} at speed 0; there, at relative roughness below {NEARLY_SMOOTH:g}, the "
-            f"atlas holds the flux gap for loads up to {math.exp(-HEAVY):.4g}. Use solve."
-        )
-    found = held.table.read(functions, log_speed, np.where(closing, HEAVY, log_load), inside, slopes)
-    # At rest the load shifts the gap and does nothing else.
-    shift = 0.5 * inside[closing] * (log_load[closing] - HEAVY)
-    dry = (speed == 0) & (kappa == 0)
-    for row, function in enumerate(functions):
-        if function in (CENTRAL, MINIMUM):
-            found.values[row, closing] = np.log(np.exp(found.values[row, closing]) + shift)
-        found.values[row, dry] = hertz.OFFSET if function == DEFLECTION else -math.inf
-    return (speed, load, kappa), found
+def _rubbing(groups: Groups, inputs: Mapping[str, Any]) -> float:
+    """Return the part of boundary_friction that acts."""
+    return abs(float(RULES[groups.geometry].rubbing(groups, inputs)))
 
 
-def _check(name: str, values: Array, low: float, high: float, zero: bool) -> None:
-    """Refuse values outside a side of the box."""
-    outside = (values < low * (1 - SLACK)) | (values > high * (1 + SLACK))
-    if zero:
-        outside &= values != 0
-    if outside.any():
-        also = " and 0" if zero else ""
-        raise InputError(
-            f"{name} has the value {values[outside][0]:g}; the atlas covers {low:g} to {high:g}{also}. Use solve outside."
-        )
+def _gap(groups: Groups, name: str) -> Value:
+    return _shaped(groups, np.exp(look_up(groups, (name,)).values.values[0]))
 
 
-def _row(definition: str) -> int:
-    return TABULATED.index(f"viscous_{check_definition(definition)}")
-
-
-def _contact(odds: Array) -> Array:
-    """Return the contact share of ln(fluid over contact share); the fluid share of its negative."""
-    return np.asarray(1 / (1 + np.exp(odds)))
-
-
-def _viscous(flat: Flat, logs: Array, beta: float) -> Array:
-    speed, load, _ = flat
-    return np.asarray(beta * np.sqrt(load) * speed * np.exp(logs))
-
-
-def _gap(groups: Groups, function: int) -> Value:
-    _, values = _read(groups, (function,))
-    return _shaped(groups, np.exp(values.values[0]))
-
-
-def _shaped(groups: Groups, flat: Array) -> Value:
-    return float(flat[0]) if groups.shape == () else flat.reshape(groups.shape)
+def _shaped(groups: Groups, values: Array) -> Value:
+    return float(values[0]) if groups.shape == () else values.reshape(groups.shape)

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from stribeck._types import Flags
-from stribeck.atlas.grid import LINE_EXPONENTIAL, LINE_PERSSON, MIN_LOAD, MIN_SPEED, Grid
+from stribeck.atlas.grid import BALL_EXPONENTIAL, LINE_EXPONENTIAL, LINE_PERSSON, MIN_LOAD, MIN_SPEED, Grid
 from stribeck.atlas.table import FAR, FUNCTIONS, Table, load_table
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry, Groups
@@ -96,6 +96,11 @@ class TableRow:
             return is_exponential(law)
         return law is not None and law.name == self.law and _departure(self.file, self.grid, law) < SAME_LAW  # type: ignore[arg-type]
 
+    def speeds(self, groups: Groups) -> tuple[float, float]:
+        """Return the smallest and largest speed of groups, of which none or all are smooth, beside zero [-]."""
+        (low, high), (first, last) = self.box["speed"], self.grid.films
+        return (low, high) if np.any(groups.roughness) else (max(low, first), min(high, last))
+
     def covers(self, groups: Groups) -> Flags:
         """Return which states lie in the box, whatever their law and model."""
         found = np.ones(groups.shape, dtype=bool)
@@ -103,7 +108,8 @@ class TableRow:
             value = np.asarray(getattr(groups, name))
             inside = (low * (1 - SLACK) <= value) & (value <= high * (1 + SLACK))
             found &= inside if name == "load" else inside | (value == 0)
-        return found
+        smooth, speed, (low, high) = np.asarray(groups.roughness) == 0, np.asarray(groups.speed), self.grid.films
+        return np.asarray(found & (~smooth | (speed == 0) | ((low * (1 - SLACK) <= speed) & (speed <= high * (1 + SLACK)))))
 
 
 @lru_cache(maxsize=128)
@@ -124,6 +130,16 @@ TABLES = (
         1e-3,
         "line_persson.npz",
         LINE_PERSSON,
+    ),
+    TableRow(
+        "ball-exponential",
+        "point",
+        "exponential",
+        Cavitation.NONE,
+        {"speed": (1e-8, 1e2), "load": (1e-7, 0.5), "relative_roughness": (1e-3, 1.0)},
+        3e-3,
+        "ball_exponential.npz",
+        BALL_EXPONENTIAL,
     ),
 )
 """The tables; the first that holds answers."""
@@ -175,12 +191,7 @@ def table_for(groups: Groups) -> TableRow:
     row = for_groups(groups)
     if row is not None:
         return row
-    of_geometry = [row for row in TABLES if row.geometry == groups.geometry]
-    if not of_geometry:
-        raise InputError(
-            f"the atlas covers cylinders, geometry = 'line', and these states have {groups.geometry!r}; use solve."
-        )
-    of_model = [row for row in of_geometry if row.is_of_model(groups)]
+    of_model = [row for row in TABLES if row.is_of_model(groups)]
     if not of_model:
         raise InputError(
             "the atlas covers a Newtonian fluid that does not cavitate, on a half-space, and these states have another model; "

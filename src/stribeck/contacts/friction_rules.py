@@ -70,6 +70,10 @@ class FrictionRule(NamedTuple):
         """Return the inputs of a contact; of none, those of groups alone."""
         return {name: value(contact) for name, value in self.inputs.items()}
 
+    def motion(self, contact: Contact | None) -> dict[str, Any]:
+        """Return those beside beta: motion and liquid, as the functions of :mod:`stribeck.atlas` take them."""
+        return {name: value for name, value in self.of_contact(contact).items() if name != "beta"}
+
     def viscous_error(
         self, parts: Values, errors: Values, speed: Any, load: Any, inputs: Values, definition: Definition
     ) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -13,11 +14,15 @@ from stribeck._types import Array
 from stribeck.atlas.tables import TableRow, table_for
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import RULES, FrictionRule
 from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.quantities.units import InputError, show
 
 OBSERVABLES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
+
+IMAGINARY = 1e-30
+"""Imaginary step of the exact derivative by what the friction of a contact takes beside its groups."""
 
 SUBDIVISION = 33
 ROUNDS = 4
@@ -107,8 +112,9 @@ class AtlasCurve:
         InputError
             If the atlas has no such function.
         """
-        if name not in OBSERVABLES:
-            raise InputError(f"name = {show(name)}; the atlas has {', '.join(OBSERVABLES)}.")
+        known = [each for each in OBSERVABLES if each != "flux_gap" or each in self.table.functions]
+        if name not in known:
+            raise InputError(f"name = {show(name)}; the atlas has {', '.join(known)}.")
         return np.asarray(getattr(atlas, name)(self.groups))
 
     @cached_property
@@ -119,12 +125,12 @@ class AtlasCurve:
     @property
     def friction_viscous(self) -> Array:
         """Viscous part of the friction coefficient [-]."""
-        return np.asarray(atlas.viscous_friction(self.groups, self.beta, self.definition))
+        return atlas.friction_terms(self.groups, self._inputs(self.groups), self.definition)[1]
 
     @property
     def friction_contact(self) -> Array:
         """Contact part of the friction coefficient [-]."""
-        return np.asarray(self.boundary_friction * self.observable("contact_load_share"))
+        return np.asarray(self._rubbing * self.observable("contact_load_share"))
 
     @property
     def friction_error(self) -> Array:
@@ -174,22 +180,56 @@ class AtlasCurve:
         value = crossing(function, float(self.values[first]), float(self.values[last]))
         return Mark(name, value, float(self._friction_at(np.array([value]))[0]))
 
+    @property
+    def _rule(self) -> FrictionRule:
+        return RULES[self.table.geometry]
+
+    @cached_property
+    def _rubbing(self) -> float:
+        """The part of boundary_friction that acts."""
+        inputs = self._rule.of_contact(self.contact)
+        return self.boundary_friction * abs(float(self._rule.rubbing(self.groups_at(self.values[:1]), inputs)))
+
+    def _inputs(self, groups: Groups) -> dict[str, Any]:
+        """Return what the friction takes beside the groups; a length in Hertz radii goes with the load."""
+        found: dict[str, Any] = {**self._rule.of_contact(self.contact), "beta": self.beta}
+        for name in self._moving:
+            assert self.contact is not None
+            found[name] = found[name] * (groups.load / self.contact.groups.load) ** self._moving[name]
+        return found
+
+    @property
+    def _moving(self) -> dict[str, float]:
+        """Exponents of the load in those of these that move with it along the curve."""
+        if self.contact is None or self.over != "load":
+            return {}
+        return {name: powers["load"] for name, powers in self._rule.exponents.items()}
+
     def _friction_at(self, values: Array) -> Array:
-        return np.asarray(atlas.friction(self.groups_at(values), self.boundary_friction, self.beta, self.definition))
+        groups = self.groups_at(values)
+        contact, viscous = atlas.friction_terms(groups, self._inputs(groups), self.definition)
+        return np.asarray(self._rubbing * contact + viscous)
 
     def _slope_at(self, values: Array) -> Array:
         """Return the derivative of the friction along the curve."""
-        slopes = atlas.friction_derivatives(self.groups_at(values), self.boundary_friction, self.beta, self.definition)
+        groups = self.groups_at(values)
+        inputs = self._inputs(groups)
+        motion = {name: value for name, value in inputs.items() if name != "beta"}
+        slopes = atlas.friction_derivatives(groups, self.boundary_friction, self.beta, self.definition, **motion)
         direction = [float(name == self.over) for name in ("speed", "load", "roughness")]
-        if self.contact is not None and self.over == "load":
-            direction[0] = -2.0
-        return np.asarray(np.tensordot(direction, slopes, 1))
+        if self.contact is not None:
+            direction = list(self.contact.INPUTS.exponents[self.over])
+        found = np.tensordot(direction, slopes, 1)
+        for name, power in self._moving.items():
+            moved = {**inputs, name: inputs[name] * (1 + 1j * IMAGINARY)}
+            found = found + power * np.imag(atlas.friction_terms(groups, moved, self.definition)[1]) / IMAGINARY
+        return np.asarray(found)
 
     def _fluid_at(self, values: Array) -> Array:
         return np.asarray(atlas.fluid_load_share(self.groups_at(values)))
 
     def _contact_part_at(self, values: Array) -> Array:
-        contact = self.boundary_friction * np.asarray(atlas.contact_load_share(self.groups_at(values)))
+        contact = self._rubbing * np.asarray(atlas.contact_load_share(self.groups_at(values)))
         return np.asarray(contact / np.maximum(self._friction_at(values), 1e-300))
 
 

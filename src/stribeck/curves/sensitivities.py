@@ -11,6 +11,7 @@ from stribeck import atlas
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
@@ -18,6 +19,9 @@ from stribeck.quantities.inputs import GROUP_EXPONENTS
 from stribeck.quantities.units import InputError
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
+
+IMAGINARY = 1e-30
+"""Imaginary step of the exact derivatives of friction rules."""
 
 
 @overload
@@ -143,10 +147,21 @@ SENSITIVITIES = {"point": _of_ball}
 
 
 def _from_atlas(contact: Contact, definition: Definition) -> dict[str, float]:
-    groups, boundary_friction, beta = contact.groups, contact.boundary_friction, contact.beta
-    viscous = float(atlas.viscous_friction(groups, beta, definition))
-    slopes = atlas.friction_derivatives(groups, boundary_friction, beta, definition)
-    return _sensitivities(slopes, boundary_friction * float(atlas.contact_load_share(groups)), viscous)
+    groups, boundary_friction, rule = contact.groups, contact.boundary_friction, RULES[contact.groups.geometry]
+    inputs = rule.of_contact(contact)
+    slopes = atlas.friction_derivatives(groups, boundary_friction, contact.beta, definition, **rule.motion(contact))
+    share, viscous = (float(term[0]) for term in atlas.friction_terms(groups, inputs, definition))
+    direct = {"boundary_friction": boundary_friction * abs(float(rule.rubbing(groups, inputs))) * share}
+    for name, value in inputs.items():
+        if math.isfinite(value):
+            moved = atlas.friction_terms(groups, {**inputs, name: value * (1 + 1j * IMAGINARY)}, definition)[1]
+            by = direct[name] = direct.get(name, 0.0) + float(np.imag(moved[0])) / IMAGINARY
+            for other, power in rule.exponents.get(name, {}).items():
+                direct[other] = direct.get(other, 0.0) + power * by
+    total = (direct["boundary_friction"] + viscous) or math.nan
+    exponents = contact.INPUTS.exponents
+    found = {name: (float(slopes @ np.array(exponents[name])) + direct.get(name, 0.0)) / total for name in exponents}
+    return {name: value for name, value in found.items() if name in dict(contact.inputs())}
 
 
 def _sensitivities(slopes: Array, contact: float, viscous: float) -> dict[str, float]:

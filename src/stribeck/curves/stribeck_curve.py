@@ -114,7 +114,8 @@ def stribeck_curve(
     law : str or AsperityLaw, optional
         Contact law as in :func:`stribeck.solve`; that of the problem if omitted.
     method : {"solver", "atlas"}
-        Whether each state is solved, or read off :mod:`stribeck.atlas`: within 1e-4, thousands of times as fast, without
+        Whether each state is solved, or read off :mod:`stribeck.atlas`: within the stated error of its
+        table, thousands of times as fast, without
         fields; ``rtol`` and ``on_point`` then have no effect.
     **parts
         ``fluid``, ``cavitation``, ``cavity_pressure``, ``flow_factors``, ``solid`` and ``slide_to_roll`` as in

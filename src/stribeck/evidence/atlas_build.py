@@ -79,7 +79,7 @@ def line(name: str, breaks: Array, region: int, i: int, j: int, k: int) -> Array
     """Return the tabulated functions for one node in roughness of a piece, shape (loads, speeds, functions)."""
     row, grid = ROWS[name], ROWS[name].grid
     where = grid.regions[region]
-    x = in_region(i, where.pieces[0], nodes(where.nodes[0])[k : k + 1])
+    x = in_region(i, where.pieces[0], where.roughness_nodes[k : k + 1])
     kappa = roughness_at(where, float(x[0]))
     found = []
     for y in in_region(j, where.pieces[1], nodes(where.nodes[1])):
@@ -98,7 +98,7 @@ def line(name: str, breaks: Array, region: int, i: int, j: int, k: int) -> Array
 def piece_blocks(where: Region, lines: Sequence[Array]) -> list[Array]:
     """Return the dense coefficients of the segments of a piece, each along speed, roughness, load and function."""
     values = np.stack(lines)  # roughness, load, speed, function
-    K, Y = (to_coefficients(count) for count in where.nodes)
+    K, Y = np.linalg.inv(chebyshev(where.roughness_nodes, where.nodes[0]).T), to_coefficients(where.nodes[1])
     found, first = [], 0
     for count in where.speeds:
         part = values[:, :, first : first + count]

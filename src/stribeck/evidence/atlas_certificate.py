@@ -10,19 +10,21 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import TABLES, Box, TableRow
-from stribeck.contacts.groups import Groups
-from stribeck.evidence.atlas_states import groups_of
-from stribeck.quantities.outputs import NAMES
+from stribeck.contacts.friction import DEFINITIONS, Definition
+from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.groups import Geometry, Groups
+from stribeck.evidence.atlas_states import FROM, groups_of
 from stribeck.solver.solve import solve
 
-RTOL = {"line-exponential": 1e-7}
-"""Tolerance of the states that judge, as far as double precision gives it; 1e-6 for other tables."""
+RTOL = {"line-exponential": 1e-7, "ball-exponential": 1e-5}
+"""Tolerance of the states that judge, as far as double precision and time give it; 1e-6 for other tables."""
 
 MIN_SHARE = 1e-9
 """Contact share from which its relative error counts; so small a part of the load is felt nowhere else."""
@@ -39,21 +41,27 @@ SHARED = 0.01
 TRIES = 20
 """States drawn for each in mixed lubrication; about one in nine is."""
 
-FRICTIONS = ((1.0, "published"), (1.0, "balanced"), (0.01, "published"), (0.01, "balanced"))
-"""Coefficients of the contact law and definitions, at friction coefficient 1 of the dry contact."""
+BETAS: dict[Geometry, tuple[float, float]] = {"line": (1.0, 0.01), "point": (0.1, 0.01)}
+"""Coefficients of the contact law, of whole balls such that a/R is below 0.3, at friction coefficient 1 of the dry contact.
 
-FILMS = ("central_gap", "minimum_gap", "flux_gap")
+The viscous friction itself is judged at the first."""
 
-QUANTITIES = (
-    *(f"friction, {definition}, beta = {beta:g}" for beta, definition in FRICTIONS),
-    "viscous friction, published",
-    "viscous friction, balanced",
-    *FILMS,
-    "offset",
-    "contact load share",
-    "fluid load share",
-)
-"""What is judged, in the order of the errors."""
+
+def films_of(row: TableRow) -> tuple[str, ...]:
+    """Return the gaps that a table has."""
+    return tuple(name for name in ("central_gap", "minimum_gap", "flux_gap") if name in row.functions)
+
+
+def quantities(row: TableRow) -> tuple[str, ...]:
+    """Return what is judged of a table, in the order of the errors."""
+    kinds = DEFINITIONS[::-1]
+    frictions = (f"friction, {definition}, beta = {beta:g}" for beta in BETAS[row.geometry] for definition in kinds)
+    viscous = (f"viscous friction, {definition}" for definition in kinds)
+    return (*frictions, *viscous, *films_of(row), "offset", "contact load share", "fluid load share")
+
+
+FRICTIONS = 4
+"""How many frictions are judged first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,17 +70,17 @@ class Certificate:
 
     Attributes
     ----------
-    box : dict
-        Its box.
+    row : TableRow
+        The table.
     speed, load, relative_roughness : ndarray, shape (n,)
         The states.
     contact_share : ndarray, shape (n,)
         Solved load share of the asperities.
-    errors : ndarray, shape (n, len(QUANTITIES))
+    errors : ndarray, shape (n, len(quantities(row)))
         Relative errors; nan where a load share is too small to count.
     """
 
-    box: Box
+    row: TableRow
     speed: Array
     load: Array
     relative_roughness: Array
@@ -80,15 +88,19 @@ class Certificate:
     errors: Array
 
     @property
+    def box(self) -> Box:
+        """The box of the table."""
+        return self.row.box
+
+    @property
     def friction(self) -> Array:
         """Largest error of all frictions on each state."""
-        return np.asarray(self.errors[:, : len(FRICTIONS)].max(axis=1))
+        return np.asarray(self.errors[:, :FRICTIONS].max(axis=1))
 
     @property
     def film(self) -> Array:
-        """Largest error of the three gaps on each state."""
-        first = QUANTITIES.index(FILMS[0])
-        return np.asarray(self.errors[:, first : first + len(FILMS)].max(axis=1))
+        """Largest error of the gaps on each state."""
+        return np.asarray(self.errors[:, [quantities(self.row).index(name) for name in films_of(self.row)]].max(axis=1))
 
 
 def random_states(row: TableRow, states: int, seed: int, mixed: bool = False) -> tuple[Array, Array, Array]:
@@ -108,14 +120,15 @@ def random_states(row: TableRow, states: int, seed: int, mixed: bool = False) ->
 
 def states_of(row: TableRow, speed: Array, load: Array, kappa: Array) -> Groups:
     """Return the groups of many states of a table."""
-    return Groups(speed, load, kappa * load, **groups_of(row, 1.0, 1.0, 1.0).physics)
+    like = groups_of(row, 1.0, 1.0, 1.0)
+    return Groups(speed, load, kappa * load**like.scaling.roughness_exponent, **like.physics)
 
 
 def solved(name: str, state: tuple[float, float, float]) -> Array:
-    """Return the observables of speed, load and relative roughness from cold, as far as all films have them."""
+    """Return the observables that tables are made from, of speed, load and relative roughness solved from cold."""
     row = next(row for row in TABLES if row.name == name)
     found = solve(groups_of(row, *state), rtol=RTOL.get(name, 1e-6), on_failure="return").observables
-    return np.array([getattr(found, observable) for observable in NAMES])
+    return np.array([getattr(found, observable) for observable in FROM[row.geometry]])
 
 
 def certify(states: int, seed: int, workers: int = 1, mixed: bool = False, row: TableRow = TABLES[0]) -> Certificate:
@@ -131,30 +144,33 @@ def certify(states: int, seed: int, workers: int = 1, mixed: bool = False, row: 
 
 def compare(speed: Array, load: Array, kappa: Array, observed: Array, row: TableRow = TABLES[0]) -> Certificate:
     """Return the errors of a table on solved states."""
-    groups = states_of(row, speed, load, kappa)
-    contact, fluid, central, minimum, flux, offset, published, balanced = observed.T
-    viscous = {"published": published, "balanced": balanced}
-    found = [
-        np.abs(atlas.friction(groups, 1.0, beta, "balanced" if definition == "balanced" else "published"))
-        / (contact + beta * viscous[definition])
-        for beta, definition in FRICTIONS
-    ]
-    found += [
-        atlas.viscous_friction(groups, 1.0, "published") / published,
-        atlas.viscous_friction(groups, 1.0, "balanced") / balanced,
-    ]
-    found += [atlas.central_gap(groups) / central, atlas.minimum_gap(groups) / minimum, atlas.flux_gap(groups) / flux]
+    groups, rule = states_of(row, speed, load, kappa), RULES[row.geometry]
+    solved_values = dict(zip(FROM[row.geometry], observed.T, strict=True))
+    contact, fluid, offset = (solved_values[name] for name in ("contact_load_share", "fluid_load_share", "offset"))
+
+    def terms(beta: float, definition: Definition) -> tuple[Any, Any, Any]:
+        """Return contact share and viscous friction by the table, and the viscous friction that was solved."""
+        inputs = {**rule.of_contact(None), "beta": beta}
+        parts = {name: solved_values[name] for name in rule.parts(definition)}
+        share, viscous = atlas.friction_terms(groups, inputs, definition)
+        return share, viscous, rule.viscous(parts, speed, load, inputs, definition)
+
+    kinds = DEFINITIONS[::-1]
+    all_terms = [terms(beta, definition) for beta in BETAS[row.geometry] for definition in kinds]
+    found = [(share + viscous) / (contact + right) for share, viscous, right in all_terms]
+    found += [viscous / right for _, viscous, right in all_terms[: len(kinds)]]
+    found += [np.asarray(getattr(atlas, name)(groups)) / solved_values[name] for name in films_of(row)]
     found += [1 + (atlas.offset(groups) - offset) / np.maximum(np.abs(offset), OFFSET_FLOOR)]
     contact_counts = np.where(contact > MIN_SHARE, contact, np.nan)
     fluid_counts = np.where(fluid > MIN_FLUID, fluid, np.nan)
     found += [atlas.contact_load_share(groups) / contact_counts, atlas.fluid_load_share(groups) / fluid_counts]
-    return Certificate(row.box, speed, load, kappa, contact, np.abs(np.stack(found, axis=1) - 1))
+    return Certificate(row, speed, load, kappa, contact, np.abs(np.stack(found, axis=1) - 1))
 
 
 def table(certificate: Certificate) -> str:
     """Return the errors as a table, with the state where each is worst."""
     lines = ["| relative error | median | 99 % within | worst | where: speed, load, kappa |", "|---|---|---|---|---|"]
-    for name, errors in zip(QUANTITIES, certificate.errors.T, strict=True):
+    for name, errors in zip(quantities(certificate.row), certificate.errors.T, strict=True):
         worst = int(np.nanargmax(errors))
         where = ", ".join(f"{getattr(certificate, axis)[worst]:.2g}" for axis in certificate.box)
         numbers = f"{np.nanmedian(errors):.1e} | {np.nanquantile(errors, 0.99):.1e} | {errors[worst]:.1e}"

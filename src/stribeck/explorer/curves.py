@@ -17,6 +17,7 @@ from stribeck._types import Array
 from stribeck.atlas.tables import table_for
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.curves.stribeck_curve import StribeckCurve, stribeck_curve
@@ -174,7 +175,7 @@ def transition_marks(contact: Contact, definition: Definition) -> tuple[Transiti
         return ()
     groups, unit = contact.groups, _speed_group(contact)
     boundary_friction, beta = contact.boundary_friction, contact.beta
-    found = transition_speeds(groups, boundary_friction, beta, definition)
+    found = transition_speeds(groups, boundary_friction, beta, definition, **RULES[groups.geometry].motion(contact))
     marks = [
         Transition(name, float(getattr(found, name)[0]) / unit, float(found.error[i, 0]))
         for i, name in enumerate(("boundary", "hydrodynamic", "minimum"))
@@ -191,19 +192,21 @@ def axis_speeds(contact: Contact, marks: Sequence[Transition]) -> tuple[float, f
     row = atlas.for_groups(contact.groups)
     if row is None:
         return low, high
-    lowest, highest = (end / unit for end in row.box["speed"])
+    lowest, highest = (end / unit for end in row.speeds(contact.groups))
     return max(low, lowest), min(high, highest)
 
 
 def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple[Transition, ...]) -> Curve:
     """Return a curve read off the atlas."""
-    groups, unit = contact.groups, _speed_group(contact)
-    boundary_friction, beta = contact.boundary_friction, contact.beta
+    groups, unit, boundary_friction = contact.groups, _speed_group(contact), contact.boundary_friction
     speed = np.geomspace(*speeds, POINTS)
     row = table_for(groups)
-    along = Groups(np.clip(speed * unit, *row.box["speed"]), groups.load, groups.roughness, **groups.physics)
-    solid = boundary_friction * np.asarray(atlas.contact_load_share(along))
-    friction = {kind: solid + np.asarray(atlas.viscous_friction(along, beta, kind)) for kind in DEFINITIONS}
+    along = Groups(np.clip(speed * unit, *row.speeds(groups)), groups.load, groups.roughness, **groups.physics)
+    rule = RULES[groups.geometry]
+    inputs = rule.of_contact(contact)
+    terms = {kind: atlas.friction_terms(along, inputs, kind) for kind in DEFINITIONS}
+    solid = boundary_friction * abs(float(rule.rubbing(groups, inputs))) * terms["balanced"][0]
+    friction = {kind: solid + viscous for kind, (_, viscous) in terms.items()}
     return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(row.error)}")
 
 
@@ -349,9 +352,11 @@ def diagram_from_atlas(contact: Contact, definition: Definition, speeds: tuple[f
     low, high = row.box["relative_roughness"]
     scale = float(groups.load) ** groups.scaling.roughness_exponent
     inside = np.clip(h, low * scale, high * scale)
-    ends = (max(speeds[0] * unit, row.box["speed"][0]), min(speeds[1] * unit, row.box["speed"][1]))
     rows = replace(groups, roughness=inside)
-    found = transition_speeds(rows, contact.boundary_friction, contact.beta, definition, ends, narrowings=1)
+    lowest, highest = row.speeds(rows)
+    ends = max(speeds[0] * unit, lowest), min(speeds[1] * unit, highest)
+    motion = RULES[groups.geometry].motion(contact)
+    found = transition_speeds(rows, contact.boundary_friction, contact.beta, definition, ends, narrowings=1, **motion)
     boundary, hydrodynamic, minimum = (
         np.where(inside == h, line / unit, math.nan) for line in (found.boundary, found.hydrodynamic, found.minimum)
     )

@@ -113,9 +113,9 @@ def atlas_parts(definition: Definition) -> PartsOf:
     """Return the function that reads states off the atlas; it raises InputError outside."""
 
     def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
-        values, by_contact, by_viscous = atlas.friction_parts(groups, definition)
+        values, slopes = atlas.friction_parts(groups, definition)
         error = np.full(values.shape, table_for(groups).error)
-        return FrictionParts(values, np.stack([by_contact, by_viscous]), error, definition)
+        return FrictionParts(values, slopes, error, definition)
 
     return parts
 
@@ -211,7 +211,11 @@ class _Kept:
 
 def atlas_or_solved_parts(definition: Definition, rtol: float) -> PartsOf:
     """Return the function that reads the states off the atlas where it holds all of them, and else solves them."""
-    quick, slow = atlas_parts(definition), solved_parts(definition, rtol)
+    return _atlas_or(solved_parts(definition, rtol), definition)
+
+
+def _atlas_or(slow: PartsOf, definition: Definition) -> PartsOf:
+    quick = atlas_parts(definition)
 
     def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
         try:
@@ -307,7 +311,10 @@ def _of_ball(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
             "factors and solid out."
         )
     logs, varies = model.start()
-    return Ways(None, lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL)))
+    lattice, solved = lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL))
+    if atlas.for_groups(model.contact.groups) is None:
+        return Ways(None, lattice, solved)
+    return Ways(atlas_parts(definition), _atlas_or(lattice, definition), solved)
 
 
 WAYS: dict[str, Callable[[FrictionModel, Definition, float], Ways]] = {"line": _of_cylinder, "point": _of_ball}

@@ -140,8 +140,9 @@ def _log_density(fit: Fit) -> Callable[[Array], Array]:
             return found
         y = x[inside]
         groups = Groups(y[..., 0], y[..., 1], y[..., 2], **physics)
-        contact, viscous = atlas.contact_load_share(groups), atlas.viscous_friction(groups, 1.0, fit.definition)
-        friction = y[..., 3] * contact + y[..., 4] * viscous
+        inputs = dict(zip(model.rule.inputs, np.moveaxis(y[..., 4:], -1, 0), strict=True))
+        contact, viscous = (term.reshape(groups.shape) for term in atlas.friction_terms(groups, inputs, fit.definition))
+        friction = y[..., 3] * contact + viscous
         r = np.log(friction / data.friction) if goal.logarithmic else friction - data.friction
         squares = ((r / (1.0 if goal.sigma is None else goal.sigma)) ** 2).sum(axis=1)
         likelihood = -0.5 * len(data) * np.log(squares) if goal.sigma is None else -0.5 * squares

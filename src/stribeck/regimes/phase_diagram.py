@@ -85,7 +85,8 @@ def phase_diagram(
         Contact law as in :func:`stribeck.solve`; that of the problem if omitted.  What formulas give is nan for another law
         than the exponential one.
     method : {"solver", "atlas"}
-        Whether points and transitions are solved, or read off :mod:`stribeck.atlas`, within 1e-4 and a hundred times as fast.
+        Whether points and transitions are solved, or read off :mod:`stribeck.atlas`, within the stated error of
+        its table and a hundred times as fast.
 
     Returns
     -------

@@ -11,7 +11,9 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import table_for
+from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import PURE_SLIDING, RULES
 from stribeck.contacts.groups import Groups
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
@@ -61,6 +63,8 @@ def transition_speeds(
     definition: Definition = "balanced",
     speeds: tuple[float, float] | None = None,
     narrowings: int = NARROWINGS,
+    slide_to_roll: float = PURE_SLIDING,
+    wetted_radius: float = math.inf,
 ) -> TransitionSpeeds:
     """Return where the regimes of many contacts of one load pass into each other, all located at once on the atlas.
 
@@ -76,6 +80,8 @@ def transition_speeds(
         Smallest and largest speed group between which to look; those of the table by default.
     narrowings : int
         Rounds in which a passage is narrowed, two evaluations each; with fewer the stated error is larger.
+    slide_to_roll, wetted_radius : float
+        Motion and liquid of balls, as in :func:`stribeck.atlas.friction`.
 
     Returns
     -------
@@ -89,18 +95,20 @@ def transition_speeds(
     """
     row = table_for(groups)
     roughness = np.atleast_1d(np.asarray(groups.roughness, dtype=float))
-    speeds = row.box["speed"] if speeds is None else speeds
+    speeds = row.speeds(groups) if speeds is None else speeds
     count = 1 + max(2, math.ceil(COARSE * math.log10(speeds[1] / speeds[0])))
     grid = np.log(np.geomspace(*speeds, count))
 
     bound = HYDRODYNAMIC_CONTACT_SHARE / (1 - HYDRODYNAMIC_CONTACT_SHARE)
+    motion = {"slide_to_roll": slide_to_roll, "wetted_radius": wetted_radius}
+    rubbing = boundary_friction * abs(float(RULES[groups.geometry].rubbing(groups, motion)))
 
     def signs(s: Array, h: Array) -> Array:
         """Return what passes from below to above zero at each of the three, shape (3, ...)."""
         fluid, contact, viscous, slope = atlas.shares_and_friction(
-            Groups(np.exp(s), groups.load, h, **groups.physics), boundary_friction, beta, definition
+            Groups(np.exp(s), groups.load, h, **groups.physics), boundary_friction, beta, definition, **motion
         )
-        solid = boundary_friction * contact
+        solid = rubbing * contact
         return np.stack(
             [
                 np.log(np.maximum(fluid, 1e-300) / BOUNDARY_FLUID_SHARE),
@@ -161,19 +169,23 @@ def fill(diagram: Diagram) -> None:
     speeds = diagram.axes["speed"]
     for i in range(len(diagram.axes["load"])):
         for j in range(len(diagram.axes["roughness"])):
-            _, groups, unit = diagram.problem(i, j)
-            _enter(diagram, (i, j), Groups(unit * speeds, groups.load, groups.roughness, **groups.physics))
+            problem, groups, unit = diagram.problem(i, j)
+            contact = problem if isinstance(problem, Contact) else None
+            _enter(diagram, (i, j), Groups(unit * speeds, groups.load, groups.roughness, **groups.physics), contact)
             diagram.velocity_weakening[i, j] = 0
             if float(groups.roughness) > 0:
-                _enter_lines(diagram, (i, j), groups, unit)
+                _enter_lines(diagram, (i, j), groups, unit, contact)
             diagram.messages[i, j] = ""
 
 
-def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups) -> None:
-    boundary_friction, beta, definition = diagram.boundary_friction, diagram.beta, diagram.definition
-    friction = np.asarray(atlas.friction(groups, boundary_friction, beta, definition))
+def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups, of: Contact | None) -> None:
+    rule = RULES[groups.geometry]
+    inputs = {**rule.of_contact(of), "beta": diagram.beta}
+    share, viscous = atlas.friction_terms(groups, inputs, diagram.definition)
+    solid = diagram.boundary_friction * abs(float(rule.rubbing(groups, inputs))) * share
+    friction = solid + viscous
     fluid, central = np.asarray(atlas.fluid_load_share(groups)), np.asarray(atlas.central_gap(groups))
-    contact = boundary_friction * np.asarray(atlas.contact_load_share(groups)) / np.where(friction > 0, friction, 1.0)
+    contact = solid / np.where(friction > 0, friction, 1.0)
     kappa, error = float(groups.relative_roughness), table_for(groups).error
     alpha = 1.0 if diagram.contact is None else diagram.contact.alpha
     values = {
@@ -195,15 +207,15 @@ def _enter(diagram: Diagram, row: tuple[int, int], groups: Groups) -> None:
     diagram.outcomes[row] = Outcome.CONVERGED.name
 
 
-def _enter_lines(diagram: Diagram, row: tuple[int, int], groups: Groups, unit: float) -> None:
+def _enter_lines(diagram: Diagram, row: tuple[int, int], groups: Groups, unit: float, contact: Contact | None) -> None:
     """Locate the transitions of a row between the smallest and largest speed of its table."""
-    low, high = table_for(groups).box["speed"]
+    low, high = table_for(groups).speeds(groups)
 
     def groups_at(speed: Array) -> Groups:
         return Groups(speed, groups.load, groups.roughness, **groups.physics)
 
     speeds = np.geomspace(low, high, 1 + DENSITY * round(np.log10(high / low)))
-    curve = AtlasCurve("speed", speeds, groups_at, None, diagram.boundary_friction, diagram.beta, diagram.definition)
+    curve = AtlasCurve("speed", speeds, groups_at, contact, diagram.boundary_friction, diagram.beta, diagram.definition)
     marks = {mark.name: mark.value for mark in curve.transitions}
     for variable, name in MARKS.items():
         if name in marks:

@@ -82,12 +82,15 @@ def states_of(
     str
         ``"atlas"`` or ``"solver"``.
     """
-    if atlas.for_groups(groups) is not None:
+    table = atlas.for_groups(groups)
+    if table is not None:
         samples = _moved(groups, offsets)
         if bool(np.all(atlas.covers(samples))):
-            found = {name: np.asarray(getattr(atlas, name)(samples)) for name in NAMES}
-            found["contact_load_share"] = np.asarray(atlas.contact_load_share(samples))
-            found["viscous"] = np.asarray(atlas.viscous_friction(samples, 1.0, definition))
+            inputs = RULES[groups.geometry].of_contact(contact)
+            films = [name for name in NAMES if name != "flux_gap" or name in table.functions]
+            found = {name: np.asarray(getattr(atlas, name)(samples)) for name in films}
+            share, viscous = atlas.friction_terms(samples, inputs, definition)
+            found |= {"contact_load_share": share, "viscous": viscous / inputs["beta"]}
             if all(np.isfinite(values).all() for values in found.values()):
                 return {name: np.broadcast_to(values, (len(offsets),)) for name, values in found.items()}, "atlas"
     return _by_quadratics(groups, offsets, definition, rtol, contact), "solver"

@@ -1,0 +1,152 @@
+"""What the table of states holds at them: functions inside the box, and what the friction is made of with its derivatives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.atlas.drag import DRAG
+from stribeck.atlas.grid import HEAVY, NEARLY_SMOOTH
+from stribeck.atlas.table import Values
+from stribeck.atlas.tables import SLACK, TableRow, table_for
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.groups import Groups
+from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.units import InputError
+
+__all__ = [
+    "CENTRAL",
+    "DEFLECTION",
+    "FLUX",
+    "MINIMUM",
+    "ODDS",
+    "contact_share",
+    "flat",
+    "look_up",
+    "read_friction",
+    "slopes_of",
+]
+
+ODDS, CENTRAL, MINIMUM, FLUX, DEFLECTION = "log_odds", "central_gap", "minimum_gap", "flux_gap", "deflection"
+
+IMAGINARY = 1e-30
+"""Imaginary step of the exact derivatives of friction rules."""
+
+
+class Lookup(NamedTuple):
+    """What was read off the table of states, flat arrays."""
+
+    table: TableRow
+    speed: Array
+    load: Array
+    values: Values
+
+
+@one_blas_thread
+def look_up(groups: Groups, names: tuple[str, ...], slopes: bool = False) -> Lookup:
+    """Return functions of the table of states inside its box."""
+    held = table_for(groups)
+    box, grid = held.box, held.grid
+    if missing := [name for name in names if name not in held.functions]:
+        raise InputError(f"the table {held.name} of the atlas has no {missing[0]}; use solve.")
+    speed, load, kappa = (flat(groups, value) for value in (groups.speed, groups.load, groups.relative_roughness))
+    for name, values in (("speed", speed), ("load", load), ("relative_roughness", kappa)):
+        _check(name, values, *box[name], zero=name != "load")
+    if (kappa == 0).any():
+        _check("speed of a smooth contact", speed[kappa == 0], *grid.films, zero=True)
+    with np.errstate(divide="ignore"):
+        log_speed = np.log(speed)
+    log_load = grid.log_load(load)
+    inside = np.where(kappa > 0, np.clip(kappa, *box["relative_roughness"]), 0.0)
+    closing = (speed == 0) & (inside > 0) & ~grid.has_rest[grid.region_at(log_load, inside)]
+    if FLUX in names and closing.any():
+        raise InputError(
+            f"load has the value {load[closing][0]:g} at speed 0; there, at relative roughness below {NEARLY_SMOOTH:g}, the "
+            f"atlas holds the flux gap for loads up to {math.exp(-HEAVY):.4g}. Use solve."
+        )
+    functions = tuple(held.functions.index(name) for name in names)
+    found = held.table.read(functions, log_speed, np.where(closing, HEAVY, log_load), inside, slopes)
+    # At rest the load shifts the gap and does nothing else.
+    shift = 0.5 * inside[closing] * (log_load[closing] - HEAVY)
+    dry = (speed == 0) & (kappa == 0)
+    for row, name in enumerate(names):
+        if name in (CENTRAL, MINIMUM):
+            found.values[row, closing] = np.log(np.exp(found.values[row, closing]) + shift)
+        found.values[row, dry] = DRAG[held.geometry].dry_offset if name == DEFLECTION else -math.inf
+    return Lookup(held, speed, load, found)
+
+
+class FrictionReading(NamedTuple):
+    """What the friction of states is made of, flat arrays; derivatives by ln(speed), ln(load), ln(roughness) where wanted."""
+
+    speed: Array
+    load: Array
+    odds: Array
+    contact: Array
+    contact_slopes: Array
+    parts: dict[str, Array]
+    part_slopes: dict[str, Array]
+
+
+def read_friction(groups: Groups, definition: Definition, slopes: bool = False) -> FrictionReading:
+    """Return contact share and parts of the viscous friction of states, and their derivatives if wanted."""
+    drag = DRAG[groups.geometry]
+    names = (ODDS, *drag.names(definition))
+    held, speed, load, found = look_up(groups, names, slopes)
+    by: list[Array | None] = [None] * len(names)
+    if found.slopes is not None:
+        # By ln(speed), L and ln(kappa), with L = -factor ln(load) and kappa = roughness/load^exponent.
+        by_speed, by_log_load, by_kappa = found.slopes
+        by_load = -held.grid.load_factor * by_log_load - groups.scaling.roughness_exponent * by_kappa
+        by = list(np.stack([by_speed, by_load, by_kappa], axis=1))
+    logs = {name: (found.values[row], by[row]) for row, name in enumerate(names) if row > 0}
+    parts = drag.parts(logs, speed, load)
+    contact = contact_share(found.values[0])
+    contact_slopes = np.empty((3, 0)) if by[0] is None else -contact * (1 - contact) * by[0]
+    part_slopes = {name: slope for name, (_, slope) in parts.items() if slope is not None}
+    values = {name: value for name, (value, _) in parts.items()}
+    return FrictionReading(speed, load, found.values[0], contact, contact_slopes, values, part_slopes)
+
+
+def slopes_of(
+    groups: Groups, reading: FrictionReading, inputs: Mapping[str, Any], definition: Definition, directions: int = 3
+) -> tuple[Array, Array]:
+    """Return the derivatives of contact share and viscous friction by the logarithms of the groups, zero at rest."""
+    rule, step = RULES[groups.geometry], 1j * IMAGINARY
+    inputs = {name: flat(groups, value) for name, value in inputs.items()}
+    viscous = np.empty((directions, reading.speed.size))
+    for d in range(directions):
+        moved = {name: value + step * reading.part_slopes[name][d] for name, value in reading.parts.items()}
+        speed, load = (group * (1 + step) if d == axis else group for axis, group in enumerate((reading.speed, reading.load)))
+        viscous[d] = np.imag(rule.viscous(moved, speed, load, inputs, definition)) / IMAGINARY
+    contact = reading.contact_slopes[:directions].copy()
+    for found in (contact, viscous):
+        found[:, reading.speed == 0] = 0.0
+    return contact, viscous
+
+
+def flat(groups: Groups, value: Any) -> Array:
+    """Return a number or an array that broadcasts with groups as a flat array over their states."""
+    return np.broadcast_to(np.asarray(value), groups.shape).ravel()
+
+
+def _check(name: str, values: Array, low: float, high: float, zero: bool) -> None:
+    """Refuse values outside a side of the box."""
+    outside = (values < low * (1 - SLACK)) | (values > high * (1 + SLACK))
+    if zero:
+        outside &= values != 0
+    if outside.any():
+        also = " and 0" if zero else ""
+        raise InputError(
+            f"{name} has the value {values[outside][0]:g}; the atlas covers {low:g} to {high:g}{also}. Use solve outside."
+        )
+
+
+def contact_share(odds: Array) -> Array:
+    """Return the contact share of ln(fluid over contact share); the fluid share of its negative."""
+    return np.asarray(1 / (1 + np.exp(odds)))

@@ -1,0 +1,176 @@
+"""The atlas of balls: what is read off it against solved states, in curves, diagrams, fits, uncertainties and on the page."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stribeck as sb
+from stribeck.atlas.tables import TABLES
+from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.model import Model
+from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.evidence.atlas_certificate import compare, quantities, random_states, solved
+from stribeck.explorer.curves import curve_from_atlas, in_atlas, transition_marks
+from stribeck.fits.friction_parts import atlas_parts
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.regimes.phase_from_atlas import transition_speeds
+
+BALL = next(row for row in TABLES if row.name == "ball-exponential")
+
+
+def ball(speed=2e-2, load=0.05, kappa=2e-2, beta=0.05, **changes):
+    """Return a contact with given groups: of a rubber on glass in water-like liquid."""
+    radius, modulus, viscosity, alpha = 5e-3, 2e6, 0.02, 2.0
+    name = "entrainment_speed" if "slide_to_roll" in changes else "speed"
+    force = load * math.pi**3 * beta**3 * radius**2 * modulus / 6
+    a = (0.75 * force * radius / modulus) ** (1 / 3)
+    return sb.PointContact(
+        radius=radius,
+        modulus=modulus,
+        load=force,
+        viscosity=viscosity,
+        roughness=kappa * alpha * a**2 / radius,
+        alpha=alpha,
+        beta=beta,
+        boundary_friction=0.7,
+        **{name: speed * modulus * a**4 / (3 * math.pi * viscosity * radius**3) / (2 if changes.get("slide_to_roll") else 1)},
+        **changes,
+    )
+
+
+def of_ball(speed, load, kappa):
+    return sb.Groups(speed, load, kappa * np.asarray(load) ** (2 / 3), geometry="point")
+
+
+# --- where it holds ---
+
+
+@pytest.mark.quick
+def test_other_models_of_balls_are_refused_and_so_are_thin_smooth_films():
+    groups = of_ball(1e-3, 0.1, 0.01)
+    assert sb.atlas.for_groups(groups).name == "ball-exponential"
+    assert sb.atlas.covers(groups)
+    cavitated = replace(groups, model=Model(cavitation=Cavitation.EXIT))
+    assert not sb.atlas.covers(cavitated)
+    with pytest.raises(sb.InputError, match="Newtonian fluid"):
+        sb.atlas.friction(cavitated)
+    low, high = BALL.grid.films
+    smooth = replace(groups, roughness=0.0)
+    assert sb.atlas.covers(replace(smooth, speed=np.array([0.0, 0.9 * low, 1.1 * low]))).tolist() == [True, False, True]
+    assert BALL.speeds(smooth) == (low, min(high, BALL.box["speed"][1]))
+    with pytest.raises(sb.InputError, match="speed of a smooth contact has the value"):
+        sb.atlas.central_gap(replace(smooth, speed=0.9 * low))
+
+
+@pytest.mark.quick
+def test_what_balls_do_not_have_is_refused_by_name():
+    with pytest.raises(sb.InputError, match="has no flux_gap"):
+        sb.atlas.flux_gap(of_ball(1e-3, 0.1, 0.01))
+    with pytest.raises(sb.InputError, match="wetted_radius = 50 belongs to a ball"):
+        sb.atlas.friction(sb.Groups(1e-3, 0.1, 1e-3), wetted_radius=50)
+    with pytest.raises(sb.InputError, match="must be above 1"):
+        sb.atlas.friction(of_ball(1e-3, 0.1, 0.01), wetted_radius=0.5)
+
+
+@pytest.mark.quick
+def test_at_rest_asperities_carry_all_and_the_film_is_the_solved_one():
+    groups = of_ball(0.0, 0.05, 0.03)
+    state = sb.solve(groups, rtol=1e-6)
+    assert sb.atlas.friction(groups, 0.7) == 0.7
+    assert sb.atlas.central_gap(groups) == pytest.approx(state.central_gap, rel=1e-3)
+    assert sb.atlas.offset(groups) == pytest.approx(state.offset, abs=1e-3)
+    assert sb.atlas.offset(of_ball(0.0, 0.05, 0.0)) == -1.0
+
+
+# --- against the solver ---
+
+
+def test_it_is_within_its_stated_error_of_states_it_was_not_made_from():
+    speed, load, kappa = random_states(BALL, 3, 20, mixed=True)
+    observed = np.array([solved(BALL.name, state) for state in zip(speed, load, kappa, strict=True)])
+    found = compare(speed, load, kappa, observed, BALL)
+    assert found.errors.shape == (3, len(quantities(BALL)))
+    assert found.friction.max() < BALL.error
+
+
+@pytest.mark.parametrize("changes", [{}, {"wetted_radius": 2e-3}, {"slide_to_roll": 0.5}])
+def test_friction_of_a_contact_is_the_solved_one_whatever_its_liquid_and_motion(changes):
+    contact = ball(**changes)
+    state, rule = sb.solve(contact, rtol=1e-5), RULES["point"]
+    for definition in ("balanced", "published"):
+        right = state.friction(definition=definition)
+        settings = {"boundary_friction": 0.7, "beta": contact.beta, "definition": definition}
+        found = sb.atlas.friction(contact.groups, **settings, **rule.motion(contact))
+        assert found == pytest.approx(right.total, rel=BALL.error)
+
+
+def test_a_curve_read_off_it_is_the_solved_one():
+    contact, speeds = ball(wetted_radius=3e-3), [ball(s).speed for s in (1e-4, 1e-3, 1e-2, 0.1, 1.0)]
+    read, exact = (sb.stribeck_curve(contact, speed=speeds, rtol=1e-4, method=method) for method in ("atlas", "solver"))
+    assert (np.abs(read.friction - exact.friction) < read.friction_error).all()
+    assert np.allclose(read.friction_viscous, exact.friction_viscous, rtol=3e-3)
+    assert np.allclose(read.observable("central_gap"), exact.observable("central_gap"), rtol=3e-3)
+    assert read.regimes == exact.regimes
+    with pytest.raises(sb.InputError, match="flux_gap"):
+        read.observable("flux_gap")
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("over", ["speed", "load", "roughness"])
+def test_the_slope_of_a_curve_is_that_of_its_friction(over):
+    contact = ball(wetted_radius=3e-3)
+    here = getattr(contact, over)
+    curve = sb.stribeck_curve(contact, **{over: (0.3 * here, 3 * here)}, points=9, method="atlas")
+    step = 1e-5
+    ahead, behind = (curve._friction_at(curve.values * math.exp(sign * step)) for sign in (1, -1))
+    assert np.allclose(curve._slope_at(curve.values), (ahead - behind) / (2 * step), rtol=1e-5, atol=1e-8)
+
+
+def test_sensitivities_read_off_it_are_the_solved_ones():
+    contact = ball(wetted_radius=3e-3)
+    _, right = friction_sensitivities(contact, rtol=1e-5)
+    _, found = friction_sensitivities(contact, method="atlas")
+    assert found == pytest.approx(right, abs=5e-3)
+
+
+# --- what reads it ---
+
+
+@pytest.mark.quick
+def test_a_phase_diagram_has_its_lines_where_curves_have_them():
+    pytest.importorskip("xarray")
+    contact = ball()
+    unit = float(contact.groups.speed) / contact.speed
+    grid = {"speed": (1e-6 / unit, 10 / unit), "roughness": [contact.roughness], "points": {"speed": 9}}
+    diagram = sb.phase_diagram(contact, **grid, method="atlas")
+    curve = sb.stribeck_curve(contact, speed=grid["speed"], points=101, method="atlas")
+    assert diagram.speed_at_minimum.item() == pytest.approx(curve.minimum.value, rel=1e-3)
+    found = transition_speeds(contact.groups, 0.7, contact.beta)
+    assert found.minimum[0] / unit == pytest.approx(curve.minimum.value, rel=1e-3)
+    assert np.isfinite(diagram.friction).all()
+
+
+@pytest.mark.quick
+def test_the_page_reads_curve_and_transitions_off_it():
+    contact = ball()
+    assert in_atlas(contact)
+    marks = transition_marks(contact, "balanced")
+    assert [mark.speed for mark in marks] == sorted(mark.speed for mark in marks)
+    speeds = (contact.speed / 100, contact.speed * 100)
+    shown = curve_from_atlas(contact, speeds, marks)
+    curve = sb.stribeck_curve(contact, speed=shown.speed, method="atlas")
+    assert np.allclose(shown.friction["balanced"], curve.friction, rtol=1e-12)
+
+
+@pytest.mark.quick
+def test_parts_for_fits_have_the_derivatives_of_their_values():
+    groups = of_ball(np.geomspace(1e-4, 1.0, 7), 0.05, 0.02)
+    parts = atlas_parts("published")
+    found, step = parts(groups), 1e-5
+    assert found.values.shape == (4, 7)
+    for axis, name in enumerate(("speed", "load", "roughness")):
+        moved = [parts(replace(groups, **{name: getattr(groups, name) * math.exp(sign * step)})) for sign in (1, -1)]
+        differences = (moved[0].values - moved[1].values) / (2 * step)
+        assert np.allclose(found.slopes[:, axis], differences, rtol=1e-4, atol=1e-7)
