@@ -8,14 +8,17 @@ import pytest
 
 import stribeck as sb
 from stribeck.atlas.tables import TABLES
+from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.model import Model
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.evidence.atlas_certificate import compare, quantities, random_states, solved
 from stribeck.explorer.curves import curve_from_atlas, in_atlas, transition_marks
-from stribeck.fits.friction_parts import atlas_parts
+from stribeck.fits.friction_parts import atlas_parts, ways_of
+from stribeck.fits.model import FrictionModel, free_inputs
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.regimes.phase_from_atlas import transition_speeds
+from stribeck.uncertainty.states import states_of
 
 BALL = next(row for row in TABLES if row.name == "ball-exponential")
 
@@ -174,3 +177,29 @@ def test_parts_for_fits_have_the_derivatives_of_their_values():
         moved = [parts(replace(groups, **{name: getattr(groups, name) * math.exp(sign * step)})) for sign in (1, -1)]
         differences = (moved[0].values - moved[1].values) / (2 * step)
         assert np.allclose(found.slopes[:, axis], differences, rtol=1e-4, atol=1e-7)
+
+
+@pytest.mark.quick
+def test_fits_begin_on_it_where_it_holds():
+    contact = ball(wetted_radius=3e-3)
+    curve = sb.stribeck_curve(contact, speed=(contact.speed / 30, contact.speed * 30), points=9, method="atlas")
+    data = sb.Measurements(
+        "speed", curve.values, curve.friction, None, np.zeros(9, dtype=int), ("a",), ({},), np.arange(2, 11)
+    )
+    names = ("boundary_friction", "roughness", "wetted_radius")
+    model = FrictionModel(contact, data, free_inputs(contact, data, names, FitSettings(geometry="point")))
+    ways = ways_of(model, "balanced", 1e-5)
+    assert ways.scan is not None
+    assert np.allclose(model.predict(np.zeros(3), ways.quick).friction, curve.friction, rtol=1e-12)
+
+
+@pytest.mark.quick
+def test_uncertainties_are_sampled_on_it():
+    contact = ball(wetted_radius=3e-3)
+    found, method = states_of(contact.groups, np.zeros((2, 3)), "published", 1e-5, contact)
+    assert method == "atlas"
+    inputs = RULES["point"].of_contact(contact)
+    share, viscous = sb.atlas.friction_terms(contact.groups, inputs, "published")
+    assert found["contact_load_share"] == pytest.approx(share[0], rel=1e-12)
+    assert found["viscous"] * contact.beta == pytest.approx(viscous[0], rel=1e-12)
+    assert "flux_gap" not in found
