@@ -172,6 +172,13 @@ def test_a_film_too_thin_for_any_mesh_is_refused_at_once_and_says_what_to_ask_fo
     assert solve_cold(ball(speed, 1e-3, 1e-4), 1e-2).outcome.ok
 
 
+def test_a_speed_so_slow_that_friction_is_lost_to_rounding_is_said_to_be():
+    state = solve_cold(ball(1e-18, 1e-3, 1e-3), 1e-4)
+    assert state.outcome is Outcome.ROUNDING
+    assert state.values["contact_load_share"] == pytest.approx(1.0, abs=1e-9)
+    assert solve_cold(ball(1e-14, 1e-3, 1e-3), 1e-4).outcome.ok
+
+
 def test_a_mesh_beyond_the_memory_is_said_to_be(monkeypatch):
     monkeypatch.setattr("stribeck.solver.point.level.bytes_of", lambda found, band: 1e12)
     assert solve_cold(ball(1e-2, 1e-3, 0.0), 1e-4).outcome is Outcome.MESH_LIMIT
