@@ -171,10 +171,10 @@ def test_the_page_reads_curve_and_transitions_off_it():
 def test_parts_for_fits_have_the_derivatives_of_their_values():
     groups = of_ball(np.geomspace(1e-4, 1.0, 7), 0.05, 0.02)
     parts = atlas_parts("published")
-    found, step = parts(groups), 1e-5
+    found, step = parts(groups, ()), 1e-5
     assert found.values.shape == (4, 7)
     for axis, name in enumerate(("speed", "load", "roughness")):
-        moved = [parts(replace(groups, **{name: getattr(groups, name) * math.exp(sign * step)})) for sign in (1, -1)]
+        moved = [parts(replace(groups, **{name: getattr(groups, name) * math.exp(sign * step)}), ()) for sign in (1, -1)]
         differences = (moved[0].values - moved[1].values) / (2 * step)
         assert np.allclose(found.slopes[:, axis], differences, rtol=1e-4, atol=1e-7)
 
