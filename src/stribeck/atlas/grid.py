@@ -209,7 +209,7 @@ LINE_PERSSON = Grid(
 """Cylinder, Persson's law, full film: L = ln(20/load), as nothing closes where the law goes on to full contact."""
 
 BALL_EXPONENTIAL = Grid(
-    (Region((1e-3, 1.0), (2 / 3 * math.log(2), 2 / 3 * math.log(1e7)), (1, 1), (11, 7), (4, 6, 6, 6, 7, 8)),),
+    (Region((1e-3, 1.0), (2 / 3 * math.log(2), 2 / 3 * math.log(1e7)), (1, 1), (21, 7), (4, 6, 6, 6, 7, 8), nested=True),),
     load_factor=2 / 3,
     films=(1e-3, 1e3),
 )

@@ -141,6 +141,7 @@ def breaks_on(row: TableRow, log_speeds: Array, found: Array, kappa: float, has_
 
     odds, central = found[:, 0], np.exp(found[:, row.functions.index("central_gap")])
     there = np.isfinite(odds) & (odds < 600)
+    there[there] &= np.append(True, odds[there][1:] > np.maximum.accumulate(odds[there])[:-1])  # the rest is rounding
     s, odds, central = log_speeds[there], odds[there], central[there]
     if not has_rest and row.law != "exponential":
         ends = PchipInterpolator(np.log(central), s)(np.log(kappa * np.array(GAPS)))
