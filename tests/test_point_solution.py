@@ -222,6 +222,17 @@ def test_a_state_that_failed_is_raised_with_its_sentence_or_returned():
         finish_point(rigid(groups, Outcome.PATH_LOST, central_gap=math.nan), None, "return")
 
 
+@pytest.mark.parametrize("outcome", [Outcome.CONVERGED, Outcome.REFINEMENT_LIMIT])
+def test_a_picture_says_across_it_that_a_state_is_no_result(outcome):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    state = finish_point(rigid(Groups(SPEED, 1e-3, 1e-5, geometry="point"), outcome), None, "return")
+    _, own = pyplot.subplots()
+    for figure in (state.plot(), state.plot(ax=own)):
+        written = [text.get_text() for axes in figure.axes for text in axes.texts]
+        assert ("not converged" in written) == (not outcome.ok)
+        pyplot.close(figure)
+
+
 @pytest.mark.quick
 def test_a_ball_at_rest_has_the_friction_of_its_asperities():
     groups = Groups(0.0, 1e-3, 1e-5, geometry="point")

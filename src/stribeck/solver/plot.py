@@ -17,6 +17,7 @@ from stribeck.files.pictures import (
     FLUID,
     GREY,
     INK,
+    MARK,
     add_legend,
     figure_of,
     finish_figure,
@@ -103,7 +104,18 @@ def plot_profile(
     else:
         above.set_xlim(below.get_xlim())
         add_legend(figure, (above, below), columns=3)
+    mark_failure(solution, below, above)
     return finish_figure(figure, path, force)
+
+
+def mark_failure(solution: BaseSolution, *drawn: Axes | None) -> None:
+    """Write across what is drawn of a state that it is no result, where it is none."""
+    if solution.outcome.ok:
+        return
+    for axes in drawn:
+        if axes is not None:
+            style: dict[str, Any] = {"ha": "center", "va": "center", "rotation": 20, "zorder": 10, "size": 22, "color": MARK}
+            axes.text(0.5, 0.5, "not converged", transform=axes.transAxes, **style)
 
 
 def draw_gap(axes: Axes, solution: BaseSolution, x: Array, gap: Array, to_gap: tuple[float, str]) -> None:

@@ -30,7 +30,7 @@ from stribeck.files.pictures import (
 )
 from stribeck.files.writing import PathLike
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.plot import axis_in_si, draw_gap, footer_of
+from stribeck.solver.plot import axis_in_si, draw_gap, footer_of, mark_failure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -138,6 +138,7 @@ def plot_point_solution(
     _mark_minimum(film, solution, to_x[0])
     if others:
         _cut(others[1], others[2], solution, to_x, to_gap, to_pressure)
+    mark_failure(solution, film, *others)
     return finish_figure(figure, path, force)
 
 
