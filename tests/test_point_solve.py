@@ -179,6 +179,11 @@ def test_a_speed_so_slow_that_friction_is_lost_to_rounding_is_said_to_be():
     assert solve_cold(ball(1e-14, 1e-3, 1e-3), 1e-4).outcome.ok
 
 
+def test_a_roughness_lost_to_rounding_is_said_to_be():
+    assert solve_cold(ball(0.0, 1e-3, 1e-12), 1e-3).outcome is Outcome.ROUNDING
+    assert solve_cold(ball(0.0, 1e-3, 1e-9), 1e-3).outcome.ok
+
+
 def test_a_mesh_beyond_the_memory_is_said_to_be(monkeypatch):
     monkeypatch.setattr("stribeck.solver.point.level.bytes_of", lambda found, band: 1e12)
     assert solve_cold(ball(1e-2, 1e-3, 0.0), 1e-4).outcome is Outcome.MESH_LIMIT
