@@ -54,7 +54,7 @@ class Known:
         scale[:, 1] = np.maximum(scale[:, 1], 1e-3)
         return scale
 
-    def missed(self, left, right, values):
+    def missed(self, left, right, parts, values):
         return np.zeros(3)
 
     def read_scales(self, values):
@@ -140,7 +140,7 @@ def test_values_along_a_path_have_derivatives_by_a_step_into_the_complex_plane()
 
 def test_an_interval_says_what_its_problem_finds_wrong_in_the_middle():
     class Doubted(Known):
-        def missed(self, left, right, values):
+        def missed(self, left, right, parts, values):
             return np.array([0.0, 0.0, 1e-5])
 
     problem = Doubted()

@@ -13,6 +13,7 @@ from stribeck import cli
 from stribeck.curves import sensitivities
 from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import friction_sensitivities, sensitivities_if_known
+from stribeck.curves.stribeck_curve import continued
 from stribeck.quantities.inputs import GROUP_EXPONENTS
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margins import BOX, Crossing, Margin, RegimeMargins, regime_margins
@@ -248,7 +249,15 @@ def test_a_path_that_the_solver_loses_ends_the_search(monkeypatch):
             raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "lost")
         return right(contact, **settings)
 
+    further = continued
+
+    def continues_less_far(curve, end, *rest):
+        if curve.over == "roughness" and end > 1.2e-6:
+            raise sb.SolveError(sb.Outcome.STEP_LIMIT, None, "lost")
+        return further(curve, end, *rest)
+
     monkeypatch.setattr("stribeck.regimes.margins.stribeck_curve", fails_far_out)
+    monkeypatch.setattr("stribeck.regimes.margins.continued", continues_less_far)
     roughness = regime_margins(CONTACT).margins[2]
     assert roughness.more is None
     assert roughness.searched[1] == CONTACT.roughness

@@ -202,7 +202,9 @@ def stribeck_curve(
 
 
 @one_blas_thread
-def continued(curve: StribeckCurve, end: float, points: int, on_point: Callable[[int, int], object] | None = None) -> StribeckCurve:
+def continued(
+    curve: StribeckCurve, end: float, points: int, on_point: Callable[[int, int], object] | None = None
+) -> StribeckCurve:
     """Return the curve from that end of another which is nearer to ``end`` on to there, without a start from cold.
 
     Parameters

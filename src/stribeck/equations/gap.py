@@ -107,7 +107,10 @@ def minimum_gaps(mesh: Mesh, log_gap: Array) -> tuple[Array, Array, Array, Indic
     rows, powers = np.arange(len(log_gap)), np.arange(order)
     found = []
     # Beside the panel of the lowest node begins where the two meet.
-    sides = [(panel, inside, rule.nodes[inside]), (beside, np.where(inside == 0, order - 1, 0), np.where(inside == 0, 1.0, -1.0))]
+    sides = [
+        (panel, inside, rule.nodes[inside]),
+        (beside, np.where(inside == 0, order - 1, 0), np.where(inside == 0, 1.0, -1.0)),
+    ]
     for k, about, start in sides if (beside != panel).any() else sides[:1]:
         k = np.clip(k, 0, mesh.panels - 2)
         own = shape.reshape(len(rows), mesh.panels, order)[rows, k]

@@ -50,8 +50,8 @@ SPREAD = 1.6
 BETWEEN_MESHES = 0.2
 """Part of the tolerance by which states between two meshes may be less resolved than those that these were made for."""
 
-UNSEEN = 3.0
-"""What one correction with the Jacobian of a neighbour leaves unseen: the error over the correction."""
+UNSEEN = 2.0
+"""Error over the largest of three corrections with the Jacobian of a neighbour: what they leave unseen."""
 
 OFFSET_FLOOR = 5e-3
 """The error of the offset is relative to it where it exceeds this: between states it is that of states where it is larger."""
@@ -185,7 +185,9 @@ class LineProblem:
             around = (state.equations, state.y, inverse, state.groups, direction, shifts)
             found = expand_any_film(*around, samples, models, self.order)
             known = self._radius(s, state, found, reach)
-            if not (np.isfinite(found.unknowns).all() and np.isfinite(known)):  # a law is too steep for so wide a neighbourhood
+            if not (
+                np.isfinite(found.unknowns).all() and np.isfinite(known)
+            ):  # a law is too steep for so wide a neighbourhood
                 known = reach
                 reach = max(SHORTEST_REACH, 0.25 * reach)
             elif reach > FARTHEST * known or (trial == 0 and reach < NEAREST * known):
@@ -249,26 +251,32 @@ class LineProblem:
         equations = Equations(operators, float(groups.speed), contact_law(groups), scale)
         return State(groups, equations, y, Root(y, Outcome.CONVERGED, 0, 0, 0.0, 0.0, 0.0, None), 0.0)
 
-    def missed(self, left: Expansion, right: Expansion, values: Array) -> Array:
-        """Return by how much a state corrected in the middle contradicts ``values``, where laws are not analytic."""
+    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
+        """Return by how much states corrected at ``parts`` contradict ``values`` at most, where laws are not analytic."""
         same = left.point.state.mesh is right.point.state.mesh
         found = np.full(POSITION + 1, 0.0 if same else BETWEEN_MESHES * self.allowed)
         if self.exact or not self.moves or not _alike(left, right):
             return found
-        s = 0.5 * (left.coordinate + right.coordinate)
-        guess = self._guess(s, self.groups_at(s), [left, right])
-        equations, y, load = guess.equations, guess.y, float(guess.groups.load)
-        end = on(guess.mesh, (right, left))
-        assert end is not None
+        places = left.coordinate + parts * (right.coordinate - left.coordinate)
+        corrected = np.stack([self._corrected_once(s, left, right) for s in places.tolist()])
+        known = values[:, :POSITION]
         with np.errstate(all="ignore"):  # what is not finite is as wrong as can be
-            change = equations.units(y) * end.inverse(equations.residual(y))
-            corrected = observables(equations, y + change, load).array(in_article=False)
-            wrong = np.abs(corrected - values[:POSITION]) / self.scales(values[None], np.array([s]))[0, :POSITION]
-        wrong[READ[0]] = 0.0
-        wrong = np.where(np.isfinite(values[:POSITION]), np.nan_to_num(wrong, nan=np.inf), 0.0)
+            wrong = np.abs(corrected - known) / self.scales(values, places)[:, :POSITION]
+        wrong[:, READ[0]] = 0.0
+        wrong = np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf), 0.0).max(axis=0)
         beyond = wrong - np.maximum(left.errors, right.errors)[:POSITION]
         found[:POSITION] += UNSEEN * np.where(beyond > 0, beyond, 0.0)
         return found
+
+    def _corrected_once(self, s: float, left: Expansion, right: Expansion) -> Array:
+        """Return the observables of the state between two expansions, corrected once with the Jacobian of the nearer one."""
+        guess = self._guess(s, self.groups_at(s), [left, right])
+        end = on(guess.mesh, (right, left))
+        assert end is not None
+        equations, y = guess.equations, guess.y
+        with np.errstate(all="ignore"):
+            y = y + equations.units(y) * end.inverse(equations.residual(y))
+            return observables(equations, y, float(guess.groups.load)).array(in_article=False)
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
         """Return the minimum gap and its position, each on the mesh of that end whose panel there resolves it better."""

@@ -51,7 +51,8 @@ LOST = 1e3
 
 TINY = 1e-300
 
-MIDDLE, ALONE = np.array([0.5]), np.array([0])
+INSIDE = np.array([0.25, 0.5, 0.75])
+"""Where the problem itself is asked, in parts of an interval: a law that is not quite smooth may be right at one by chance."""
 
 LONGEST_END = 0.05
 """Longest interval on which an observable may cease to exist."""
@@ -119,8 +120,8 @@ class Problem(Protocol):
     def read_scales(self, values: Array) -> Array:
         """Return the same for what has no series."""
 
-    def missed(self, left: Expansion, right: Expansion, values: Array) -> Array:
-        """Return by how much the equations contradict ``values`` in the middle between two expansions, in units of the scales.
+    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
+        """Return by how much the equations contradict ``values`` at parts of an interval, at most, in units of the scales.
 
         Zero where the coefficients are surely right.
         """
@@ -168,9 +169,10 @@ class Interval:
         return np.stack([relative.max(axis=0), (relative * scales).max(axis=0)])
 
     @cached_property
-    def in_the_middle(self) -> Array:
-        """What the problem itself finds wrong in the middle."""
-        return self.problem.missed(self.left, self.right, _Pieces([self]).smooth(ALONE, MIDDLE)[0][0])
+    def inside(self) -> Array:
+        """What the problem itself finds wrong between the ends."""
+        values = _Pieces([self]).smooth(np.zeros(len(INSIDE), dtype=int), INSIDE)[0]
+        return self.problem.missed(self.left, self.right, INSIDE, values)
 
     @cached_property
     def read(self) -> tuple[Array, Array, Sequence[int], bool]:
@@ -227,9 +229,9 @@ class _Pieces:
     @cached_property
     def _errors(self) -> tuple[Array, Array]:
         """Errors of the intervals whatever the place: relative ones, and absolute ones of what may cross zero."""
-        ends, middle = np.stack([one.at_ends for one in self.intervals]), [one.in_the_middle for one in self.intervals]
+        ends, inside = np.stack([one.at_ends for one in self.intervals]), [one.inside for one in self.intervals]
         signed = self.problem.signed
-        return np.where(signed, 0.0, ends[:, 0]) + np.stack(middle), np.where(signed, ends[:, 1], 0.0)
+        return np.where(signed, 0.0, ends[:, 0]) + np.stack(inside), np.where(signed, ends[:, 1], 0.0)
 
     def at(self, where: Array, parts: Array) -> tuple[Array, Array]:
         """Return the observables at parts of the intervals of these numbers, and their errors in units of the scales."""
