@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -10,18 +11,23 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, check_definition
+from stribeck.contacts.friction import Definition, check_definition, sliding_part
 from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.model import ARTICLE, Model
 from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import GROUP_EXPONENTS
+from stribeck.quantities.part_inputs import PART_INPUTS
 from stribeck.quantities.units import InputError
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
 
 IMAGINARY = 1e-30
 """Imaginary step of the exact derivatives of friction rules."""
+
+STEP = 1e-5
+"""Change of a logarithm to both sides by which the model is differentiated."""
 
 
 @overload
@@ -53,7 +59,8 @@ def friction_sensitivities(
         + \left.\frac{\partial \mu}{\partial \ln X}\right|_G \right]
 
     with G the three groups and n their exponents, :data:`stribeck.quantities.inputs.GROUP_EXPONENTS`. The last term is the
-    contact part of the friction for the friction coefficient and the viscous part for beta.
+    contact part of the friction for the friction coefficient and the viscous part for beta, and what changes through the
+    fluid and the solid, whose numbers in Hertz units depend on inputs of the contact.
 
     Parameters
     ----------
@@ -72,7 +79,7 @@ def friction_sensitivities(
         The state; None from the atlas.
     dict of str to float
         Logarithmic sensitivity by name of the input: 0.5 means that 1 % more of it makes 0.5 % more friction; nan where
-        there is no friction.
+        there is no friction.  Numbers of the fluid and the solid, such as ``relaxation_time``, are among them.
 
     Raises
     ------
@@ -93,13 +100,34 @@ def friction_sensitivities(
         return SENSITIVITIES[groups.geometry](contact, rtol, definition)
     if groups.speed == 0:
         solution, slopes = solve(contact, rtol=rtol), np.zeros(3)
+        through = dict.fromkeys((name for name in PART_INPUTS if getattr(contact, name, None)), 0.0)
     else:
         point = solved_point(groups, rtol)
         solution = finish(point, groups, contact, rtol)
         assert point.state is not None
-        slopes = friction_slopes(point.state, contact.boundary_friction, contact.beta, definition)
+        changes = _changes(contact)
+        rubbing = contact.boundary_friction * sliding_part(2 * groups.model.film.slide)
+        slopes = friction_slopes(point.state, rubbing, contact.beta, definition, list(changes.values()))
+        through = dict(zip(changes, slopes[3:].tolist(), strict=True))
     friction = solution.friction(definition=definition)
-    return solution, _sensitivities(slopes, friction.contact, friction.viscous)
+    return solution, _sensitivities(slopes[:3], friction.contact, friction.viscous, through)
+
+
+def _changes(contact: Contact) -> dict[str, tuple[Model, Model, float]]:
+    """Return the inputs that change the model in Hertz units: models at values below and above, and their distance."""
+    found = {}
+    for name in (*GROUP_EXPONENTS, *PART_INPUTS):
+        value = getattr(contact, name, None)
+        if value and contact.groups.model != ARTICLE:
+            below, above = (_model_at(contact, name, value * math.exp(step)) for step in (-STEP, STEP))
+            if below != above or name in PART_INPUTS:
+                found[name] = below, above, 2 * STEP
+    return found
+
+
+def _model_at(contact: Contact, name: str, value: float) -> Model:
+    changes: dict[str, Any] = {name: value}
+    return contact.replace(**changes).groups.model
 
 
 def sensitivities_if_known(
@@ -164,11 +192,15 @@ def _from_atlas(contact: Contact, definition: Definition) -> dict[str, float]:
     return {name: value for name, value in found.items() if name in dict(contact.inputs())}
 
 
-def _sensitivities(slopes: Array, contact: float, viscous: float) -> dict[str, float]:
-    """Return the sensitivities by the derivatives of the friction and its two parts."""
+def _sensitivities(
+    slopes: Array, contact: float, viscous: float, through: Mapping[str, float] | None = None
+) -> dict[str, float]:
+    """Return the sensitivities by the derivatives of the friction and its two parts, and those through the model."""
     direct = {"boundary_friction": contact, "beta": viscous}
     total = (contact + viscous) or math.nan
+    model = through or {}
+    exponents = {**dict.fromkeys(model, (0.0, 0.0, 0.0)), **GROUP_EXPONENTS}
     return {
-        name: (float(slopes @ np.array(exponents)) + direct.get(name, 0.0)) / total
-        for name, exponents in GROUP_EXPONENTS.items()
+        name: (float(slopes @ np.array(exponents[name])) + direct.get(name, 0.0) + model.get(name, 0.0)) / total
+        for name in (*GROUP_EXPONENTS, *(name for name in model if name not in GROUP_EXPONENTS))
     }

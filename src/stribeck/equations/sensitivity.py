@@ -116,7 +116,12 @@ def _difference(below: Equations, above: Equations, y: Array, load: float, names
     return np.array([getattr(second, name) - getattr(first, name) for name in names])
 
 
-def friction_slopes(state: State, boundary_friction: float, beta: float, definition: str) -> Array:
-    """Return the derivatives of the friction coefficient with respect to ln(speed), ln(load), ln(roughness)."""
-    derivatives = log_derivatives(state)
+def friction_slopes(
+    state: State, boundary_friction: float, beta: float, definition: str, changes: Sequence[Change] = ()
+) -> Array:
+    """Return the derivatives of the friction coefficient with respect to ln(speed), ln(load), ln(roughness).
+
+    Those along changes of the model, as :func:`log_derivatives` takes them, follow.
+    """
+    derivatives = log_derivatives(state, changes)
     return np.asarray(boundary_friction * derivatives["contact_load_share"] + beta * derivatives[f"viscous_{definition}"])

@@ -320,7 +320,7 @@ def _row(fit: Fit, curve: str, contact: Contact) -> tuple[Array, float] | None:
             friction = solution.friction(definition=fit.definition).total
     except (SolveError, InputError):
         return None
-    row = [slopes[each.name] if each.curve in (None, curve) else 0.0 for each in fit.inputs]
+    row = [slopes.get(each.name, 0.0) if each.curve in (None, curve) else 0.0 for each in fit.inputs]
     return (np.array(row), friction) if np.isfinite(row).all() else None
 
 

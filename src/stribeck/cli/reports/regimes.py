@@ -22,6 +22,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.inputs import QUANTITIES
+from stribeck.quantities.part_inputs import fitted_rows
 from stribeck.quantities.units import format_factor, format_percent, format_share, format_si
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.regimes.sentences import ways_to
@@ -95,11 +96,12 @@ def _print_sensitivities(console: Console, contact: Contact, sensitivities: Sens
     if not sensitivities:
         return
     table = table_of("input", "value", "sensitivity", "10 % increase gives", right=(1, 2, 3))
+    rows = fitted_rows(contact.INPUTS)
     for name in sorted(sensitivities, key=lambda name: -abs(sensitivities[name])):
         value, slope = getattr(contact, name), sensitivities[name]
         table.add_row(
-            contact.INPUTS.quantities[name].label,
-            format_si(value, contact.INPUTS.quantities[name].dimension),
+            rows[name].label,
+            format_si(value, rows[name].dimension),
             f"{slope:+.3f}",
             f"{100 * _change(1.1, slope):+.2g} % friction",
         )

@@ -1,0 +1,46 @@
+"""How friction answers to inputs where the fluid, the solid or the flow depends on them too."""
+
+import math
+
+import pytest
+from fit_data import TRUE
+
+import stribeck as sb
+from stribeck.curves.sensitivities import friction_sensitivities
+
+STEP = 1e-3
+
+
+@pytest.mark.parametrize(
+    ("parts", "names"),
+    [
+        ({"fluid": sb.fluids.Barus("500 1/GPa"), "cavitation": "exit"}, ("pressure_coefficient", "modulus", "beta")),
+        ({"flow_factors": "effective-medium"}, ("roughness", "alpha")),
+        ({"slide_to_roll": -1.0}, ("boundary_friction", "load")),
+        ({"solid": sb.solids.Layer("1 mm")}, ("layer_thickness", "radius")),
+    ],
+)
+def test_sensitivities_are_differences_of_solved_friction(parts, names):
+    contact = TRUE.replace(speed="10 mm/s", **parts)
+    state, found = friction_sensitivities(contact, rtol=1e-7)
+    for name in names:
+        ends = [
+            math.log(
+                abs(sb.solve(contact.replace(**{name: getattr(contact, name) * math.exp(sign * STEP)}), rtol=1e-7).friction())
+            )
+            for sign in (1, -1)
+        ]
+        assert found[name] == pytest.approx((ends[0] - ends[1]) / (2 * STEP), abs=2e-4), name
+
+
+def test_the_next_run_of_a_fit_of_the_fluid_is_found():
+    import numpy as np
+    from fit_data import measured
+
+    contact = TRUE.replace(fluid=sb.fluids.Barus("500 1/GPa"), cavitation="exit")
+    speeds = np.geomspace(1e-3, 0.3, 5)
+    friction = np.asarray(sb.stribeck_curve(contact, speed=speeds, rtol=1e-4).friction)
+    fit = sb.fit(measured(speeds, friction, error=0.01 * friction), contact, free=["pressure_coefficient"], intervals=False)
+    plan = sb.next_runs(fit, 1, speeds=[1e-3, 0.3], loads=[contact.load])
+    assert plan.runs[0].speed == pytest.approx(0.3)
+    assert plan.runs[0].errors["pressure_coefficient"] < plan.before["pressure_coefficient"]
