@@ -2,8 +2,9 @@
 
 import math
 
+import numpy as np
 import pytest
-from fit_data import TRUE
+from fit_data import TRUE, measured
 
 import stribeck as sb
 from stribeck.curves.sensitivities import friction_sensitivities
@@ -24,19 +25,12 @@ def test_sensitivities_are_differences_of_solved_friction(parts, names):
     contact = TRUE.replace(speed="10 mm/s", **parts)
     state, found = friction_sensitivities(contact, rtol=1e-7)
     for name in names:
-        ends = [
-            math.log(
-                abs(sb.solve(contact.replace(**{name: getattr(contact, name) * math.exp(sign * STEP)}), rtol=1e-7).friction())
-            )
-            for sign in (1, -1)
-        ]
+        moved = [contact.replace(**{name: getattr(contact, name) * math.exp(sign * STEP)}) for sign in (1, -1)]
+        ends = [math.log(abs(sb.solve(each, rtol=1e-7).friction())) for each in moved]
         assert found[name] == pytest.approx((ends[0] - ends[1]) / (2 * STEP), abs=2e-4), name
 
 
 def test_the_next_run_of_a_fit_of_the_fluid_is_found():
-    import numpy as np
-    from fit_data import measured
-
     contact = TRUE.replace(fluid=sb.fluids.Barus("500 1/GPa"), cavitation="exit")
     speeds = np.geomspace(1e-3, 0.3, 5)
     friction = np.asarray(sb.stribeck_curve(contact, speed=speeds, rtol=1e-4).friction)
