@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from test_model_parts import REFERENCE, observed, solved
 
+import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.equations.observables import friction_scale
 from stribeck.fluids.cavitation import Cavitation
@@ -83,3 +84,13 @@ def test_all_laws_at_once_are_those_of_an_independent_solver(row):
     state = solved(Model(film, Cavitation.EXIT, *d), row["speed"], row["load"], row["kappa"])
     found = observed(state)
     assert found == pytest.approx({name: row[name] for name in found}, rel=1e-6, abs=1e-9)
+
+
+def test_sharp_turns_that_no_load_feels_are_in_the_error():
+    """Asperities carry all of the load; the flux gap was stated to 5e-9 and wrong by 3e-4, the drag by 2e-5."""
+    groups = sb.Groups(3.3257186828927727e-4, 0.037814811807850256, 0.009539751119065921)
+    parts = {"fluid": sb.fluids.Eyring(0.0061149486893469175), "slide_to_roll": -0.2875907210870814}
+    coarse, fine = (sb.solve(groups, rtol=rtol, **parts) for rtol in (1e-4, 1e-6))
+    assert fine.flux_gap == pytest.approx(0.63102968, rel=1e-7)
+    assert coarse.flux_gap == pytest.approx(fine.flux_gap, rel=1e-4)
+    assert coarse.observables.viscous_balanced == pytest.approx(fine.observables.viscous_balanced, rel=1e-4)

@@ -26,7 +26,7 @@ from stribeck.equations.drag import Nodal, viscous_friction
 from stribeck.equations.line import LOAD, Equations, Operators, gradient_in_film, slopes_in_film
 from stribeck.equations.observables import ROW, VISCOUS, Observables, friction_integrals, friction_scale, gradients
 from stribeck.equations.position_error import position_errors
-from stribeck.equations.state import StackedStates, fall_of
+from stribeck.equations.state import StackedStates, is_thinning
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
 from stribeck.numerics.running_integral import RunningIntegral, Volterra
 from stribeck.quantities.outputs import ABSOLUTE, ENDS, NAMES
@@ -261,7 +261,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     known = equations.pressures(y)[1] if film.uses_pressure else None
     fluid = None if known is None else coarse.to_order(known * coarse.stretch, mesh.order) / mesh.stretch
     flat = (np.abs(h - h_star) < FLAT * h).reshape(len(y), coarse.panels, -1).all(axis=2)
-    flat &= not fall_of(film, 1.0).broken  # a broken power of the rate is no smoother where the rate is zero
+    flat &= not is_thinning(film)  # which turns sharply where the rate is zero
 
     def gradient(p: Array | None) -> Array:
         slopes = gradient_in_film(film, integral, gap, p, h_star)

@@ -229,6 +229,11 @@ def fall_of(film: Film, speed: float) -> Fall:
     return Fall() if told is None else told(speed)
 
 
+def is_thinning(film: Film) -> bool:
+    """Return whether the viscosity falls with the rate: the pressure gradient may then turn sharply where the flow does."""
+    return hasattr(film, "fall")
+
+
 def mesh_for(
     guess: Guess,
     groups: Groups,
@@ -282,7 +287,7 @@ def mesh_for(
     scale = 2.0 ** round(float(np.log2(width).mean()))
     minimum_position = guess.minimum_position / to_guess
     lift = 1.0
-    if broken and isinstance(guess, State):  # kinks that no load feels are felt by the flux
+    if is_thinning(groups.model.film) and isinstance(guess, State):  # turns that no load feels are felt by flux and drag
         lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
 
