@@ -208,7 +208,7 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
             "glycerol in water",
             {"weight_fraction": 0.5, "temperature": 25.0},
             glycerol_water,
-            "Cheng 2008, within 3.5 % of Dow's table from 0 to 40 degC",
+            "Cheng 2008",
             "0 to 100 degC, all fractions",
         ),
         "silicone-oil": Preset("silicone oil", {"grade": 100.0}, _silicone, _SILICONE, "5 to 1000 cSt at 25 degC"),
