@@ -51,6 +51,9 @@ MOST_KRYLOV = 60
 LINEAR = 1e-3
 """Relative error of a step that GMRES may leave; less near the solution."""
 
+FEW = 0.15
+"""Nodes that change between torn and not, over those that the factors of the capacitance matrix are for, up to which these serve."""
+
 FLUID = 10.0
 """Part of the film pressure that GMRES may leave over that of the gap."""
 
@@ -137,7 +140,7 @@ class Capacitance:
     totals: Single = field(default_factory=lambda: np.zeros((0, 0), dtype=np.float32))
     gaps: Single = field(default_factory=lambda: np.zeros((0, 0), dtype=np.float32))
     """The same at the nodes of the mesh, shape (size, nodes)."""
-    last: _Preconditioner | None = None
+    last: _Factors | None = None
 
     def include(self, linear: TornLinear) -> None:
         """Add the torn nodes that are new."""
@@ -162,31 +165,70 @@ class Capacitance:
         self.answers, self.totals, self.gaps = parts
         self.nodes = np.append(self.nodes, new)
 
+    def block(self, linear: TornLinear, rows: Indices, columns: Indices) -> Array:
+        """Return C Z, the film pressures of torn nodes under unit residuals; both are places among the kept nodes."""
+        at = self.nodes[rows]
+        found, slope = self.totals[np.ix_(at, columns)], linear.contact_slope.ravel()[at]
+        touching = np.flatnonzero(slope)
+        found[touching] -= slope[touching, None].astype(np.float32) * self.gaps[np.ix_(at[touching], columns)]
+        return np.asarray(found)
+
     def of(self, linear: TornLinear) -> _Preconditioner:
-        """Return the preconditioner of a Jacobian: that of the last one where the same nodes are torn."""
-        if self.last is not None and np.array_equal(self.last.torn, linear.torn):
-            self.last.linear = linear
-            return self.last
+        """Return the preconditioner of a Jacobian, by the factors of the last one where few other nodes are torn."""
         self.include(linear)
-        self.last = _Preconditioner(self, linear)
-        return self.last
+        torn = linear.torn.ravel()[self.nodes]
+        if self.last is not None:
+            before = np.zeros(torn.size, dtype=bool)
+            before[self.last.columns] = True
+            if (before != torn).sum() <= FEW * self.last.columns.size:
+                return _Preconditioner(self, linear, self.last, np.flatnonzero(torn & ~before), np.flatnonzero(before & ~torn))
+        self.last = _Factors(np.flatnonzero(torn), None)
+        if self.last.columns.size:
+            square = self.block(linear, self.last.columns, self.last.columns)
+            self.last = _Factors(self.last.columns, lu_factor(square, overwrite_a=True, check_finite=False))
+        nothing = np.zeros(0, dtype=np.intp)
+        return _Preconditioner(self, linear, self.last, nothing, nothing)
+
+
+@dataclass(frozen=True, eq=False)
+class _Factors:
+    """Factors of the capacitance matrix of some of the kept nodes."""
+
+    columns: Indices
+    factors: tuple[Array, Indices] | None
+
+    def solve(self, right: Array) -> Array:
+        """Return what unit residuals do away with film pressures at these nodes."""
+        if self.factors is None:
+            return right
+        return np.asarray(lu_solve(self.factors, right.astype(np.float32), check_finite=False))
 
 
 class _Preconditioner:
-    """About the inverse of a Jacobian with torn nodes."""
+    """About the inverse of a Jacobian with torn nodes.
 
-    def __init__(self, kept: Capacitance, linear: TornLinear) -> None:
-        self.kept, self.linear, self.torn = kept, linear, linear.torn
-        self.at = np.flatnonzero(linear.torn)
-        self.columns = np.flatnonzero(linear.torn.ravel()[kept.nodes])
-        if self.at.size:
-            self.at = kept.nodes[self.columns]
-            block = np.ix_(self.at, self.columns)
-            found, slope = kept.totals[block], linear.contact_slope.ravel()[self.at]
-            touching = np.flatnonzero(slope)
-            found[touching] -= slope[touching, None].astype(np.float32) * kept.gaps[np.ix_(self.at[touching], self.columns)]
-            self.factors = lu_factor(found, overwrite_a=True, check_finite=False)
-            self.answers = kept.answers[:, self.columns]
+    Nodes that are torn, or torn no more, since the factors were made border these: the first have residuals beside those of
+    the factors, for the second these vanish.
+    """
+
+    def __init__(self, kept: Capacitance, linear: TornLinear, base: _Factors, added: Indices, removed: Indices) -> None:
+        self.kept, self.linear, self.base = kept, linear, base
+        self.columns = np.concatenate([base.columns, added])
+        self.at, self.added = kept.nodes[self.columns], added.size
+        self.corner: tuple[Array, Indices] | None = None
+        if added.size + removed.size:
+            self.place = np.flatnonzero(np.isin(base.columns, removed))
+            units = np.zeros((base.columns.size, removed.size), dtype=np.float32)
+            units[self.place, np.arange(removed.size)] = 1.0
+            self.border = base.solve(np.hstack([-kept.block(linear, base.columns, added), units]))
+            self.rows = kept.block(linear, added, self.columns)
+            corner = self._bordered(self.border)
+            corner[: added.size, : added.size] += self.rows[:, base.columns.size :]
+            self.corner = lu_factor(corner, check_finite=False)
+
+    def _bordered(self, old: Array) -> Array:
+        """Return what residuals at the nodes of the factors do to the conditions of those that border them."""
+        return np.concatenate([self.rows[:, : self.base.columns.size] @ old, old[self.place]])
 
     def __call__(self, right: Array) -> Array:
         linear, mesh = self.linear, self.kept.mesh
@@ -195,7 +237,16 @@ class _Preconditioner:
         if not self.at.size:
             return x
         missing = right[self.at] - linear.changes(x).fluid.ravel()[self.at]
-        return np.asarray(x + self.answers @ lu_solve(self.factors, missing.astype(np.float32), check_finite=False))
+        old = self.base.solve(missing[: self.base.columns.size])
+        new = missing[self.base.columns.size :]
+        if self.corner is not None:
+            conditions = -self._bordered(old)
+            conditions[: self.added] += new
+            found = lu_solve(self.corner, conditions, check_finite=False)
+            old, new = old + self.border @ found, found[: self.added]
+        residuals = np.zeros(self.kept.nodes.size, dtype=np.float32)
+        residuals[self.columns] = np.concatenate([old, new])
+        return np.asarray(x + self.kept.answers @ residuals)
 
 
 def iterate_cavitated(
@@ -233,6 +284,8 @@ def iterate_cavitated(
     y = Unknowns(start.gap, np.where(torn, 0.0, np.maximum(start.fluid, 0.0)), start.offset)
     krylov = factorisations = steps = 0
     left, size = math.inf, math.inf
+    if kept is not None:  # a neighbour's start is good enough to ask which nodes are torn
+        torn = equations.flow(y.gap, y.fluid, y.offset) / stiffness(Linear(equations, y)) > y.fluid
 
     def ended(outcome: Outcome) -> Iterated:
         fluid = np.where(torn, 0.0, np.maximum(y.fluid, np.finfo(float).tiny))
