@@ -225,3 +225,17 @@ def test_regimes_prints_conversions_and_the_probability_of_each_regime(tmp_path,
     assert sum(found["uncertainty"]["regime_probabilities"].values()) == pytest.approx(1)
     assert len(found["conversions"]) == 1
     assert "Converted:" in call(capsys, "solve", path).out
+
+
+def test_errors_of_a_contact_on_a_layer_move_the_layer_in_hertz_units_too():
+    contact = TRUE.replace(solid=sb.solids.Layer("0.3 mm", 0.5), speed="10 mm/s")
+    error = 0.3
+    found = sb.propagate(contact, {"modulus": error}, transitions=False)
+    reach = math.exp(1.96 * math.sqrt(math.log1p(error**2)))
+    for name, function in (
+        ("central_gap", lambda each: sb.solve(each, rtol=1e-5).central_gap * each.hertz.indentation),
+        ("friction", lambda each: sb.solve(each, rtol=1e-5).friction().total),
+    ):
+        ends = sorted(function(contact.replace(modulus=contact.modulus * factor)) for factor in (1 / reach, reach))
+        assert found[name].interval_95 == pytest.approx(ends, rel=0.03)
+    assert found.contributions == {"modulus": 1.0}

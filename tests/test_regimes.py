@@ -15,6 +15,7 @@ from stribeck.curves.regime import Transition
 from stribeck.curves.sensitivities import friction_sensitivities, sensitivities_if_known
 from stribeck.curves.stribeck_curve import continued
 from stribeck.quantities.inputs import GROUP_EXPONENTS
+from stribeck.regimes import margins as margins_module
 from stribeck.regimes.margin_intervals import with_intervals
 from stribeck.regimes.margins import BOX, Crossing, Margin, RegimeMargins, regime_margins
 from stribeck.regimes.sentences import ways_to
@@ -407,6 +408,33 @@ def test_margins_have_no_interval_without_errors_and_say_it_in_the_sentence_with
     assert with_intervals(CONTACT, margins, {}) == margins
     _, sentence = ways_to(with_intervals(CONTACT, margins, {"speed": 0.1}))
     assert sentence == "To reach hydrodynamic lubrication: speed x 30 (to 30 mm/s; 95 %: 24.7 to 36.5)."
+
+
+@pytest.mark.parametrize(
+    ("parts", "names"),
+    [
+        ({"solid": sb.solids.Layer("0.3 mm", 0.5)}, ("modulus", "load", "speed")),
+        ({"fluid": sb.fluids.Carreau("1 ms", 0.5)}, ("viscosity", "load")),
+        ({"flow_factors": "effective-medium"}, ("roughness",)),
+    ],
+)
+def test_inputs_that_change_the_numbers_of_a_fluid_or_layer_move_friction_through_them_too(parts, names):
+    contact = CONTACT.replace(speed="10 mm/s", **parts)
+    _, found = friction_sensitivities(contact, rtol=1e-6)
+    for name in names:
+        value = getattr(contact, name)
+        high, low = (
+            sb.solve(contact.replace(**{name: value * factor}), rtol=1e-7).friction().total for factor in (1.01, 0.99)
+        )
+        assert found[name] == pytest.approx(math.log(high / low) / math.log(1.01 / 0.99), abs=2e-3)
+
+
+def test_a_fluid_that_thins_has_no_margin_in_viscosity(monkeypatch):
+    monkeypatch.setattr(margins_module, "SCANNED", ("speed",))
+    thinning = CONTACT.replace(speed="20 mm/s", fluid=sb.fluids.Carreau("1 ms", 0.5))
+    found = regime_margins(thinning, rtol=1e-3)
+    assert [margin.name for margin in found.margins] == ["speed"] and "thins with the shear rate" in found.notes[-1]
+    assert not any("Only the product" in sentence for sentence in ways_to(found))
 
 
 @pytest.mark.quick

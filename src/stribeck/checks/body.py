@@ -93,7 +93,13 @@ def layer(subject: Subject) -> Check | None:
         "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than computed.",
         "outside": "The layer is thinner than the contact is wide: the half-space does not apply, and films differ.",
     }[verdict]
-    return Check("layer a/thickness", ratio, FINE_LAYER, verdict, f"The contact is {ratio:.2g} of the thickness wide to each side. {meaning}")
+    return Check(
+        "layer a/thickness",
+        ratio,
+        FINE_LAYER,
+        verdict,
+        f"The contact is {ratio:.2g} of the thickness wide to each side. {meaning}",
+    )
 
 
 def loss(subject: Subject) -> Check | None:

@@ -233,8 +233,7 @@ def _sentences(case: Case, solution: Solution, curve: StribeckCurve, found: Unce
             first,
             NO_ERRORS,
         )
-    blame = ", ".join(f"{case.contact.INPUTS.quantities[n].label} {format_percent(v)}" for n, v in found.contributions.items())
-    return (first, f"Probability of each regime: {found.probabilities}.", f"Sources of the variance of friction: {blame}.")
+    return (first, f"Probability of each regime: {found.probabilities}.", *found.sources)
 
 
 def _films(solution: Solution, curve: StribeckCurve, found: Uncertainty | None) -> tuple[tuple[str, str, str], ...]:

@@ -140,7 +140,7 @@ class RegimeMargins:
     regime : str
         The present regime.
     margins : tuple of Margin
-        For speed, load, roughness and viscosity.
+        For speed, load, roughness and viscosity; the last not for a fluid that thins.
     notes : tuple of str
         What to know: why an input leads nowhere, and whether the contact stands at a threshold.
     geometry : {"line", "point"}
@@ -221,7 +221,10 @@ def regime_margins(
             "boundary lubrication."
         )
     found = [scan.along(name) for name in SCANNED]
-    found.append(_within(_of_viscosity(contact, found[0]), physical_bounds(contact, "viscosity")))
+    if contact.replace(viscosity=2 * contact.viscosity).groups.model == contact.groups.model:
+        found.append(_within(_of_viscosity(contact, found[0]), physical_bounds(contact, "viscosity")))
+    else:
+        notes.append("Viscosity has no margins: this fluid thins with the shear rate, so that speed does not stand for it.")
     if contact.speed > 0:
         found[0] = _within(found[0], physical_bounds(contact, "speed"))
     close = [mark for margin in found for mark in (margin.less, margin.more) if mark is not None and _at_threshold(mark)]

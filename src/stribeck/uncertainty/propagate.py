@@ -12,14 +12,15 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.model import ARTICLE
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Transition
-from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.uncertain import relative_error
 from stribeck.quantities.units import InputError, show
 from stribeck.uncertainty.result import Spread, Uncertainty
-from stribeck.uncertainty.states import films_of, states_of
+from stribeck.uncertainty.states import films_of, states_by_inputs, states_of
 
 __all__ = ["RTOLS", "kept_errors", "moving_with", "propagate"]
 
@@ -84,8 +85,8 @@ def propagate(
     Notes
     -----
     20 000 samples of the inputs, the same in every call, on the atlas where it covers them all, else on quadratics through
-    seven solved states, where the ends of an interval are within 5 % of
-    its width (``test_data_sheet.py``).  Transitions move to first order.
+    seven solved states, where the ends of an interval are within 5 % of its width (``test_data_sheet.py``); with another
+    fluid, solid or cavitation than the article's through two states for each input.  Transitions move to first order.
     With Persson's law ``beta`` follows the roughness unless it has an error of its own.
     """
     definition = check_definition(definition)
@@ -101,13 +102,18 @@ def propagate(
 
     groups = contact.groups
     of_groups = power(lambda each: [float(getattr(each.groups, name)) for name in ("speed", "load", "roughness")])
-    states, method = states_of(groups, offsets @ of_groups, definition, RTOLS[groups.geometry], contact)
+    rtol = RTOLS[groups.geometry]
+    if groups.model == ARTICLE:
+        states, method = states_of(groups, offsets @ of_groups, definition, rtol, contact)
+    else:
+        widths = np.array([sigmas[name] for name in names])
+        states, method = states_by_inputs(contact, moves, widths, draws[:, : len(names)], definition, rtol), "solver"
 
     def scale(function: Any) -> Array:
         return np.asarray(function(contact) * np.exp(offsets @ power(lambda each: [function(each)])[:, 0]))
 
     share = states["contact_load_share"]
-    solution, sensitivities = friction_sensitivities(contact, rtol=RTOLS[groups.geometry], definition=definition)
+    solution, sensitivities, _ = sensitivities_if_known(contact, rtol=RTOLS[groups.geometry], definition=definition)
     rule = RULES[groups.geometry]
     inputs = rule.of_contact(contact)
     dry = rule.rubbing(groups, inputs) * scale(lambda each: each.boundary_friction) * share
@@ -130,8 +136,9 @@ def propagate(
         spreads.append(_spread("lambda_ratio", "Lambda (minimum film over h_rms)", solution.lambda_ratio, ratio))
     if transitions and contact.speed > 0 and groups.geometry == "line":
         spreads += _transitions(contact, sigmas, definition)
-    slopes = {name: sum(sensitivities[each] for each in inputs) for name, inputs in zip(names, moves, strict=True)}
-    parts = {name: (slopes[name] * sigmas[name]) ** 2 for name in names}
+    known = zip(names, moves, strict=True) if sensitivities else ()
+    slopes = {name: sum(sensitivities[each] for each in inputs) for name, inputs in known}
+    parts = {name: (slope * sigmas[name]) ** 2 for name, slope in slopes.items()}
     total = sum(parts.values()) or 1.0
     return Uncertainty(
         contact=contact,

@@ -60,7 +60,8 @@ class Uncertainty:
     regimes : dict of str to float
         Probability of boundary, mixed and hydrodynamic lubrication.
     contributions : dict of str to float
-        Share of each input in the variance of ln(friction), by exact derivatives; they sum to one.
+        Share of each input in the variance of ln(friction), by exact derivatives; they sum to one. Empty for a model
+        without derivatives.
     method : str
         ``"atlas"`` or ``"solver"``: where the states of the samples come from.
     """
@@ -103,9 +104,15 @@ class Uncertainty:
     def __str__(self) -> str:
         """Return the table as text."""
         width = max(len(each.label) for each in self.spreads)
-        blame = ", ".join(f"{name} {format_percent(value)}" for name, value in self.contributions.items())
         lines = [f"{each.label.ljust(width)}  {each.text}" for each in self.spreads]
-        return "\n".join([*lines, f"Regime: {self.probabilities}.", f"Variance of friction: {blame}."])
+        return "\n".join([*lines, f"Regime: {self.probabilities}.", *self.sources])
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """The share of each input in the variance of friction, a sentence; none for a model without derivatives."""
+        labels = self.contact.INPUTS.quantities
+        parts = ", ".join(f"{labels[name].label} {format_percent(part)}" for name, part in self.contributions.items())
+        return (f"Sources of the variance of friction: {parts}.",) if parts else ()
 
     def _repr_html_(self) -> str:
         """Return the table for notebooks."""

@@ -4,12 +4,16 @@ Where the atlas ends, a quadratic along each principal axis of the samples takes
 
 .. math:: y = y_0 + b_k t_k + c_k t_k^2, \qquad t_k = \pm 3^{1/2} \text{ solved},
 
-for the logarithms of films and viscous friction and the log odds of the load share.
+for the logarithms of films and viscous friction and the log odds of the load share.  The numbers of a fluid or a solid in
+Hertz units change with the inputs, so that the three groups do not describe such a state: the axes are then the inputs.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +27,7 @@ from stribeck.contacts.line import Groups
 from stribeck.quantities.outputs import OUTPUT_TABLES
 from stribeck.solver.solve import solve
 
-__all__ = ["NAMES", "films_of", "states_of"]
+__all__ = ["NAMES", "films_of", "states_by_inputs", "states_of"]
 
 NAMES = ("central_gap", "minimum_gap", "flux_gap")
 """The films of a state."""
@@ -96,36 +100,84 @@ def states_of(
     return _by_quadratics(groups, offsets, definition, rtol, contact), "solver"
 
 
+def states_by_inputs(
+    contact: Contact, moves: Sequence[tuple[str, ...]], sigmas: Array, draws: Array, definition: Definition, rtol: float
+) -> dict[str, Array]:
+    """Return load share, viscous friction and films of samples of the inputs, from two solved states for each of them.
+
+    Parameters
+    ----------
+    contact : Contact
+        The contact in the middle.
+    moves : sequence of tuple of str
+        The inputs that move together, for each independent one.
+    sigmas : ndarray, shape (m,)
+        Standard deviation of the logarithm of each.
+    draws : ndarray, shape (n, m)
+        The samples, in standard deviations.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+    rtol : float
+        Relative tolerance of solved states.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (n,)
+        As :func:`states_of` returns them.
+    """
+
+    def values(inputs: tuple[str, ...] = (), distance: float = 0.0) -> Array:
+        moved = contact.replace(**{name: getattr(contact, name) * math.exp(distance) for name in inputs})
+        return _values(solve(moved, rtol=rtol), definition, contact)
+
+    start = values()
+    axes = [
+        (draws[:, i], values(inputs, NODE * sigma), values(inputs, -NODE * sigma))
+        for i, (inputs, sigma) in enumerate(zip(moves, sigmas.tolist(), strict=True))
+    ]
+    return _quadratic(start, axes, contact.groups.geometry, len(draws))
+
+
 def _by_quadratics(
     groups: Groups, offsets: Array, definition: Definition, rtol: float, contact: Contact | None = None
 ) -> dict[str, Array]:
     middle = offsets.mean(axis=0)
-    variances, axes = np.linalg.eigh(np.atleast_2d(np.cov(offsets.T)))
-    y = np.tile(start := _solved(groups, middle, definition, rtol, contact), (len(offsets), 1))
-    for variance, axis in zip(variances, axes.T, strict=True):
+    variances, directions = np.linalg.eigh(np.atleast_2d(np.cov(offsets.T)))
+
+    def values(distance: Array) -> Array:
+        return _values(solve(_moved(groups, middle + distance), rtol=rtol), definition, contact)
+
+    axes = []
+    for variance, direction in zip(variances, directions.T, strict=True):
         width = float(np.sqrt(max(variance, 0.0)))
-        if width < NARROW:
-            continue
-        ahead, behind = (_solved(groups, middle + sign * NODE * width * axis, definition, rtol, contact) for sign in (1, -1))
-        t = np.clip((offsets - middle) @ axis / width, -FARTHEST, FARTHEST)[:, None]
+        if width >= NARROW:
+            node = NODE * width * direction
+            axes.append(((offsets - middle) @ direction / width, values(node), values(-node)))
+    return _quadratic(values(np.zeros(3)), axes, groups.geometry, len(offsets))
+
+
+def _quadratic(start: Array, axes: Sequence[tuple[Array, Array, Array]], geometry: Geometry, number: int) -> dict[str, Array]:
+    """Return the quadratics through the middle and two states on each axis, at the places of samples along the axes."""
+    y = np.tile(start, (number, 1))
+    for places, ahead, behind in axes:
+        t = np.clip(places, -FARTHEST, FARTHEST)[:, None]
         y += (ahead - behind) / (2 * NODE) * t + (ahead + behind - 2 * start) / (2 * NODE**2) * t**2
     odds, viscous, *films = y.T
     return {
         "contact_load_share": 1 / (1 + np.exp(-np.clip(odds, -700, 700))),
         "viscous": np.exp(viscous),
-        **{name: np.exp(film) for name, film in zip(films_of(groups.geometry), films, strict=True)},
+        **{name: np.exp(film) for name, film in zip(films_of(geometry), films, strict=True)},
     }
 
 
-def _solved(groups: Groups, offset: Array, definition: Definition, rtol: float, of: Contact | None) -> Array:
+def _values(state: Any, definition: Definition, of: Contact | None) -> Array:
     """Return the log odds of the load share and the logarithms of viscous friction and films of a solved state."""
-    state = solve(_moved(groups, offset), rtol=rtol)
     contact, fluid = max(state.contact_load_share, TINY), max(state.fluid_load_share, TINY)
-    rule = RULES[groups.geometry]
+    rule = RULES[state.groups.geometry]
     inputs = rule.of_contact(of)
     parts = {name: float(getattr(state, name)) for name in rule.parts(definition)}
     viscous = float(rule.viscous(parts, state.groups.speed, state.groups.load, inputs, definition)) / inputs["beta"]
-    films = [float(getattr(state, name)) for name in films_of(groups.geometry)]
+    films = [float(getattr(state, name)) for name in films_of(state.groups.geometry)]
     values = [max(value, TINY) for value in (viscous, *films)]
     return np.array([np.log(contact / fluid), *np.log(values)])
 

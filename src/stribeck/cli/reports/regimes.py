@@ -21,9 +21,8 @@ from stribeck.cli.reports.words import (
 from stribeck.contacts.contact import Contact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
-from stribeck.quantities.inputs import QUANTITIES
 from stribeck.quantities.part_inputs import fitted_rows
-from stribeck.quantities.units import format_factor, format_percent, format_share, format_si
+from stribeck.quantities.units import format_factor, format_share, format_si
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.regimes.sentences import ways_to
 from stribeck.solver.base_solution import BaseSolution
@@ -131,8 +130,8 @@ def print_uncertainty(console: Console, found: Uncertainty) -> None:
         table.add_row(each.label, value, f"{low} to {high}")
     print_table(console, table)
     say(console, f"Probability of each regime: {found.probabilities}.")
-    blame = ", ".join(f"{QUANTITIES[name].label} {format_percent(part)}" for name, part in found.contributions.items())
-    say(console, f"Sources of the variance of friction: {blame}.")
+    for sentence in found.sources:
+        say(console, sentence)
 
 
 def _way(mark: Landmark, speed: float) -> str:
