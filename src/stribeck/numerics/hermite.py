@@ -123,7 +123,7 @@ def chebyshev_form(values: Array) -> Array:
 
 
 def chebyshev_basis(tau: Array, count: int) -> Array:
-    """Return the Chebyshev polynomials of degree 0 to ``count - 1`` at places from 0 to 1, or complex, shape (len(tau), count)."""
+    """Return the first ``count`` Chebyshev polynomials at places from 0 to 1, or complex, shape (len(tau), count)."""
     x = 2.0 * tau - 1.0
     if not np.iscomplexobj(x):
         return np.asarray(np.cos(np.arccos(np.clip(x, -1.0, 1.0))[:, None] * np.arange(count)))
