@@ -857,6 +857,15 @@ def test_a_file_that_holds_neither_friction_nor_heights_is_refused_with_both_rea
         read_scan("a.x3p", b"no zip")
 
 
+def test_the_areas_of_a_map_are_in_its_chart_before_their_data(answer):
+    # What draws them is JavaScript, which is sent once, when the chart is made.
+    empty = charts.diagram_chart(replace(answer, diagram=None), LIGHT)
+    areas = [s for s in empty["series"] if s["id"].startswith("area-")]
+    assert [s["data"] for s in areas] == [[], [], []] and all(":renderItem" in s for s in areas)
+    full = charts.diagram_chart(answer, LIGHT)
+    assert {s["id"] for s in areas} == {s["id"] for s in full["series"] if s["type"] == "custom"}
+
+
 def test_a_refused_value_is_told_in_the_unit_of_its_field():
     with pytest.raises(sb.InputError, match=r"or a bare number in mm/s\.$"):
         inputs.typed(START, "speed", "fast")

@@ -247,8 +247,9 @@ def solved_curve(contact: Contact, definition: Definition, report: Report) -> Cu
     if geometry == "point":
         source += f"; at {len(speed)} speeds, smooth in between"
         dense = np.unique(np.concatenate([np.geomspace(speed[0], speed[-1], POINTS), speed]))
-        totals = {kind: _between(speed, values, dense) for kind, values in totals.items()}
+        viscous = {kind: _between(speed, np.asarray(friction[kind].viscous), dense) for kind in DEFINITIONS}
         contact_part, speed = _between(speed, contact_part, dense), dense
+        totals = {kind: contact_part + part for kind, part in viscous.items()}
     return Curve(speed, totals, contact_part, _marks_of(found), source, solved=found)
 
 

@@ -239,29 +239,34 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
         roughness = 1e6 * diagram.roughness
     begin = np.clip(lines[1], low, high)
     end = np.minimum(np.clip(lines[0], low, high), begin)
-    if known.sum() > 1 and diagram is not None:
-        rows = roughness[known]
-        left, right = np.full(len(rows), low), np.full(len(rows), high)
-        b, h = end[known], begin[known]
-        for name, one, two in (("boundary", left, b), ("mixed", b, h), ("hydrodynamic", h, right)):
-            outline = [*pairs(one, rows), *pairs(two[::-1], rows[::-1])]
-            row = [*outline[0], len(outline), *(value for point in outline for value in point)]
-            series.append(
-                {
-                    "id": f"area-{name}",
-                    "name": name,
-                    "type": "custom",
-                    ":renderItem": POLYGON,
-                    "clip": True,
-                    "silent": True,
-                    "data": [row],
-                    "color": palette.tints[name],
-                    "itemStyle": {"color": palette.tints[name]},
-                    "tooltip": {"show": False},
-                    "z": 1,
-                }
-            )
+    is_there = known.sum() > 1 and diagram is not None
+    if not is_there:
+        known = np.zeros_like(known)
+    rows = roughness[: len(known)][known]
+    left, right = np.full(len(rows), low), np.full(len(rows), high)
+    b, h = end[known], begin[known]
+    # The areas are there before their data: what draws them is sent once, with the empty chart.
+    for name, one, two in (("boundary", left, b), ("mixed", b, h), ("hydrodynamic", h, right)):
+        outline = [*pairs(one, rows), *pairs(two[::-1], rows[::-1])]
+        row = [*outline[0], len(outline), *(value for point in outline for value in point)] if outline else []
+        series.append(
+            {
+                "id": f"area-{name}",
+                "name": name,
+                "type": "custom",
+                ":renderItem": POLYGON,
+                "clip": True,
+                "silent": True,
+                "data": [row] if row else [],
+                "color": palette.tints[name],
+                "itemStyle": {"color": palette.tints[name]},
+                "tooltip": {"show": False},
+                "z": 1,
+            }
+        )
+        if row:
             series.append(_region_name(name, one, two, rows, palette))
+    if is_there and diagram is not None:
         inside = (b > low) & (b < high)
         series.append(line("end", "boundary ends", np.where(inside, b, np.nan), rows, palette.contact, 1.8, [7, 3]))
         inside = (h > low) & (h < high)
