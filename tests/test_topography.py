@@ -210,7 +210,7 @@ TEXTS = {
     "empty": ("", {"unit": "um"}, "no line of numbers"),
     "no position": ("1;2\n;3\n3;4\n", {"unit": "um"}, "line 2 has no position"),
     "same position": ("1;2\n2;3\n2;4\n", {"unit": "um"}, "line 3 has the same position"),
-    "no spacing": ("1\n2\n3\n", {"unit": "um"}, "say the distance between points with --spacing"),
+    "no spacing": ("1\n2\n3\n", {"unit": "um"}, "give the distance between points with --spacing"),
     "spacing twice": ("1;2\n2;3\n", {"unit": "um", "spacing": "1 um"}, "has positions"),
     "no grid": ("0;0;1\n1;0;1\n2;0;1\n3.4;0;1\n0;1;2\n", {"unit": "um"}, "line 4 does not lie on an even grid in x"),
     "same point": ("0;0;1\n1;0;1\n0;1;1\n1;1;2\n1;1;3\n", {"unit": "um"}, "line 5 repeats the position"),
