@@ -99,6 +99,12 @@ def test_what_the_contact_does_not_have_cannot_be_free():
         TRUE.replace(layer_thickness=1)
 
 
+def test_a_body_that_remembers_is_refused_by_name():
+    contact = TRUE.replace(solid=sb.solids.StandardLinearSolid("10 ms", 3.0))
+    with pytest.raises(sb.InputError, match="solid = standard linear solid, half-plane: its deflection changes with the speed"):
+        sb.fit(measured(SPEEDS, np.ones(6)), contact, free=["roughness"])
+
+
 def test_an_exponent_stays_in_the_range_of_its_law():
     contact = TRUE.replace(fluid=sb.fluids.Carreau("1 ms", 0.5))
     data = measured(SPEEDS, np.ones(6))

@@ -29,6 +29,7 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups, Physics
+from stribeck.contacts.with_parts import check_solid
 from stribeck.fits.friction_parts import FrictionParts, ModelChange, PartsOf
 from stribeck.fits.measurements import Measurements
 from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
@@ -215,6 +216,8 @@ class FrictionModel:
         self.contact, self.data, self.free = contact, data, tuple(free)
         self.rule = RULES[contact.groups.geometry]
         self.contacts = tuple(contact.replace(speed=1.0, **inputs) for inputs in data.inputs)
+        for each in self.contacts:
+            check_solid(each)
         exponents = [self._exponents(curve) for curve in range(len(data.curves))]
         self.exponents = np.array(exponents).reshape(len(data.curves), len(self.free), 4 + len(self.rule.inputs))
         self.logs = self.logs_at(data.curve, data.values)
