@@ -144,6 +144,8 @@ def motion(rng: np.random.Generator, groups: sb.Groups) -> dict[str, Any]:
         lambda: sb.solids.TwoBodies(sb.solids.Layer(3.0, 0.5), sb.solids.HalfPlane(), float(rng.uniform(0.05, 0.95))),
     )
     solid = solids[rng.integers(4)]()
+    if getattr(solid, "uses_speed", False) and parts["slide_to_roll"] < -2:  # refused: memory moves against the flow
+        parts["slide_to_roll"] = -parts["slide_to_roll"]
     return parts if solid is None else {**parts, "solid": solid}
 
 
