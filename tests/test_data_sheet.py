@@ -214,7 +214,7 @@ def test_errors_that_say_nothing_are_refused():
 def test_regimes_prints_conversions_and_the_probability_of_each_regime(tmp_path, capsys, monkeypatch):
     from stribeck.regimes.margins import RegimeMargins
 
-    monkeypatch.setattr("stribeck.regimes.margins.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
+    monkeypatch.setattr("stribeck.cli.reports.explain.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
     path = tmp_path / "case.toml"
     path.write_text(case_text({"roughness": None, "ra": '"0.8 +- 0.2 um"', "speed": '"20 mm/s"'}))
     answer = call(capsys, "regimes", path)

@@ -108,6 +108,34 @@ def test_a_thick_layer_is_a_half_space_but_for_the_third_power_of_its_thickness(
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize("ratio", [0.3, 0.5])
+def test_a_thin_layer_gives_way_as_springs_and_an_incompressible_one_as_the_bend_of_the_pressure(ratio):
+    # w = (2/pi) d (1 - 2 nu)/(1 - nu)**2 p, and -(8/3 pi) d**3 times the Laplacian of p, but for (d/s)**2.
+    left = {0: [], 1: []}
+    for d in (0.2, 0.1):
+        edges = np.concatenate([np.arange(0.0, 4.6, 2 * d), [8.0, 12.0]])
+        mesh = PolarMesh(edges, edges.size - 3, 6, 2)
+        r, by_mode = mesh.radii, layer_by_mode(mesh, Layer(d, ratio))
+        bump = np.exp(-(r**2) / 2)
+        for mode, pressure, bend in ((0, bump, (r**2 - 2) * bump), (1, r * bump, r * (r**2 - 4) * bump)):
+            springs = 2 / np.pi * d * (1 - 2 * ratio) / (1 - ratio) ** 2 * pressure
+            limit = -8 / (3 * np.pi) * d**3 * bend if ratio == 0.5 else springs
+            left[mode].append(np.abs(by_mode[mode] @ pressure - limit)[r < 2].max() / np.abs(limit).max())
+    for thick, thin in left.values():
+        assert thin < (0.1 if ratio == 0.5 else 3e-3)
+        assert 1.6 < np.log2(thick / thin) < 2.1
+
+
+@pytest.mark.slow
+def test_at_rest_a_thin_layer_bears_the_load_as_springs_do():
+    # p = (b**2 - r**2)/2 k with b**4 = 8 k/3.
+    layer = Layer(0.3, 0.0)
+    springs = 2 / np.pi * layer.thickness
+    found = with_part("solid", layer, Groups(0.0, 1e-3, 1e-5, geometry="point"), 1e-3).central_pressure
+    assert found == pytest.approx(np.sqrt(8 * springs / 3) / (2 * springs), rel=5e-3)
+
+
+@pytest.mark.quick
 def test_at_rest_a_layer_bears_the_load_with_more_pressure():
     groups = Groups(0.0, 1e-3, 1e-4, geometry="point")
     thick, thin = (with_part("solid", Layer(d), groups, 1e-3).central_pressure for d in (100.0, 1.0))
