@@ -108,8 +108,8 @@ class BatchSolution(Exported, Shown, ByValue):
         rule, groups, definition = RULES[self.groups.geometry], self.groups, check_definition(definition)
         if groups.geometry == "point" and groups.model.film.uses_speed:
             raise InputError(
-                f"fluid = {groups.model.film.name}: the friction of a ball in a fluid that thins needs the flow up to where the "
-                "liquid ends, which batches do not keep; solve the states one by one, as a curve or in a sweep."
+                f"fluid = {groups.model.film.name}: the friction of a ball in a fluid that thins needs the flow up to where "
+                "the liquid ends, which batches do not keep; solve the states one by one, as a curve or in a sweep."
             )
         inputs = {"beta": self._coefficient("beta", beta), "far": FAR.get(groups.model.cavitation, FULL)}
         for name, of in rule.inputs.items():

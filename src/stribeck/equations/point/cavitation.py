@@ -52,7 +52,7 @@ LINEAR = 1e-3
 """Relative error of a step that GMRES may leave; less near the solution."""
 
 FEW = 0.15
-"""Nodes that change between torn and not, over those that the factors of the capacitance matrix are for, up to which these serve."""
+"""Nodes that break or heal, over those that the factors of the capacitance matrix are for, up to which these serve."""
 
 FLUID = 10.0
 """Part of the film pressure that GMRES may leave over that of the gap."""
@@ -93,7 +93,7 @@ class CavitatedEquations(Equations):
         return np.eye(mesh.modes) * float(slope[0] / first[0])
 
     def shear_missing(self, y: Unknowns) -> Array:
-        """Return by how much the shear over h on each ring is less for the streaks of the wake that are dry, shape (rings,)."""
+        """Return by how much the shear over h on each ring is less for the dry streaks of the wake, shape (rings,)."""
         return shear_missing(self.operators.mesh, y.gap, y.fluid, partial(self.film.sheared, self.speed))
 
 
@@ -195,7 +195,7 @@ class _Factors:
     """Factors of the capacitance matrix of some of the kept nodes."""
 
     columns: Indices
-    factors: tuple[Array, Indices] | None
+    factors: tuple[Array, npt.NDArray[np.int32]] | None
 
     def solve(self, right: Array) -> Array:
         """Return what unit residuals do away with film pressures at these nodes."""
@@ -215,7 +215,7 @@ class _Preconditioner:
         self.kept, self.linear, self.base = kept, linear, base
         self.columns = np.concatenate([base.columns, added])
         self.at, self.added = kept.nodes[self.columns], added.size
-        self.corner: tuple[Array, Indices] | None = None
+        self.corner: tuple[Array, npt.NDArray[np.int32]] | None = None
         if added.size + removed.size:
             self.place = np.flatnonzero(np.isin(base.columns, removed))
             units = np.zeros((base.columns.size, removed.size), dtype=np.float32)

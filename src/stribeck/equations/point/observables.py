@@ -83,7 +83,7 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
 
 
 def thinned_beyond(equations: Equations, y: Unknowns) -> float:
-    """Return about by how much the finite parts are too large as the fluid is taken for one that does not thin beyond the rim."""
+    """Return about by how much the finite parts are too large, as the fluid is taken not to thin beyond the rim."""
     at_rim = equations.film.sheared(equations.speed, y.gap[:, -1])
     return FAR_ERROR * equations.speed * float(np.abs(1.0 - at_rim).max())
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import lapack
 
-from stribeck._types import Array
+from stribeck._types import Array, Indices
 from stribeck.equations.point.far_field import rates
 from stribeck.equations.point.system import Linear
 from stribeck.numerics.fourier_panels import lobatto, radau
@@ -111,7 +111,7 @@ class Coupling:
         found[-1] += 0.5 * (self.rim_h[d] + self.rim_h[s])
         return np.asarray(found)
 
-    def _crossed(self, which: int, m: Array, k: int) -> Array | float:
+    def _crossed(self, which: int, m: Indices, k: int) -> Array | float:
         """Return what mode k does to modes m through derivatives in the radius and in the angle, panel by panel."""
         if self.crossed is None:
             return 0.0

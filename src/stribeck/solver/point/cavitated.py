@@ -146,7 +146,7 @@ def follow_cavitated(
         coarse = solve_level(replace(now, modes=few, degree=DEGREE), speed, law, start.unknowns, start.mesh, TOLERANCE)
         found = _pair(coarse, many, speed, law)
         return found if isinstance(found, Pair) else None
-    levels = []
+    levels: list[Level] = []
     for name in ("coarse", "fine"):
         old: Level = getattr(neighbour, name)
         guess = old.unknowns

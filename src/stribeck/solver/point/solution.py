@@ -103,9 +103,7 @@ class PointObservables:
         if not isinstance(contact, PointContact):
             return cls(**values, _groups=state.groups, _slide_to_roll=2.0 * state.groups.model.film.slide, _within=within)
         wetted = None if contact.wetted_radius is None else contact.wetted_radius / contact.hertz.half_width
-        return cls(
-            **values, _groups=state.groups, _slide_to_roll=contact.slide_to_roll, _wetted_radius=wetted, _within=within
-        )
+        return cls(**values, _groups=state.groups, _slide_to_roll=contact.slide_to_roll, _wetted_radius=wetted, _within=within)
 
     def integral(self, slope: float, definition: Definition = "balanced") -> float:
         r"""Return the friction integral J up to where the liquid ends.

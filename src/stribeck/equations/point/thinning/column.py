@@ -22,9 +22,10 @@ Source: ours; the generalised Reynolds equation in integrals of the fluidity is 
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -36,7 +37,9 @@ POINTS, ALIKE = (14, 20, 28, 40, 56), 1e-8
 """Gauss points on each side of the smallest stress: the fewest with which columns of very different rates differ by this part
 from those of the next rule but one."""
 
-SAMPLE = np.array([(slip, slope, angle) for slip in (0.3, 5.0, 50.0, 500.0) for slope in (0.3, 5.0, 50.0) for angle in (0.1, 1.5, 2.5)]).T
+SAMPLE = np.array(
+    [(slip, slope, angle) for slip in (0.3, 5.0, 50.0, 500.0) for slope in (0.3, 5.0, 50.0) for angle in (0.1, 1.5, 2.5)]
+).T
 """Slips, rates that the pressure gradient alone would make at the walls, and angles between them, of these columns."""
 
 SPACING = 0.0025
@@ -107,8 +110,8 @@ class FlowCurve:
 
 
 @lru_cache(maxsize=32)
-def flow_curve(law: RateLaw) -> FlowCurve:
-    """Return the flow curve of a law; fits and sweeps ask for many."""
+def flow_curve(law: Any) -> FlowCurve:
+    """Return the flow curve of a :class:`RateLaw`; fits and sweeps ask for many."""
     ends = np.array([law.plateau * NEWTONIAN if law.plateau > 0 else WITHOUT_PLATEAU, HIGHEST])
     lowest, highest = np.log(law.stress(ends)[0])
     stress = np.exp(lowest + SPACING * np.arange(int((highest - lowest) / SPACING) + 2))
@@ -167,7 +170,7 @@ def column(law: RateLaw, slope: Array, slip: Array, start: Array | None = None) 
     Column
         nan where the iteration does not end, as for a stress that is not finite.
     """
-    return _solved(law, flow_curve(law), slope, slip, start)
+    return _solved(law, flow_curve(cast("Hashable", law)), slope, slip, start)
 
 
 def _solved(law: RateLaw, curve: FlowCurve, slope: Array, slip: Array, start: Array | None = None) -> Column:
@@ -244,7 +247,8 @@ class _Integrals(NamedTuple):
         size = np.sqrt((step * step).sum(axis=0)) / np.maximum(largest, TINY)
         size = np.where((largest == 0) & (missing == 0).all(axis=0), 0.0, size)
         step = step * np.minimum(1.0, LONGEST / np.maximum(size, TINY))
-        return cls(mean, slope, slip, place, a[1] * least + a[2] * slope, *matrices, missing, step, size)
+        zeroth, first, second = matrices
+        return cls(mean, slope, slip, place, a[1] * least + a[2] * slope, zeroth, first, second, missing, step, size)
 
     def of(self, chosen: Flags) -> _Integrals:
         """Return the chosen nodes."""
@@ -276,4 +280,4 @@ def _times(matrix: Array, vector: Array) -> Array:
 
 def _inverse(matrix: Array) -> Array:
     xx, xy, yy = matrix
-    return np.stack([yy, -xy, xx]) / np.maximum(xx * yy - xy * xy, TINY)
+    return np.asarray(np.stack([yy, -xy, xx]) / np.maximum(xx * yy - xy * xy, TINY))

@@ -1,13 +1,13 @@
 r"""The flow in the plane of a film that thins.
 
-With :math:`\mathbf Q = 6 h t \nabla p_f`, :math:`\mathbf r_0 = -\lambda t \eta s \mathbf e_x/h`, the relaxation time t and what
-:mod:`stribeck.equations.point.thinning.column` makes of them, what flows is
+With :math:`\mathbf Q = 6 h t \nabla p_f`, :math:`\mathbf r_0 = -\lambda t \eta s \mathbf e_x/h`, the relaxation time t and
+what :mod:`stribeck.equations.point.thinning.column` makes of them, what flows is
 
 .. math:: \mathbf F = \rho \left[\frac{2 h^2}{\eta t} \mathbf r_1 - \lambda h \, \mathbf e_x\right],
 
 :math:`\rho [h^3 \nabla p_f/\eta - \lambda h \mathbf e_x]` for a Newtonian fluid.  The walls feel the stresses
-:math:`-(\mathbf T \mp \mathbf Q/2)/6t`, whose difference is the pull of the pressure gradient, whatever the fluid: what thinning
-changes of the drag is T.  The pressure divides the rate at a given stress by :math:`\eta(p)`, as on the line.
+:math:`-(\mathbf T \mp \mathbf Q/2)/6t`, whose difference is the pull of the pressure gradient, whatever the fluid: what
+thinning changes of the drag is T.  The pressure divides the rate at a given stress by :math:`\eta(p)`, as on the line.
 
 At the rim, and beyond, the fluid is at rest but for rates far below those of thinning.
 """
