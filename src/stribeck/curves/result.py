@@ -301,7 +301,10 @@ class StribeckCurve(Exported, Shown, ByValue):
     @property
     def error_estimate(self) -> float:
         """Largest estimated relative error over all points."""
-        return max((s.error_estimate for s in self.solutions), default=math.nan)
+        if self._function is None:
+            return max((s.error_estimate for s in self.solutions), default=math.nan)
+        stated = self._rows[1][:, : COLUMNS.index("minimum_position")]
+        return float(np.nanmax(np.maximum(stated, self._least_error), initial=0.0)) if len(stated) else math.nan
 
     @property
     def notes(self) -> tuple[str, ...]:
