@@ -1,10 +1,14 @@
 """A curve as a function: within its stated errors anywhere, whatever points it was sampled at."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck.equations.observables import ROW
 from stribeck.quantities.outputs import NAMES
+from stribeck.solver.line_path import LineProblem
 
 SEED = 61_441
 CONTACT = sb.LineContact(
@@ -137,3 +141,39 @@ def test_a_curve_does_not_refine_a_vanishing_difference():
     curve = sb.stribeck_curve(load=0.1, roughness=0.0, speed=(1e2, 1e8), points=3)
     assert curve.outcome.ok and len(curve._solved_path.expansions) < 60
     assert (curve.at(np.geomspace(1e2, 1e8, 50)).relative_errors[:, :8] < 3e-6).all()
+
+
+def table_law():
+    s = np.linspace(0.05, 6.0, 40)
+    return sb.TableLaw(s, np.exp(-s) + 0.3 * np.exp(-3 * s))
+
+
+@pytest.mark.parametrize("law", [None, sb.GreenwoodTripp(), table_law()])
+@pytest.mark.parametrize("direction", [(1.0, 0.0, 0.0), (-2.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
+def test_the_series_of_a_state_is_that_of_the_states_beside_it(law, direction):
+    state = sb.Groups(1e-3, 0.1, 3e-3, law=law)
+
+    def groups_at(s):
+        speed, load, roughness = np.exp(s * np.array(direction)) * (state.speed, state.load, state.roughness)
+        return replace(state, speed=float(speed), load=float(load), roughness=float(roughness))
+
+    expansion = LineProblem(groups_at, direction, 1e-9).solve(0.0, [])
+    step = 0.04 * expansion.radius
+    for t in (-step, step):
+        beside = sb.solve(groups_at(t), rtol=1e-9).observables
+        found = t ** np.arange(expansion.order + 1.0) @ expansion.series
+        for name in set(NAMES) - {"minimum_gap"}:  # it has no series
+            assert found[ROW[name]] == pytest.approx(getattr(beside, name), rel=1e-7, abs=1e-8)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("law", "load", "kappa", "rtol"),
+    [(None, 0.025, 4e-4, 1e-6), (table_law(), 0.03, 9e-3, 1e-6), (None, 5e-4, 0.3, 1e-9), (sb.GreenwoodTripp(), 0.3, 2e-3, 1e-6)],
+)
+def test_a_whole_curve_is_within_three_times_its_stated_errors_and_nearly_everywhere_within_them(law, load, kappa, rtol):
+    groups = sb.Groups(1.0, load, kappa * load, law=law)
+    curve = sb.stribeck_curve(groups, points=2, rtol=rtol)
+    speeds = np.exp(np.random.default_rng(SEED).uniform(*np.log(curve.values[[0, -1]]), 25)).tolist()
+    ratios = [worst(curve, speed, replace(groups, speed=speed), max(1e-10, min(1e-9, 0.1 * rtol))) for speed in speeds]
+    assert max(ratios) < 3 and np.mean(np.array(ratios) < 1) > 0.9
