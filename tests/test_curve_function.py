@@ -169,7 +169,12 @@ def test_the_series_of_a_state_is_that_of_the_states_beside_it(law, direction):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "load", "kappa", "rtol"),
-    [(None, 0.025, 4e-4, 1e-6), (table_law(), 0.03, 9e-3, 1e-6), (None, 5e-4, 0.3, 1e-9), (sb.GreenwoodTripp(), 0.3, 2e-3, 1e-6)],
+    [
+        (None, 0.025, 4e-4, 1e-6),
+        (table_law(), 0.03, 9e-3, 1e-6),
+        (None, 5e-4, 0.3, 1e-9),
+        (sb.GreenwoodTripp(), 0.3, 2e-3, 1e-6),
+    ],
 )
 def test_a_whole_curve_is_within_three_times_its_stated_errors_and_nearly_everywhere_within_them(law, load, kappa, rtol):
     groups = sb.Groups(1.0, load, kappa * load, law=law)

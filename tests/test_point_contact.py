@@ -197,7 +197,7 @@ def test_a_case_file_holds_a_ball(tmp_path):
     ("text", "sentence"),
     [
         (CASE.format(load="30 N/m"), r"\[contact\] load = '30 N/m' is a load per unit length; .* that of a cylinder"),
-        (CASE.format(load="1.3 N").replace('"point"', '"line"'), r"load = '1.3 N' is a force; expected a load per unit length"),
+        (CASE.format(load="1.3 N").replace('"point"', '"line"'), "load = '1.3 N' is a force; expected a load per unit length"),
         (CASE.format(load="1.3 N").replace('"point"', '"ball"'), "geometry = 'ball'; it must be 'line' or 'point'"),
         (
             CASE.format(load="1.3 N").replace('load = "1.3 N"', ""),

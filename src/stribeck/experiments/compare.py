@@ -31,7 +31,7 @@ __all__ = ["CAVEATS", "Candidate", "Comparison", "compare"]
 CAVEATS = (
     "The weights say which of these is nearest to the data, not that it is right: look at the residuals of the best.",
     "They hold if errors of rows are independent; a systematic error of the rig counts as evidence otherwise.",
-    "Contact laws differ most where asperities are few, near the minimum: without rows there the data cannot distinguish them.",
+    "Contact laws differ most where asperities are few, near the minimum: without rows there data cannot distinguish them.",
 )
 """Caveats of a comparison."""
 

@@ -234,7 +234,7 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
     decade = decade_of_roughness(contact)
     roughness = np.array([10.0 ** (decade + 6), 10.0 ** (decade + 9)])
     lines = np.empty((3, 0)) if diagram is None else np.stack([diagram.boundary, diagram.hydrodynamic, diagram.minimum])
-    known = ~np.isnan(lines[:2]).any(axis=0)
+    known = np.asarray(~np.isnan(lines[:2]).any(axis=0))
     if diagram is not None:
         roughness = 1e6 * diagram.roughness
     begin = np.clip(lines[1], low, high)
