@@ -852,7 +852,7 @@ def test_a_file_of_heights_becomes_the_surface_of_the_contact():
 
 def test_a_file_that_holds_neither_friction_nor_heights_is_refused_with_both_reasons():
     with pytest.raises(sb.InputError, match=r"^a.csv.* As a file of heights: a.csv"):
-        read_file("measured", "a.csv", b"x, y\nno, numbers\n", START.contact)
+        read_file("measured", "a.csv", b"x, y\nno, numbers\n", START.contact, seconds=120)
     with pytest.raises(sb.InputError, match=r"^a.x3p is damaged|^a.x3p does not start like"):
         read_scan("a.x3p", b"no zip")
 
