@@ -16,7 +16,7 @@ from stribeck.equations.point.observables import FrictionWithin
 from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
-from stribeck.equations.point.thinning.column import column, flow_curve
+from stribeck.equations.thinning.column import column, flow_curve
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.local_flow import profile
 from stribeck.fluids.rate_laws import Carreau, Cross, Eyring, PowerLaw

@@ -4,7 +4,7 @@ r"""What the equations of a ball ask of a film: the flow in the plane under a pr
     M = \frac{\rho \, \phi \, h^3}{\eta}, \quad C = \rho \, (h + s S)
 
 in Hertz units, with viscosity, density and flow factors as functions of pressure and gap; M is the same in all directions.
-A fluid that thins has an M that depends on the gradient too (:mod:`stribeck.equations.point.thinning`): equations ask for
+A fluid that thins has an M that depends on the gradient too (:mod:`stribeck.equations.thinning`): equations ask for
 what flows and for its derivatives, whatever the law.
 """
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from stribeck.equations.point.films import PLAIN, NewtonianPlane, PlaneFilm
-from stribeck.equations.point.thinning.plane import ThinningPlane
+from stribeck.equations.thinning.plane import ThinningPlane
 from stribeck.fluids.fluid import Film
 from stribeck.fluids.laws import RateLaw
 from stribeck.fluids.newtonian import Newtonian

@@ -1,7 +1,7 @@
 r"""The flow in the plane of a film that thins.
 
 With :math:`\mathbf Q = 6 h t \nabla p_f`, :math:`\mathbf r_0 = -\lambda t \eta s \mathbf e_x/h`, the relaxation time t and
-what :mod:`stribeck.equations.point.thinning.column` makes of them, what flows is
+what :mod:`stribeck.equations.thinning.column` makes of them, what flows is
 
 .. math:: \mathbf F = \rho \left[\frac{2 h^2}{\eta t} \mathbf r_1 - \lambda h \, \mathbf e_x\right],
 
@@ -21,7 +21,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.equations.point.films import Fluxes, FluxSlopes, weights_of
-from stribeck.equations.point.thinning.column import NEAR, Column, column
+from stribeck.equations.thinning.column import NEAR, Column, column
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
 
