@@ -137,7 +137,7 @@ TABLES = (
         "exponential",
         Cavitation.NONE,
         {"speed": (1e-8, 1e2), "load": (1e-7, 0.5), "relative_roughness": (1e-3, 1.0)},
-        1e-3,
+        1.5e-3,
         "ball_exponential.npz",
         BALL_EXPONENTIAL,
     ),
