@@ -396,5 +396,6 @@ def solve_state(
     start = unknowns_of(equations, guess)
     root = root_find(equations, start, StepControl(tolerance, max_steps, CHORD), kept)
     gap = equations.layout.gap
-    error = float(np.abs(start[gap] / root.x[gap] - 1).max())
+    with np.errstate(all="ignore"):  # a root that was not found need not be finite
+        error = float(np.abs(start[gap] / root.x[gap] - 1).max())
     return State(groups, equations, root.x, root, error)

@@ -128,7 +128,7 @@ class LineProblem:
         groups = self.groups_at(s)
         if near and _alike(*near):
             guess = self._guess(s, groups, near)
-            if not np.isfinite(np.log(guess.y[guess.equations.layout.gap])).all():
+            if not (np.isfinite(np.log(guess.y[guess.equations.layout.gap])).all() and guess.dilation > 0):
                 return Outcome.NOT_FINITE
             spread = max(abs(guess.minimum_position - one.point.state.minimum_position) for one in near)
             refined: RefinedState | None = self.corrector.solve(guess, groups, SPREAD * spread)
