@@ -179,7 +179,7 @@ def test_batches_and_fits_whose_logarithms_are_newtonian_refuse_it_by_name():
     batch = sb.solve_batch(thinning, rtol=1e-2)
     with pytest.raises(sb.InputError, match="fluid = carreau: the friction of a ball in a fluid that thins"):
         batch.friction()
-    with pytest.raises(sb.InputError, match="fluid = carreau: fits of a ball"):
+    with pytest.raises(sb.InputError, match="fits of a ball are for a Newtonian fluid"):
         sb.fit(measured([0.5, 0.4, 0.35, 0.3, 0.3]), BALL.replace(fluid=Carreau("1 ms", 0.5)), free=["beta"])
 
 
