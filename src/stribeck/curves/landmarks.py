@@ -23,6 +23,9 @@ __all__ = ["Landmark", "Landmarks"]
 LOCATION_TOLERANCE = 1e-9
 """Relative tolerance to which a minimum or a transition is located; its own error is that of the solved states."""
 
+STATES_RTOL = 1e-6
+"""Largest tolerance of these states: a coarse curve has a few of them, and they are its headline."""
+
 PARTS = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 9)
 """Where a function is looked at in an interval between two solved states, in parts of it."""
 
@@ -104,7 +107,7 @@ class Landmarks:
         width = min(1e-3, 0.1 * (high - low))
         slope = (at(s + width) - at(s - width)) / (2 * width)
         for _ in range(MOST_POLISHES):
-            point = solved_at(self.path, s, self.rtol)
+            point = solved_at(self.path, s, min(self.rtol, STATES_RTOL))
             if point.state is None or point.values is None:
                 raise SolveError(point.outcome, None, f"{describe(self.coordinate.groups_at(s))}: {point.outcome.value}")
             step = -of(point) / slope
