@@ -528,7 +528,7 @@ def test_the_examples_of_the_help_run(capsys, tmp_path, monkeypatch):
             answer = call(capsys, *shlex.split(example), *few, *([] if command == "regimes" else ["--force"]))
             assert (answer.code, answer.err) == (0, "")
             seen += 1
-    assert seen == 8
+    assert seen == 9
 
 
 @pytest.mark.quick

@@ -251,7 +251,6 @@ def test_any_text_is_read_or_refused_with_a_sentence(tmp_path_factory, text):
 
 TABLES = {
     "unknown key": ({"fre": ["mu0"]}, "fre", "did you mean free."),
-    "no such input": ({"free": ["pressure_viscosity"]}, "'pressure_viscosity'", "in the table [fluid]"),
     "unknown input": ({"free": ["stiffness"]}, "'stiffness'", "known are"),
     "former name": ({"free": ["friction_coefficient"]}, "'friction_coefficient'", "write boundary_friction."),
     "speed": ({"free": ["speed"]}, "'speed'", "measured"),

@@ -169,7 +169,7 @@ def test_the_command_says_what_it_did(capsys, tmp_path):
     lines = answer.out.splitlines()
     assert lines[0] == "PDMS cylinder over speed, roughness and load"
     assert lines[1] == f"156 of 156 states are finished in {store}; load, roughness, speed varied, grid."
-    assert re.fullmatch(r"Computed now: 156, [0-9.]+ per second; found there: 0\.", lines[2])
+    assert re.fullmatch(r"Computed now: 156, [0-9.]+ per second; found in the store: 0\.", lines[2])
     assert lines[3:] == ["156 CONVERGED: Converged.", f"Written: {data}"]
     with xr.open_dataset(data, engine="netcdf4") as found:
         assert found.sizes["state"] == 156

@@ -283,7 +283,7 @@ def test_a_flipped_bit_in_the_inputs_is_told_by_the_command_and_at_resume(copy, 
     found = call(capsys, "sweep", file, "--out", store, "--export", tmp_path / "sweep.nc")
     assert (found.code, found.out) == (2, "")
     assert found.err == (
-        f"stribeck: {store} is damaged: inputs/c/0/0 in it has changed since it was written; take it "
+        f"stribeck: {store} is damaged: inputs/c/0/0 in it has changed since it was written; restore it "
         f"from a copy, or run the sweep "
         "again into a new store.\n"
     )

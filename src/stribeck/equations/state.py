@@ -277,6 +277,7 @@ def mesh_for(
     """
     cavitation = groups.model.cavitation
     plateau, broken = fall_of(groups.model.film, float(groups.speed))
+    thins = is_thinning(groups.model.film)
     ends, restart = cavitation is not Cavitation.NONE, math.inf
     if cavitation is Cavitation.REFORM:
         restart = _cavity_on_mesh(guess)
@@ -287,7 +288,7 @@ def mesh_for(
     scale = 2.0 ** round(float(np.log2(width).mean()))
     minimum_position = guess.minimum_position / to_guess
     lift = 1.0
-    if is_thinning(groups.model.film) and isinstance(guess, State):  # turns that no load feels are felt by flux and drag
+    if thins and isinstance(guess, State):  # turns that no load feels are felt by flux and drag
         lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
 

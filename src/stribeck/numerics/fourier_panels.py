@@ -242,8 +242,8 @@ class PolarMesh:
         return panel, matrix
 
     def transfer(self, other: PolarMesh, field: Array) -> Array:
-        """Return nodal fields, shape (..., modes, rings), at the nodes of another mesh with the same rim or a smaller one."""
-        panel, matrix = self.radial_interpolation(other.radii)
+        """Return nodal fields, shape (..., modes, rings), at the nodes of another mesh; beyond the rim those at the rim."""
+        panel, matrix = self.radial_interpolation(np.minimum(other.radii, self.rim))
         radial = (field[..., self.of_panel[panel]] * matrix).sum(axis=-1)
         coefficients = self.to_modes @ radial
         waves = np.cos(np.outer(other.angles, np.arange(self.modes)))
