@@ -14,7 +14,7 @@ from stribeck.atlas.grid import HEAVY, NEARLY_SMOOTH
 from stribeck.atlas.table import Values
 from stribeck.atlas.tables import SLACK, TableRow, table_for
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.units import InputError
@@ -33,9 +33,6 @@ __all__ = [
 ]
 
 ODDS, CENTRAL, MINIMUM, FLUX, DEFLECTION = "log_odds", "central_gap", "minimum_gap", "flux_gap", "deflection"
-
-IMAGINARY = 1e-30
-"""Imaginary step of the exact derivatives of friction rules."""
 
 
 class Lookup(NamedTuple):

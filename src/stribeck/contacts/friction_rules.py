@@ -25,10 +25,13 @@ from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.scaling import SCALINGS
 
-__all__ = ["RULES", "FrictionRule"]
+__all__ = ["IMAGINARY", "RULES", "FrictionRule"]
 
 Values = Mapping[str, Any]
 """Arrays by name."""
+
+IMAGINARY = 1e-30
+"""Step along the imaginary axis, whose derivatives are exact."""
 
 PURE_SLIDING = 2.0
 """Slide-to-roll ratio with one surface at rest."""

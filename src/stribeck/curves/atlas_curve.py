@@ -14,15 +14,13 @@ from stribeck._types import Array
 from stribeck.atlas.tables import TableRow, table_for
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
-from stribeck.contacts.friction_rules import RULES, FrictionRule
+from stribeck.contacts.friction_rules import IMAGINARY, RULES, FrictionRule
 from stribeck.contacts.groups import Groups
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.quantities.units import InputError, show
 
 OBSERVABLES = ("contact_load_share", "fluid_load_share", "central_gap", "minimum_gap", "flux_gap", "offset")
 
-IMAGINARY = 1e-30
-"""Imaginary step of the exact derivative by what the friction of a contact takes beside its groups."""
 
 SUBDIVISION = 33
 ROUNDS = 4

@@ -12,7 +12,7 @@ from stribeck import atlas
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, sliding_part
-from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
@@ -22,9 +22,6 @@ from stribeck.quantities.part_inputs import PART_INPUTS
 from stribeck.quantities.units import InputError
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
-
-IMAGINARY = 1e-30
-"""Imaginary step of the exact derivatives of friction rules."""
 
 STEP = 1e-5
 """Change of a logarithm to both sides by which the model is differentiated."""

@@ -11,7 +11,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition
-from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.model import ARTICLE
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Transition
 from stribeck.curves.sensitivities import sensitivities_if_known
@@ -33,8 +33,6 @@ RTOLS = {"line": 1e-5, "point": 1e-4}
 POINTS = 21
 """Of the curves."""
 
-IMAGINARY = 1e-30
-"""Step along the imaginary axis, whose derivatives are exact."""
 
 STEP = 1e-3
 """Of the logarithms of inputs in the differences that find the powers of scales, which are power laws."""
