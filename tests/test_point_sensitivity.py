@@ -104,4 +104,4 @@ def test_a_film_that_breaks_has_no_derivatives_and_fits_say_what_they_leave_out(
     with pytest.raises(sb.InputError, match="cavitation = 'exit': derivatives of a ball are for a film that does not break"):
         state_derivatives(broken)
     with pytest.raises(sb.InputError, match="fits of a ball are for a Newtonian fluid"):
-        WAYS["point"](SimpleNamespace(contact=ball_with("barus")), "balanced", 1e-4)
+        WAYS["point"](SimpleNamespace(contacts=(ball_with("barus"),)), "balanced", 1e-4)

@@ -18,6 +18,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.cut_off import COUETTE, POISEUILLE
+from stribeck.contacts.friction_rules import IMAGINARY
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.point.finish import finish_point
@@ -38,9 +39,6 @@ REACH = math.log(25.0)
 
 TINY, FAINT = 1e-250, 1e-13
 """What stands for shares of asperities and of the fluid that underflow."""
-
-IMAGINARY = 1e-30
-"""Step along the imaginary axis."""
 
 STARTS = 16
 """Solved states that are kept to start from."""

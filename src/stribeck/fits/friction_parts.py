@@ -305,7 +305,7 @@ def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> W
 
 
 def _of_ball(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
-    if model.contact.groups.model != ARTICLE:
+    if any(each.groups.model != ARTICLE for each in model.contacts):  # lattices know one model
         raise InputError(
             "fits of a ball are for a Newtonian fluid that does not cavitate, on a half-space; leave fluid, cavitation, flow "
             "factors and solid out."
@@ -341,7 +341,6 @@ def lattice_parts(starts: Array, varies: Array, definition: Definition) -> Parts
     lattices: list[Lattice] = []
 
     def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
-        _refuse(changes)
         logs = _coordinates(groups)
         is_smooth = not np.any(groups.roughness)
         if not lattices:
@@ -380,7 +379,6 @@ def curve_parts(definition: Definition, rtol: float) -> PartsOf:
     curves: list[Lattice] = []
 
     def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
-        _refuse(changes)
         logs = _coordinates(groups)
         values, slopes = np.empty((4, len(logs))), np.empty((4, 3, len(logs)))
         pairs, of_row = np.unique(logs[:, 1:], axis=0, return_inverse=True)
@@ -399,15 +397,6 @@ def curve_parts(definition: Definition, rtol: float) -> PartsOf:
         return _of_values(values, slopes, rtol, groups, definition)
 
     return parts
-
-
-def _refuse(changes: Sequence[ModelChange]) -> None:
-    """Refuse what lattices of balls do not have."""
-    if changes:
-        raise InputError(
-            "a free input changes the fluid or the solid of the ball over its Hertz contact, which fits of balls do not "
-            "follow; free boundary_friction, roughness or beta, or leave the fluid and the solid of the case out."
-        )
 
 
 def _coordinates(groups: Groups) -> Array:

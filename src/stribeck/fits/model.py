@@ -27,7 +27,7 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction_rules import RULES
+from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.with_parts import check_solid
 from stribeck.fits.friction_parts import FrictionParts, ModelChange, PartsOf
@@ -39,9 +39,6 @@ __all__ = ["FreeInput", "FrictionModel", "Prediction", "free_inputs"]
 
 DEFAULT_FACTOR = 1e3
 """Bounds of a free input without any of its own: this factor below and above its first value."""
-
-IMAGINARY = 1e-30
-"""Step along the imaginary axis, whose derivatives are exact."""
 
 MODEL_STEP = 1e-5
 """Change of a logarithm to both sides by which the model is differentiated."""
