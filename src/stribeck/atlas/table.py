@@ -47,7 +47,8 @@ FUNCTIONS = {"line": TABULATED, "point": BALL}
 """What is tabulated, by geometry."""
 
 SOLVER = ("solver.cold_start", "solver.corrector", "solver.refinement", "solver.at_rest")
-"""Modules that make the states of a table; the hash of these and of all that they import says which solver made it."""
+"""Modules that make the states of a table; by the hash of these and of all that they import a build knows which lines it kept
+are its own."""
 
 NUMBERS = {"contact_laws", "contacts", "equations", "fluids", "numerics", "solids", "solver"}
 """Packages that have a part in the numbers; the others have words."""
