@@ -42,8 +42,8 @@ END_GAIN = 5.0
 END_TAIL = 3.5e-4
 """Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels."""
 
-FINEST_OF_LAYER = 0.75
-"""Half-width of a panel in thicknesses of a layer above which its rule does not resolve what the layer does to pressures."""
+FINEST_OF_LAYER = 6.0
+"""Half-width of a panel in thicknesses of a layer above which what it does to pressures is that of springs alone."""
 
 REACH_OF_LAYER = 24.0
 """Distance in thicknesses beyond which a layer is not felt."""

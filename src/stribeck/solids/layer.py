@@ -28,7 +28,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
-from stribeck.numerics.panels import Mesh
+from stribeck.numerics.panels import Mesh, reference
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import nodal_deflection
 from stribeck.solids.solid import Lengths
@@ -41,7 +41,16 @@ REACH = 24.0
 TABLE = 160
 """Chebyshev coefficients of the smooth part of the kernel: exact to 1e-13."""
 
-WIDEST_PANEL = 3.0
+LARGEST_WAVE, WAVE_PANELS = 40.0, 60
+"""Wave number times thickness beyond which S is one to rounding, and panels of waves up to there."""
+
+CELLS, DEGREES = 384, 8
+"""Cells over :data:`REACH` on which the smooth part is a polynomial, and its coefficients there: to 1e-14 the same."""
+
+FINEST_PANEL = 0.75
+"""Half-width of a panel in thicknesses up to which its own nodes integrate the smooth part; wider ones are cut for that."""
+
+WIDEST_PANEL = 6.0
 """Half-width of a panel in thicknesses from which its pressure acts only at its own nodes."""
 
 
@@ -96,23 +105,39 @@ class Layer:
     def deflection(self, mesh: Mesh) -> Array:
         """Return the matrix from nodal pressures to the deflection at the nodes [u_Hz per p_Hz].
 
-        Panels on which pressure acts must not be much wider than the layer is thick: on panels wider than three thicknesses
+        Panels on which pressure acts must not be much wider than the layer is thick: on panels wider than twelve thicknesses
         the layer acts as springs side by side, ``d (1 - 2 nu)/(2 (1 - nu)^2)`` [u_Hz per p_Hz].
         """
         d, nu, x = self.thickness, self.poisson_ratio, mesh.nodes
         distance = np.abs(x[:, None] - x) / d
         near = distance < REACH
         kernel = nodal_deflection(mesh)
-        kernel += (math.log(d) / math.pi) * mesh.weights
-        smooth = np.zeros_like(kernel)
-        smooth[near] = smooth_kernel(distance[near], nu)
-        kernel += smooth * mesh.weights
-        kernel[~near] = 0.0
-        wide = np.append(mesh.half_widths[:-1] > WIDEST_PANEL * d, True)
+        smooth = smooth_kernel(np.minimum(distance, REACH), nu)
+        smooth += math.log(d) / math.pi
+        smooth *= mesh.weights[:, None]
+        width = mesh.half_widths[:-1] / d
+        for k in np.flatnonzero((width > FINEST_PANEL) & (width <= WIDEST_PANEL)).tolist():
+            smooth[k * mesh.order : (k + 1) * mesh.order] = self._of_wide_panel(mesh, k)
+        kernel += smooth.T  # symmetric but for the weights, and the kernel is in Fortran order
+        kernel *= near.T
+        wide = np.append(width > WIDEST_PANEL, True)
         columns = np.flatnonzero(np.repeat(wide, mesh.order))
         kernel[:, columns] = 0.0
         kernel[columns, columns] = d * (1 - 2 * nu) / (2 * (1 - nu) ** 2)
         return np.asfortranarray(kernel)
+
+    def _of_wide_panel(self, mesh: Mesh, k: int) -> Array:
+        """Return what pressures at the nodes of a panel deflect at all nodes by the smooth part, shape (order, size)."""
+        rule, half = reference(mesh.order), float(mesh.half_widths[k])
+        parts = math.ceil(half / (FINEST_PANEL * self.thickness))
+        t = ((2 * np.arange(parts)[:, None] + 1 - parts + rule.nodes) / parts).ravel()
+        distance = np.abs(mesh.nodes - (float(mesh.centres[k]) + half * t)[:, None]) / self.thickness
+        smooth = smooth_kernel(np.minimum(distance, REACH), self.poisson_ratio)
+        beyond = distance > REACH
+        smooth[beyond] = np.log(distance[beyond]) / math.pi  # where the whole kernel is zero
+        smooth += math.log(self.thickness) / math.pi
+        weights = np.tile(rule.weights, parts) * (half / parts)
+        return np.asarray((weights[:, None] * rule.interpolation(t)).T @ smooth)
 
     def far_gap(self, x: Array) -> Array:
         """Return ``x**2/2``."""
@@ -133,9 +158,10 @@ def transfer(x: Array, poisson_ratio: float) -> Array:
 @lru_cache(maxsize=16)
 def _table(poisson_ratio: float) -> Array:
     """Chebyshev coefficients of the smooth kernel over ``0 <= xi <= REACH``."""
-    nodes, weights = np.polynomial.legendre.leggauss(1200)
-    q = 20.0 * (1 + nodes)  # the integrand is zero to rounding beyond 40
-    weights = 20.0 * weights
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    half = 0.5 * LARGEST_WAVE / WAVE_PANELS
+    q = (half * (1 + 2 * np.arange(WAVE_PANELS)[:, None] + nodes)).ravel()
+    weights = np.tile(half * weights, WAVE_PANELS)
     xi = 0.5 * REACH * (1 + np.cos(np.pi * (np.arange(TABLE) + 0.5) / TABLE))
     excess = transfer(q, poisson_ratio) - 1
     values = ((excess * np.cos(np.outer(xi, q)) + np.exp(-q)) / q) @ weights / np.pi
@@ -143,6 +169,23 @@ def _table(poisson_ratio: float) -> Array:
     return np.asarray(found)
 
 
+@lru_cache(maxsize=16)
+def _on_cells(poisson_ratio: float) -> Array:
+    """Coefficients of the smooth kernel in powers of the place in a cell, -1 to 1, shape (DEGREES, CELLS)."""
+    points = np.cos(np.pi * (np.arange(DEGREES) + 0.5) / DEGREES)
+    xi = (np.arange(CELLS) + 0.5 * (1 + points[:, None])) * (REACH / CELLS)
+    values = chebyshev.chebval(2 * xi / REACH - 1, _table(poisson_ratio))
+    return np.linalg.solve(np.vander(points, increasing=True), values)
+
+
 def smooth_kernel(xi: Array, poisson_ratio: float) -> Array:
     """Return k_s at distances of xi thicknesses, ``0 <= xi <= 24``."""
-    return np.asarray(chebyshev.chebval(2 * xi / REACH - 1, _table(poisson_ratio)))
+    place = xi * (CELLS / REACH)
+    cell = np.minimum(place.astype(np.intp), CELLS - 1)
+    s = 2 * (place - cell) - 1
+    coefficients = _on_cells(poisson_ratio)
+    found = coefficients[-1].take(cell)
+    for row in coefficients[-2::-1]:
+        found *= s
+        found += row.take(cell)
+    return found

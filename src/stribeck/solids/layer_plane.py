@@ -23,12 +23,12 @@ from numpy.polynomial import chebyshev
 from stribeck._types import Array
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.solids.half_space import deflection_by_mode
-from stribeck.solids.layer import REACH, TABLE, WIDEST_PANEL, Layer, transfer
+from stribeck.solids.layer import LARGEST_WAVE, REACH, TABLE, Layer, transfer
 
 __all__ = ["layer_by_mode", "smooth_kernel"]
 
-LARGEST_WAVE = 40.0
-"""Wave number times thickness beyond which S is one to rounding."""
+WIDEST_PANEL = 3.0
+"""Half-width of a panel in thicknesses from which its pressure acts only at its own nodes."""
 
 ANGLES_PER_MODE = 4
 """Points around a ring over the number of modes."""
