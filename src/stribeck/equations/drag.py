@@ -84,7 +84,7 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
     stretch = np.ones(1) if d is None else d
     # Beyond the panels in x, by parts: there the gap is known better than the pressure.
     beyond = wet[-len(t) :]
-    g = film.gradient(h[..., -len(t) :][..., beyond], None if p is None else p[..., -len(t) :][..., beyond], h_star)
+    g = film.gradient(h[..., wet], None if p is None else p[..., wet], h_star)[..., -int(beyond.sum()) :]
     leverage = 0.5 * (mesh.edges[-1] ** 2 - xi[beyond] ** 2) * weights[-len(t) :][beyond]
     inner = slice(0, -order)
     moment = nodal.pressure[..., inner] @ (mesh.weights * mesh.nodes)[inner]

@@ -39,10 +39,17 @@ NEAR = 0.3
 """Change of a wall rate over the larger one up to which first order is a good start."""
 
 
+MOST_KEPT = 16
+"""Shapes of arrays of nodes for which the last local solution is kept."""
+
+Key = tuple[Array, Array | None, Numbers, Numbers]
+"""Gap, pressure, flux gap and speed group."""
+
+
 class _Local(NamedTuple):
     """What the film is at nodes, and what it was made for."""
 
-    key: tuple[Array, Array | None, Numbers]
+    key: Key
     flow: Profile
     wi: Array
     eta: Array
@@ -72,8 +79,8 @@ class ShearThinning:
 
     Notes
     -----
-    The local equations are solved to 1e-13, from the last solution where there is one; the answer does not depend on it but
-    by rounding.
+    The local equations are solved to 1e-13, from the last solution on as many nodes where there is one, at whatever speed;
+    the answer does not depend on it but by rounding.
     """
 
     law: RateLaw
@@ -82,14 +89,14 @@ class ShearThinning:
     slide: float = 1.0
     speed: Numbers = field(default=1.0, compare=False)
     uses_pressure: bool = field(init=False, repr=False, compare=False)
-    _last: list[_Local] = field(init=False, repr=False, compare=False)
+    _known: dict[tuple[int, ...], _Local] = field(init=False, repr=False, compare=False)
     uses_speed: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         """Note whether viscosity or density depend on the pressure."""
         uses_pressure = not (isinstance(self.viscosity, Constant) and isinstance(self.density, Incompressible))
         object.__setattr__(self, "uses_pressure", uses_pressure)
-        object.__setattr__(self, "_last", [])
+        object.__setattr__(self, "_known", {})
 
     @property
     def name(self) -> str:
@@ -103,7 +110,9 @@ class ShearThinning:
 
     def at(self, speed: Numbers) -> Self:
         """Return the film at a speed group."""
-        return replace(self, speed=speed)
+        found = replace(self, speed=speed)
+        object.__setattr__(found, "_known", self._known)
+        return found
 
     def milder(self, part: float) -> Self:
         """Return the film with milder laws."""
@@ -216,9 +225,9 @@ class ShearThinning:
         return np.asarray(local.eta_slope * (value + by_speed) + local.rho_slope * by_density)
 
     def _local(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> _Local:
-        """Return the local solutions, those of the last call if it was for the same film."""
-        key = (gap, pressure, flux_gap)
-        last = self._last[0] if self._last else None
+        """Return the local solutions, those known if the last on as many nodes were for the same film."""
+        key = (gap, pressure, flux_gap, self.speed)
+        last = self._known.get(gap.shape)
         if last is not None and _same(last.key, key):
             return last
         of_pressure = self._of_pressure(gap, pressure)
@@ -227,20 +236,19 @@ class ShearThinning:
         r_0 = -wi * self.slide / gap
         r_1 = 0.5 * wi * (gap - flux_gap / rho) / gap**2
         r_1 = np.where((r_0 == 0) & (r_1 == 0), AT_REST * wi / gap, r_1)
-        start = None
-        if last is not None and last.r_0.shape == r_0.shape:
-            start = _scaled(last, r_0, r_1)
+        start = None if last is None or last.r_0.shape != r_0.shape else _scaled(last, r_0, r_1)
         shape = r_0.shape
         flow = profile(self.law, r_0.ravel(), r_1.ravel(), start)
         flow = Profile(*(each.reshape(shape) for each in flow))
-        found = _Local(
-            (gap.copy(), None if pressure is None else pressure.copy(), np.copy(flux_gap)), flow, wi, *of_pressure, r_0, r_1
-        )
-        self._last[:] = [found]
+        kept = (gap.copy(), None if pressure is None else pressure.copy(), np.copy(flux_gap), np.copy(self.speed))
+        found = _Local(kept, flow, wi, *of_pressure, r_0, r_1)
+        if len(self._known) >= MOST_KEPT:
+            self._known.clear()
+        self._known[gap.shape] = found
         return found
 
 
-def _same(first: tuple[Array, Array | None, Numbers], second: tuple[Array, Array | None, Numbers]) -> bool:
+def _same(first: Key, second: Key) -> bool:
     """Return whether two films are the same to the bit."""
     if (first[1] is None) != (second[1] is None):
         return False

@@ -33,7 +33,7 @@ LARGEST_RADIUS = 6.0
 ROUNDING = 1e-12
 """Rounding of values at samples, relative to the unknowns, as solving for the coefficients magnifies it."""
 
-ON_INTERVAL = 20
+ON_INTERVAL = 12
 """Values on an interval."""
 
 

@@ -16,7 +16,7 @@ from stribeck.equations.error_estimate import GAP_FLOOR, GAPS, FineOperators
 from stribeck.equations.gap import minimum_gaps
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import ROW, observables
-from stribeck.equations.state import State, solve_state
+from stribeck.equations.state import State, is_thinning, solve_state
 from stribeck.numerics.hermite import hermite_weights
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.numerics.panels import Mesh, interpolation_error
@@ -35,8 +35,12 @@ ORDER, FINE_ORDER, ORDER_OF_ANY_FILM = 10, 12, 6
 REACH, NEAREST, FARTHEST = 0.2, 0.1, 0.27
 """Distance at which the equations are evaluated for the series, over the radius of convergence, and what it may be."""
 
-INTERVAL = 2.25
-"""Half of the interval on which functions are evaluated that are not analytic, over that distance."""
+INTERVAL = 1.0
+"""Half of the interval on which films are sampled, over that distance.  Where the shear rate passes through zero at a node of
+a fluid that thins, that node turns sharply with the speed: on twice the interval series were wrong from the second order on."""
+
+THINNING_PART = 0.3
+"""Part of the tolerance that states of fluids that thin must hold: what their meshes leave differs from one to the next."""
 
 SHORTEST_REACH = 0.02
 """Shortest such distance: the shorter it is, the more rounding counts."""
@@ -86,8 +90,8 @@ class LineProblem:
 
     def __init__(self, groups_at: Callable[[float], Groups], direction: Direction, rtol: float, uniform: bool = True) -> None:
         self.groups_at, self.direction, self.uniform = groups_at, direction, uniform
-        self.allowed, self.rtol = rtol, KNOT_PART * rtol
         start = groups_at(0.0)
+        self.allowed, self.rtol = rtol, (THINNING_PART if is_thinning(start.model.film) else KNOT_PART) * rtol
         self.moves = bool(start.speed > 0)
         self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
         self.exact = self.analytic and is_exponential(start.law)
