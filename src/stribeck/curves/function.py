@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from stribeck._types import Array
+from stribeck._types import Array, Flags
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import contact_law
 from stribeck.curves.coordinate import Coordinate
@@ -23,7 +23,7 @@ from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import minimum_estimate, solution_of, state_notes
 
-__all__ = ["CurvePoint", "CurveValues", "rows_of", "solved_at"]
+__all__ = ["CurvePoint", "CurveValues", "rows_of", "solved_at", "within"]
 
 COLUMNS = (*ALL_NAMES, "minimum_position")
 """Columns of a path by name."""
@@ -42,14 +42,19 @@ def solved_at(path: SolvedPath, s: float, rtol: float | None = None) -> RefinedS
     return problem.point_at(left, right, s, rtol)
 
 
+def within(path: SolvedPath, found: Array, errors: Array, rtol: float) -> Flags:
+    """Return which rows of a path state no error above the tolerance."""
+    exists = path.problem.held & np.isfinite(found).any(axis=0)
+    return np.asarray((errors[:, exists] <= rtol).all(axis=1))
+
+
 def rows_of(path: SolvedPath, s: Array, rtol: float) -> tuple[Array, Array]:
     """Return observables and position of the minimum at coordinates of a path, and their errors, shape (len(s), columns).
 
     Where the path states more than the tolerance, or no error, the state is solved.
     """
     found, errors = path.at(s)
-    exists = path.problem.held & np.isfinite(found).any(axis=0)
-    for i in np.nonzero(~(errors[:, exists] <= rtol).all(axis=1))[0].tolist():
+    for i in np.nonzero(~within(path, found, errors, rtol))[0].tolist():
         point = solved_at(path, float(s[i]), rtol)
         if point.values is not None and point.estimate is not None and point.outcome.ok:
             found[i] = *point.values.array(in_article=False), point.values.minimum_position

@@ -1,4 +1,4 @@
-"""Landmarks of a curve, the minimum and the transitions: roots of its series, polished on states solved there."""
+"""Landmarks of a curve, the minimum and the transitions: roots of its series, solved there where these are too coarse."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.curves.coordinate import Coordinate
-from stribeck.curves.function import solved_at
+from stribeck.curves.function import CurvePoint, solved_at, within
 from stribeck.numerics.newton import root_between
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.solver.path import SolvedPath
@@ -21,7 +21,7 @@ from stribeck.solver.solve import SolveError, describe, solution_of
 __all__ = ["Landmark", "Landmarks"]
 
 LOCATION_TOLERANCE = 1e-9
-"""Relative tolerance to which a minimum or a transition is located; its own error is that of the solved states."""
+"""Relative tolerance to which a minimum or a transition is located; its own error is that of the curve there."""
 
 STATES_RTOL = 1e-6
 """Largest tolerance of these states: a coarse curve has a few of them, and they are its headline."""
@@ -104,6 +104,9 @@ class Landmarks:
         s = root_between(at, low, high, LOCATION_TOLERANCE)
         if s is None:
             return None
+        rows, errors = self.path.at(np.array([s]))
+        if within(self.path, rows, errors, min(self.rtol, STATES_RTOL))[0]:
+            return math.exp(s), CurvePoint(self.coordinate, self.path, s, rows[0], errors[0], self.rtol)
         width = min(1e-3, 0.1 * (high - low))
         slope = (at(s + width) - at(s - width)) / (2 * width)
         for _ in range(MOST_POLISHES):

@@ -25,7 +25,18 @@ from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
 
-__all__ = ["Samples", "along", "exponential", "implicit_series", "interval", "logarithm", "product", "radius", "reciprocal"]
+__all__ = [
+    "Samples",
+    "along",
+    "exponential",
+    "implicit_series",
+    "integral_of_product",
+    "interval",
+    "logarithm",
+    "product",
+    "radius",
+    "reciprocal",
+]
 
 LARGEST_RADIUS = 6.0
 """Radius of series whose higher coefficients vanish."""
@@ -39,6 +50,8 @@ ON_INTERVAL = 12
 
 def product_term(a: Array, b: Array, k: int) -> Array:
     """Return the coefficient of order k of a product."""
+    if a.ndim == 1:
+        return np.asarray(a[: k + 1] @ b[k::-1])
     return np.asarray(np.einsum("j...,j...->...", a[: k + 1], b[k::-1]))
 
 
@@ -57,9 +70,9 @@ def exponential(logs: Array) -> Array:
 
 def along(rate: float, order: int) -> Array:
     """Return the series of ``exp(rate t)``."""
-    logs = np.zeros(order + 1)
-    logs[1:2] = rate
-    return exponential(logs)
+    found = np.ones(order + 1)
+    np.cumprod(rate / np.arange(1.0, order + 1), out=found[1:])
+    return found
 
 
 def logarithm(values: Array) -> Array:
@@ -76,6 +89,12 @@ def product(a: Array, b: Array) -> Array:
     if a.ndim == 1:
         return np.convolve(a, b)[: len(a)]
     return np.stack([product_term(a, b, k) for k in range(len(a))])
+
+
+def integral_of_product(a: Array, b: Array, weights: Array) -> Array:
+    """Return the series of the sum over the last axis of a product of two, times weights."""
+    products = (a * weights) @ b.T
+    return np.array([np.trace(products[: k + 1, k::-1]) for k in range(len(a))])
 
 
 def reciprocal(values: Array) -> Array:

@@ -31,6 +31,7 @@ from stribeck.numerics.series import (
     exponential,
     exponential_term,
     implicit_series,
+    integral_of_product,
     logarithm,
     product,
     product_term,
@@ -252,12 +253,11 @@ def _friction_integrals(equations: Equations, powers: Array, gradient: Array, fl
     mesh, inner = op.mesh, slice(0, -op.mesh.order)
     x, weights, gap = beyond_panels(mesh, powers[:1, 0], op.model.solid.far_gap)
     u = reciprocal(np.concatenate([gap, beyond_panels(mesh, powers[1:, 0], np.zeros_like)[2]]))
-    square = product(u, u)
-    slopes = square - product(np.broadcast_to(flux, (len(flux), x.size)), product(square, u))
-    own = mesh.weights[inner]
+    square, own, projected = product(u, u), mesh.weights[inner], 3 * x**2 * weights
     first = powers[:, 1, inner] @ own + u @ weights
     second = product(3 * flux[:, 0], powers[:, 2, inner] @ own + square @ weights)
-    moment = gradient[:, inner] @ (3 * mesh.nodes[inner] ** 2 * own) + slopes @ (3 * x**2 * weights)
+    moment = gradient[:, inner] @ (3 * mesh.nodes[inner] ** 2 * own) + square @ projected
+    moment -= product(flux[:, 0], integral_of_product(square, u, projected))
     return second - 2 * first + moment, 4 * first - second, second - 2 * first
 
 

@@ -29,7 +29,7 @@ from stribeck.solver.expansion import Direction, Expanded, corrected, expand_any
 from stribeck.solver.path import KNOT_PART, Expansion
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
 
-ORDER, FINE_ORDER, ORDER_OF_ANY_FILM = 10, 12, 6
+ORDER, FINE_ORDER, ORDER_OF_ANY_FILM = 16, 18, 6
 """Highest orders of series: of the article to a tolerance of 1e-7 and below, and of films that are sampled."""
 
 REACH, NEAREST, FARTHEST = 0.2, 0.1, 0.27
@@ -60,8 +60,8 @@ UNSEEN = 2.0
 OFFSET_FLOOR = 5e-3
 """The error of the offset is relative to it where it exceeds this: between states it is that of states where it is larger."""
 
-DENOMINATOR, SMALLEST_DENOMINATOR = 3, 0.05
-"""Degree of the denominator of a prediction, and its value below which the prediction has a pole nearby."""
+DENOMINATOR, DOUBTFUL = 6, 0.4
+"""Degree of the denominator of a prediction, and change with the degree from which Newton's iteration is not begun there."""
 
 POSITION = len(ALL_NAMES)
 """Column of the position of the minimum gap, after those of the observables."""
@@ -131,7 +131,9 @@ class LineProblem:
         """Return the expanded state at ``s``, see :class:`stribeck.solver.path.Problem`."""
         groups = self.groups_at(s)
         if near and _alike(*near):
-            guess = self._guess(s, groups, near)
+            guess, doubt = self._guess(s, groups, near)
+            if not doubt <= DOUBTFUL:
+                return Outcome.PATH_LOST
             if not (np.isfinite(np.log(guess.y[guess.equations.layout.gap])).all() and guess.dilation > 0):
                 return Outcome.NOT_FINITE
             spread = max(abs(guess.minimum_position - one.point.state.minimum_position) for one in near)
@@ -200,20 +202,21 @@ class LineProblem:
                 break
         return found, known
 
-    def _guess(self, s: float, groups: Groups, near: Sequence[Expansion]) -> State:
-        base = with_positive_gap(groups)[0]
+    def _guess(self, s: float, groups: Groups, near: Sequence[Expansion]) -> tuple[State, float]:
+        """Return about the state at ``s``, and by how much the logarithms of its unknowns are in doubt."""
+        base, doubt = with_positive_gap(groups)[0], 0.0
         last: LinePoint = near[-1].point
         if base.model.cavitation is not last.state.groups.model.cavitation:
             base = replace(base, model=_as_in(last.state, base.model))
         if len(near) == 1:
-            w = _extrapolated(last.unknowns, s - near[0].coordinate)
+            w, doubt = _extrapolated(last.unknowns, s - near[0].coordinate)
             mesh_of = last
         else:
             left, right = near
             part = (s - left.coordinate) / ((right.coordinate - left.coordinate) or 1.0)
             mesh_of = left.point if part < 0.5 else right.point
             w = between(left, right, mesh_of, np.array([part]))[0]
-        return self.state(base, mesh_of, w)
+        return self.state(base, mesh_of, w), doubt
 
     def guess_at(self, left: Expansion, right: Expansion, s: float) -> State:
         """Return about the state between two expansions, on the mesh of the nearer one."""
@@ -225,7 +228,7 @@ class LineProblem:
             point = self.corrector.cold(self.groups_at(s))
             assert point is not None and point.state is not None
             return point.state
-        return self._guess(s, self.groups_at(s), [left, right])
+        return self._guess(s, self.groups_at(s), [left, right])[0]
 
     def state_at(self, left: Expansion, right: Expansion, s: float) -> State:
         """Return the state between two expansions, corrected with the Jacobian of the nearer one."""
@@ -274,7 +277,7 @@ class LineProblem:
 
     def _corrected_once(self, s: float, left: Expansion, right: Expansion) -> Array:
         """Return the observables of the state between two expansions, corrected once with the Jacobian of the nearer one."""
-        guess = self._guess(s, self.groups_at(s), [left, right])
+        guess, _ = self._guess(s, self.groups_at(s), [left, right])
         end = on(guess.mesh, (right, left))
         assert end is not None
         equations, y = guess.equations, guess.y
@@ -388,18 +391,26 @@ def on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
     return found
 
 
-def _extrapolated(series: Array, t: float) -> Array:
-    """Return a series beyond, by the rational function whose denominator makes the highest coefficients vanish."""
+def _extrapolated(series: Array, t: float) -> tuple[Array, float]:
+    """Return a series beyond, and by how much two of its rational forms differ at most.
+
+    Their denominators, the one of higher degree than the other, make the highest coefficients vanish.
+    """
     order = len(series) - 1
-    taylor: Array = t ** np.arange(order + 1.0) @ series
-    if order < 2 * DENOMINATOR + 1:
-        return taylor
     scaled = series * (t ** np.arange(order + 1.0))[:, None]
-    high = np.stack([scaled[order - DENOMINATOR + 1 - j : order + 1 - j].ravel() for j in range(DENOMINATOR + 1)])
+    degree = min(DENOMINATOR, (order - 1) // 2)
+    if degree < 2:
+        return np.asarray(scaled.sum(axis=0)), 0.0
+    best, other = (_rational(scaled, each) for each in (degree, degree - 1))
+    return best, float(np.abs(best - other).max())
+
+
+def _rational(scaled: Array, degree: int) -> Array:
+    """Return the sum of a series as a rational function whose denominator has a degree."""
+    order = len(scaled) - 1
+    high = np.stack([scaled[order - degree + 1 - j : order + 1 - j].ravel() for j in range(degree + 1)])
     gram = high @ high.T
-    q = np.append(1.0, np.linalg.solve(gram[1:, 1:] + (1e-14 * np.trace(gram) + 1e-200) * np.eye(DENOMINATOR), -gram[1:, 0]))
-    below = q.sum()
-    if abs(below) < SMALLEST_DENOMINATOR:
-        return taylor
-    above = sum(q[j] * scaled[: order - DENOMINATOR + 1 - j].sum(axis=0) for j in range(DENOMINATOR + 1))
-    return np.asarray(above / below)
+    rest = gram[1:, 1:] + (1e-14 * np.trace(gram) + 1e-200) * np.eye(degree)
+    q = np.append(1.0, np.linalg.solve(rest, -gram[1:, 0]))
+    parts = np.append(np.ones(order - 2 * degree), np.cumsum(q)[::-1] / q.sum())
+    return np.asarray(parts @ scaled[: len(parts)])

@@ -25,7 +25,10 @@ from stribeck.quantities.outcome import Outcome
 LONGEST_STEP = 4.0
 SHORTEST_STEP = 1e-3
 
-REACH = 0.95
+SHORTER = 0.75
+"""Part of a step that failed which is tried next."""
+
+REACH = 1.2
 """Largest step over the radius of convergence."""
 
 KNOT_PART = 0.75
@@ -345,7 +348,7 @@ def follow(
             if left < 2 * step:  # two like steps rather than a long and a short one
                 step = left if left <= step else 0.5 * left
             while isinstance(new := problem.solve(_beyond(here, end, step if upwards else -step), [here]), Outcome):
-                step *= 0.5
+                step *= SHORTER
                 if step < SHORTEST_STEP or new is Outcome.INTERRUPTED:
                     return SolvedPath(problem, _ascending(found) or alone, new)
             low, high = (here, new) if upwards else (new, here)
@@ -381,9 +384,11 @@ def _refined(interval: Interval, rtol: float, before: float = math.inf) -> list[
     problem, left, right = interval.problem, interval.left, interval.right
     exists = [np.isfinite(one.series).all(axis=0) for one in (left, right)]
     ends_between = bool((exists[0] != exists[1]).any()) and interval.length > LONGEST_END  # what exists on one side alone
-    errors = interval.at(CHECKS)[1]
+    values, errors = interval.at(CHECKS)
     # What the ends are wrong by does not fall with the length.
-    excess = errors - np.fmax(left.errors, right.errors) > REDUCIBLE * rtol
+    scales = problem.scales(values, left.coordinate + CHECKS * interval.length)
+    of_ends = np.where(problem.signed, interval.at_ends[1] / scales, interval.at_ends[0])
+    excess = errors - of_ends > REDUCIBLE * rtol
     if not ends_between and not ((errors > CHECKED * rtol) & excess)[:, problem.held].any():
         return [interval]
     worst = float(np.nanmax(errors[:, problem.held]))
