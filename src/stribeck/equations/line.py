@@ -262,7 +262,7 @@ class Equations:
             deflection = scaled.deflection_of_gradient if of_pressure is None else of_pressure[:n]
             load = scaled.load_of_gradient if of_pressure is None else of_pressure[n]
             assert deflection is not None
-            block -= deflection * (speed * g_h)
+            block -= np.multiply(deflection, speed * g_h, out=op.scratch)
             matrix[:n, flux] = deflection @ (-speed * g_flux)
             matrix[offset, :n] += load * (speed * g_h)
             matrix[offset, flux] = speed * (load @ g_flux)

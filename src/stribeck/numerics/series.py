@@ -93,8 +93,8 @@ def product(a: Array, b: Array) -> Array:
 
 def integral_of_product(a: Array, b: Array, weights: Array) -> Array:
     """Return the series of the sum over the last axis of a product of two, times weights."""
-    products = (a * weights) @ b.T
-    return np.array([np.trace(products[: k + 1, k::-1]) for k in range(len(a))])
+    orders = np.arange(len(a))
+    return np.bincount(np.add.outer(orders, orders).ravel(), ((a * weights) @ b.T).ravel())[: len(a)]
 
 
 def reciprocal(values: Array) -> Array:

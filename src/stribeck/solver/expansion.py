@@ -34,7 +34,6 @@ from stribeck.numerics.series import (
     integral_of_product,
     logarithm,
     product,
-    product_term,
     reciprocal,
 )
 from stribeck.quantities.outputs import ALL_NAMES, NAMES
@@ -43,8 +42,8 @@ __all__ = ["Direction", "Expanded", "corrected", "expand_any_film", "expand_arti
 
 SHIFTED = [ROW["central_gap"], ROW["offset"]]
 
-GAP_POWERS = np.array([1.0, -1.0, -2.0, -3.0])
-"""Powers of the gap that film and friction are composed of."""
+GAP_POWERS = np.array([1.0, -1.0, -2.0, -3.0, 1.0])
+"""Powers of the gap that film and friction are composed of, and that of the separation."""
 
 Direction = tuple[float, float, float]
 """Derivatives of ln(speed), ln(load), ln(roughness) along a curve."""
@@ -105,29 +104,26 @@ class _Contact:
         log_pressure = law.log_pressure(gap)
         self.top = float(log_pressure.max())
         self.pressure[0] = np.exp(log_pressure - self.top)
-        self.separation, self.place, self.slopes, self.of_pressure = np.zeros((4, order + 1, gap.size))
-        self.separation[0] = gap / kappa
-        self.slopes[1] = -self.rate
+        self.place, self.of_pressure = np.zeros((2, order + 1, gap.size))
         self.powers = np.zeros((len(self.near.coefficients), order + 1, gap.size))
         self.powers[:, 0] = self.near.coefficients
 
-    def extend(self, k: int) -> None:
-        """Find order k as if the logarithm of the gap had no coefficient of that order."""
+    def extend(self, k: int, separation: Array) -> None:
+        """Find order k from that of the separation as if the logarithm of the gap had no coefficient of that order."""
         if not self.exists:
             return
-        self.separation[k] = exponential_term(self.slopes, self.separation, k)
-        self.place[k] = (self.slopes[k] / k if self.near.logarithmic else self.separation[k]) / self.near.reach
+        if not self.near.logarithmic:
+            self.place[k] = separation / self.near.reach
+        elif k == 1:
+            self.place[k] = -self.rate / self.near.reach
         self.powers[:-1, k] = np.einsum("mjn,jn->mn", self.powers[1:, :k], self.place[k:0:-1])
         self.of_pressure[k] = k * self.powers[0, k] + (self.by_load if k == 1 else 0.0)
         self.pressure[k] = exponential_term(self.of_pressure, self.pressure, k)
 
-    def add(self, k: int, change: Array) -> None:
-        """Add what that coefficient changes."""
+    def add(self, k: int, change: Array, of_separation: Array) -> None:
+        """Add what that coefficient changes, itself and in the separation."""
         if not self.exists:
             return
-        of_separation = self.separation[0] * change
-        self.slopes[k] += k * change
-        self.separation[k] += of_separation
         of_place = (change if self.near.logarithmic else of_separation) / self.near.reach
         self.place[k] += of_place
         self.powers[:-1, k] += self.powers[1:, 0] * of_place
@@ -180,14 +176,17 @@ def expand_article(
     contact = _Contact(groups, y[at.gap], direction, order)
     slopes, powers = np.zeros((2, order + 1, len(GAP_POWERS), op.mesh.size))
     powers[0] = np.exp(GAP_POWERS[:, None] * start[at.gap])
+    if contact.exists:
+        powers[0, -1] /= float(groups.relative_roughness)
+        slopes[1, -1] = -contact.rate
     gradient, flow = np.zeros((2, order + 1, op.mesh.size))
     gradient[0] = powers[0, 2] - powers[0, 3] * start[at.flux_gap]
     flow[0] = speed[0] * gradient[0]
-    flux, top = w[:, at.flux_gap], np.exp(contact.top)
+    flux, top = w[:, at.flux_gap.start], np.exp(contact.top)
     for k in range(1, order + 1):
         powers[k] = exponential_term(slopes, powers, k)
-        contact.extend(k)
-        gradient[k] = powers[k, 2] - product_term(powers[:, 3], flux, k)
+        contact.extend(k, powers[k, -1])
+        gradient[k] = powers[k, 2] - flux[k::-1] @ powers[: k + 1, 3]
         r, pressure = np.zeros(at.size), top * contact.pressure[k]
         r[at.gap] = powers[k, 0] - op.deflection @ pressure
         r[at.offset] = op.mesh.weights @ pressure
@@ -198,11 +197,11 @@ def expand_article(
             r[at.offset] += op.load_of_gradient @ flow[k]
         w[k] = units * inverse(r)
         change = w[k, at.gap]
-        contact.add(k, change)
         of_logs = GAP_POWERS[:, None] * change
-        slopes[k] = k * of_logs
+        slopes[k] += k * of_logs
         of_powers = of_logs * powers[0]
         powers[k] += of_powers
+        contact.add(k, change, of_powers[-1])
         of_gradient = of_powers[2] - of_powers[3] * flux[0] - powers[0, 3] * flux[k]
         gradient[k] += of_gradient
         flow[k] += speed[0] * of_gradient
@@ -213,7 +212,7 @@ def expand_article(
     found[:, ROW["contact_load_share"]] = share
     found[:, ROW["fluid_load_share"]] = flow @ op.load_of_gradient / LOAD
     found[:, ROW["central_gap"]] = _central_gap(equations, y, w[:, at.gap])
-    found[:, ROW["flux_gap"]] = flux[:, 0]
+    found[:, ROW["flux_gap"]] = flux
     found[:, ROW["offset"]] = w[:, at.offset.start]
     if equations.is_sliding:
         scale = friction_scale(float(groups.load), float(equations.speed)) * along(direction[0] + 0.5 * direction[1], order)
@@ -255,9 +254,9 @@ def _friction_integrals(equations: Equations, powers: Array, gradient: Array, fl
     u = reciprocal(np.concatenate([gap, beyond_panels(mesh, powers[1:, 0], np.zeros_like)[2]]))
     square, own, projected = product(u, u), mesh.weights[inner], 3 * x**2 * weights
     first = powers[:, 1, inner] @ own + u @ weights
-    second = product(3 * flux[:, 0], powers[:, 2, inner] @ own + square @ weights)
+    second = product(3 * flux, powers[:, 2, inner] @ own + square @ weights)
     moment = gradient[:, inner] @ (3 * mesh.nodes[inner] ** 2 * own) + square @ projected
-    moment -= product(flux[:, 0], integral_of_product(square, u, projected))
+    moment -= product(flux, integral_of_product(square, u, projected))
     return second - 2 * first + moment, 4 * first - second, second - 2 * first
 
 

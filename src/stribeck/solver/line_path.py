@@ -57,6 +57,9 @@ BETWEEN_MESHES = 0.2
 UNSEEN = 2.0
 """Error over the largest of three corrections with the Jacobian of a neighbour: what they leave unseen."""
 
+RESOLVED = 0.3
+"""Part of the tolerance that the minimum gap may miss on the finer of two meshes before the other is asked too."""
+
 OFFSET_FLOOR = 5e-3
 """The error of the offset is relative to it where it exceeds this: between states it is that of states where it is larger."""
 
@@ -286,7 +289,7 @@ class LineProblem:
             return observables(equations, y, float(guess.groups.load)).array(in_article=False)
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
-        """Return the minimum gap and its position, each on the mesh of that end whose panel there resolves it better."""
+        """Return the minimum gap and its position, on the finer mesh, or each on that whose panel there resolves it better."""
         if not self.moves:
             return np.empty((len(parts), 0)), np.empty((len(parts), 0)), []
         ends = (left, right)
@@ -295,9 +298,10 @@ class LineProblem:
             at_ends = np.maximum(left.errors[READ], right.errors[READ])
             return a + parts[:, None] * (b - a), np.abs((b - a) / [a[0], 1.0]) + at_ends + np.zeros((len(parts), 1)), READ
         at_ends = np.maximum(left.errors[READ], right.errors[READ])
-        values, error = _minimum_on(left, right, left.point, parts)
-        if left.point.state.mesh is not right.point.state.mesh and (error > at_ends[0]).any():
-            others, of_others = _minimum_on(left, right, right.point, parts)
+        finer, coarser = sorted((left.point, right.point), key=lambda point: -point.state.mesh.size)
+        values, error = _minimum_on(left, right, finer, parts)
+        if finer.state.mesh is not coarser.state.mesh and (error > RESOLVED * self.allowed).any():
+            others, of_others = _minimum_on(left, right, coarser, parts)
             better = of_others < error
             values, error = np.where(better, others, values), np.where(better, of_others, error)
         return values.T, np.stack([np.maximum(at_ends[0], error), np.full(len(parts), at_ends[1])], axis=1), READ
