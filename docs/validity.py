@@ -4,7 +4,7 @@ Usage::
 
     python docs/validity.py [BLOCK ...]
 
-Takes about three minutes on one core; with the names of blocks (``formulas``, ``shares``, ``box``, ``ratios`` or modules of
+Takes about three minutes on one core; with the names of blocks (``shares``, ``ratios`` or modules of
 formulas) only these are made.  What stands in the page between marks is replaced, all other text is kept; a module
 of formulas that has no section yet gets one.
 """
@@ -21,10 +21,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import stribeck as sb
-from stribeck.asymptotics import FORMULAS, Formula
+from stribeck.asymptotics import FORMULAS, Formula, Limit
 from stribeck.asymptotics.formula import COEFFICIENTS
-from stribeck.asymptotics.rough import load_sharing, transitions, uniform
+from stribeck.asymptotics.rough import load_sharing, transitions
 from stribeck.evidence.coefficients import JUDGED, RATIOS, largest_errors
 from stribeck.evidence.formulas import error_map, error_maps, kind_of
 from stribeck.evidence.plot import plot_error_maps
@@ -45,13 +44,6 @@ ABOUT = {"smooth": "smooth", "rest": "at rest", "mixed": "any state", "located":
 SHARE_LOADS = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 0.7)
 SHARE_KAPPAS = np.logspace(-4, -1, 7)
 """Grid of the speeds at which the fluid carries a share."""
-
-BOX_LOADS = (1e-4, 1e-3, 1e-2, 0.1, 0.4, 0.7)
-BOX_KAPPAS = np.logspace(-4, -1, 7)
-BOX_SPEEDS = np.logspace(-9, 2, 34)
-BETAS = (1.0, 0.1, 0.01)
-"""Grid in the box of the uniform laws, and coefficients of the contact law for which the friction is judged."""
-
 
 RATIO_POINTS = (22, 19)
 """Loads and relative roughnesses at which the errors over beta/mu0 are measured."""
@@ -85,17 +77,16 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
-def formula_table() -> str:
-    """Return the table of all formulas, from what they say of themselves."""
-    rows = []
-    for formula in FORMULAS:
-        order = Fraction(formula.error_order).limit_denominator(12)
-        small = formula.small.replace("_", " ")
-        vanishes = f"({small})<sup>{order}</sup>" if formula.small and order != 1 else small or "no small parameter"
-        limits = re.sub(r"[0-9.]+e-\d+|\b0\.00\d*", lambda found: short(float(found[0])), formula.range)
-        worst = percent(formula.worst)
-        rows.append([f"`{formula.name}`", ABOUT[kind_of(formula)], limits, worst, vanishes, formula.source.replace("|", "/")])
-    return table(["Formula", "About", "Range", "Worst error there", "Error goes as", "Source"], rows)
+def in_words(limits: Iterable[Limit]) -> str:
+    """Return a range in words."""
+    text = ", ".join(map(str, limits))
+    return re.sub(r"[0-9.]+e-\d+|\b0\.00\d*", lambda found: short(float(found[0])), text)
+
+
+def goes_as(formula: Formula[Any]) -> str:
+    """Return the power of the small parameter as which the error of a formula vanishes; nothing where it does not."""
+    small, order = formula.small.replace("_", " "), Fraction(formula.error_order).limit_denominator(12)
+    return f"({small})<sup>{order}</sup>" if small and order != 1 else small
 
 
 def place(data: xarray.Dataset, at: Sequence[int]) -> str:
@@ -106,24 +97,32 @@ def place(data: xarray.Dataset, at: Sequence[int]) -> str:
 
 
 def measured(data: xarray.Dataset) -> list[str]:
-    """Return states in range, median error, worst error and where that is."""
+    """Return the median error in range, and the largest with the place where it is."""
     size = np.where(data["valid"].values, np.abs(data["error"].values), np.nan)
-    known = np.isfinite(size)
-    if not known.any():
-        return ["0", "", "", ""]
+    if not np.isfinite(size).any():
+        return ["", ""]
     at = np.unravel_index(int(np.nanargmax(size)), size.shape)
-    return [
-        str(int(known.sum())),
-        percent(float(np.nanmedian(size))),
-        percent(float(size[at])),
-        place(data, [int(i) for i in at]),
-    ]
+    return [percent(float(np.nanmedian(size))), f"{percent(float(size[at]))} at {place(data, [int(i) for i in at])}"]
 
 
-def measured_table(module: str, maps: dict[str, xarray.Dataset]) -> str:
-    """Return the errors of the formulas of a module on the grid of its pictures."""
-    rows = [[f"`{formula.name}`", *measured(maps[formula.name])] for formula in of_module(module)]
-    return table(["Formula", "States in range", "Median error", "Worst error", "at"], rows)
+def module_table(module: str, maps: dict[str, xarray.Dataset]) -> str:
+    """Return what the formulas of a module state of their errors, and what the grid of their picture shows.
+
+    What they are about, and the limits that all of them have, is said once above the table.
+    """
+    formulas = of_module(module)
+    kinds = list(dict.fromkeys(ABOUT[kind_of(formula)] for formula in formulas))
+    common = [limit for limit in formulas[0].limits if all(limit in formula.limits for formula in formulas)]
+    about = f"About: {', '.join(kinds)}." + (f" Range of all: {in_words(common)}." if common else "")
+    rows = []
+    for formula in formulas:
+        own = [ABOUT[kind_of(formula)]] if len(kinds) > 1 else []
+        own += [in_words(limit for limit in formula.limits if limit not in common)]
+        limits = ", ".join(filter(None, own)) or ("" if common else "everywhere")
+        stated = [f"`{formula.name.rpartition('.')[2]}`", limits, percent(formula.worst), goes_as(formula)]
+        rows.append([*stated, *measured(maps[formula.name])])
+    head = ["Formula", "Range, further" if common else "Range", "Error stated", "falls as", "Median", "Largest on the map"]
+    return f"{about}\n\n{table(head, rows)}"
 
 
 def share_maps() -> list[tuple[Formula[Any], xarray.Dataset]]:
@@ -147,32 +146,6 @@ def share_table(maps: list[tuple[Formula[Any], xarray.Dataset]]) -> str:
         fluid = "5 %" if "5" in data.attrs["predicts"] else "50 %"
         rows.append([f"`{data.attrs['title']}`", fluid, percent(float(np.nanmedian(np.abs(error)))), *ends])
     return table(["Formula", "Fluid carries", "Median size", "Smallest error", "Largest error"], rows)
-
-
-@one_blas_thread
-def uniform_table() -> str:
-    """Return the error of the uniform law of friction over its whole box for several coefficients of the contact law."""
-    errors: dict[float, list[tuple[float, float, float, float]]] = {beta: [] for beta in BETAS}
-    for load in BOX_LOADS:
-        for kappa in BOX_KAPPAS.tolist():
-            curve = sb.stribeck_curve(load=load, roughness=kappa * load, speed=BOX_SPEEDS, rtol=1e-7)
-            for beta in BETAS:
-                right = np.array(
-                    [
-                        state.friction(boundary_friction=1.0, beta=beta, definition="published").total
-                        for state in curve.solutions
-                    ]
-                )
-                off = np.abs(uniform.friction.function(curve.groups, 1.0, beta) / right - 1).tolist()
-                errors[beta] += [(e, load, kappa, speed) for e, speed in zip(off, curve.values.tolist(), strict=True)]
-    rows = []
-    for beta, found in errors.items():
-        size = np.array([item[0] for item in found])
-        worst, load, kappa, speed = max(found)
-        where = f"load {short(load)}, kappa {short(kappa)}, speed {short(speed)}"
-        parts = [f"{np.mean(size < limit):.1%}".replace("%", " %") for limit in (0.01, 0.03)]
-        rows.append([short(beta), str(len(size)), percent(float(np.median(size))), *parts, percent(worst), where])
-    return table(["beta", "States", "Median error", "within 1 %", "within 3 %", "Worst error", "at"], rows)
 
 
 def ratio_table() -> str:
@@ -208,7 +181,7 @@ def filled(text: str, blocks: dict[str, str]) -> str:
 def main(wanted: Sequence[str] = ()) -> None:
     """Solve, draw, and write the page, or those of its blocks that are named."""
     start = time.perf_counter()
-    others = ("formulas", "shares", "box", "ratios")
+    others = ("shares", "ratios")
     if unknown := set(wanted) - {*others, *modules()}:
         sys.exit(f"no block is called {', '.join(sorted(unknown))}; there are {', '.join((*others, *modules()))}")
     made = wanted or (*others, *modules())
@@ -221,22 +194,19 @@ def main(wanted: Sequence[str] = ()) -> None:
         if judged := [each for each in FORMULAS if kind_of(each) == kind and each.module in made]:
             say(f"formulas about {ABOUT[kind]}")
             maps |= error_maps(judged)
-    blocks = {"formulas": formula_table()} if "formulas" in made else {}
+    blocks = {}
     for module in (each for each in modules() if each in made):
         say(f"picture of {module}")
         pairs = [(formula, maps[formula.name]) for formula in of_module(module)]
         path = IMAGES / f"validity_{module.replace('.', '_')}.png"
         plot_error_maps(pairs, path, force=True, title=f"Errors of stribeck.asymptotics.{module}")
-        blocks[module] = measured_table(module, maps)
+        blocks[module] = module_table(module, maps)
     if "shares" in made:
         say("speeds at which the fluid carries a share")
         shares = share_maps()
         title = "Speed at which the fluid carries 50 % or 5 % of the load"
         plot_error_maps(shares, IMAGES / "validity_shares.png", force=True, title=title)
         blocks["shares"] = share_table(shares)
-    if "box" in made:
-        say("friction over the box of the uniform law")
-        blocks["box"] = uniform_table()
     if "ratios" in made:
         say("friction over the ratio of its coefficients")
         blocks["ratios"] = ratio_table()
