@@ -72,19 +72,21 @@ class Landmarks:
         self, function: Callable[[Array], Array], slope_of: Callable[[RefinedState], float]
     ) -> tuple[float, Solution] | None:
         """Return where a function of the observables is at its minimum inside the path, and the state there, or None."""
-        i = int(np.argmin(function(self.rows)))
-        if not 0 < i < len(self.places) - 1:
+        places, values = self._known(function)
+        i = int(np.argmin(values))
+        if not 0 < i < len(places) - 1:
             return None
 
         def slope(s: Array) -> Array:
             return np.asarray(function(self.path.smooth(np.asarray(s + STEP * 1j))).imag / STEP)
 
-        low, high = self.places[i - 1], self.places[i + 1]
+        low, high = places[i - 1], places[i + 1]
         return self._polished(slope, float(low), float(high), slope_of)
 
     def first(self, function: Callable[[Array], Array], of: Callable[[RefinedState], float]) -> tuple[float, Solution] | None:
         """Return where a function of the observables vanishes first, ascending, and the state there, or None."""
-        crossings = np.nonzero(np.diff(np.sign(function(self.rows))))[0]
+        places, values = self._known(function)
+        crossings = np.nonzero(np.diff(np.sign(values)))[0]
         if not len(crossings):
             return None
         i = int(crossings[0])
@@ -92,7 +94,13 @@ class Landmarks:
         def value(s: Array) -> Array:
             return function(self.path.smooth(s))
 
-        return self._polished(value, float(self.places[i]), float(self.places[i + 1]), of)
+        return self._polished(value, float(places[i]), float(places[i + 1]), of)
+
+    def _known(self, function: Callable[[Array], Array]) -> tuple[Array, Array]:
+        """Return where a function of the observables has values, and these: beside the birth of a cavity no series has."""
+        values = function(self.rows)
+        known = np.isfinite(values)
+        return self.places[known], values[known]
 
     @one_blas_thread
     def _polished(

@@ -58,7 +58,7 @@ class Corrector:
     def cold(self, groups: Groups) -> RefinedState | None:
         """Return the state of ``groups`` from cold, None where no path leads there."""
         if _cavity_may_vanish(groups):
-            return _from_cold(groups, self.rtol)
+            return from_cold(groups, self.rtol)
         path = first_path(with_positive_gap(groups)[0])
         if path.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
@@ -70,9 +70,9 @@ class Corrector:
             return self._solve(guess, groups, spread)
         if isinstance(guess, State):  # one with as many unknowns as the state before
             point = self._solve(guess, replace(groups, model=guess.groups.model), spread)
-            if point.outcome.ok and _keeps_cavity(point, groups):
+            if point.outcome.ok and keeps_cavity(point, groups):
                 return replace(point, groups=groups)
-        return _from_cold(groups, self.rtol)
+        return from_cold(groups, self.rtol)
 
     def _solve(self, guess: Guess, groups: Groups, spread: float) -> RefinedState:
         base = with_positive_gap(groups)[0]
@@ -130,7 +130,7 @@ def _cavity_may_vanish(groups: Groups) -> bool:
     return groups.model.cavitation is Cavitation.REFORM and bool(groups.speed > 0)
 
 
-def _keeps_cavity(point: RefinedState, groups: Groups) -> bool:
+def keeps_cavity(point: RefinedState, groups: Groups) -> bool:
     """Return whether a full film has no suction by which it would rupture; with a cavity it is what it was solved for."""
     state = point.state
     if state is None or state.groups.model.cavitation is not Cavitation.NONE:
@@ -138,7 +138,8 @@ def _keeps_cavity(point: RefinedState, groups: Groups) -> bool:
     return bool(state.equations.pressures(state.y)[1].min() >= groups.model.cavity_pressure)
 
 
-def _from_cold(groups: Groups, rtol: float) -> RefinedState:
+def from_cold(groups: Groups, rtol: float) -> RefinedState:
+    """Return the state from cold, with the outcome of what failed in its place."""
     from stribeck.solver.solve import SolveError, solved_point
 
     try:

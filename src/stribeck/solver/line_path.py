@@ -24,7 +24,7 @@ from stribeck.numerics.series import interval, radius
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
 from stribeck.solver.at_rest import shift_along, with_positive_gap
-from stribeck.solver.corrector import Corrector
+from stribeck.solver.corrector import Corrector, from_cold, keeps_cavity
 from stribeck.solver.expansion import Direction, Expanded, corrected, expand_any_film, expand_article, from_logs
 from stribeck.solver.path import KNOT_PART, Expansion
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
@@ -198,7 +198,7 @@ class LineProblem:
                 np.isfinite(found.unknowns).all() and np.isfinite(known)
             ):  # a law is too steep for so wide a neighbourhood
                 known = reach
-                reach = max(SHORTEST_REACH, 0.25 * reach)
+                reach = 0.25 * reach
             elif reach > FARTHEST * known or (trial == 0 and reach < NEAREST * known):
                 reach = max(SHORTEST_REACH, REACH * known)
             else:
@@ -249,7 +249,10 @@ class LineProblem:
             point = verify(state, groups, end.fine, rtol)
             if point.outcome.ok:
                 return point
-        return converge(state, groups, rtol)
+        if state.groups.model.cavitation is groups.model.cavitation:
+            return converge(state, groups, rtol)
+        point = converge(state, replace(groups, model=state.groups.model), rtol)
+        return replace(point, groups=groups) if keeps_cavity(point, groups) else from_cold(groups, rtol)
 
     def state(self, groups: Groups, of: LinePoint, w: Array) -> State:
         """Return the state with unknowns ``w``, those of gaps as logarithms, on the mesh of a point."""
