@@ -8,10 +8,9 @@ import pytest
 from stribeck.contacts.cut_off import CAVITATED, RUPTURE
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import Model
-from stribeck.equations.point.wake import rupture_line, shear_missing
+from stribeck.equations.cavities.wake import rupture_line, shear_missing
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
-from stribeck.quantities.units import InputError
 from stribeck.solids.half_space import deflections_from_beyond
 from stribeck.solver.point.solve import solve_cold, solve_from
 
@@ -117,9 +116,3 @@ def test_neighbours_lead_to_the_state_that_a_cold_start_finds():
     assert warm.outcome.ok
     for name, value in cold.values.items():
         assert abs(warm.values[name] - value) <= 2 * (warm.absolute_errors[name] + cold.absolute_errors[name]), name
-
-
-@pytest.mark.quick
-def test_a_cavity_at_another_pressure_is_refused_by_name():
-    with pytest.raises(InputError, match="cavitation = 'reform': of a ball the film ends at ambient pressure"):
-        solve_cold(ball(0.1, 0.1, model=Model(cavitation=Cavitation.REFORM)))

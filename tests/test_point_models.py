@@ -149,7 +149,6 @@ def test_at_rest_a_layer_bears_the_load_with_more_pressure():
     [
         ({"flow_factors": PatirCheng(2.0, gamma=3)}, "flow_factors = patir-cheng: of a ball they must be those of isotropic"),
         ({"solid": Layer(0.01)}, "the layer is 0.01 times as thick as the Hertz radius"),
-        ({"cavitation": "reform"}, "cavitation = 'reform': of a ball the film ends at ambient pressure"),
     ],
 )
 def test_what_a_ball_does_not_have_is_refused_by_name(parts, sentence):

@@ -11,7 +11,7 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.batches.inputs import Contacts
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import FAR, FULL
+from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
@@ -111,7 +111,7 @@ class BatchSolution(Exported, Shown, ByValue):
                 f"fluid = {groups.model.film.name}: the friction of a ball in a fluid that thins needs the flow up to where "
                 "the liquid ends, which batches do not keep; solve the states one by one, as a curve or in a sweep."
             )
-        inputs = {"beta": self._coefficient("beta", beta), "far": FAR.get(groups.model.cavitation, FULL)}
+        inputs = {"beta": self._coefficient("beta", beta), "far": far_film(groups.model)}
         for name, of in rule.inputs.items():
             inputs.setdefault(name, self._each(of))
         mu0 = rule.rubbing(groups, inputs) * self._coefficient("boundary_friction", boundary_friction)

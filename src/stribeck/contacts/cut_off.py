@@ -40,6 +40,7 @@ from typing import Any
 import numpy as np
 
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.model import Model
 from stribeck.fluids.cavitation import Cavitation
 
 __all__ = ["COUETTE", "POISEUILLE", "SLIDING", "TURNING", "friction_integral", "log_cut_offs"]
@@ -81,8 +82,12 @@ CAVITATED = FarFilm(
 )
 """The film ends at ambient pressure; its liquid goes on as streaks in the wake."""
 
-FAR = {Cavitation.NONE: FULL, Cavitation.EXIT: CAVITATED}
-"""The far film by how it ends."""
+
+def far_film(model: Model) -> FarFilm:
+    """Return the far film of a model: behind a cavity whose pressure is below the ambient one it is full."""
+    is_full = model.cavitation is Cavitation.NONE or model.cavity_pressure < 0
+    return FULL if is_full else CAVITATED
+
 
 _COUETTE_RADIUS = 0.5 * (math.log(2) + 1.5 * (SLIDING + TURNING))
 _POISEUILLE_RADIUS = 0.5 * (math.log(2) + 2 + 2.5 * (SLIDING - TURNING))

@@ -91,6 +91,9 @@ class PlaneFilm(Protocol):
     def sheared(self, speed: float, gap: Array) -> Array:
         """Return the same where the walls alone shear the film, at ambient pressure."""
 
+    def carried(self, gap: Array, pressure: Array) -> Array:
+        """Return what goes with the walls, C."""
+
 
 def weights_of(mesh: PolarMesh) -> tuple[Array, Array]:
     """Return the weights of ``r dr dtheta`` panel by panel and of ``dr dtheta`` on rings, for half a turn."""
@@ -104,6 +107,10 @@ class LinearPlane:
     def flow(self, gap: Array, pressure: Array) -> Flow:
         """Return the flow at nodes."""
         raise NotImplementedError
+
+    def carried(self, gap: Array, pressure: Array) -> Array:
+        """Return what goes with the walls, C."""
+        return self.flow(gap, pressure).carried
 
     def viscosity(self, gap: Array, pressure: Array) -> Array:
         """Return the viscosity over that at ambient pressure."""

@@ -43,6 +43,9 @@ film that is thinned by its own rate is found."""
 FAR_PANELS = 2
 """Panels in ln r beyond twice the scale."""
 
+CAVITY_GROWTH = 1.5
+"""Largest width of far panels over their radius where a film may form anew."""
+
 FAR_WIDTH, FAR_GROWTH = 4.0, 0.6
 """Width of the far panels over the widest panel that a body allows near the contact, and over their radius: the larger one."""
 
@@ -94,7 +97,9 @@ class Resolution:
     splits : tuple of float
         Radii at which panels are split besides [a].
     farther : int
-        Number of panels beyond the usual rim, where a fluid is thinned far out.
+        Number of panels beyond the usual rim, where a fluid is thinned far out, or a cavity is long.
+    far_growth : float
+        Largest width of panels beyond twice the scale over their radius.
     model : Model
         Fluid, cavitation and solid, whose equations are solved on the mesh.
     """
@@ -106,6 +111,7 @@ class Resolution:
     splits: tuple[float, ...] = ()
     model: Model = ARTICLE
     farther: int = 0
+    far_growth: float = math.inf
 
     @property
     def mesh(self) -> PolarMesh:
@@ -126,9 +132,14 @@ class Resolution:
         while (wide := np.flatnonzero(np.diff(near) > widest)).size:
             near = np.sort(np.append(near, 0.5 * (near[wide] + near[wide + 1])))
         far = far * scale
-        while (wide := np.flatnonzero(np.diff(far) > np.maximum(FAR_WIDTH * widest, FAR_GROWTH * far[:-1]))).size:
+        while (wide := np.flatnonzero(np.diff(far) > self._widest_far(far[:-1], widest))).size:
             far = np.sort(np.append(far, np.sqrt(far[wide] * far[wide + 1])))
         return PolarMesh(np.concatenate([near, far]), near.size, self.degree, self.modes)
+
+    def _widest_far(self, radii: Array, widest: float) -> Array:
+        """Return the largest width of far panels from these radii on."""
+        of_body = np.maximum(FAR_WIDTH * widest, FAR_GROWTH * radii)
+        return np.minimum(of_body, self.far_growth * radii)
 
     @property
     def _far(self) -> Array:
@@ -174,12 +185,18 @@ def gaps_at(law: ContactLaw, log_pressures: Array) -> Array:
 RIGID_CAVITATED = 0.2249
 """Height of a rigid ball over the square of the speed group, where its film ends at ambient pressure."""
 
+RIGID_SUCTION = 0.1
+"""Largest suction behind a rigid ball times its height to the power 3/2, over the speed group."""
+
+QUIET = 0.03
+"""Suction at the rim over that of a cavity, at most."""
+
 
 def layout(speed: float, law: ContactLaw, model: Model = ARTICLE) -> tuple[float, float]:
     """Return the width of the smallest panel over the scale of the contact, and that scale [a]."""
     speed = film_speed(speed, model)
     decay = float(np.max(law.decay_length))
-    height = film_scale(speed) + CAVITATED_FILM[model.cavitation] * speed**2
+    height = film_scale(speed) + lift(speed, model)
     if decay > 0.0:
         at_edge = gaps_at(law, np.log(np.array([EDGE_PRESSURE])))
         decay = min(decay, float(np.max(law.local_decay_length(at_edge))))
@@ -195,26 +212,39 @@ def is_too_thin(speed: float, law: ContactLaw) -> bool:
     return COARSEST * SIDE_LOBES * width**-0.675 > MOST_MODES and film_scale(speed) > float(np.max(law.decay_length))
 
 
-CAVITATED_FILM = {Cavitation.NONE: 0.0, Cavitation.EXIT: RIGID_CAVITATED}
-"""What a fast film is thicker by, over the square of the speed group, by how it ends."""
+def lift(speed: float, model: Model) -> float:
+    """Return about what a fast film is thicker by, as behind the ball its pressure is bounded."""
+    if model.cavitation is Cavitation.NONE:
+        return 0.0
+    rigid = RIGID_CAVITATED * speed**2
+    if not model.cavity_pressure < 0.0:
+        return rigid
+    return float(min(rigid, (RIGID_SUCTION * speed / -model.cavity_pressure) ** (2 / 3)))
 
 
 def resolution(speed: float, law: ContactLaw, degree: int, modes: int, model: Model = ARTICLE) -> Resolution:
     """Return the resolution of a state."""
     width, scale = layout(speed, law, model)
     halvings, doublings = math.ceil(-math.log2(1.2 * width)), round(math.log2(scale))
-    return Resolution(halvings, doublings, degree, modes, model=model, farther=farther_panels(speed, model))
+    growth = CAVITY_GROWTH if model.cavity_pressure < 0.0 else math.inf
+    return Resolution(halvings, doublings, degree, modes, (), model, farther_panels(speed, model), growth)
 
 
 def farther_panels(speed: float, model: Model) -> int:
-    """Return the number of panels beyond the usual rim until the fluid is thinned no more, where the rate is 2/r**2."""
-    film = model.film
-    if not isinstance(film, ShearThinning) or not speed > 0.0:
+    """Return the number of panels beyond the usual rim until the film is plain.
+
+    There the fluid is thinned no more, the rate being 2/r**2, and the suction, 0.8 speed/r**3, is far from that of a cavity.
+    """
+    film, radius = model.film, REACH
+    if not speed > 0.0:
         return 0
-    rates = np.logspace(-60.0, 0.0, 241)
-    plain = np.abs(film.law.stress(rates)[0] / rates - 1.0) < THINNED_BEYOND
-    rate = float(rates[plain][-1]) if plain.any() else float(rates[0])
-    radius = math.sqrt(2.0 * film.law.time * speed / rate)
+    if isinstance(film, ShearThinning):
+        rates = np.logspace(-60.0, 0.0, 241)
+        plain = np.abs(film.law.stress(rates)[0] / rates - 1.0) < THINNED_BEYOND
+        rate = float(rates[plain][-1]) if plain.any() else float(rates[0])
+        radius = max(radius, math.sqrt(2.0 * film.law.time * speed / rate))
+    if model.cavity_pressure < 0.0:
+        radius = max(radius, (0.8 * speed / (QUIET * -model.cavity_pressure)) ** (1 / 3))
     return int(np.clip(math.ceil(FAR_PANELS * math.log(radius / REACH) / math.log(REACH / 2.0)), 0, MOST_FARTHER))
 
 

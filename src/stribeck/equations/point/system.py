@@ -108,10 +108,12 @@ class Equations:
     speed: float
     law: ContactLaw
     film: PlaneFilm = PLAIN
+    least: float = -np.inf
+    """The lowest film pressure."""
 
     far: ClassVar[FarFilm] = FULL
-    least: ClassVar[float] = -np.inf
-    """The lowest film pressure."""
+    finest: ClassVar[float] = 0.0
+    """Smallest tolerance that is aimed at."""
 
     @property
     def load_row(self) -> Array:

@@ -114,6 +114,10 @@ class ThinningPlane:
         rate = speed * self.film.law.time * abs(self.film.slide) / gap
         return self.film.law.stress(rate)[0] / rate if self.film.slide else np.ones_like(gap)
 
+    def carried(self, gap: Array, pressure: Array) -> Array:
+        """Return what goes with the walls: they move it alike, whatever the law."""
+        return np.asarray(self.film._of_pressure(gap, pressure)[2] * gap)
+
     def _unit(self, at: _Local) -> Array:
         return at.rho * 2 * at.gap**2 / (at.eta * self.film.law.time)
 

@@ -13,7 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.cut_off import FAR
+from stribeck.contacts.model import Model
+from stribeck.equations.cavities.torn import TornEquations, just_above
 from stribeck.equations.point.mesh_choice import (
     RIGID_CAVITATED,
     MeshTooLargeError,
@@ -27,12 +28,9 @@ from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.point.level import Level, extrapolated, moved, solve_level
+from stribeck.solver.point.level import PROBLEMS, Level, extrapolated, moved, solve_level
 from stribeck.solver.point.refinement import COMPANY, Pair, scales_of
 from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
-
-FINEST_RTOL = 1e-4
-"""Smallest tolerance that is aimed at."""
 
 FIRST_ANGLES, LADDER = 10, (20, 30, 45, 65)
 """Numbers of angles: of the first mesh, and of the meshes of which neighbours tell the error."""
@@ -43,9 +41,6 @@ WASTE = 0.12
 DEGREE = 10
 """Degree of the panels of all but the finer of these, which has two more."""
 
-PART = 1.0
-"""Stated error over the difference between two meshes: that of the finer one is about 0.8 of it."""
-
 RIGID = 2.0
 """Speed from which a rigid ball is nearer to the state than that of the full film."""
 
@@ -55,12 +50,13 @@ TOLERANCE = 1e-7
 
 def pair_of(coarse: Level, fine: Level) -> Pair:
     """Return the pair of two levels of one state."""
-    speed = fine.equations.speed
+    assert isinstance(fine.equations, TornEquations)
+    speed, part = fine.equations.speed, fine.equations.part
     values, rough = observables(fine.equations, fine.unknowns), observables(coarse.equations, coarse.unknowns)
     scales = scales_of(values, speed)
     scales["offset"] = max(abs(values["offset"]), values["central_gap"])  # it passes zero
-    errors = {name: PART * abs(value - rough[name]) + fine.iterated.left * scales[name] for name, value in values.items()}
-    balance = 0.3 * abs(identity_error(values, speed, FAR[Cavitation.EXIT]))
+    errors = {name: part * abs(value - rough[name]) + fine.iterated.left * scales[name] for name, value in values.items()}
+    balance = 0.3 * abs(identity_error(values, speed, fine.equations.far))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
     beyond = thinned_beyond(fine.equations, fine.unknowns)
@@ -82,17 +78,19 @@ def held(pair: Pair) -> float:
     )
 
 
-def refine_cavitated(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair | None = None) -> Pair | Outcome:
+def refine_cavitated(
+    speed: float, law: ContactLaw, guess: Level, rtol: float, model: Model, known: Pair | None = None
+) -> Pair | Outcome:
     """Return a state whose estimated error holds a tolerance from that of the full film, or the best that was found.
 
     ``known`` is the state with a larger error.
     """
+    rtol = max(rtol, PROBLEMS[model.cavitation][0].finest)
     found = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
-    model = replace(found.model, cavitation=Cavitation.EXIT)
     base = resolution(speed, law, DEGREE, FIRST_ANGLES, model)
     base = replace(base, splits=found.splits if base.doublings == found.doublings else ())
     start, mesh = guess.unknowns, guess.mesh
-    if speed >= RIGID:
+    if speed >= RIGID and model.cavitation is Cavitation.EXIT:
         mesh = operators_of(base).mesh
         start = rigid(mesh, speed)
     best = known
@@ -136,6 +134,7 @@ def follow_cavitated(
 
     ``line`` has neighbours, and the weights with which they predict the state, its line of rupture too.
     """
+    rtol = max(rtol, neighbour.fine.equations.finest)
     if not fits(neighbour.fine.resolution, speed, law):
         return None
     now = neighbour.fine.resolution
@@ -164,20 +163,26 @@ def follow_cavitated(
 
 def _carried(coarse: Level, neighbour: Pair) -> Unknowns:
     """Return a guess on the finer mesh: what that had beyond the coarser one, the neighbour tells."""
-    old, mesh = neighbour.fine.unknowns, neighbour.fine.mesh
-    carried = moved(coarse.unknowns, coarse.mesh, mesh)
-    known = moved(neighbour.coarse.unknowns, neighbour.coarse.mesh, mesh)
-    fluid = np.maximum(carried.fluid + old.fluid - known.fluid, np.finfo(float).tiny)
+    old, mesh, least = neighbour.fine.unknowns, neighbour.fine.mesh, coarse.equations.least
+    carried = moved(coarse.unknowns, coarse.mesh, mesh, least)
+    known = moved(neighbour.coarse.unknowns, neighbour.coarse.mesh, mesh, least)
+    fluid = np.maximum(carried.fluid + old.fluid - known.fluid, just_above(least))
     return Unknowns(
         carried.gap * (old.gap / known.gap),
-        np.where(carried.fluid == 0.0, 0.0, fluid),
+        np.where(carried.fluid <= least, least, fluid),
         carried.offset + (old.offset - known.offset),
     )
 
 
-def tolerance_of(rtol: float) -> float:
-    """Return the tolerance that is aimed at."""
-    return max(rtol, FINEST_RTOL)
+def holds_torn(pair: Pair, rtol: float) -> bool:
+    """Return whether the errors of a state hold a tolerance, or the smallest that is aimed at."""
+    return held(pair) <= max(rtol, pair.fine.equations.finest)
 
 
-__all__ = ["follow_cavitated", "held", "refine_cavitated", "tolerance_of"]
+def is_torn(pair: Pair) -> bool:
+    """Return whether the film of a state breaks."""
+    fine = pair.fine
+    return isinstance(fine.equations, TornEquations) and bool((fine.unknowns.fluid <= fine.equations.least).any())
+
+
+__all__ = ["follow_cavitated", "held", "holds_torn", "is_torn", "refine_cavitated"]

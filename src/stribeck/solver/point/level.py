@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,9 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import ARTICLE, Model
-from stribeck.equations.point.cavitation import CavitatedEquations, iterate_cavitated
+from stribeck.equations.cavities.exit import CavitatedEquations
+from stribeck.equations.cavities.reformation import ReformingEquations
+from stribeck.equations.cavities.torn import iterate_cavitated, just_above
 from stribeck.equations.point.iteration import WIDEST, Iterated, distance, iterate
 from stribeck.equations.point.mesh_choice import MOST_BYTES, MeshTooLargeError, Resolution, bytes_of, film_speed, operators_of
 from stribeck.equations.point.planes import plane_of
@@ -68,19 +71,23 @@ def band_for(speed: float, law: ContactLaw, model: Model = ARTICLE) -> int:
     return max(least, int(min(WIDEST, round(5.0 * (1e-3 / like) ** 0.17))))
 
 
-def moved(y: Unknowns, old: PolarMesh, new: PolarMesh) -> Unknowns:
-    """Return unknowns on another mesh; beyond the rim of the old one the gap grows as r**2 and the pressure falls as r**-3."""
+def moved(y: Unknowns, old: PolarMesh, new: PolarMesh, least: float = -math.inf) -> Unknowns:
+    """Return unknowns on another mesh; beyond the rim of the old one the gap grows as r**2 and the pressure falls as r**-3.
+
+    Nodes are torn where the nearest one of the old mesh has the pressure ``least``.
+    """
     if old is new:
         return y
     beyond = np.maximum(1.0, new.radii / old.rim)
     fields = np.stack([np.log(y.gap / (1.0 + old.radii**2)), y.fluid])
     shape, fluid = old.transfer(new, fields)
-    torn = y.fluid == 0.0
+    fluid = fluid / beyond**3
+    torn = y.fluid <= least
     if torn.any():  # the series of the pressure waves about zero there
         ring = np.abs(np.log(new.radii[:, None] / old.radii)).argmin(axis=1)
         angle = np.abs(new.angles[:, None] - old.angles).argmin(axis=1)
-        fluid = np.where(torn[angle][:, ring], 0.0, np.maximum(fluid, np.finfo(float).tiny))
-    return Unknowns(np.exp(shape) * (1.0 + new.radii**2), fluid / beyond**3, y.offset)
+        fluid = np.where(torn[angle][:, ring], least, np.maximum(fluid, just_above(least)))
+    return Unknowns(np.exp(shape) * (1.0 + new.radii**2), fluid, y.offset)
 
 
 def solve_level(
@@ -110,7 +117,9 @@ def solve_level(
     operators = operators_of(resolution)
     kind, iteration = PROBLEMS[resolution.model.cavitation]
     equations = kind(operators, speed, law, plane_of(resolution.model.film.at(speed)))
-    guess = moved(start, start_mesh, operators.mesh)
+    if resolution.model.cavity_pressure:
+        equations = replace(equations, least=resolution.model.cavity_pressure)
+    guess = moved(start, start_mesh, operators.mesh, equations.least)
     if kept is not None and kept.shape != guess.gap.shape:
         kept = None
     if predicted is not None and kept is not None:
@@ -121,13 +130,14 @@ def solve_level(
 PROBLEMS: dict[Cavitation, tuple[type[Equations], Callable[..., Iterated]]] = {
     Cavitation.NONE: (Equations, iterate),
     Cavitation.EXIT: (CavitatedEquations, iterate_cavitated),
+    Cavitation.REFORM: (ReformingEquations, iterate_cavitated),
 }
 """The equations and what solves them, by how the film ends."""
 
 
 def extrapolated(weights: Sequence[float] | Array, levels: Sequence[Level], mesh: PolarMesh) -> Unknowns:
     """Return the weighted sum of states on a mesh: of the logarithms of their gaps, the pressures and the offsets."""
-    parts = [moved(level.unknowns, level.mesh, mesh) for level in levels]
+    parts = [moved(level.unknowns, level.mesh, mesh, level.equations.least) for level in levels]
     log_gap = sum(w * np.log(part.gap) for w, part in zip(weights, parts, strict=True))
     fluid = sum(w * part.fluid for w, part in zip(weights, parts, strict=True))
     offset = sum(w * part.offset for w, part in zip(weights, parts, strict=True))

@@ -11,7 +11,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import FAR, friction_integral, log_cut_offs
+from stribeck.contacts.cut_off import far_film, friction_integral, log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.point import PURE_SLIDING, PointContact
@@ -38,6 +38,12 @@ WAKE = (
     "ends; without wetted_radius that is the X of a ball whose film does not break."
 )
 """What a user has to know of the friction of a film that breaks."""
+
+CAVITY = (
+    "The film ruptures at the pressure of the cavity and forms anew behind it; there friction counts the liquid, as streaks "
+    "that touch both walls, and no drag of the gas."
+)
+"""The same of a film that forms anew."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +121,7 @@ class PointObservables:
         """
         parts = {name: getattr(self, name) for name in ("J_couette", "J_poiseuille", "J_pcx")}
         wetted = math.inf if self._wetted_radius is None else self._wetted_radius
-        speed, far = float(self._groups.speed), FAR[self._groups.model.cavitation]
+        speed, far = float(self._groups.speed), far_film(self._groups.model)
         found = float(friction_integral(parts, speed, slope, self._slide_to_roll, wetted, definition, far))
         if self._within is not None:
             by_shear, by_pressure = (float(each) for each in log_cut_offs(slope, wetted))
@@ -418,8 +424,12 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
     if not state.outcome.ok:
         return shape_notes(contact)
     notes = [*shape_notes(contact), *law_notes(groups, contact, values)]
-    if groups.model.cavitation is Cavitation.EXIT and groups.speed > 0:
-        notes.append(WAKE)
+    model = groups.model
+    if model.cavitation is not Cavitation.NONE and groups.speed > 0:
+        if model.cavity_pressure == 0.0:
+            notes.append(WAKE)
+        elif float(state.nodal_fluid_pressure.min()) <= model.cavity_pressure:
+            notes.append(CAVITY)
     elif contact is not None and groups.speed > 0:
         notes += cavitation_notes(
             contact,

@@ -12,7 +12,6 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
-from stribeck.contacts.cut_off import FAR
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.dry import dry_contact, hertz_gap
@@ -29,9 +28,10 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.plane import BODIES
 from stribeck.solver.at_rest import with_positive_gap
-from stribeck.solver.point.cavitated import follow_cavitated, held, refine_cavitated, tolerance_of
+from stribeck.solver.point.cavitated import follow_cavitated, holds_torn, refine_cavitated
 from stribeck.solver.point.level import Level
 from stribeck.solver.point.refinement import Pair, follow, holds_along_path, newton_tolerance, pair_of, refine
+from stribeck.solver.point.reforming import follow_reforming, full_model, holds_reforming, refine_reforming
 from stribeck.solver.point.start import first_state
 from stribeck.solver.point.state import OBSERVABLES, PointFields, PointState
 
@@ -74,12 +74,11 @@ def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
     if groups.speed == 0:
         return _at_rest(groups, rtol)
     speed, law = float(groups.speed), contact_law(groups)
-    ending = ENDINGS[groups.model.cavitation]
-    first = first_state(speed, law, replace(groups.model, cavitation=Cavitation.NONE))
+    model = as_solved(groups.model)
+    first = first_state(speed, law, full_model(model))
     if isinstance(first, Outcome):
         return _failed(groups, rtol, first)
-    rtol = ending.tolerance(rtol)
-    return _state(groups, rtol, ending.refine(speed, law, first, rtol))
+    return _state(groups, rtol, ENDINGS[model.cavitation].refine(speed, law, first, rtol, model))
 
 
 def solve_from(
@@ -113,19 +112,18 @@ def solve_from(
     pair = neighbour.work
     if groups.speed == 0 or not isinstance(pair, Pair) or not pair.fine.equations.speed > 0:
         return solve_cold(groups, rtol)
-    speed, law = float(groups.speed), contact_law(groups)
-    if pair.fine.resolution.model == groups.model:
-        ending = ENDINGS[groups.model.cavitation]
-        held = ending.tolerance(rtol)
+    speed, law, model = float(groups.speed), contact_law(groups), as_solved(groups.model)
+    if pair.fine.resolution.model == model:
+        ending = ENDINGS[model.cavitation]
         pairs = [(weight, state.work) for weight, state in line]
         try:
-            found = ending.follow(speed, law, pair, held, pairs if all(isinstance(each, Pair) for _, each in pairs) else ())
+            found = ending.follow(speed, law, pair, rtol, pairs if all(isinstance(each, Pair) for _, each in pairs) else ())
         except MeshTooLargeError:
             found = None
-        if found is not None and ending.holds(found, held):
-            return _state(groups, held, found)
+        if found is not None and ending.holds(found, rtol):
+            return _state(groups, rtol, found)
         if found is not None:
-            return _state(groups, held, ending.refine(speed, law, found.fine, held, found))
+            return _state(groups, rtol, ending.refine(speed, law, found.fine, rtol, model, found))
     return solve_cold(groups, rtol)
 
 
@@ -138,21 +136,33 @@ class Ending(NamedTuple):
         From a first state, and from a neighbour's meshes, to a state on two meshes.
     holds : callable
         Whether the errors of such a pair hold a tolerance along a path.
-    tolerance : callable
-        The tolerance that is aimed at for one that was asked for.
     """
 
     refine: Callable[..., Pair | Outcome]
     follow: Callable[..., Pair | None]
     holds: Callable[[Pair, float], bool]
-    tolerance: Callable[[float], float]
+
+
+def _refine_full(
+    speed: float, law: ContactLaw, guess: Level, rtol: float, model: Model, known: Pair | None = None
+) -> Pair | Outcome:
+    del model
+    return refine(speed, law, guess, rtol, known)
 
 
 ENDINGS = {
-    Cavitation.NONE: Ending(refine, follow, holds_along_path, float),
-    Cavitation.EXIT: Ending(refine_cavitated, follow_cavitated, lambda pair, rtol: held(pair) <= rtol, tolerance_of),
+    Cavitation.NONE: Ending(_refine_full, follow, holds_along_path),
+    Cavitation.EXIT: Ending(refine_cavitated, follow_cavitated, holds_torn),
+    Cavitation.REFORM: Ending(refine_reforming, follow_reforming, holds_reforming),
 }
 """How states are refined, by how the film ends."""
+
+
+def as_solved(model: Model) -> Model:
+    """Return the model whose equations are solved: a cavity at ambient pressure has no end."""
+    if model.cavitation is Cavitation.REFORM and model.cavity_pressure == 0.0:
+        return replace(model, cavitation=Cavitation.EXIT)
+    return model
 
 
 def check(groups: Groups, rtol: float) -> None:
@@ -167,11 +177,6 @@ def check(groups: Groups, rtol: float) -> None:
 
 def check_model(model: Model) -> None:
     """Refuse by name what the equations of a ball do not have."""
-    if model.cavitation not in ENDINGS:
-        raise InputError(
-            f"cavitation = {str(model.cavitation)!r}: of a ball the film ends at ambient pressure, 'exit', or does not break, "
-            "'none'; a cavity at another pressure is not modelled."
-        )
     if type(model.film) not in PLANES:
         raise InputError(f"fluid = {model.film.name}: its flow in the plane, below a ball, is not known.")
     if isinstance(model.film, ShearThinning) and not has_viscosity_at_rest(model.film.law):
@@ -199,6 +204,7 @@ def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0
     if isinstance(pair, Outcome):
         return _failed(groups, rtol, pair)
     fine, values = pair.fine, dict(pair.values)
+    rtol = max(rtol, fine.equations.finest)
     for name in ("central_gap", "minimum_gap", "minimum_gap_on_axis", "offset"):
         values[name] += shift
     y = fine.unknowns
@@ -212,7 +218,7 @@ def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0
         values=values,
         absolute_errors=errors,
         scales=pair.scales,
-        identity_error=identity_error(values, float(groups.speed), FAR[groups.model.cavitation]),
+        identity_error=identity_error(values, float(groups.speed), fine.equations.far),
         load_error=values["contact_load_share"] + values["fluid_load_share"] - 1.0,
         mesh=fine.mesh,
         nodal_gap=y.gap + shift,

@@ -1,18 +1,17 @@
-r"""The film of a ball that ends at ambient pressure: complementarity at the nodes, by a semismooth Newton iteration.
+r"""Films of a ball that break: complementarity at the nodes, by a semismooth Newton iteration.
 
-With :math:`R` the weak residual of Reynolds' equation at a node and d the diagonal of its pressure stiffness,
+With :math:`R` the weak residual of Reynolds' equation at a node, d the diagonal of its pressure stiffness and
+:math:`p_\mathrm{cav}` the least pressure of the film,
 
-.. math:: \min(p_f, R/d) = 0
+.. math:: \min(p_f - p_\mathrm{cav}, R/d) = 0
 
-Nodes with :math:`R/d > p_f` are torn: there :math:`p_f = 0` takes the place of Reynolds' equation.  Asperities go on to carry
-load in the cavity.  The film ruptures along one line and does not form anew, so that mass is conserved.
+Nodes with :math:`R/d > p_f - p_\mathrm{cav}` are torn: there :math:`p_f = p_\mathrm{cav}` takes the place of Reynolds'
+equation.  Asperities go on to carry load in the cavity.  Where the film may form anew the gas at a node goes on downstream,
+and the gas g that makes up for the residual, :math:`R = U g`, takes the place of R.
 
 The preconditioner is the banded one of the full film, with a capacitance matrix of the torn nodes: with :math:`Z = P^{-1} E`,
-E their unit residuals, and C the rows :math:`p_f` of these nodes, :math:`x = P^{-1} f + Z \mu` with
+E the residuals of unit gas at each, and C the rows :math:`p_f` of these nodes, :math:`x = P^{-1} f + Z \mu` with
 :math:`C Z \mu = f_E - C P^{-1} f`.
-
-Far from the contact the pressure is :math:`g(\theta) \, r/h^2` and ruptures along :math:`x = |y|/3`; load and deflection of
-what lies beyond the rim are that of this law.
 
 Source: [Hintermueller, Ito and Kunisch 2002] SIAM J. Optim. 13, 865, for the active sets; numerics.md, the ball.
 """
@@ -21,21 +20,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from functools import partial
 from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import lu_factor, lu_solve
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import splu
 
 from stribeck._types import Array, Flags, Indices
-from stribeck.contacts.cut_off import CAVITATED, FarFilm
 from stribeck.equations.damping import longest_step
-from stribeck.equations.point.far_field import particular
 from stribeck.equations.point.iteration import SMALLEST_PART, Iterated, step_size
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Unknowns
-from stribeck.equations.point.wake import shear_missing
 from stribeck.numerics.fourier_panels import PolarMesh, lobatto, radau
 from stribeck.numerics.krylov import gmres
 from stribeck.quantities.outcome import Outcome
@@ -61,40 +58,61 @@ WORN = 12
 """Steps of GMRES from which the next step makes its own preconditioner."""
 
 
-@dataclass(frozen=True, eq=False)
-class CavitatedEquations(Equations):
-    """The discretised problem of a film that ends at ambient pressure."""
+class Passing:
+    """Where gas goes that torn nodes release: downstream from node to node, until one with a film takes it.
 
-    far: ClassVar[FarFilm] = CAVITATED
-    least: ClassVar[float] = 0.0
+    Parameters
+    ----------
+    spread : csc_matrix or None
+        What unit gas at each node adds to the residual at all; None where it stays at its node.
+    torn : ndarray of bool, shape (modes, rings)
+        The torn nodes.
+    """
+
+    def __init__(self, spread: csc_matrix | None, torn: Flags) -> None:
+        self.torn, self.spread = torn, None
+        self.weights: Array | float = 1.0
+        """Residual of a torn node over its own gas."""
+        if spread is not None:
+            self.weights = spread.diagonal().reshape(torn.shape)
+            self.at = np.flatnonzero(torn)
+            self.spread = spread[:, self.at]
+            self.factors = splu(self.spread[self.at]) if self.at.size else None
+
+    def gas(self, flow: Array) -> Array:
+        """Return the gas at the nodes that makes up for the residual at the torn ones."""
+        if self.spread is None:
+            return flow
+        found = np.zeros(flow.size)
+        if self.factors is not None:
+            found[self.at] = self.factors.solve(flow.ravel()[self.at])
+        return found.reshape(flow.shape)
+
+    def rows(self, flow: Array) -> Array:
+        """Return the residual with the gas of the torn nodes, which has to vanish at the others."""
+        if self.spread is None or self.factors is None:
+            return flow
+        passed = self.spread @ self.factors.solve(flow.ravel()[self.at])
+        return np.asarray(flow - passed.reshape(flow.shape))
+
+
+@dataclass(frozen=True, eq=False)
+class TornEquations(Equations):
+    """The discretised problem of a film that may break, at ambient pressure if nothing else is said."""
+
+    least: float = 0.0
+
+    part: ClassVar[float] = 1.0
+    """Stated error over the difference between two meshes: that of the finer one is about 0.8 of it."""
 
     @property
-    def load_row(self) -> Array:
-        """Weights of the load on the axisymmetric mode, with what lies beyond the rim, shape (rings,)."""
-        row = self.operators.load_row.copy()
-        row[-1] += 2.0 * math.pi * self.operators.mesh.rim**2
-        return row
+    def spread(self) -> csc_matrix | None:
+        """What unit gas at each node adds to the residual at all; None where it stays at its node."""
+        return None
 
-    def deflect(self, by_mode: Array) -> Array:
-        """Return the deflection by mode; beyond the rim all modes fall as r**-3."""
-        found = self.operators.deflect(by_mode)
-        beyond = self.operators.deflection_from_beyond * by_mode[:, -1:]
-        beyond[1] = 0.0  # that of mode one is in the operator
-        return np.asarray(found + beyond)
-
-    def rim_slope(self, p: Array, offset: float) -> Array:
-        """Return the radial derivative of the film pressure at the rim: it falls as that of the full film."""
-        return self.rim_rates(offset) @ p
-
-    def rim_rates(self, offset: float) -> Array:
-        """Return the derivative of :meth:`rim_slope` by the pressure, shape (angles, angles)."""
-        mesh = self.operators.mesh
-        first, slope = particular(np.array([mesh.rim]), offset, 1.0, bulge=self.operators.bulge)
-        return np.eye(mesh.modes) * float(slope[0] / first[0])
-
-    def shear_missing(self, y: Unknowns) -> Array:
-        """Return by how much the shear over h on each ring is less for the dry streaks of the wake, shape (rings,)."""
-        return shear_missing(self.operators.mesh, y.gap, y.fluid, partial(self.film.sheared, self.speed))
+    def passing(self, torn: Flags) -> Passing:
+        """Return where gas of torn nodes goes."""
+        return Passing(self.spread, torn)
 
 
 def stiffness(linear: Linear) -> Array:
@@ -109,21 +127,23 @@ def stiffness(linear: Linear) -> Array:
 class TornLinear(Linear):
     """The Jacobian at a state with torn nodes; rows of R_2 at the nodes, over the stiffness."""
 
-    def __init__(self, equations: Equations, y: Unknowns, torn: Flags) -> None:
+    def __init__(self, equations: TornEquations, y: Unknowns, torn: Flags) -> None:
         super().__init__(equations, y)
-        self.stiffness, self.torn = stiffness(self), torn
+        self.stiffness, self.torn, self.least = stiffness(self), torn, equations.least
+        self.spread, self.passing = equations.spread, equations.passing(torn)
 
     def product(self, x: Array) -> Array:
         """Return the change of the rows at the nodes and of the load."""
         change = self.changes(x)
-        rows = np.where(self.torn, change.fluid, self.flow(change.fluid, change.gap) / self.stiffness)
+        rows = np.where(self.torn, change.fluid, self.passing.rows(self.flow(change.fluid, change.gap)) / self.stiffness)
         return np.append(rows.ravel(), self.equations.load_row @ x[: self.equations.operators.mesh.rings])
 
     def right(self, residual: tuple[Array, Array, float]) -> Array:
         """Return the right-hand side of the step."""
         shape, flow, load = residual
         moved = self.flow(self.contact_slope * shape, -shape)
-        rows = np.where(self.torn, -self.y.fluid - self.contact_slope * shape, -(flow + moved) / self.stiffness)
+        sunk = self.least - self.y.fluid - self.contact_slope * shape
+        rows = np.where(self.torn, sunk, -self.passing.rows(flow + moved) / self.stiffness)
         return np.append(rows.ravel(), -load)
 
 
@@ -148,11 +168,13 @@ class Capacitance:
         if new.size == 0:
             return
         mesh, size = self.mesh, self.mesh.size
-        unit = np.zeros((mesh.modes, mesh.rings, new.size), dtype=np.float32)
-        angle, ring = np.divmod(new, mesh.rings)
-        unit[:, ring, np.arange(new.size)] = mesh.cosines[angle].T
+        own = (np.ones(new.size), new, np.arange(new.size + 1))
+        unit = (csc_matrix(own, shape=(size, new.size)) if linear.spread is None else linear.spread[:, new]).tocoo()
+        angle, ring = np.divmod(unit.row, mesh.rings)
+        waves, modes = mesh.cosines[angle].T * unit.data, np.arange(mesh.modes)[:, None]
+        at = (modes * mesh.rings + ring, np.broadcast_to(unit.col, waves.shape))
         right = np.zeros((size + 1, new.size))
-        right[:-1] = unit.reshape(size, -1)
+        right[:-1] = csc_matrix((waves.ravel(), tuple(each.ravel() for each in at)), shape=(size, new.size)).toarray()
         found = self.banded(right)
         by_mode = found[:-1].reshape(mesh.modes, mesh.rings, -1)
         deflected = np.matmul(linear.equations.operators.deflection, by_mode).reshape(mesh.modes, -1)
@@ -249,8 +271,13 @@ class _Preconditioner:
         return np.asarray(x + self.kept.answers @ residuals)
 
 
+def just_above(least: float) -> float:
+    """Return the lowest pressure of a film that is not torn."""
+    return least + max(float(np.finfo(float).eps) * abs(least), float(np.finfo(float).tiny))
+
+
 def iterate_cavitated(
-    equations: CavitatedEquations,
+    equations: TornEquations,
     start: Unknowns,
     tolerance: float,
     band: int,
@@ -261,10 +288,10 @@ def iterate_cavitated(
 
     Parameters
     ----------
-    equations : CavitatedEquations
+    equations : TornEquations
         The discretised problem.
     start : Unknowns
-        First iterate; nodes without a positive film pressure are torn at first.
+        First iterate; nodes without a film pressure above the least one are torn at first.
     tolerance : float
         Relative error of the gap that the iteration may leave.
     band : int
@@ -277,18 +304,23 @@ def iterate_cavitated(
     Returns
     -------
     Iterated
-        A failure is returned in its outcome.  The film pressure is zero at torn nodes, and only there.
+        A failure is returned in its outcome.  The film pressure is the least one at torn nodes, and only there.
     """
-    law = equations.law
-    torn = start.fluid <= 0.0
-    y = Unknowns(start.gap, np.where(torn, 0.0, np.maximum(start.fluid, 0.0)), start.offset)
+    law, least = equations.law, equations.least
+    torn = start.fluid <= least
+    y = Unknowns(start.gap, np.where(torn, least, start.fluid), start.offset)
+
+    def now_torn(stiff: Array, passing: Passing) -> Flags:
+        gas = passing.gas(equations.flow(y.gap, y.fluid, y.offset))
+        return np.asarray(gas * passing.weights / stiff > y.fluid - least)
+
     krylov = factorisations = steps = 0
     left, size = math.inf, math.inf
     if kept is not None:  # a neighbour's start is good enough to ask which nodes are torn
-        torn = equations.flow(y.gap, y.fluid, y.offset) / stiffness(Linear(equations, y)) > y.fluid
+        torn = now_torn(stiffness(Linear(equations, y)), equations.passing(torn))
 
     def ended(outcome: Outcome) -> Iterated:
-        fluid = np.where(torn, 0.0, np.maximum(y.fluid, np.finfo(float).tiny))
+        fluid = np.where(torn, least, np.maximum(y.fluid, just_above(least)))
         there = Unknowns(y.gap, fluid, y.offset)
         return Iterated(there, outcome, steps, krylov, factorisations, left, kept)
 
@@ -316,8 +348,7 @@ def iterate_cavitated(
             steps += 1
             if solved.steps > WORN:
                 kept = None
-            flow = equations.flow(y.gap, y.fluid, y.offset)
-            now = flow / linear.stiffness > y.fluid
+            now = now_torn(linear.stiffness, linear.passing)
             same = bool((now == torn).all())
             torn = now
             if part < 1.0:

@@ -1,0 +1,61 @@
+r"""The film of a ball that ends at ambient pressure.
+
+The film ruptures along one line and does not form anew, so that :math:`\min(p_f, R/d) = 0` conserves mass.
+
+Far from the contact the pressure is :math:`g(\theta) \, r/h^2` and ruptures along :math:`x = |y|/3`; load and deflection of
+what lies beyond the rim are that of this law.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.cut_off import CAVITATED, FarFilm
+from stribeck.equations.cavities.torn import TornEquations
+from stribeck.equations.cavities.wake import shear_missing
+from stribeck.equations.point.far_field import particular
+from stribeck.equations.point.system import Unknowns
+
+__all__ = ["CavitatedEquations"]
+
+
+@dataclass(frozen=True, eq=False)
+class CavitatedEquations(TornEquations):
+    """The discretised problem of a film that ends at ambient pressure."""
+
+    far: ClassVar[FarFilm] = CAVITATED
+    finest: ClassVar[float] = 1e-4
+
+    @property
+    def load_row(self) -> Array:
+        """Weights of the load on the axisymmetric mode, with what lies beyond the rim, shape (rings,)."""
+        row = self.operators.load_row.copy()
+        row[-1] += 2.0 * math.pi * self.operators.mesh.rim**2
+        return row
+
+    def deflect(self, by_mode: Array) -> Array:
+        """Return the deflection by mode; beyond the rim all modes fall as r**-3."""
+        found = self.operators.deflect(by_mode)
+        beyond = self.operators.deflection_from_beyond * by_mode[:, -1:]
+        beyond[1] = 0.0  # that of mode one is in the operator
+        return np.asarray(found + beyond)
+
+    def rim_slope(self, p: Array, offset: float) -> Array:
+        """Return the radial derivative of the film pressure at the rim: it falls as that of the full film."""
+        return self.rim_rates(offset) @ p
+
+    def rim_rates(self, offset: float) -> Array:
+        """Return the derivative of :meth:`rim_slope` by the pressure, shape (angles, angles)."""
+        mesh = self.operators.mesh
+        first, slope = particular(np.array([mesh.rim]), offset, 1.0, bulge=self.operators.bulge)
+        return np.eye(mesh.modes) * float(slope[0] / first[0])
+
+    def shear_missing(self, y: Unknowns) -> Array:
+        """Return by how much the shear over h on each ring is less for the dry streaks of the wake, shape (rings,)."""
+        return shear_missing(self.operators.mesh, y.gap, y.fluid, partial(self.film.sheared, self.speed))

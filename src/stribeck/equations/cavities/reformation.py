@@ -1,0 +1,92 @@
+r"""The film of a ball that ruptures at the pressure of a cavity and forms anew behind it.
+
+In the cavity :math:`p_f = p_\mathrm{cav}` and a part :math:`\phi` of the width is gas, elsewhere :math:`\phi = 0`.  Mass is
+
+.. math:: R - \lambda \, U \, (\phi \, C) = 0, \qquad p_f \ge p_\mathrm{cav}, \quad \phi \ge 0, \quad
+    \phi \, (p_f - p_\mathrm{cav}) = 0
+
+with the weak residual R of Reynolds' equation at a node, what a full gap carries, C, and what leaves the cells around nodes by
+their faces, U: upstream differences of first order, that let the film form anew where it must.  Far from the contact the film
+is full.
+
+Source: [Jakobsson and Floberg 1957], [Olsson 1965] for the conservation of mass; [Elrod 1981] J. Lubr. Technol. 103, 350, for
+the differences upstream.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+from scipy.sparse import csc_matrix
+
+from stribeck._types import Array
+from stribeck.equations.cavities.torn import TornEquations
+from stribeck.equations.point.system import Unknowns
+from stribeck.numerics.fourier_panels import PolarMesh
+
+__all__ = ["ReformingEquations", "outflow"]
+
+
+def outflow(mesh: PolarMesh) -> csc_matrix:
+    """Return what leaves the cells around the nodes, of a field that goes with the motion along x.
+
+    Parameters
+    ----------
+    mesh : PolarMesh
+        The mesh; cells have the area that integrals give their node, half a turn.
+
+    Returns
+    -------
+    csc_matrix, shape (nodes, nodes)
+        Each face takes the field from its node upstream; nothing comes in from beyond the rim.
+    """
+    modes, rings = mesh.modes, mesh.rings
+    edges = np.sqrt(np.append(0.0, 2.0 * np.cumsum(mesh.ring_weights * mesh.radii)))
+    sides = np.arange(modes + 1) * (np.pi / modes)
+    node = np.arange(modes * rings).reshape(modes, rings)
+    outwards = np.multiply.outer(np.diff(np.sin(sides)), edges[1:])
+    inner, outer, through = node[:, :-1], node[:, 1:], outwards[:, :-1]
+    rim = np.maximum(outwards[:, -1], 0.0)
+    inwards = np.multiply.outer(np.sin(sides[1:-1]), np.diff(edges))  # towards smaller angles
+    rows, columns, values = [node[:, -1]], [node[:, -1]], [rim]
+    for begin, end, amount in (
+        (inner, outer, np.maximum(through, 0.0)),
+        (outer, inner, np.maximum(-through, 0.0)),
+        (node[1:], node[:-1], inwards),
+    ):
+        rows += [begin.ravel(), end.ravel()]
+        columns += [begin.ravel(), begin.ravel()]
+        values += [amount.ravel(), -amount.ravel()]
+    shape = (mesh.size, mesh.size)
+    return csc_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
+
+
+@dataclass(frozen=True, eq=False)
+class ReformingEquations(TornEquations):
+    """The discretised problem of a film that forms anew behind a cavity at the pressure ``least``."""
+
+    finest: ClassVar[float] = 3e-4
+    part: ClassVar[float] = 2.5
+    """Stated error over the difference between two meshes, as it falls no faster than the number of angles grows."""
+
+    @cached_property
+    def spread(self) -> csc_matrix:
+        """What unit gas at each node adds to the residual at all, shape (nodes, nodes)."""
+        return outflow(self.operators.mesh)
+
+    def gas(self, y: Unknowns) -> Array:
+        """Return the part of the width that is gas, at the nodes: the mean of what comes into their cells and what leaves."""
+        torn = y.fluid <= self.least
+        passing, flow = self.passing(torn), self.flow(y.gap, y.fluid, y.offset)
+        found = passing.gas(flow) - 0.5 * flow / passing.weights
+        full = self.speed * self.film.carried(y.gap, y.fluid)
+        return np.where(torn, np.clip(found / full, 0.0, 1.0), 0.0)
+
+    def shear_missing(self, y: Unknowns) -> Array:
+        """Return by how much the shear over h on each ring is less for the gas of the cavity, shape (rings,)."""
+        mesh = self.operators.mesh
+        lost = self.gas(y) * self.film.shear(mesh, self.speed, y.gap, y.fluid) / y.gap
+        return np.asarray(2.0 * np.pi / mesh.modes * mesh.radii * lost.sum(axis=0))

@@ -1,0 +1,118 @@
+"""A ball whose film forms anew behind a cavity: known states, conservation of mass, limits in the pressure of the cavity."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.sparse.linalg import spsolve
+
+import stribeck as sb
+from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import Model
+from stribeck.equations.cavities.reformation import outflow
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.numerics.fourier_panels import PolarMesh
+from stribeck.solver.point.solve import solve_cold, solve_from
+
+# Speed, kappa, pressure of the cavity; what is known with its uncertainty, from an independent program of the same method.
+KNOWN = [
+    (0.1, 0.0, -0.3, {"central_gap": (0.09529, 5e-6)}),
+    (0.1, 0.0, -0.1, {"central_gap": (0.0954903, 4e-7), "minimum_gap": (0.06763, 2e-5)}),
+    (0.1, 0.0, -0.01, {"central_gap": (0.09602, 5e-6)}),
+    (0.1, 0.1, -0.1, {"contact_load_share": (0.9837, 5e-5)}),
+    (0.1, 0.1, -0.03, {"contact_load_share": (0.9401, 5e-5)}),
+    (0.1, 0.1, -0.01, {"contact_load_share": (0.9060, 5e-5)}),
+]
+
+
+def ball(speed, kappa, cavity, load=1e-3):
+    model = Model(cavitation=Cavitation.REFORM, cavity_pressure=cavity)
+    return Groups(speed, load, kappa * load ** (2 / 3), geometry="point", model=model)
+
+
+@pytest.mark.parametrize(("speed", "kappa", "cavity", "known"), KNOWN)
+def test_states_are_the_known_ones(speed, kappa, cavity, known):
+    state = solve_cold(ball(speed, kappa, cavity), 1e-3)
+    assert state.outcome.ok
+    for name, (value, uncertainty) in known.items():
+        assert abs(state.values[name] - value) <= uncertainty + state.absolute_errors[name], name
+    assert abs(state.load_error) < 1e-8
+    assert abs(state.identity_error) <= 1e-5 * state.scales["J_balanced"]
+    assert state.nodal_fluid_pressure.min() == cavity
+
+
+@pytest.mark.quick
+def test_gas_goes_with_the_motion_and_gathers_what_is_released_on_its_way():
+    errors = []
+    for degree, modes in ((8, 40), (16, 80)):
+        mesh = PolarMesh(np.array([0.0, 0.5, 1.0, 2.0, 6.0]), 3, degree, modes)
+        x, y = (mesh.radii * wave(mesh.angles)[:, None] for wave in (np.cos, np.sin))
+        leaves, area = outflow(mesh), np.pi / mesh.modes * mesh.ring_weights * mesh.radii
+        assert np.abs((leaves @ np.ones(mesh.size)).reshape(x.shape)[:, :-1]).max() < 1e-12
+        bump = np.exp(-((x - 0.3) ** 2 + y**2) / 0.3)
+        assert abs((leaves @ bump.ravel()).sum()) < 1e-12
+        found = spsolve(leaves, (-2 * (x - 0.3) / 0.3 * bump * area).ravel()).reshape(x.shape)
+        errors.append(np.abs((found - bump) * area).sum() / (bump * area).sum())
+    # First order; a bump as narrow as a panel is smeared much on the way.
+    assert errors[1] < 0.3
+    assert errors[0] / errors[1] > 1.5
+
+
+@pytest.mark.quick
+def test_liquid_is_conserved_on_its_way_through_the_cavity():
+    state = solve_cold(ball(0.1, 0.1, -0.03), 1e-2)
+    fine = state.work.fine
+    equations, y = fine.equations, fine.unknowns
+    gas, torn = equations.gas(y), y.fluid <= -0.03
+    assert (gas[~torn] == 0).all()
+    assert gas[torn].min() > -1e-12
+    assert 0.1 < gas.max() < 1
+    # What torn nodes lack goes on downstream, and nodes with a film that take it have nothing left over.
+    flow = equations.flow(y.gap, y.fluid, y.offset)
+    taken = np.abs(flow[~torn]).max()
+    assert taken > 0.01 * np.abs(flow[torn]).max()
+    assert np.abs(equations.passing(torn).rows(flow)).max() < 1e-3 * taken
+
+
+@pytest.mark.quick
+def test_a_cavity_whose_pressure_the_suction_never_reaches_leaves_the_film_full():
+    full = solve_cold(Groups(0.1, 1e-3, 1e-3, geometry="point"), 1e-5)
+    state = solve_cold(ball(0.1, 0.1, -0.2), 1e-5)
+    assert state.rtol == 1e-5
+    for name, value in full.values.items():
+        assert abs(state.values[name] - value) <= 1e-9 * full.scales[name], name
+    beside = solve_from(state, ball(0.11, 0.1, -0.2), 1e-5)
+    assert beside.outcome.ok
+    assert beside.rtol == 1e-5
+
+
+@pytest.mark.quick
+def test_along_a_curve_the_film_breaks_where_its_suction_does():
+    curve = sb.stribeck_curve(
+        Groups(0.1, 1e-3, 1e-3, geometry="point"),
+        speed=np.geomspace(0.02, 0.2, 5),
+        cavitation="reform",
+        cavity_pressure=-0.1,
+        rtol=1e-3,
+    )
+    full = sb.stribeck_curve(Groups(0.1, 1e-3, 1e-3, geometry="point"), speed=np.geomspace(0.02, 0.2, 5), rtol=1e-3)
+    assert curve.outcome.ok
+    less = full.observable("contact_load_share") - curve.observable("contact_load_share")
+    breaks = [any("forms anew" in note for note in s.notes) for s in curve.solutions]
+    assert breaks == sorted(breaks)
+    assert 0 < sum(breaks) < 5
+    assert (less[np.array(breaks)] > 0).all()
+    assert np.abs(less[~np.array(breaks)]).max() < 2e-3
+
+
+def test_towards_ambient_pressure_the_film_is_that_of_a_free_exit():
+    free = solve_cold(replace(ball(0.1, 0.1, 0.0), model=Model(cavitation=Cavitation.EXIT)), 1e-3)
+    same = solve_cold(ball(0.1, 0.1, 0.0), 1e-3)
+    assert same.values["contact_load_share"] == pytest.approx(free.values["contact_load_share"], abs=1e-9)
+    off = [
+        solve_cold(ball(0.1, 0.1, cavity), 1e-3).values["contact_load_share"] - free.values["contact_load_share"]
+        for cavity in (-1e-3, -1e-4)
+    ]
+    assert 0 < off[1] < off[0]
+    assert math.log10(off[0] / off[1]) == pytest.approx(1 / 3, abs=0.05)
