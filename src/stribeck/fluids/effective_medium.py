@@ -31,6 +31,7 @@ from stribeck.fluids.flow_factors import (
     with_sigma,
 )
 from stribeck.fluids.laws import FilmUnits, FlowFactors
+from stribeck.numerics.cells import Cells
 from stribeck.quantities.units import InputError
 
 __all__ = ["PERCOLATION", "EffectiveMedium"]
@@ -46,6 +47,13 @@ ORDER = 16
 
 WIDEST = 9.0
 """Height over the roughness beyond which there is none."""
+
+NEAREST, FARTHEST = 1e-5, 1e9
+"""Mean gaps beyond the threshold, over the roughness, between which the medium is tabulated: at the first the flow is far below
+its floor, at the second it is that between smooth surfaces to rounding."""
+
+CELLS, TERMS = 1024, 8
+"""Cells of that table in the logarithm, and terms of the polynomial on each."""
 
 
 @dataclass(frozen=True, init=False)
@@ -99,12 +107,11 @@ class EffectiveMedium(FlowFactors):
         """Return phi_x and its slope."""
         if self.sigma is None:
             raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
-        width = gap / self.sigma
-        d = nominal_separation(width)
-        e, slope = medium_width(d)
-        phi = (e / width) ** 3
-        by_gap = 3 * (e / width) ** 2 * (slope / scipy.special.ndtr(d) - e / width) / gap
-        return lifted(phi, by_gap)
+        beyond = np.maximum(gap / self.sigma - PERCOLATION, 0.0)
+        ratio, slope = _relative_width().with_slope(np.log(np.maximum(beyond, NEAREST)))
+        inside = (beyond > NEAREST) & (beyond < FARTHEST)
+        by_gap = np.where(inside, 3 * ratio**2 * slope / np.maximum(beyond, NEAREST) / self.sigma, 0.0)
+        return lifted(ratio**3, by_gap)
 
     def shear(self, gap: Array) -> tuple[Array, Array]:
         """Return zero twice."""
@@ -138,6 +145,17 @@ def medium_width(d: Array) -> tuple[Array, Array]:
         found[far] = d[far] * ratio
         slope[far] = ratio - 2 * y * chebyshev.chebval(s, derivative)
     return found, slope
+
+
+@lru_cache(maxsize=1)
+def _relative_width() -> Cells:
+    """The width of the medium over the mean gap, as a function of ln(mean gap over the roughness - threshold)."""
+
+    def ratio(logarithm: Array) -> Array:
+        width = PERCOLATION + np.exp(logarithm)
+        return medium_width(nominal_separation(width))[0] / width
+
+    return Cells.of(ratio, math.log(NEAREST), math.log(FARTHEST), CELLS, TERMS)
 
 
 @lru_cache(maxsize=1)

@@ -201,7 +201,7 @@ def _integrals(law: RateLaw, x_a: Array, x_b: Array, g_a: Array, g_b: Array) -> 
     if apart.any():
         found[:, apart] = _by_moments(law, *(each[apart] for each in (x_a, x_b, g_a, g_b)))
     if alike.any():
-        found[:, alike] = _by_rule(law, *(each[alike] for each in (x_a, x_b)))
+        found[:, alike] = _by_rule(law, *(each[alike] for each in (x_a, x_b, g_a, g_b)))
     return tuple(found)  # type: ignore[return-value]
 
 
@@ -217,7 +217,7 @@ def _by_moments(law: RateLaw, x_a: Array, x_b: Array, g_a: Array, g_b: Array) ->
     return i_0, i_1, (x_b - x_a) / Q, (0.5 * (x_a + x_b) - i_0) / Q, (0.25 * (x_b - x_a) - 2 * i_1) / Q
 
 
-def _by_rule(law: RateLaw, x_a: Array, x_b: Array) -> tuple[Array, ...]:
+def _by_rule(law: RateLaw, x_a: Array, x_b: Array, g_a: Array, g_b: Array) -> tuple[Array, ...]:
     """Return integrals and derivatives by the Gauss rule in the rate."""
     middle, half = 0.5 * (x_a + x_b), 0.5 * (x_b - x_a)
     offset = half * NODES[:, None]
@@ -226,7 +226,6 @@ def _by_rule(law: RateLaw, x_a: Array, x_b: Array) -> tuple[Array, ...]:
     mean_slope = (weights * slope).sum(axis=0)  # Q = 2 half mean_slope
     share = weights * slope / mean_slope  # d zeta
     # zeta at the nodes: the stress relative to that in the middle of the film, over Q.
-    g_a, g_b = _odd(law, x_a)[0], _odd(law, x_b)[0]
     flat = np.abs(half) < STEEPEST * np.abs(middle)
     Q = np.where(flat, 1.0, 2 * half * mean_slope)
     zeta = np.where(flat, 0.5 * NODES[:, None], (g - 0.5 * (g_a + g_b)) / Q)

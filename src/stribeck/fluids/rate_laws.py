@@ -54,13 +54,15 @@ class _Tabulated(RateLaw):
 
     def moments(self, rate: Array) -> tuple[Array, Array]:
         """Return both moments."""
-        return _table(self._with_time_one()).moments(rate, self.stress(rate)[0])
+        return _table(type(self), *self._shape).moments(rate, self.stress(rate)[0])
 
     def rate(self, stress: Array) -> Array:
         """Return the rate at a stress."""
-        return _table(self._with_time_one()).rate(stress)
+        return _table(type(self), *self._shape).rate(stress)
 
-    def _with_time_one(self) -> _Tabulated:
+    @property
+    def _shape(self) -> tuple[float, ...]:
+        """Its numbers but for the relaxation time."""
         raise NotImplementedError
 
     def _smallest(self) -> float:
@@ -69,9 +71,10 @@ class _Tabulated(RateLaw):
 
 
 @lru_cache(maxsize=64)
-def _table(law: _Tabulated) -> Table:
-    """Table of a law; fits and sweeps ask for many."""
-    return Table(law.stress, law._smallest())
+def _table(law: Callable[..., _Tabulated], *shape: float) -> Table:
+    """Table of a law with the relaxation time one; fits and sweeps ask for many."""
+    of_law = law(1.0, *shape)
+    return Table(of_law.stress, of_law._smallest())
 
 
 @dataclass(frozen=True, init=False)
@@ -128,8 +131,9 @@ class _BetweenPlateaus(_Tabulated):
         """Return the law in Hertz units."""
         return type(self)(self.relaxation_time / units.time, self.exponent, _ratio(self.infinite_viscosity, units))
 
-    def _with_time_one(self) -> Self:
-        return type(self)(1.0, self.exponent, self.infinite_viscosity)
+    @property
+    def _shape(self) -> tuple[float, ...]:
+        return self.exponent, self.infinite_viscosity
 
 
 def _documented(exponent: str, source: str) -> Callable[[type[Plateaus]], type[Plateaus]]:
@@ -344,12 +348,12 @@ class PowerLaw(RateLaw):
 
     def rate(self, stress: Array) -> Array:
         """Return the rate at a stress."""
-        return LOWEST * _table(Carreau(1.0, self.exponent)).rate(stress / LOWEST**self.exponent)
+        return LOWEST * _table(Carreau, self.exponent).rate(stress / LOWEST**self.exponent)
 
     def moments(self, rate: Array) -> tuple[Array, Array]:
         """Return both moments: those of Carreau's law in the units of its plateau."""
         n, unit = self.exponent, LOWEST**self.exponent
-        first, second = _table(Carreau(1.0, n)).moments(rate / LOWEST, self.stress(rate)[0] / unit)
+        first, second = _table(Carreau, n).moments(rate / LOWEST, self.stress(rate)[0] / unit)
         return LOWEST * unit * first, LOWEST * unit**2 * second
 
 

@@ -17,12 +17,16 @@ import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
 from stribeck._types import Array
+from stribeck.numerics.cells import Cells
 
 WIDTH = 0.5
 """Of the panels, in ln(rate)."""
 
 ORDER = 12
 """Chebyshev coefficients of each panel: exact to 1e-14 with singularities pi/2 from the real axis, as of Carreau."""
+
+CELLS, TERMS = 8, 7
+"""Cells of a panel, and terms of the polynomial on each: the same to rounding, and quicker to evaluate."""
 
 LARGEST = 30.0
 """Natural logarithm of the rate at which tables end; beyond, the ratios have their limits."""
@@ -80,17 +84,21 @@ class Table:
 
     def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         """Return both integrals from zero to rates >= 0, with the stresses there."""
-        place = (np.log(np.maximum(rate, 1e-300)) - self.smallest) / WIDTH
-        place = np.clip(place, 0.0, self.count * (1 - 1e-15))
-        panel = np.nan_to_num(place).astype(np.intp)  # a rate that is nan has moments that are
-        s = 2 * (place - panel) - 1
-        basis = np.empty((ORDER, *s.shape))
-        basis[0], basis[1] = 1.0, s
-        for k in range(2, ORDER):
-            basis[k] = 2 * s * basis[k - 1] - basis[k - 2]
-        one, two = np.einsum("...fk,k...->f...", self.coefficients[panel], basis)
+        one, two = self._ratios(np.log(np.maximum(np.nan_to_num(rate), 1e-300)))  # a rate that is nan has a stress that is
         area = stress * rate
         return one * area, two * area * stress
+
+    @cached_property
+    def _ratios(self) -> Cells:
+        """Both ratios, quick to evaluate."""
+
+        def by_panels(log_rate: Array) -> Array:
+            place = np.clip((log_rate - self.smallest) / WIDTH, 0.0, self.count * (1 - 1e-15))
+            panel = place.astype(np.intp)
+            basis = chebyshev.chebvander(2 * (place - panel) - 1, ORDER - 1)
+            return np.einsum("xfk,xk->fx", self.coefficients[panel], basis)
+
+        return Cells.of(by_panels, self.smallest, self.smallest + WIDTH * self.count, CELLS * self.count, TERMS)
 
     @cached_property
     def _inverse(self) -> tuple[Array, Array]:

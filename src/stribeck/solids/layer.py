@@ -28,6 +28,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from stribeck._types import Array
+from stribeck.numerics.cells import Cells
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.quantities.units import InputError, show, to_si
 from stribeck.solids.half_plane import nodal_deflection
@@ -170,22 +171,12 @@ def _table(poisson_ratio: float) -> Array:
 
 
 @lru_cache(maxsize=16)
-def _on_cells(poisson_ratio: float) -> Array:
-    """Coefficients of the smooth kernel in powers of the place in a cell, -1 to 1, shape (DEGREES, CELLS)."""
-    points = np.cos(np.pi * (np.arange(DEGREES) + 0.5) / DEGREES)
-    xi = (np.arange(CELLS) + 0.5 * (1 + points[:, None])) * (REACH / CELLS)
-    values = chebyshev.chebval(2 * xi / REACH - 1, _table(poisson_ratio))
-    return np.linalg.solve(np.vander(points, increasing=True), values)
+def _on_cells(poisson_ratio: float) -> Cells:
+    """The smooth kernel over ``0 <= xi <= REACH``, quick to evaluate."""
+    of_table = _table(poisson_ratio)
+    return Cells.of(lambda xi: chebyshev.chebval(2 * xi / REACH - 1, of_table), 0.0, REACH, CELLS, DEGREES)
 
 
 def smooth_kernel(xi: Array, poisson_ratio: float) -> Array:
     """Return k_s at distances of xi thicknesses, ``0 <= xi <= 24``."""
-    place = xi * (CELLS / REACH)
-    cell = np.minimum(place.astype(np.intp), CELLS - 1)
-    s = 2 * (place - cell) - 1
-    coefficients = _on_cells(poisson_ratio)
-    found = coefficients[-1].take(cell)
-    for row in coefficients[-2::-1]:
-        found *= s
-        found += row.take(cell)
-    return found
+    return _on_cells(poisson_ratio)(xi)

@@ -37,7 +37,7 @@ REACH, NEAREST, FARTHEST = 0.2, 0.1, 0.27
 
 INTERVAL = 1.0
 """Half of the interval on which films are sampled, over that distance.  Where the shear rate passes through zero at a node of
-a fluid that thins, that node turns sharply with the speed: on twice the interval series were wrong from the second order on."""
+a fluid that thins, that node turns sharply with the speed: on twice the interval series were wrong from order two on."""
 
 THINNING_PART = 0.3
 """Part of the tolerance that states of fluids that thin must hold: what their meshes leave differs from one to the next."""

@@ -1,0 +1,73 @@
+"""Smooth functions of one number that are asked for at many: polynomials of few terms on many equal cells.
+
+A cell is looked up by its number, without a search, and a handful of products does the rest: ten times as fast as one series
+of a hundred terms.  Here is no physics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from stribeck._types import Array, Indices
+
+__all__ = ["Cells"]
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Functions on equal cells side by side; beyond the ends they are those at the ends.
+
+    Attributes
+    ----------
+    start, width : float
+        Where the first cell begins, and the width of each.
+    coefficients : ndarray, shape (terms, ..., cells)
+        Of powers of the place in a cell, -1 to 1.
+    """
+
+    start: float
+    width: float
+    coefficients: Array
+
+    @classmethod
+    def of(cls, function: Callable[[Array], Array], start: float, end: float, cells: int, terms: int) -> Cells:
+        """Return ``function(x)``, shape (..., len(x)), interpolated at the Chebyshev points of each cell."""
+        points = np.cos(np.pi * (np.arange(terms) + 0.5) / terms)
+        width = (end - start) / cells
+        x = start + width * (np.arange(cells) + 0.5 * (1 + points[:, None]))
+        values = np.asarray(function(x.ravel()))
+        values = np.moveaxis(values.reshape(*values.shape[:-1], terms, cells), -2, 0)
+        flat = np.linalg.solve(np.vander(points, increasing=True), values.reshape(terms, -1))
+        return cls(start, width, flat.reshape(values.shape))
+
+    def _place(self, x: Array) -> tuple[Indices, Array]:
+        """Return the cell of each number and its place there."""
+        cells = self.coefficients.shape[-1]
+        place = np.clip((x - self.start) / self.width, 0.0, cells)
+        cell = np.minimum(place.astype(np.intp), cells - 1)
+        return cell, 2 * (place - cell) - 1
+
+    def __call__(self, x: Array) -> Array:
+        """Return the functions at x, shape (..., *x.shape)."""
+        cell, s = self._place(x)
+        found = self.coefficients[-1].take(cell, axis=-1)
+        for row in self.coefficients[-2::-1]:
+            found *= s
+            found += row.take(cell, axis=-1)
+        return found
+
+    def with_slope(self, x: Array) -> tuple[Array, Array]:
+        """Return the functions and their derivatives at x."""
+        cell, s = self._place(x)
+        found = self.coefficients[-1].take(cell, axis=-1)
+        slope = np.zeros_like(found)
+        for row in self.coefficients[-2::-1]:
+            slope *= s
+            slope += found
+            found *= s
+            found += row.take(cell, axis=-1)
+        slope *= 2 / self.width
+        return found, slope
