@@ -49,8 +49,8 @@ WIDEST = 9.0
 """Height over the roughness beyond which there is none."""
 
 NEAREST, FARTHEST = 1e-5, 1e9
-"""Mean gaps beyond the threshold, over the roughness, between which the medium is tabulated: at the first the flow is far below
-its floor, at the second it is that between smooth surfaces to rounding."""
+"""Mean gaps beyond the threshold, over the roughness, between which the medium is tabulated: at the first the flow is far
+below its floor, at the second it is that between smooth surfaces to rounding."""
 
 CELLS, TERMS = 1024, 8
 """Cells of that table in the logarithm, and terms of the polynomial on each."""
@@ -149,7 +149,7 @@ def medium_width(d: Array) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=1)
 def _relative_width() -> Cells:
-    """The width of the medium over the mean gap, as a function of ln(mean gap over the roughness - threshold)."""
+    """Return the width of the medium over the mean gap, a function of ln(mean gap over the roughness - threshold)."""
 
     def ratio(logarithm: Array) -> Array:
         width = PERCOLATION + np.exp(logarithm)

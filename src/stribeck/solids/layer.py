@@ -172,7 +172,7 @@ def _table(poisson_ratio: float) -> Array:
 
 @lru_cache(maxsize=16)
 def _on_cells(poisson_ratio: float) -> Cells:
-    """The smooth kernel over ``0 <= xi <= REACH``, quick to evaluate."""
+    """Return the smooth kernel over ``0 <= xi <= REACH``, quick to evaluate."""
     of_table = _table(poisson_ratio)
     return Cells.of(lambda xi: chebyshev.chebval(2 * xi / REACH - 1, of_table), 0.0, REACH, CELLS, DEGREES)
 
