@@ -56,7 +56,12 @@ def test_a_bare_number_is_taken_as_si(value):
 REFUSED = [
     ("3 m", "speed", "is a length; expected a speed such as '0.1 m/s'."),
     ("3 s", "speed", "is a time"),
-    ("1 cSt", "viscosity", "is a kinematic viscosity; expected a viscosity such as '10 mPa*s': multiply it by the density."),
+    (
+        "1 cSt",
+        "viscosity",
+        "is a kinematic viscosity; expected a viscosity such as '10 mPa*s': give it as kinematic_viscosity",
+    ),
+    ("Ra 0.2 um", "length", "begins with its kind; write ra = '0.4 um' in place of"),
     (
         "50 N",
         "load",
@@ -70,7 +75,7 @@ REFUSED = [
     (
         "2 rad/s",
         "speed",
-        "is a rate; expected a speed such as '0.1 m/s': multiply the angular velocity in rad/s by the radius",
+        "is a rate; expected a speed such as '0.1 m/s': give it as rotational_speed, with the shaft_diameter; or multiply",
     ),
     ("5 kg", "load", "is a mass; expected a load per unit length such as '50 N/m': a mass presses"),
     ("2 MPa", "viscosity", "is a pressure"),

@@ -121,13 +121,18 @@ _HINTS = {
     "or geometry = 'point', is the whole force",
     ("kg", "N"): "a mass presses with 9.81 N/kg",
     ("kg", "N/m"): "a mass presses with 9.81 N/kg; divide the force on a cylinder by its length",
-    ("m^2/s", "Pa*s"): "multiply it by the density",
-    ("1/s", "m/s"): "multiply the angular velocity in rad/s by the radius of the shaft or track",
+    ("m^2/s", "Pa*s"): "give it as kinematic_viscosity, with the density; or multiply it by the density",
+    (
+        "1/s",
+        "m/s",
+    ): "give it as rotational_speed, with the shaft_diameter; or multiply the angular velocity in rad/s by the "
+    "radius of the shaft or track",
 }
 
 # Bounded, because the number becomes an exact fraction and 1e999999999 would fill the memory.
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]{1,40}\.?[0-9]{0,40}|\.[0-9]{1,40})(?:[eE][+-]?[0-9]{1,3})?)\s*(.*?)\s*", re.DOTALL)
 _PERCENT = re.compile(r"\s*([0-9]{1,9}(?:\.[0-9]{0,9})?)\s*%\s*")
+_ROUGHNESS = re.compile(r"R[aq](?![A-Za-z])", re.IGNORECASE)
 _HARDNESS = re.compile(r"shore|irhd", re.IGNORECASE)
 FROM_HARDNESS = "write shore_a = 70 or shore_d = 50, a bare number, in place of the modulus"
 _EXPONENT = re.compile(r"(?:\^|\*\*)\s*(?:[+-]?[0-9]|\(\s*[+-]?[0-9]\s*\))")
@@ -404,6 +409,8 @@ def _from_text(text: str, kind: Dimension, name: str) -> Fraction:
         raise InputError(f"{received} has a comma; write a decimal point and no thousands separator, as in '{kind.example}'.")
     parts = _NUMBER.fullmatch(text.replace("\N{MINUS SIGN}", "-"))
     if parts is None:
+        if found := _ROUGHNESS.match(text):
+            raise InputError(f"{received} begins with its kind; write {found[0].lower()} = '0.4 um' in place of {name}.")
         raise InputError(f"{received} does not begin with a number; {_advice(kind)}.")
     number, unit = parts.groups()
     if not unit:

@@ -8,7 +8,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
-from stribeck.quantities.units import format_percent
+from stribeck.quantities.units import format_percent, format_si
 
 __all__ = [
     "ADVICE",
@@ -92,7 +92,8 @@ def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
         return ()
     pressure = contact.hertz.pressure
     return (
-        f"{HARD} the Hertz pressure is {pressure / 1e6:.3g} MPa, but this model applies up to {HIGHEST_PRESSURE / 1e6:g} MPa. "
+        f"{HARD} the Hertz pressure is {format_si(pressure, 'pressure')}, but this model applies up to "
+        f"{format_si(HIGHEST_PRESSURE, 'pressure')}. "
         f"At that pressure an oil with {OIL * 1e9:g} 1/GPa is exp({OIL * pressure:.2g}) times as viscous "
         f"as at ambient pressure, which is "
         "not modelled: with such a fluid film, friction and regimes are not those given here.",
