@@ -776,10 +776,12 @@ def test_a_port_in_use_is_refused_and_another_is_found():
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         with pytest.raises(sb.InputError, match="is not free or not allowed; choose another with --port"):
-            server.free_port(taken.getsockname()[1])
-    assert server.free_port(None) in server.PORTS
+            server.listen(taken.getsockname()[1])
+    with server.listen(None) as first, server.listen(None) as second:
+        assert first.getsockname()[1] < second.getsockname()[1]
+        assert {first.getsockname()[1], second.getsockname()[1]} <= set(server.PORTS)
     with pytest.raises(sb.InputError, match="port = 70000 must be a whole number from 1 to 65535"):
-        server.free_port(70000)
+        server.listen(70000)
 
 
 # --- the command ---

@@ -26,17 +26,10 @@ pytest.importorskip("nicegui")
 pytestmark = pytest.mark.xdist_group("explorer server")
 
 
-def own_port():
-    """Return a port that no other server takes which starts at the same time, as of the tests in a browser."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
 def start(folder):
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "NICEGUI"))}
     return subprocess.Popen(
-        [sys.executable, "-m", "stribeck", "explore", "--no-browser", "--port", str(own_port())],
+        [sys.executable, "-m", "stribeck", "explore", "--no-browser"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import secrets
 import socket
 import sys
+from functools import partialmethod
 from pathlib import Path
 from urllib.parse import quote
 
@@ -62,16 +63,20 @@ def serve(case: Path | None = None, port: int | None = None, browser: bool = Tru
     check_length(start)
     try:
         import nicegui
+        from nicegui.server import Server
     except ImportError:
         raise MissingExtraError("the explorer", "app", "nicegui") from None
     from threadpoolctl import threadpool_limits
 
     threadpool_limits(1, user_api="blas")
-    chosen = free_port(port, host)
+    listening = listen(port, host)
+    chosen = listening.getsockname()[1]
     token = secrets.token_urlsafe(24)
     address = f"http://{f'[{host}]' if ':' in host else host}:{chosen}/?token={token}"
     build(start, chosen, token)
     nicegui.app.on_startup(lambda: print(f"stribeck explorer: {address} (Ctrl-C ends it)", flush=True))
+    # NiceGUI takes the number of a port, which another program may have taken by then, and no socket.
+    Server.run = partialmethod(Server.run, sockets=[listening])  # type: ignore[method-assign,assignment]
     nicegui.ui.run(
         host=host,
         port=chosen,
@@ -156,8 +161,8 @@ def example() -> Inputs:
     return Inputs(contact, units_of(contact), title="PDMS cylinder in glycerol-water")
 
 
-def free_port(wanted: int | None, host: str = HOST) -> int:
-    """Return a port of this machine that nobody listens on.
+def listen(wanted: int | None, host: str = HOST) -> socket.socket:
+    """Return a socket that listens on a port of this machine on which nobody else did.
 
     Parameters
     ----------
@@ -168,24 +173,26 @@ def free_port(wanted: int | None, host: str = HOST) -> int:
 
     Returns
     -------
-    int
-        The port.
+    socket.socket
+        The socket, which nobody can take any more.
 
     Raises
     ------
     InputError
-        If there is none.
+        If there is no such port.
     """
     if wanted is not None and not 1 <= wanted <= 65535:
         raise InputError(f"port = {wanted} must be a whole number from 1 to 65535.")
     for port in PORTS if wanted is None else (wanted,):
-        with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM) as probe:
-            if sys.platform != "win32":
-                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            try:
-                probe.bind((host, port))
-            except OSError:
-                continue
-            return port
+        found = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM)
+        if sys.platform != "win32":
+            found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            found.bind((host, port))
+            found.listen()  # two sockets may be bound to one port; only one of them listens
+        except OSError:
+            found.close()
+            continue
+        return found
     which = f"port = {wanted} is" if wanted is not None else f"ports {PORTS[0]} to {PORTS[-1]} are"
     raise InputError(f"{which} not free or not allowed; choose another with --port.")
