@@ -27,6 +27,7 @@ def nothing_is_solved(monkeypatch):
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("stribeck.curves.stribeck_curve.follow", solve)
             patch.setattr("stribeck.curves.stribeck_curve.automatic_speed_range", solve)
+            patch.setattr("stribeck.curves.stribeck_curve.grown", solve)
             return checked(*arguments, **options)
 
     monkeypatch.setattr(sb, "stribeck_curve", curve)

@@ -625,11 +625,11 @@ AT_ONCE = """
 import os, signal, sys
 import stribeck.curves.stribeck_curve, stribeck.cli
 signal.signal(signal.SIGINT, signal.default_int_handler)
-whole = stribeck.curves.stribeck_curve.automatic_speed_range
+whole = stribeck.curves.stribeck_curve.grown
 def interrupted(*arguments):
     os.kill(os.getpid(), signal.SIGINT)
     return whole(*arguments)
-stribeck.curves.stribeck_curve.automatic_speed_range = interrupted
+stribeck.curves.stribeck_curve.grown = interrupted
 sys.exit(stribeck.cli.main(sys.argv[1:]))
 """
 

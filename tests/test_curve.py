@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq, minimize_scalar
 
 import stribeck as sb
-from stribeck.curves import speed_range as span
 from stribeck.solver.line_path import LineProblem
 
 CONTACT = sb.LineContact(
@@ -352,7 +351,7 @@ def test_ctrl_c_while_the_range_is_looked_for_is_not_taken_for_its_end(monkeypat
     def interrupted(*arguments, **options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(span, "solve_state", interrupted)
+    monkeypatch.setattr(LineProblem, "solve", interrupted)
     with pytest.raises(KeyboardInterrupt):
         sb.stribeck_curve(CONTACT, points=3)
 

@@ -3,94 +3,150 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
+from stribeck.asymptotics.smooth import hydrodynamic
+from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.contacts.model import ARTICLE
-from stribeck.equations.guess import Guess
-from stribeck.equations.line import Operators
-from stribeck.equations.observables import observables
-from stribeck.equations.prediction import extrapolate
-from stribeck.equations.state import State, mesh_for, solve_state
-from stribeck.numerics.continuation import Steps, march
-from stribeck.numerics.panels import MeshTooLargeError
+from stribeck.equations.line import LOAD
+from stribeck.equations.observables import ROW
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.cold_start import MESH_TOLERANCE, NEWTON_TOLERANCE, ORDER, rigid_guess
+from stribeck.solids import hertz
+from stribeck.solver.line_path import LineProblem
+from stribeck.solver.path import Expansion, SolvedPath, follow
 from stribeck.solver.solve import SolveError, describe
 
-FASTEST = 1e3
-"""Speed group from which the branch is looked for; its film is the rigid one."""
+__all__ = ["SPEEDS", "automatic_speed_range", "fastest", "grown", "part_of_contact"]
 
-MIN_SPEED = 1e-12
-"""Speed group below which no curve begins by itself."""
+SPEEDS = (1e-12, 1e12)
+"""Speed groups between which a curve begins and ends by itself."""
+
+SMOOTH = (1e-9, 10.0)
+"""Speed groups of curves of smooth surfaces, which have no plateau."""
 
 PLATEAU = 1e-3
 """Change of the fluid's share of the load over a decade of speed below which it is a plateau."""
 
 BRANCH = 1e-2
-"""Part of the friction from asperities below which the branch is hydrodynamic."""
+"""Part of the friction from asperities at which the branch is hydrodynamic; ten times as much may come from the fluid on the
+plateau."""
 
-MARGIN = 10.0
-"""Factor by which the curve goes on beyond plateau and branch."""
+BELOW, BEYOND = 10.0, 30.0
+"""Factors by which the curve goes on below the first state on the plateau, and beyond the branch."""
+
+LONGEST_EXTENSION = 2
+"""Times that the curve goes on beyond a branch that is not yet hydrodynamic."""
+
+COARSE = 1e-3
+"""Tolerance of a curve that is followed for its ends alone."""
+
+REACH, PLACES = 8.0, 161
+"""Half-widths, of a contact that the film widens, on which asperities are felt, and places there."""
 
 
-def automatic_speed_range(groups: Groups, boundary_friction: float, beta: float, definition: str) -> tuple[float, float]:
+def fastest(groups: Groups, boundary_friction: float, beta: float) -> float:
+    """Return the speed group up to which a curve runs, by formulas, for the load and roughness of ``groups``.
+
+    The film is that of smooth surfaces, from where on asperities carry what their law makes of it, between those and a
+    cylinder of the shape that Hertz found.
+    """
+    law = contact_law(groups)
+    x = np.linspace(-REACH, REACH, PLACES)
+
+    def part(log_speed: float) -> float:
+        film = replace(groups, speed=math.exp(log_speed), roughness=0.0, model=ARTICLE, law=None)
+        gap = float(hydrodynamic.central_gap.function(film))
+        wide = x * math.sqrt(1 + gap)
+        share = np.trapezoid(law.pressure(gap + hertz.gap(wide)), wide) / LOAD
+        contact = (boundary_friction or 1.0) * min(1.0, float(share))
+        return contact / (contact + float(hydrodynamic.friction.function(film, beta)) + 1e-300)
+
+    low, high = np.log(SPEEDS).tolist()
+    while high - low > 0.1:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if part(middle) > BRANCH else (low, middle)
+    return BEYOND * math.exp(high)
+
+
+def grown(
+    problem: LineProblem,
+    start: float,
+    bottom: float,
+    contact_part: Callable[[Expansion], float],
+    on_interval: Callable[[float, float], object] | None = None,
+) -> SolvedPath:
+    """Return a path from the hydrodynamic branch to the boundary plateau, whose ends are seen on the way.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        What is followed along the logarithm of the speed.
+    start, bottom : float
+        Where to begin, by :func:`fastest`, and the lowest place.
+    contact_part : callable
+        Part of the friction from asperities at a state.
+    on_interval : callable, optional
+        As of :func:`stribeck.solver.path.follow`.
+
+    Returns
+    -------
+    SolvedPath
+        As far as it was reached.
+    """
+
+    def is_on_plateau(here: Expansion) -> bool:
+        change = here.series[1, ROW["fluid_load_share"]] * math.log(10) if here.order else math.inf
+        return bool(abs(change) < PLATEAU and contact_part(here) > 1 - 10 * BRANCH)
+
+    path = follow(problem, start, bottom, problem.tolerance, on_interval, until=is_on_plateau)
+    if not path.outcome.ok:
+        return path
+    margin = math.log(BELOW)
+    low = max(bottom, float(path.coordinates[0]) - margin)
+    if low < path.coordinates[0]:
+        path = path.joined(follow(problem, path.expansions[0], low, problem.tolerance, on_interval))
+    for _ in range(LONGEST_EXTENSION):
+        if not path.outcome.ok or contact_part(path.expansions[-1]) < 0.1 * BRANCH:
+            break
+        end = float(path.coordinates[-1]) + margin
+        path = path.joined(follow(problem, path.expansions[-1], end, problem.tolerance, on_interval))
+    return path
+
+
+def part_of_contact(boundary_friction: float, beta: float, definition: Definition) -> Callable[[Expansion], float]:
+    """Return the function that is the part of the friction from asperities at a state."""
+
+    def part(here: Expansion) -> float:
+        contact = (boundary_friction or 1.0) * float(here.series[0, ROW["contact_load_share"]])
+        return contact / max(contact + beta * float(here.series[0, ROW[f"viscous_{definition}"]]), 1e-300)
+
+    return part
+
+
+def automatic_speed_range(
+    groups: Groups, boundary_friction: float, beta: float, definition: Definition
+) -> tuple[float, float]:
     """Return the speed groups from boundary plateau to hydrodynamic branch for the load and roughness of ``groups``.
 
-    They are found on coarse states that come down in speed from the rigid film, with the fluid and the solid of the article:
-    other parts change what the film carries by less than the margin.  Smooth surfaces have no plateau: their curve covers ten
-    decades up to speed 10.
+    They are those of a coarse curve with the fluid and the solid of the article: other parts change what the film carries by
+    less than the margin.  Smooth surfaces have no plateau: their curve covers ten decades up to speed 10.
     """
     groups = replace(groups, model=ARTICLE)
-    kappa = float(groups.relative_roughness)
-    if kappa == 0:
-        return 1e-9, 10.0
-    top = math.log(max(FASTEST, (30 * min(kappa, 1e100)) ** 1.5 * math.sqrt(24)))
-    plateau = False
-
-    def correct(s: float, history: Sequence[tuple[float, State]]) -> State | None:
-        here = replace(groups, speed=math.exp(-s))
-        guess: Guess | None = rigid_guess(here) if not history else extrapolate(history, s)
-        if guess is None:
-            return None
-        try:
-            mesh = mesh_for(guess, here, contact_law(here), ORDER, MESH_TOLERANCE)
-        except MeshTooLargeError:
-            return None
-        return solve_state(here, Operators(mesh, here.model), guess, NEWTON_TOLERANCE)
-
-    shares: list[tuple[float, float, float]] = []
-
-    def record(s: float, state: State) -> None:
-        nonlocal plateau
-        values = observables(state.equations, state.y, float(groups.load))
-        viscous = beta * float(getattr(values, f"viscous_{definition}"))
-        contact = boundary_friction * values.contact_load_share
-        shares.append((-s, values.fluid_load_share, contact / max(contact + viscous, 1e-300)))
-        if len(shares) > 1:
-            (s0, f0, _), (s1, f1, _) = shares[-2:]
-            plateau = abs(f1 - f0) < PLATEAU * (s0 - s1) / math.log(10) and values.contact_load_share > 0.1
-
-    path = march(
-        correct,
-        -top,
-        -math.log(MIN_SPEED),
-        Steps(0.5, math.log(10), 1e-3),
-        stop_when=lambda state: plateau,
-        on_point=record,
-    )
+    if groups.roughness == 0:
+        return SMOOTH
+    problem = LineProblem(lambda s: replace(groups, speed=math.exp(s)), (1.0, 0.0, 0.0), COARSE)
+    top = math.log(fastest(groups, boundary_friction, beta))
+    path = grown(problem, top, math.log(SPEEDS[0]), part_of_contact(boundary_friction, beta, definition))
     if path.outcome is Outcome.INTERRUPTED:
         raise KeyboardInterrupt
-    if not shares:
+    if not path.expansions:
         raise SolveError(
             path.outcome, None, f"{describe(groups)}: no starting speed was found for the curve; give a range of speeds."
         )
-    low = max(MIN_SPEED, math.exp(shares[-1][0]) / MARGIN)
-    contact_part = np.array([part for _, _, part in shares])
-    on_branch = np.nonzero(contact_part < BRANCH)[0]
-    high = math.exp(shares[int(on_branch[-1])][0]) if len(on_branch) else math.exp(top)
-    return low, MARGIN * high
+    low, high = np.exp(path.coordinates[[0, -1]]).tolist()
+    return low, high

@@ -21,7 +21,7 @@ from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_prob
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method
 from stribeck.curves.result import SLACK, StribeckCurve
-from stribeck.curves.speed_range import automatic_speed_range
+from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, part_of_contact
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
@@ -152,8 +152,10 @@ def stribeck_curve(
     if isinstance(points, bool) or not isinstance(points, int) or not POINTS_RANGE[0] <= points <= POINTS_RANGE[1]:
         raise InputError(f"points = {show(points)}; it must be a whole number from {POINTS_RANGE[0]} to {POINTS_RANGE[1]}.")
     coordinate = Coordinate(over, base)
+    grows = ends is None and check_method(method) == "solver" and coordinate.geometry not in CURVES
+    grows = grows and bool(coordinate.groups_at(0.0).roughness > 0)
     if ends is None:
-        values = _automatic(coordinate, boundary_friction, beta, definition, points)
+        values = _automatic(coordinate, boundary_friction, beta, definition, points, grows)
     elif len(ends) == 2:
         values = np.geomspace(ends[0], ends[1], points)
     else:
@@ -178,10 +180,21 @@ def stribeck_curve(
 
     direction: tuple[float, float, float] = tuple(coordinate.direction.tolist())
     line = LineProblem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
-    path = follow(line, float(places[-1]), float(places[0]), rtol, report)
-    if path.outcome is not Outcome.INTERRUPTED and path.expansions:
-        done = int((places >= path.coordinates[0]).sum())
+    if grows:
+        contact_part = part_of_contact(boundary_friction, beta, definition)
+        path = grown(line, float(places[-1]), float(places[0]), contact_part, report)
+        if path.expansions:
+            slowest, high = np.exp(path.coordinates[[0, -1]]).tolist()
+            values = np.geomspace(slowest, high, points if path.outcome.ok else max(done, 1))
+            places, done = np.log(values), min(done, points - 1) if path.outcome.ok else len(values)
+            report(float(places[0]), float(places[-1]))
+    else:
+        path = follow(line, float(places[-1]), float(places[0]), rtol, report)
+        if path.outcome is not Outcome.INTERRUPTED and path.expansions:
+            done = int((places >= path.coordinates[0]).sum())
     if not done:
+        if path.outcome is Outcome.INTERRUPTED and grows:
+            raise KeyboardInterrupt
         groups = coordinate.groups_at(float(places[-1]))
         if line.failure is not None:
             finish(line.failure, groups, contact, rtol)
@@ -195,7 +208,7 @@ def stribeck_curve(
         definition=definition,
         rtol=rtol,
         outcome=path.outcome,
-        requested=len(values),
+        requested=points if grows else len(values),
         _path=coordinate,
         _function=path,
     )
@@ -249,9 +262,17 @@ CURVES = {"point": _of_ball}
 """How curves are traced and where they begin and end, by geometry, beside the line."""
 
 
-def _automatic(coordinate: Coordinate, boundary_friction: float, beta: float, definition: Definition, points: int) -> Array:
-    """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm."""
+def _automatic(
+    coordinate: Coordinate, boundary_friction: float, beta: float, definition: Definition, points: int, grows: bool
+) -> Array:
+    """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm.
+
+    Of a curve that ``grows`` until it sees its ends the lower one is the lowest that it may have.
+    """
     groups = coordinate.groups_at(0.0)
-    ends = CURVES[coordinate.geometry]()[1] if coordinate.geometry in CURVES else automatic_speed_range
-    low, high = ends(groups, boundary_friction, beta, definition)
+    if grows:
+        low, high = SPEEDS[0], fastest(groups, boundary_friction, beta)
+    else:
+        ends = CURVES[coordinate.geometry]()[1] if coordinate.geometry in CURVES else automatic_speed_range
+        low, high = ends(groups, boundary_friction, beta, definition)
     return np.geomspace(low / float(groups.speed), high / float(groups.speed), points)

@@ -94,7 +94,9 @@ def product(a: Array, b: Array) -> Array:
 def integral_of_product(a: Array, b: Array, weights: Array) -> Array:
     """Return the series of the sum over the last axis of a product of two, times weights."""
     orders = np.arange(len(a))
-    return np.bincount(np.add.outer(orders, orders).ravel(), ((a * weights) @ b.T).ravel())[: len(a)]
+    products: Array = (a * weights) @ b.T
+    found = np.bincount(np.add.outer(orders, orders).ravel(), products.ravel())
+    return np.asarray(found[: len(a)], dtype=float)
 
 
 def reciprocal(values: Array) -> Array:

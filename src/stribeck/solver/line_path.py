@@ -29,8 +29,9 @@ from stribeck.solver.expansion import Direction, Expanded, corrected, expand_any
 from stribeck.solver.path import KNOT_PART, Expansion
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
 
-ORDER, FINE_ORDER, ORDER_OF_ANY_FILM = 16, 18, 6
-"""Highest orders of series: of the article to a tolerance of 1e-7 and below, and of films that are sampled."""
+EXACT_ORDER, ORDER, ORDER_OF_ANY_FILM = (16, 18), (10, 12), 6
+"""Highest orders of series to a tolerance of 1e-7 and below: in films of the article where the contact law has an exact series
+and where it is a polynomial near each separation; and of films that are sampled."""
 
 REACH, NEAREST, FARTHEST = 0.2, 0.1, 0.27
 """Distance at which the equations are evaluated for the series, over the radius of convergence, and what it may be."""
@@ -56,6 +57,9 @@ BETWEEN_MESHES = 0.2
 
 UNSEEN = 2.0
 """Error over the largest of three corrections with the Jacobian of a neighbour: what they leave unseen."""
+
+BY_CHANCE = 0.25
+"""Part of the largest error of a state that any observable has beside it: that of one may pass through zero there."""
 
 RESOLVED = 0.3
 """Part of the tolerance that the minimum gap may miss on the finer of two meshes before the other is asked too."""
@@ -94,11 +98,12 @@ class LineProblem:
     def __init__(self, groups_at: Callable[[float], Groups], direction: Direction, rtol: float, uniform: bool = True) -> None:
         self.groups_at, self.direction, self.uniform = groups_at, direction, uniform
         start = groups_at(0.0)
-        self.allowed, self.rtol = rtol, (THINNING_PART if is_thinning(start.model.film) else KNOT_PART) * rtol
+        self.tolerance, self.rtol = rtol, (THINNING_PART if is_thinning(start.model.film) else KNOT_PART) * rtol
         self.moves = bool(start.speed > 0)
         self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
         self.exact = self.analytic and is_exponential(start.law)
-        self.order = (ORDER if rtol >= 1e-7 else FINE_ORDER) if self.analytic else ORDER_OF_ANY_FILM
+        orders = EXACT_ORDER if self.exact else ORDER
+        self.order = orders[rtol < 1e-7] if self.analytic else ORDER_OF_ANY_FILM
         self.corrector = Corrector(groups_at, self.rtol)
         self.failure: RefinedState | None = None
 
@@ -145,7 +150,7 @@ class LineProblem:
             refined = self.corrector.cold(groups)
         if refined is None:
             return Outcome.PATH_LOST
-        if refined.state is None or refined.estimate is None or not refined.estimate.total <= self.allowed:
+        if refined.state is None or refined.estimate is None or not refined.estimate.total <= self.tolerance:
             self.failure = refined
             return refined.outcome
         refined = replace(refined, outcome=Outcome.CONVERGED)  # where rounding leaves no more than the tolerance
@@ -173,7 +178,8 @@ class LineProblem:
         positive = np.isfinite(logs[0]) & (series[0] > 0)
         logs[0, positive] = np.log(series[0, positive])
         errors = np.full(POSITION + 1, np.nan)
-        errors[: len(estimate.relative)], errors[POSITION] = estimate.relative, estimate.minimum_position
+        errors[: len(estimate.relative)] = np.maximum(estimate.relative, BY_CHANCE * estimate.total)
+        errors[POSITION] = estimate.minimum_position
         if state.equations.operators.is_article:
             errors[ROW["viscous_upper"]] = errors[ROW["viscous_balanced"]]
         point = LinePoint(replace(refined, state=state), state, unknowns, inverse, refined.fine)
@@ -242,7 +248,7 @@ class LineProblem:
 
     def point_at(self, left: Expansion, right: Expansion, s: float, rtol: float | None = None) -> RefinedState:
         """Return the same, verified, and refined where its mesh is too coarse for the tolerance."""
-        rtol = self.allowed if rtol is None else rtol
+        rtol = self.tolerance if rtol is None else rtol
         state, groups = self.state_at(left, right, s), self.groups_at(s)
         end = on(state.mesh, (left, right))
         if state.outcome.ok and end is not None:
@@ -267,15 +273,16 @@ class LineProblem:
     def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
         """Return by how much states corrected at ``parts`` contradict ``values`` at most, where laws are not analytic."""
         same = left.point.state.mesh is right.point.state.mesh
-        found = np.full(POSITION + 1, 0.0 if same else BETWEEN_MESHES * self.allowed)
+        found = np.full(POSITION + 1, 0.0 if same else BETWEEN_MESHES * self.tolerance)
+        found[READ] = 0.0
         if self.exact or not self.moves or not _alike(left, right):
             return found
         places = left.coordinate + parts * (right.coordinate - left.coordinate)
         corrected = np.stack([self._corrected_once(s, left, right) for s in places.tolist()])
-        known = values[:, :POSITION]
+        known = values[:, :POSITION].copy()
+        known[:, READ[0]] = self.read(left, right, parts)[0][:, 0]
         with np.errstate(all="ignore"):  # what is not finite is as wrong as can be
-            wrong = np.abs(corrected - known) / self.scales(values, places)[:, :POSITION]
-        wrong[:, READ[0]] = 0.0
+            wrong = np.abs(corrected - known) / self.scales(np.hstack([known, values[:, POSITION:]]), places)[:, :POSITION]
         wrong = np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf), 0.0).max(axis=0)
         beyond = wrong - np.maximum(left.errors, right.errors)[:POSITION]
         found[:POSITION] += UNSEEN * np.where(beyond > 0, beyond, 0.0)
@@ -303,7 +310,7 @@ class LineProblem:
         at_ends = np.maximum(left.errors[READ], right.errors[READ])
         finer, coarser = sorted((left.point, right.point), key=lambda point: -point.state.mesh.size)
         values, error = _minimum_on(left, right, finer, parts)
-        if finer.state.mesh is not coarser.state.mesh and (error > RESOLVED * self.allowed).any():
+        if finer.state.mesh is not coarser.state.mesh and (error > RESOLVED * self.tolerance).any():
             others, of_others = _minimum_on(left, right, coarser, parts)
             better = of_others < error
             values, error = np.where(better, others, values), np.where(better, of_others, error)

@@ -247,11 +247,12 @@ class _Pieces:
             if not len(columns):
                 continue
             mine = np.nonzero(where == k)[0][:, None]
+            one = self.intervals[k]
             if is_smooth:
                 found[mine, columns], errors[mine, columns] = basis[mine[:, 0], :READ_AT] @ form, largest
             else:
-                one = self.intervals[k]
                 found[mine, columns], errors[mine, columns], _ = self.problem.read(one.left, one.right, parts[mine[:, 0]])
+            errors[mine, columns] += one.inside[columns]
         return found, errors
 
 
@@ -284,6 +285,12 @@ class SolvedPath:
         """Where the solved states are."""
         return np.array([one.coordinate for one in self.expansions])
 
+    def joined(self, other: SolvedPath) -> SolvedPath:
+        """Return this path and another, which goes on at one of its ends."""
+        more = tuple(one for one in other.intervals if one.length > 0)
+        mine = tuple(one for one in self.intervals if one.length > 0 or not more)
+        return SolvedPath(self.problem, _ascending([*mine, *more]), other.outcome)
+
     @cached_property
     def _pieces(self) -> _Pieces:
         return _Pieces(self.intervals)
@@ -313,6 +320,7 @@ def follow(
     end: float,
     rtol: float,
     on_interval: Callable[[float, float], object] | None = None,
+    until: Callable[[Expansion], bool] | None = None,
 ) -> SolvedPath:
     """Return the path between ``start`` and ``end``.
 
@@ -328,6 +336,8 @@ def follow(
         Error allowed, in units of the scales.
     on_interval : callable, optional
         ``on_interval(low, high)`` is called when the path is known between these too.
+    until : callable, optional
+        The path ends at a state of which ``until(expansion)`` is true, before the end.
 
     Returns
     -------
@@ -343,7 +353,7 @@ def follow(
             return SolvedPath(problem, (), here)
         alone = (Interval(problem, here, here),)
         upwards = end > here.coordinate
-        while (left := abs(here.coordinate - end)) > 0:
+        while (left := abs(here.coordinate - end)) > 0 and not (until is not None and until(here)):
             step = min(left, LONGEST_STEP, max(SHORTEST_INTERVAL, _step(here, rtol)))
             if left < 2 * step:  # two like steps rather than a long and a short one
                 step = left if left <= step else 0.5 * left
@@ -367,7 +377,7 @@ def _beyond(here: Expansion, end: float, step: float) -> float:
     return end if abs(step) == abs(here.coordinate - end) else here.coordinate + step
 
 
-def _ascending(intervals: list[Interval]) -> tuple[Interval, ...]:
+def _ascending(intervals: Sequence[Interval]) -> tuple[Interval, ...]:
     return tuple(sorted(intervals, key=lambda one: one.left.coordinate))
 
 
