@@ -62,8 +62,8 @@ class Coordinate:
     @property
     def direction(self) -> Array:
         """Derivatives of ln(speed), ln(load), ln(roughness) of the groups along s."""
-        if isinstance(self.base, Contact) and self.over == "load":
-            return np.array([-2.0, 1.0, 0.0])
+        if isinstance(self.base, Contact):
+            return np.array(self.base.INPUTS.exponents[self.over], dtype=float)
         return np.array([1.0 if name == self.over else 0.0 for name in GROUPS])
 
 

@@ -131,6 +131,8 @@ class CurveValues:
         Friction coefficient and its two parts [-].
     friction_error : float or ndarray
         Estimated absolute error of the friction coefficient [-].
+    names : tuple of str
+        Of the observables that have errors, in their order.
     """
 
     value: Any
@@ -142,6 +144,7 @@ class CurveValues:
     friction: Any
     friction_error: Any
     _sliding: float = field(repr=False, default=1.0)
+    names: tuple[str, ...] = field(repr=False, default=ALL_NAMES)
 
     @classmethod
     def of(cls, value: Array, found: Array, errors: Array, sliding: float, least: float) -> CurveValues:
@@ -205,7 +208,7 @@ class CurveValues:
     @property
     def errors(self) -> dict[str, Any]:
         """Estimated relative error of each observable; absolute for the load shares."""
-        return {name: self.relative_errors[..., i] for i, name in enumerate(ALL_NAMES)}
+        return {name: self.relative_errors[..., i] for i, name in enumerate(self.names)}
 
     def __getattr__(self, name: str) -> Any:
         """Return an observable under its own name."""

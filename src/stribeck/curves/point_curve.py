@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,18 +13,25 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups
 from stribeck.curves.coordinate import Coordinate
-from stribeck.curves.landmarks import Landmark
+from stribeck.curves.function import CurveValues
+from stribeck.curves.landmarks import PARTS, Landmark
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Transition
 from stribeck.curves.result import StribeckCurve
+from stribeck.equations.point.expansion import SMOOTH
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import root_between
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.outputs import GROUPS
+from stribeck.solver.path import SolvedPath, follow
+from stribeck.solver.point.curve_path import CurveState, PointProblem
 from stribeck.solver.point.finish import finish_point
 from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solution import PointSolution, solution_of
 from stribeck.solver.point.solve import RTOL_RANGE
-from stribeck.solver.point.state import PointState
+from stribeck.solver.point.state import OBSERVABLES, PointState
 from stribeck.solver.solve import SolveError, describe
 
 __all__ = ["PointCurve", "point_curve", "point_speeds"]
@@ -48,24 +55,66 @@ PLATEAU, BRANCH = 1e-3, 1e-2
 """Change of the load share over a decade of speed, and asperities' part of the friction, below which the curve ends."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PointCurve(StribeckCurve):
-    """Converged states of a ball along one coordinate, and the friction on them; see :class:`stribeck.StribeckCurve`."""
+    """Converged states of a ball along one coordinate, and the friction on them; see :class:`stribeck.StribeckCurve`.
+
+    A film that breaks, a fluid that thins and contacts at rest are known at their points only.
+    """
 
     solutions: tuple[PointSolution, ...] = field(kw_only=True)  # type: ignore[assignment]
     _solver: NeighbourSolver = field(kw_only=True, repr=False, compare=False)
+
+    def observable(self, name: str) -> Array:
+        """Return an attribute of every solution as an array."""
+        return np.array([getattr(s, name) for s in self.solutions])
+
+    @property
+    def error_estimate(self) -> float:
+        """Largest estimated relative error over all points."""
+        return max((s.error_estimate for s in self.solutions), default=math.nan)
 
     @property
     def hydrodynamic_friction(self) -> Array:
         """Nothing: the law of the paper for smooth surfaces is one of the line."""
         return np.full(len(self), math.nan)
 
+    def _values(self, value: Any, s: Array) -> CurveValues:
+        def shown(column: list[Any]) -> Any:
+            return np.array(column) if np.ndim(value) else column[0]
+
+        states = [_state_at(self._solved_path, each) for each in s.tolist()]
+        solutions = [solution_of(state, self._path.contact_at(each)) for state, each in zip(states, s.tolist(), strict=True)]
+        friction = [one.friction(self.boundary_friction, self.beta, self.definition) for one in solutions]
+        return CurveValues(
+            value=value,
+            values={name: shown([state.values[name] for state in states]) for name in OBSERVABLES},
+            relative_errors=np.array(shown([[state.errors[name] for name in OBSERVABLES] for state in states])),
+            minimum_position_error=shown([one.minimum_radius_error for one in solutions]),
+            friction_contact=shown([one.contact for one in friction]),
+            friction_viscous=shown([one.viscous for one in friction]),
+            friction=shown([one.total for one in friction]),
+            friction_error=shown([one.error for one in friction]),
+            names=OBSERVABLES,
+        )
+
+    def _solution_at(self, s: float) -> PointSolution:  # type: ignore[override]
+        path = self._solved_path
+        assert isinstance(path.problem, PointProblem)
+        return finish_point(path.problem.solved_at(path, s), self._path.contact_at(s))
+
+    def _along(self, path: SolvedPath, values: Array, requested: int) -> PointCurve:
+        solutions = tuple(_solutions(path, self._path, np.log(values)))
+        return replace(self, values=values, solutions=solutions, outcome=path.outcome, requested=requested, _function=path)
+
     def _friction_of(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
         found = [s.friction(boundary_friction, beta, definition) for s in self.solutions]
         return np.array([[f.contact, f.viscous, f.total, f.error] for f in found]).reshape(-1, 4)
 
     def _at(self, s: float) -> PointSolution:
-        """Return the solution at a coordinate."""
+        """Return the solution at a coordinate: of a function what it is there, else solved."""
+        if self._function is not None:
+            return solution_of(_state_at(self._function, s), self._path.contact_at(s))
         return finish_point(self._solver(s), self._path.contact_at(s))
 
     def _total(self, solution: PointSolution) -> float:
@@ -79,11 +128,50 @@ class PointCurve(StribeckCurve):
         solution = self._at(s)
         return Landmark(name, math.exp(s), self._total(solution), solution)  # type: ignore[arg-type]
 
+    def _parts_at(self, s: Array) -> tuple[Array, Array, Array]:
+        """Return the share of the fluid and the two parts of the friction at coordinates, complex ones too."""
+        rule, start = RULES["point"], self._path.groups_at(0.0)
+        rows = dict(zip(SMOOTH, self._solved_path.smooth(s).T, strict=True))
+        rates = dict(zip(GROUPS, self._path.direction.tolist(), strict=True))
+        speed, load = (float(getattr(start, name)) * np.exp(rates[name] * s) for name in ("speed", "load"))
+        inputs: dict[str, Any] = dict(rule.of_contact(self._path.contact_at(0.0))) | {"beta": self.beta}
+        if math.isfinite(inputs["wetted_radius"]):
+            inputs["wetted_radius"] *= np.exp(rule.exponents["wetted_radius"].get(self.over, 0.0) * s)
+        if self.contact is None:
+            inputs["slide_to_roll"] = 2.0 * start.model.film.slide
+        rubbing = self.boundary_friction * float(rule.rubbing(start, inputs))
+        viscous = rule.viscous(rows, speed, load, inputs, self.definition)
+        return rows["fluid_load_share"], rubbing * rows["contact_load_share"], viscous
+
     @cached_property
     def minimum(self) -> Landmark | None:
-        """The friction minimum, on a polynomial through solved states around it; None where the curve has none inside."""
-        moves = bool(np.all(np.asarray(self.groups.speed) > 0))
-        i = int(np.argmin(self.friction)) if moves and len(self) > 2 else 0
+        """The friction minimum; None where the curve has none inside."""
+        if not bool(np.all(np.asarray(self.groups.speed) > 0)):
+            return None
+        return self._lowest_of_points() if self._function is None else self._lowest_of_function()
+
+    def _lowest_of_function(self) -> Landmark | None:
+        places = self._places
+        i = int(np.argmin(np.add(*self._parts_at(places)[1:])))
+        if not 0 < i < len(places) - 1:
+            return None
+
+        def slope(s: float) -> float:
+            return float(np.add(*self._parts_at(np.array([s + IMAGINARY * 1j]))[1:])[0].imag / IMAGINARY)
+
+        place = root_between(slope, float(places[i - 1]), float(places[i + 1]), LOCATION_TOLERANCE)
+        return None if place is None else self._mark(Transition.MINIMUM, place)
+
+    @property
+    def _places(self) -> Array:
+        """Coordinates at which the function is looked at."""
+        path = self._solved_path
+        inside = [interval.left.coordinate + PARTS * interval.length for interval in path.intervals]
+        return np.append(np.concatenate(inside), path.coordinates[-1])
+
+    def _lowest_of_points(self) -> Landmark | None:
+        """Return the minimum on a polynomial through solved states around it."""
+        i = int(np.argmin(self.friction)) if len(self) > 2 else 0
         if not 0 < i < len(self) - 1:
             return None
         low, middle, high = np.log(self.values[i - 1 : i + 2]).tolist()
@@ -113,31 +201,58 @@ class PointCurve(StribeckCurve):
     @cached_property
     def transitions(self) -> tuple[Landmark, ...]:
         """The boundaries between regimes, where the load is shared in halves, and the friction minimum, ascending."""
-        fluid = self.observable("fluid_load_share")
-        contact = self.friction_contact / np.maximum(self.friction, 1e-300)
+        if self._function is None:
+            fluid, contact, total = self.observable("fluid_load_share"), self.friction_contact, np.asarray(self.friction)
+            places = np.log(self.values)
+        else:
+            places = self._places
+            fluid, contact, viscous = self._parts_at(places)
+            total = contact + viscous
+        by_asperities = contact / np.maximum(total, 1e-300)
         found = [
             self.minimum,
-            self._crossing(Transition.BOUNDARY_END, fluid, lambda s: s.fluid_load_share, BOUNDARY_FLUID_SHARE),
-            self._crossing(Transition.EQUAL_SHARES, fluid, lambda s: s.fluid_load_share, 0.5),
-            self._crossing(Transition.HYDRODYNAMIC_START, contact, self._contact_share, HYDRODYNAMIC_CONTACT_SHARE),
+            self._crossing(Transition.BOUNDARY_END, places, fluid - BOUNDARY_FLUID_SHARE),
+            self._crossing(Transition.EQUAL_SHARES, places, fluid - 0.5),
+            self._crossing(Transition.HYDRODYNAMIC_START, places, by_asperities - HYDRODYNAMIC_CONTACT_SHARE),
         ]
         return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
 
-    def _crossing(self, name: Transition, values: Array, of: Callable[[PointSolution], float], line: float) -> Landmark | None:
-        """Return where a number of the solved state passes a line first, or None."""
-        crossings = np.nonzero(np.diff(np.sign(values - line)))[0]
+    def _excess(self, name: Transition, s: float) -> float:
+        """Return by how much what a transition goes by is above its line."""
+        if self._function is not None:
+            fluid, contact, viscous = (float(part[0]) for part in self._parts_at(np.array([s])))
+            share = contact / max(contact + viscous, 1e-300)
+        else:
+            solution = self._at(s)
+            fluid, share = solution.fluid_load_share, self._contact_share(solution)
+        if name is Transition.HYDRODYNAMIC_START:
+            return share - HYDRODYNAMIC_CONTACT_SHARE
+        return fluid - (BOUNDARY_FLUID_SHARE if name is Transition.BOUNDARY_END else 0.5)
+
+    def _crossing(self, name: Transition, places: Array, excess: Array) -> Landmark | None:
+        """Return the first transition of a name between places, or None."""
+        crossings = np.nonzero(np.diff(np.sign(excess)))[0]
         if not len(crossings):
             return None
-
-        def excess(s: float) -> float:
-            return of(self._at(s)) - line
-
-        ends = np.log(self.values[crossings[0] : crossings[0] + 2]).tolist()
+        low, high = places[crossings[0] : crossings[0] + 2].tolist()
         try:
-            place = root_between(excess, ends[0], ends[1], LOCATION_TOLERANCE)
+            place = root_between(lambda s: self._excess(name, s), low, high, LOCATION_TOLERANCE)
             return None if place is None else self._mark(name, place)
         except SolveError:
             return None
+
+
+def _state_at(path: SolvedPath, s: float) -> PointState:
+    """Return the state of a path at a coordinate: off the function, or solved where that states more than the tolerance."""
+    problem = path.problem
+    assert isinstance(problem, PointProblem)
+    row, errors = (each[0] for each in path.at(np.array([s])))
+    return CurveState(problem, path, s, row, errors) if (errors <= problem.allowed).all() else problem.solved_at(path, s)
+
+
+def _solutions(path: SolvedPath, coordinate: Coordinate, places: Array) -> Iterator[PointSolution]:
+    for s in places.tolist():
+        yield finish_point(_state_at(path, s), coordinate.contact_at(s))
 
 
 def point_curve(
@@ -158,7 +273,7 @@ def point_curve(
     rtol : float
         Relative tolerance of each state, at least 1e-8.
     on_point : callable, optional
-        ``on_point(done, points)`` is called after each point.
+        ``on_point(done, points)`` is called as points are known.
     **settings : object
         ``boundary_friction``, ``beta`` and ``definition``.
 
@@ -172,13 +287,68 @@ def point_curve(
     SolveError
         If no state can be solved.
     """
-    contact = coordinate.base if isinstance(coordinate.base, Contact) else None
+    start = coordinate.groups_at(math.log(values[-1]))
+    is_function = (
+        start.speed > 0
+        and start.model.cavitation is Cavitation.NONE
+        and not start.model.film.uses_speed
+        and coordinate.is_uniform(values)
+    )
+    trace = _followed if is_function else _point_by_point
     solver = NeighbourSolver(coordinate.groups_at, max(rtol, RTOL_RANGE[0]))
+    solutions, where, path, outcome, failed = trace(coordinate, values, solver, on_point)
+    contact = coordinate.base if isinstance(coordinate.base, Contact) else None
+    if not solutions:
+        if failed is not None:
+            finish_point(failed, contact)
+        raise SolveError(outcome, None, f"{describe(start)}: {outcome.value}")
+    return PointCurve(
+        over=coordinate.over,
+        values=where,
+        solutions=solutions,
+        contact=contact,
+        rtol=rtol,
+        outcome=outcome,
+        requested=len(values),
+        _path=coordinate,
+        _function=path,
+        _solver=solver,
+        **settings,
+    )
+
+
+_Traced = tuple[tuple[PointSolution, ...], Array, SolvedPath | None, Outcome, PointState | None]
+
+
+def _followed(
+    coordinate: Coordinate, values: Array, solver: NeighbourSolver, on_point: Callable[[int, int], object] | None
+) -> _Traced:
+    """Return the points of a curve off its function, from fast to slow, as films are smooth there."""
+    problem, places = PointProblem(coordinate.groups_at, solver.rtol), np.log(values)
+    done = 0
+
+    def report(low: float, high: float) -> None:
+        nonlocal done
+        while done < len(places) and places[-1 - done] >= low:
+            done += 1
+            if on_point is not None:
+                on_point(done, len(places))
+
+    path = follow(problem, float(places[-1]), float(places[0]), solver.rtol, report)
+    problem.release()
+    known = values[places >= path.coordinates[0]] if path.intervals else values[:0]
+    return tuple(_solutions(path, coordinate, np.log(known))), known, path, path.outcome, problem.failure
+
+
+def _point_by_point(
+    coordinate: Coordinate, values: Array, solver: NeighbourSolver, on_point: Callable[[int, int], object] | None
+) -> _Traced:
+    """Return the points of a curve each from its neighbour, from fast to slow."""
     solutions: list[PointSolution] = []
     where: list[float] = []
     outcome, failed = Outcome.CONVERGED, None
     try:
-        for done, value in enumerate(values[::-1].tolist(), 1):  # from fast to slow, as films are smooth there
+        for done, value in enumerate(values[::-1].tolist(), 1):
             s = math.log(value)
             state = solver(s)
             if state.outcome.ok:
@@ -190,22 +360,7 @@ def point_curve(
                 on_point(done, len(values))
     except KeyboardInterrupt:
         outcome = Outcome.INTERRUPTED
-    if not solutions:
-        if failed is not None:
-            finish_point(failed, contact)
-        raise SolveError(outcome, None, f"{describe(coordinate.groups_at(math.log(values[-1])))}: {outcome.value}")
-    return PointCurve(
-        over=coordinate.over,
-        values=np.array(where[::-1]),
-        solutions=tuple(solutions[::-1]),
-        contact=contact,
-        rtol=rtol,
-        outcome=outcome,
-        requested=len(values),
-        _path=coordinate,
-        _solver=solver,
-        **settings,
-    )
+    return tuple(solutions[::-1]), np.array(where[::-1]), None, outcome, failed
 
 
 def point_speeds(groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> tuple[float, float]:
@@ -214,8 +369,6 @@ def point_speeds(groups: Groups, boundary_friction: float, beta: float, definiti
     They are found on coarse states a decade apart, down from the speed at which the smooth film is thirty times the
     roughness; smooth surfaces have no plateau, and their curve covers eight decades up to speed 10.
     """
-    from dataclasses import replace
-
     kappa = float(groups.relative_roughness)
     if kappa == 0:
         return SLOWEST, 10.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -101,7 +101,10 @@ class StribeckCurve(Exported, Shown, ByValue):
     @property
     def _solved_path(self) -> SolvedPath:
         if self._function is None:
-            raise InputError("curves of balls are known at their points only; give these as an array.")
+            raise InputError(
+                "this curve is known at its points only: of a ball that is so where the film breaks, thins or is at rest; "
+                "give the values that are wanted as an array."
+            )
         return self._function
 
     @property
@@ -175,8 +178,11 @@ class StribeckCurve(Exported, Shown, ByValue):
                 f"{self.over} = {show(value)} is outside of the curve, which runs from {self._where(low)} to "
                 f"{self._where(high).removeprefix(self.over + ' ')}; ask for a curve that holds it."
             )
-        found, errors = path.at(np.log(np.atleast_1d(values)))
-        plain = CurveValues.of(values, found, errors, self._sliding, self._least_error)
+        return self._values(values if np.ndim(values) else float(values), np.log(np.atleast_1d(values)))
+
+    def _values(self, value: Any, s: Array) -> CurveValues:
+        """Return what the curve is at coordinates."""
+        plain = CurveValues.of(value, *self._solved_path.at(s), self._sliding, self._least_error)
         return plain.with_friction(self.boundary_friction, self.beta, self.definition)
 
     def solve_at(self, value: Any) -> Solution:
@@ -202,9 +208,15 @@ class StribeckCurve(Exported, Shown, ByValue):
         found = self.at(value)
         if np.ndim(found.value):
             raise InputError(f"{self.over} = {show(value)}; give one value, a solution is that of one state.")
-        s = math.log(found.value)
+        return self._solution_at(math.log(found.value))
+
+    def _solution_at(self, s: float) -> Solution:
         point = solved_at(self._solved_path, s)
         return finish(point, self._path.groups_at(s), self._path.contact_at(s), self.rtol)
+
+    def _along(self, path: SolvedPath, values: Array, requested: int) -> StribeckCurve:
+        """Return the curve on another path, with points at ``values``."""
+        return replace(self, values=values, outcome=path.outcome, requested=requested, _function=path)
 
     @cached_property
     def _sliding(self) -> float:
@@ -301,8 +313,6 @@ class StribeckCurve(Exported, Shown, ByValue):
     @property
     def error_estimate(self) -> float:
         """Largest estimated relative error over all points."""
-        if self._function is None:
-            return max((s.error_estimate for s in self.solutions), default=math.nan)
         stated = self._rows[1][:, : COLUMNS.index("minimum_position")]
         return float(np.nanmax(np.maximum(stated, self._least_error), initial=0.0)) if len(stated) else math.nan
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -249,7 +248,7 @@ def continued(
     values = np.geomspace(low, high, points)
     reached = np.exp(path.coordinates[[0, -1]]) * (1 - SLACK, 1 + SLACK)
     inside = values[(values >= reached[0]) & (values <= reached[1])]
-    return replace(curve, values=inside, outcome=path.outcome, requested=points, _function=path)
+    return curve._along(path, inside, points)
 
 
 def _of_ball() -> tuple[Callable[..., StribeckCurve], Callable[..., tuple[float, float]]]:

@@ -28,6 +28,7 @@ from stribeck._types import Array
 __all__ = [
     "Samples",
     "along",
+    "beyond",
     "exponential",
     "implicit_series",
     "integral_of_product",
@@ -45,7 +46,10 @@ ROUNDING = 1e-12
 """Rounding of values at samples, relative to the unknowns, as solving for the coefficients magnifies it."""
 
 ON_INTERVAL = 12
-"""Values on an interval."""
+"""Values on an interval, unless more are asked for."""
+
+DENOMINATOR = 6
+"""Highest degree of the denominator of an extrapolation."""
 
 
 def product_term(a: Array, b: Array, k: int) -> Array:
@@ -132,19 +136,19 @@ class Samples:
         return np.asarray(self.places[:, None] ** np.arange(order + 1))
 
 
-def interval(reach: float) -> Samples:
+def interval(reach: float, count: int = ON_INTERVAL) -> Samples:
     """Return the samples of a real function up to a distance ``reach``."""
-    orders = np.arange(ON_INTERVAL)
-    return Samples(reach * chebyshev.chebpts1(ON_INTERVAL), _to_taylor() * reach ** -orders[:, None].astype(float))
+    orders = np.arange(count)
+    return Samples(reach * chebyshev.chebpts1(count), _to_taylor(count) * reach ** -orders[:, None].astype(float))
 
 
-@lru_cache(maxsize=1)
-def _to_taylor() -> Array:
+@lru_cache(maxsize=4)
+def _to_taylor(count: int) -> Array:
     """Matrix from values at Chebyshev points to the Taylor coefficients about zero of the polynomial through them."""
-    degrees = np.arange(ON_INTERVAL)
-    values = chebyshev.chebvander(chebyshev.chebpts1(ON_INTERVAL), ON_INTERVAL - 1).T
-    to_chebyshev = values * np.where(degrees == 0, 1, 2)[:, None] / ON_INTERVAL
-    to_powers = np.zeros((ON_INTERVAL, ON_INTERVAL))
+    degrees = np.arange(count)
+    values = chebyshev.chebvander(chebyshev.chebpts1(count), count - 1).T
+    to_chebyshev = values * np.where(degrees == 0, 1, 2)[:, None] / count
+    to_powers = np.zeros((count, count))
     for n in degrees:
         to_powers[: n + 1, n] = chebyshev.cheb2poly(np.eye(ON_INTERVAL)[n, : n + 1])
     return np.asarray(to_powers @ to_chebyshev)
@@ -210,3 +214,40 @@ def radius(coefficients: Array, reach: float = 1.0) -> float:
     return float(
         np.min((max(size[0], ROUNDING / reach) / size[told - 1]) ** (1.0 / np.maximum(told - 1, 1)), initial=LARGEST_RADIUS)
     )
+
+
+def beyond(series: Array, t: float) -> tuple[Array, float]:
+    """Return series at a place outside, and by how much two of their rational forms differ at most.
+
+    Their denominators, the one of higher degree than the other, make the highest coefficients vanish.
+
+    Parameters
+    ----------
+    series : ndarray, shape (K + 1, n)
+        Coefficients; one denominator serves all n.
+    t : float
+        The place.
+
+    Returns
+    -------
+    tuple of ndarray and float
+        The values, shape (n,), and the largest difference; of few orders those of the polynomial, and zero.
+    """
+    order = len(series) - 1
+    scaled = series * (t ** np.arange(order + 1.0))[:, None]
+    degree = min(DENOMINATOR, (order - 1) // 2)
+    if degree < 2:
+        return np.asarray(scaled.sum(axis=0)), 0.0
+    best, other = (_rational(scaled, each) for each in (degree, degree - 1))
+    return best, float(np.abs(best - other).max())
+
+
+def _rational(scaled: Array, degree: int) -> Array:
+    """Return the sum of a series as a rational function whose denominator has a degree."""
+    order = len(scaled) - 1
+    high = np.stack([scaled[order - degree + 1 - j : order + 1 - j].ravel() for j in range(degree + 1)])
+    gram = high @ high.T
+    rest = gram[1:, 1:] + (1e-14 * np.trace(gram) + 1e-200) * np.eye(degree)
+    q = np.append(1.0, np.linalg.solve(rest, -gram[1:, 0]))
+    parts = np.append(np.ones(order - 2 * degree), np.cumsum(q)[::-1] / q.sum())
+    return np.asarray(parts @ scaled[: len(parts)])

@@ -20,7 +20,7 @@ from stribeck.equations.state import State, is_thinning, solve_state
 from stribeck.numerics.hermite import hermite_weights
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.numerics.panels import Mesh, interpolation_error
-from stribeck.numerics.series import interval, radius
+from stribeck.numerics.series import beyond, interval, radius
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
 from stribeck.solver.at_rest import shift_along, with_positive_gap
@@ -67,8 +67,8 @@ RESOLVED = 0.3
 OFFSET_FLOOR = 5e-3
 """The error of the offset is relative to it where it exceeds this: between states it is that of states where it is larger."""
 
-DENOMINATOR, DOUBTFUL = 6, 0.4
-"""Degree of the denominator of a prediction, and change with the degree from which Newton's iteration is not begun there."""
+DOUBTFUL = 0.4
+"""Doubt of a prediction from which Newton's iteration is not begun there."""
 
 POSITION = len(ALL_NAMES)
 """Column of the position of the minimum gap, after those of the observables."""
@@ -218,7 +218,7 @@ class LineProblem:
         if base.model.cavitation is not last.state.groups.model.cavitation:
             base = replace(base, model=_as_in(last.state, base.model))
         if len(near) == 1:
-            w, doubt = _extrapolated(last.unknowns, s - near[0].coordinate)
+            w, doubt = beyond(last.unknowns, s - near[0].coordinate)
             mesh_of = last
         else:
             left, right = near
@@ -403,28 +403,3 @@ def on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
     if there.pressure.stop > there.pressure.start:
         found[:, there.pressure] = mesh.interpolate(coefficients[:, at.pressure], nodes)
     return found
-
-
-def _extrapolated(series: Array, t: float) -> tuple[Array, float]:
-    """Return a series beyond, and by how much two of its rational forms differ at most.
-
-    Their denominators, the one of higher degree than the other, make the highest coefficients vanish.
-    """
-    order = len(series) - 1
-    scaled = series * (t ** np.arange(order + 1.0))[:, None]
-    degree = min(DENOMINATOR, (order - 1) // 2)
-    if degree < 2:
-        return np.asarray(scaled.sum(axis=0)), 0.0
-    best, other = (_rational(scaled, each) for each in (degree, degree - 1))
-    return best, float(np.abs(best - other).max())
-
-
-def _rational(scaled: Array, degree: int) -> Array:
-    """Return the sum of a series as a rational function whose denominator has a degree."""
-    order = len(scaled) - 1
-    high = np.stack([scaled[order - degree + 1 - j : order + 1 - j].ravel() for j in range(degree + 1)])
-    gram = high @ high.T
-    rest = gram[1:, 1:] + (1e-14 * np.trace(gram) + 1e-200) * np.eye(degree)
-    q = np.append(1.0, np.linalg.solve(rest, -gram[1:, 0]))
-    parts = np.append(np.ones(order - 2 * degree), np.cumsum(q)[::-1] / q.sum())
-    return np.asarray(parts @ scaled[: len(parts)])

@@ -15,6 +15,7 @@ the rates alone lets it pass.
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -43,6 +44,13 @@ def rates(modes: int) -> Array:
     return np.asarray(-3.0 - np.sqrt(9.0 + np.arange(modes) ** 2))
 
 
+@cache
+def _rule() -> tuple[Array, Array]:
+    """Return the Gauss rule of the integrals, on 0 to 1."""
+    t, w = legendre.leggauss(POINTS)
+    return 0.5 * (t + 1.0), 0.5 * w
+
+
 def tails(
     rim: float, offset: float, speed: float, pressure: float, far: FarFilm = FULL, bulge: float = DEFLECTION
 ) -> tuple[float, float, float]:
@@ -50,8 +58,7 @@ def tails(
 
     ``pressure`` is the factor of cos(theta) in the film pressure at the rim.
     """
-    t, w = legendre.leggauss(POINTS)
-    u, w = 0.5 * (t + 1.0), 0.5 * w
+    u, w = _rule()
     r = rim / u
     ring = rim / u**2 * w * r
     h = offset + 0.5 * r * r + bulge / r

@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -34,28 +35,43 @@ power with which that part falls with the rate, 0.1 at least."""
 
 def at_centre(mesh: PolarMesh, field: Array) -> float:
     """Return the value of a nodal field at the centre: that of its axisymmetric mode, the others vanish there."""
-    row = radau(mesh.degree).interpolation(np.array([-1.0]))[0]
-    return float(row @ field[:, mesh.of_panel[0]].mean(axis=0))
+    return float(_to_centre(mesh.degree) @ field[:, mesh.of_panel[0]].mean(axis=0))
+
+
+@cache
+def _to_centre(degree: int) -> Array:
+    """Return the weights of the nodes of the first panel in a value at the centre."""
+    return np.asarray(radau(degree).interpolation(np.array([-1.0]))[0])
 
 
 def observables(equations: Equations, y: Unknowns) -> dict[str, float]:
     """Return the observables by name, see :data:`stribeck.solver.point.state.OBSERVABLES`."""
+    return smooth_observables(equations, y) | minima(equations.operators.mesh, y.gap)
+
+
+def smooth_observables(equations: Equations, y: Unknowns) -> dict[str, float]:
+    """Return those that are smooth functions of the unknowns: all but the minima of the gap."""
     mesh, h = equations.operators.mesh, y.gap
     contact = equations.law.pressure(h)
-    row = mesh.area_weights
-    lowest: Minimum = minimum_gap(mesh, h)
     found = {
-        "contact_load_share": float((contact @ row).sum()) / LOAD,
+        "contact_load_share": float((contact @ mesh.area_weights).sum()) / LOAD,
         "fluid_load_share": float(equations.load_row @ y.fluid.mean(axis=0)) / LOAD,
         "central_gap": at_centre(mesh, h),
-        "minimum_gap": lowest.gap,
-        "minimum_radius": lowest.radius,
-        "minimum_angle": lowest.angle,
-        "minimum_gap_on_axis": minimum_on_axis(mesh, h).gap,
         "central_pressure": at_centre(mesh, contact + y.fluid),
         "offset": y.offset,
     }
     return found | friction(equations, y, contact)
+
+
+def minima(mesh: PolarMesh, h: Array) -> dict[str, float]:
+    """Return the minimum of a gap, its place, and the minimum on the middle line."""
+    lowest: Minimum = minimum_gap(mesh, h)
+    return {
+        "minimum_gap": lowest.gap,
+        "minimum_radius": lowest.radius,
+        "minimum_angle": lowest.angle,
+        "minimum_gap_on_axis": minimum_on_axis(mesh, h).gap,
+    }
 
 
 def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, float]:

@@ -21,7 +21,7 @@ from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.numerics.krylov import gmres
 
-__all__ = ["Direction", "log_derivatives"]
+__all__ = ["Direction", "beside", "log_derivatives", "solved"]
 
 Direction = Callable[[float], Groups]
 """Groups, with their model, after a step of the logarithm of what moves them."""
@@ -32,9 +32,9 @@ STEP = 1e-4
 CHANGE = 1e-4
 """Largest relative change of the gap in those of the observables along the change of the unknowns."""
 
-TOLERANCE, MOST, ROUNDS = 1e-6, 90, 3
-"""Preconditioned residual that GMRES leaves in each round, its products, and rounds: the preconditioner is in single
-precision, and what it hides of the first residual the next round takes away."""
+TOLERANCE, MOST, FINEST = 1e-6, 90, 1e-18
+"""Preconditioned residual that GMRES leaves in a round, its products, and what all rounds leave: the preconditioner is in
+single precision, and what it hides of the first residual the next round takes away."""
 
 
 def log_derivatives(
@@ -68,37 +68,39 @@ def log_derivatives(
     preconditioner = BandedModes(linear, band) if kept is None else kept
     columns: dict[str, list[float]] = {}
     for name, moved in directions.items():
-        ahead, behind = (_beside(equations, moved(sign * STEP)).residual(y) for sign in (1.0, -1.0))
+        ahead, behind = (beside(equations, moved(sign * STEP)).residual(y) for sign in (1.0, -1.0))
         shape, flow = ((a - b) / (2 * STEP) for a, b in zip(ahead[:2], behind[:2], strict=True))
         change = (np.asarray(shape), np.asarray(flow), (ahead[2] - behind[2]) / (2 * STEP))
         right = linear.right(change)
-        x = _solved(linear, preconditioner, right)
+        x = solved(linear, preconditioner, right)
         if x is None and kept is not None:
             preconditioner, kept = BandedModes(linear, band), None
-            x = _solved(linear, preconditioner, right)
+            x = solved(linear, preconditioner, right)
         if x is None:
             raise ArithmeticError(f"GMRES did not solve for the derivatives by {name}")
         dy = linear.changes(x, change[0])
         size = CHANGE / max(1.0, float(np.abs(dy.gap / y.gap).max()))
-        values = [observables(_beside(equations, moved(sign * size)), y.moved(dy, sign * size)) for sign in (1.0, -1.0)]
+        values = [observables(beside(equations, moved(sign * size)), y.moved(dy, sign * size)) for sign in (1.0, -1.0)]
         for each in values[0]:
             columns.setdefault(each, []).append((values[0][each] - values[1][each]) / (2 * size))
     return {name: np.array(column) for name, column in columns.items()}
 
 
-def _solved(linear: Linear, preconditioner: BandedModes, right: Array) -> Array | None:
-    """Return the solution of the linear system, or None where GMRES does not reach it."""
-    x, rest = np.zeros_like(right), right
-    for _ in range(ROUNDS):
-        found = gmres(linear.product, preconditioner, rest, TOLERANCE, MOST)
-        if not found.left <= 100 * TOLERANCE:
+def solved(linear: Linear, preconditioner: BandedModes, right: Array, tolerance: float = FINEST) -> Array | None:
+    """Return the solution of the linear system to a preconditioned residual, or None where GMRES does not reach it."""
+    x, rest, left = np.zeros_like(right), right, 1.0
+    while True:
+        here = max(TOLERANCE, tolerance / left)
+        found = gmres(linear.product, preconditioner, rest, here, MOST)
+        if not found.left <= 100 * here:
             return None
-        x = x + found.x
+        x, left = x + found.x, left * here
+        if left <= tolerance * (1.0 + 1e-9):
+            return x
         rest = right - linear.product(x)
-    return x
 
 
-def _beside(equations: Equations, here: Groups) -> Equations:
+def beside(equations: Equations, here: Groups) -> Equations:
     """Return the equations of other groups on the same mesh."""
     speed, solid, operators = float(here.speed), here.model.solid, equations.operators
     if solid != operators.solid:

@@ -36,6 +36,9 @@ from stribeck.solids.solid import Solid
 LOAD = 2.0 * np.pi / 3.0
 """Load in Hertz units: the integral of the pressure."""
 
+OFFSET_STEP = 1e-4
+"""Step of the offset over the square of the rim, in a central difference whose error is its square."""
+
 
 @dataclass(frozen=True, eq=False)
 class Operators:
@@ -156,6 +159,11 @@ class Equations:
         """Return the derivative of :meth:`rim_slope` by the pressure, shape (angles, angles)."""
         return self.operators.rim_rates
 
+    def rim_slope_by_offset(self, p: Array, offset: float) -> Array:
+        """Return the derivative of :meth:`rim_slope` by the offset."""
+        step = OFFSET_STEP * self.operators.mesh.rim**2
+        return (self.rim_slope(p, offset + step) - self.rim_slope(p, offset - step)) / (2 * step)
+
 
 class Linear:
     """The Jacobian at a state, reduced to the total pressure by mode and the offset."""
@@ -171,6 +179,7 @@ class Linear:
         slope = equations.rim_slope(y.fluid[:, -1], y.offset)
         self.rim_of_pressure = -part * x * mobility
         self.rim_of_gap = part * x * (speed * np.cos(mesh.angles) * carried_by_gap - by_gap * slope)
+        self.rim_of_offset = self.rim_of_pressure * equations.rim_slope_by_offset(y.fluid[:, -1], y.offset)
 
     def flow(self, dp: Array, dh: Array) -> Array:
         """Return the change of R_2 under changes of fluid pressure and gap at the nodes."""
@@ -200,8 +209,10 @@ class Linear:
         """Return the change of R_2 by mode and of R_3."""
         mesh = self.equations.operators.mesh
         change = self.changes(x)
+        flow = self.flow(change.fluid, change.gap)
+        flow[:, -1] += self.rim_of_offset * x[-1]
         found = np.empty_like(x)
-        found[:-1] = (mesh.cosines.T @ self.flow(change.fluid, change.gap)).ravel()
+        found[:-1] = (mesh.cosines.T @ flow).ravel()
         found[-1] = self.equations.load_row @ x[: mesh.rings]
         return found
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from stribeck.contacts.groups import Groups
+from stribeck.equations.point.system import Unknowns
 from stribeck.numerics.continuation import extrapolation_weights
 from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.solve import solve_cold, solve_from
@@ -34,15 +35,20 @@ def without_factors(state: PointState) -> PointState:
 
 
 def next_state(
-    start: PointState | None, groups: Groups, rtol: float, line: Sequence[tuple[float, PointState]] = ()
+    start: PointState | None,
+    groups: Groups,
+    rtol: float,
+    line: Sequence[tuple[float, PointState]] = (),
+    predicted: Unknowns | None = None,
 ) -> PointState:
     """Return the state of ``groups`` from a neighbour, or from cold without one or where that is lost.
 
-    ``line`` has states, and the weights with which they predict this one.
+    ``line`` has states, and the weights with which they predict this one; ``predicted`` is a prediction on the finer mesh of
+    the neighbour.
     """
     if start is None:
         return solve_cold(groups, rtol)
-    state = solve_from(start, groups, rtol, line)
+    state = solve_from(start, groups, rtol, line, predicted)
     if state.outcome.ok:
         return state
     cold = solve_cold(groups, rtol)

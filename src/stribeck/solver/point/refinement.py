@@ -349,12 +349,17 @@ def holds_along_path(pair: Pair, rtol: float) -> bool:
 
 
 def follow(
-    speed: float, law: ContactLaw, neighbour: Pair, rtol: float, line: Sequence[tuple[float, Pair]] = ()
+    speed: float,
+    law: ContactLaw,
+    neighbour: Pair,
+    rtol: float,
+    line: Sequence[tuple[float, Pair]] = (),
+    predicted: Unknowns | None = None,
 ) -> Pair | None:
     """Return the state of a neighbour's meshes at other groups, or None where it does not come from there.
 
-    ``line`` has the weights of neighbours whose sum predicts the state; the meshes change where those of the neighbour
-    do not fit.
+    ``line`` has the weights of neighbours whose sum predicts the state, ``predicted`` is a prediction on the finer mesh of the
+    neighbour; the meshes change where those of the neighbour do not fit.
     """
     tolerance = newton_tolerance(rtol)
     wanted, keeps = meshes_for(speed, law, neighbour, rtol)
@@ -363,10 +368,12 @@ def follow(
     )
     known = neighbour.coarse if keeps else neighbour.fine
     rough = neighbour.coarse.resolution if keeps else wanted.coarser()
-    predicted = None
-    if line and keeps:
-        predicted = extrapolated([w for w, _ in line], [pair.coarse for _, pair in line], known.mesh)
-    coarse = solve_level(rough, speed, law, known.unknowns, known.mesh, tolerance, kept_coarse, 12, predicted=predicted)
+    start, start_mesh, summed = known.unknowns, known.mesh, None
+    if predicted is not None:
+        start, start_mesh = predicted, neighbour.fine.mesh
+    elif line and keeps:
+        summed = extrapolated([w for w, _ in line], [pair.coarse for _, pair in line], known.mesh)
+    coarse = solve_level(rough, speed, law, start, start_mesh, tolerance, kept_coarse, 12, predicted=summed)
     if not coarse.outcome.ok:
         return None
     guess, mesh = coarse.unknowns, coarse.mesh

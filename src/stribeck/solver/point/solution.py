@@ -433,7 +433,7 @@ def _notes(state: PointState, contact: Contact | None, values: PointObservables)
     elif contact is not None and groups.speed > 0:
         notes += cavitation_notes(
             contact,
-            state.nodal_fluid_pressure,
+            np.array([state.lowest_pressure]),
             "Where it breaks at ambient pressure asperities carry 7 to 15 % of the load less in mixed lubrication.",
         )
     wetted = values._wetted_radius

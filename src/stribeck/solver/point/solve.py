@@ -82,7 +82,11 @@ def solve_cold(groups: Groups, rtol: float = 1e-6) -> PointState:
 
 
 def solve_from(
-    neighbour: PointState, groups: Groups, rtol: float = 1e-6, line: Sequence[tuple[float, PointState]] = ()
+    neighbour: PointState,
+    groups: Groups,
+    rtol: float = 1e-6,
+    line: Sequence[tuple[float, PointState]] = (),
+    predicted: Unknowns | None = None,
 ) -> PointState:
     """Return the state of ``groups`` from that of a neighbour, on its mesh as long as this serves.
 
@@ -97,6 +101,8 @@ def solve_from(
         As for :func:`solve_cold`.
     line : sequence of (float, PointState)
         States, and the weights with which they predict this one; none by default.
+    predicted : Unknowns, optional
+        About the state, on the finer mesh of the neighbour; of a film that does not break.
 
     Returns
     -------
@@ -116,8 +122,10 @@ def solve_from(
     if pair.fine.resolution.model == model:
         ending = ENDINGS[model.cavitation]
         pairs = [(weight, state.work) for weight, state in line]
+        usable = pairs if all(isinstance(each, Pair) for _, each in pairs) else ()
+        by_series = {} if predicted is None else {"predicted": predicted}
         try:
-            found = ending.follow(speed, law, pair, rtol, pairs if all(isinstance(each, Pair) for _, each in pairs) else ())
+            found = ending.follow(speed, law, pair, rtol, usable, **by_series)
         except MeshTooLargeError:
             found = None
         if found is not None and ending.holds(found, rtol):

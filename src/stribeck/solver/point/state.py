@@ -126,6 +126,11 @@ class PointState:
         return max((error for name, error in self.errors.items() if name not in apart), default=math.nan)
 
     @property
+    def lowest_pressure(self) -> float:
+        """The lowest film pressure at the nodes [p_Hz]."""
+        return float(self.nodal_fluid_pressure.min())
+
+    @property
     def minimum_gap_error(self) -> float:
         """Estimated relative error of the minimum film."""
         return self.errors.get("minimum_gap", math.nan)

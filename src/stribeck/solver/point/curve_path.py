@@ -1,0 +1,277 @@
+"""States of a ball along a path: solved from a prediction, and expanded; see :mod:`stribeck.solver.path`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from stribeck._types import Array, Flags
+from stribeck.contact_laws.law import is_exponential
+from stribeck.contacts.groups import Groups
+from stribeck.equations.point.expansion import SHARE, SMOOTH, corrected_once, expand, from_row
+from stribeck.equations.point.observables import minima
+from stribeck.equations.point.preconditioner import BandedModes
+from stribeck.equations.point.sensitivity import beside
+from stribeck.equations.point.system import Linear, Unknowns
+from stribeck.numerics.series import beyond, radius
+from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.results import ByValue, same
+from stribeck.solver.path import Expansion, SolvedPath
+from stribeck.solver.point.level import Level, band_for
+from stribeck.solver.point.path import next_state, without_factors
+from stribeck.solver.point.refinement import Pair
+from stribeck.solver.point.state import PointState
+
+__all__ = ["CurveState", "PointProblem"]
+
+KNOT_PART = 0.5
+"""Part of the tolerance that a solved state must hold: states on two meshes differ by twice that, which must not count."""
+
+ORDERS = ((1e-4, 6), (1e-7, 8), (0.0, 10))
+"""Highest orders of the series of curves to a tolerance of this and above."""
+
+LINEAR = 1e-2
+"""Relative residual that GMRES leaves of the first order of a series, over the tolerance."""
+
+REACH, NARROWEST, WIDEST = 0.45, 0.2, 0.6
+"""Half of the interval on which the equations are evaluated for the series over the radius of convergence, and its limits."""
+
+SHORTEST_REACH, FIRST_REACH = 0.05, 0.6
+
+MOST_TRIALS = 3
+"""Expansions of a state after which the interval is left as it is."""
+
+BETWEEN = 0.2
+"""Part of the tolerance by which states between two others may be less resolved than these, for which the meshes were made,
+and what GMRES leaves of the coefficients."""
+
+UNSEEN = 2.0
+"""Error over the correction of a state between two others: what the correction leaves unseen."""
+
+MINIMUM_BETWEEN = 2.0
+"""Stated error of a minimum of the gap between two states over the larger one of these."""
+
+OFFSET_FLOOR = 0.1
+"""The error of the offset is relative to it where it exceeds this: it crosses zero where films become thick."""
+
+UNIT = [SMOOTH.index(name) for name in ("contact_load_share", "fluid_load_share")]
+OFFSET = SMOOTH.index("offset")
+FRICTION = [i for i, name in enumerate(SMOOTH) if name.startswith("J_")]
+LARGEST = [SMOOTH.index(name) for name in ("J_balanced", "J_published")]
+
+
+class PointPoint(NamedTuple):
+    """A solved state, without its factors, and the coefficients of its unknowns on its finer mesh."""
+
+    state: PointState
+    unknowns: Array
+
+    @property
+    def level(self) -> Level:
+        """The state on that mesh."""
+        work: Pair = self.state.work
+        return work.fine
+
+
+class PointProblem:
+    """The states of a ball whose film does not break: ``groups_at(s)`` gives the groups at coordinate s."""
+
+    def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
+        self.groups_at, self.allowed, self.rtol = groups_at, rtol, KNOT_PART * rtol
+        self.exact = is_exponential(groups_at(0.0).law)
+        self.order = next(order for least, order in ORDERS if rtol >= least)
+        self.failure: PointState | None = None
+        self._last: tuple[float, PointState] | None = None
+
+    @property
+    def held(self) -> Flags:
+        """All of them."""
+        return np.ones(len(SMOOTH), dtype=bool)
+
+    @property
+    def signed(self) -> Flags:
+        """The offset and the friction integrals."""
+        return np.isin(np.arange(len(SMOOTH)), [OFFSET, *FRICTION])
+
+    def scales(self, values: Array, s: Array) -> Array:
+        """Return what errors of observables are relative to, as those of a state are."""
+        found = np.fmax(np.abs(values), 1e-300)
+        found[:, UNIT] = 1.0
+        found[:, OFFSET] = np.maximum(found[:, OFFSET], OFFSET_FLOOR)
+        speeds = np.array([float(self.groups_at(each).speed) for each in s.real.tolist()])
+        found[:, FRICTION] = np.maximum(found[:, LARGEST].max(axis=1), speeds)[:, None]
+        return found
+
+    def read_scales(self, values: Array) -> Array:
+        """Return nothing."""
+        return np.empty(0)
+
+    def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
+        """Return nothing: minima of the gap, to which the tolerance does not hold, are read where they are asked for."""
+        return np.empty((len(parts), 0)), np.empty((len(parts), 0)), []
+
+    def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
+        """Return the expanded state at ``s``, see :class:`stribeck.solver.path.Problem`."""
+        groups = self.groups_at(s)
+        start = predicted = None
+        if near:
+            nearest = min(near, key=lambda one: abs(one.coordinate - s))
+            start, predicted = nearest.point.state, self.guess(nearest, s)
+            if self._last is not None and self._last[0] == nearest.coordinate:
+                start = self._last[1]
+        state = next_state(start, groups, self.rtol, predicted=predicted)
+        if not state.outcome.ok:
+            self.failure = state
+            return state.outcome
+        state = with_factors(state)
+        self._last = s, state
+        return self._expanded(s, state, near[-1].radius if near else FIRST_REACH / REACH)
+
+    def _expanded(self, s: float, state: PointState, near: float) -> Expansion | Outcome:
+        pair: Pair = state.work
+        level = pair.fine
+        preconditioner = level.iterated.preconditioner
+        reach = max(SHORTEST_REACH, REACH * near)
+        scales = self.scales(np.array([[state.values[name] for name in SMOOTH]]), np.array([s]))
+        trial = 0
+        while True:
+            found = expand(
+                level.equations,
+                level.unknowns,
+                preconditioner,
+                lambda t: self.groups_at(s + t),
+                self.order,
+                reach,
+                LINEAR * self.allowed,
+            )
+            if found is None:
+                return Outcome.SINGULAR
+            gaps = found.unknowns[:, : level.unknowns.gap.size]
+            known = min(radius(gaps, reach), radius(found.observables / scales, reach))
+            if not (np.isfinite(known) and np.isfinite(found.observables).all()):
+                known, reach = reach, max(SHORTEST_REACH, 0.25 * reach)
+            elif reach > WIDEST * known or (trial == 0 and reach < NARROWEST * known):
+                reach = max(SHORTEST_REACH, REACH * known)
+            else:
+                break
+            trial += 1
+            if trial == MOST_TRIALS:
+                break
+        logs = np.full_like(found.observables, np.nan)
+        logs[:, SHARE] = found.log_share
+        errors = np.array([state.absolute_errors[name] for name in SMOOTH]) / scales[0]
+        return Expansion(s, PointPoint(without_factors(state), found.unknowns), found.observables, logs, errors, known)
+
+    def guess(self, of: Expansion, s: float) -> Unknowns:
+        """Return about the unknowns at a coordinate, on the mesh of a state."""
+        row, _ = beyond(of.point.unknowns, s - of.coordinate)
+        found = from_row(row, of.point.level.unknowns.gap.shape)
+        return found if np.isfinite(row).all() and np.isfinite(found.gap).all() else of.point.level.unknowns
+
+    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
+        """Return by how much states corrected at ``parts`` contradict ``values`` at most, where the law is not analytic."""
+        found = np.full(len(SMOOTH), BETWEEN * self.allowed)
+        if self.exact or self._last is None:
+            return found
+        at, state = self._last
+        end = min((left, right), key=lambda one: abs(one.coordinate - at))
+        if end.coordinate != at:
+            state = with_factors(end.point.state)
+        level: Level = state.work.fine
+        preconditioner = level.iterated.preconditioner
+        places = left.coordinate + parts * (right.coordinate - left.coordinate)
+        scales = self.scales(values, places)
+        with np.errstate(all="ignore"):
+            for place, known, scale in zip(places.tolist(), values, scales, strict=True):
+                if abs(place - end.coordinate) > 0.5 * (right.coordinate - left.coordinate):
+                    continue  # a prediction from so far tells about itself
+                equations = beside(level.equations, self.groups_at(place))
+                corrected = corrected_once(equations, self.guess(end, place), preconditioner)
+                wrong = np.inf if corrected is None else np.abs(corrected - known) / scale
+                beyond_ends = np.nan_to_num(wrong, nan=np.inf) - np.maximum(left.errors, right.errors)
+                found = np.maximum(found, np.where(beyond_ends > 0, UNSEEN * beyond_ends, 0.0))
+        return found
+
+    def release(self) -> None:
+        """Forget the factors of the last state, which fill the memory."""
+        self._last = None
+
+    def solved_at(self, path: SolvedPath, s: float) -> PointState:
+        """Return the state at a coordinate of a path, solved by the tolerance asked for."""
+        nearest = _nearest(path, s)
+        return next_state(nearest.point.state, self.groups_at(s), self.allowed, predicted=self.guess(nearest, s))
+
+
+def with_factors(state: PointState) -> PointState:
+    """Return a state with the preconditioner of its own Jacobian: many systems are solved with it."""
+    pair: Pair = state.work
+    level = pair.fine
+    if level.iterated.factorisations and level.iterated.preconditioner is not None:
+        return state
+    band = band_for(level.equations.speed, level.equations.law, level.resolution.model)
+    own = BandedModes(Linear(level.equations, level.unknowns), band)
+    return replace(state, work=replace(pair, fine=replace(level, iterated=replace(level.iterated, preconditioner=own))))
+
+
+def _nearest(path: SolvedPath, s: float) -> Expansion:
+    return min(path.expansions, key=lambda one: abs(one.coordinate - s))
+
+
+class CurveState(ByValue, PointState):
+    """A state on a path: its numbers are those of the path, its fields those of a state solved on first use."""
+
+    _place: tuple[PointProblem, SolvedPath, float]
+    _lowest: float
+
+    def __init__(self, problem: PointProblem, path: SolvedPath, s: float, row: Array, errors: Array) -> None:
+        nearest = _nearest(path, s)
+        level, guess = nearest.point.level, problem.guess(nearest, s)
+        lowest = minima(level.mesh, guess.gap)
+        groups = problem.groups_at(s)
+        values = dict(zip(SMOOTH, row.tolist(), strict=True)) | lowest
+        scales = dict(zip(SMOOTH, problem.scales(row[None], np.array([s]))[0].tolist(), strict=True))
+        absolute = {name: error * scales[name] for name, error in zip(SMOOTH, errors.tolist(), strict=True)}
+        known: PointState = nearest.point.state
+        for name in lowest:
+            scales[name] = values[name] if name.startswith("minimum_gap") else 1.0
+            own = MINIMUM_BETWEEN * known.errors[name] + max(problem.allowed, float(errors.max()))
+            absolute[name] = own * scales[name]
+        vars(self).update(
+            groups=groups,
+            rtol=problem.allowed,
+            outcome=Outcome.CONVERGED,
+            values=values,
+            absolute_errors=absolute,
+            scales=scales,
+            identity_error=values["J_balanced"] - values["J_published"] - values["J_pcx"] + 0.4 * np.pi * float(groups.speed),
+            load_error=values["contact_load_share"] + values["fluid_load_share"] - 1.0,
+            _lowest=float(guess.fluid.min()),
+            _place=(problem, path, s),
+        )
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether the other is as good a state of the same numbers."""
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(same(getattr(self, name), getattr(other, name)) for name in ("groups", "values", "absolute_errors"))
+
+    __hash__ = ByValue.__hash__
+
+    @cached_property
+    def _solved(self) -> PointState:
+        problem, path, s = self._place
+        return problem.solved_at(path, s)
+
+    lowest_pressure = property(lambda self: self._lowest)
+    mesh = property(lambda self: self._solved.mesh)
+    nodal_gap = property(lambda self: self._solved.nodal_gap)
+    nodal_contact_pressure = property(lambda self: self._solved.nodal_contact_pressure)
+    nodal_fluid_pressure = property(lambda self: self._solved.nodal_fluid_pressure)
+    fields = property(lambda self: self._solved.fields)
+    newton_steps = property(lambda self: self._solved.newton_steps)
+    krylov_steps = property(lambda self: self._solved.krylov_steps)
+    work = property(lambda self: self._solved.work)
