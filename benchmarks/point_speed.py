@@ -28,7 +28,6 @@ from stribeck.equations.point.mesh_choice import resolution
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Linear, Operators
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointState
 
@@ -87,14 +86,18 @@ def report(name: str, rtol: float, cost: float, state: PointState) -> None:
 
 
 def curve(count: int) -> None:
-    """Print the cost of a curve from full film to boundary lubrication, every state with its estimated errors."""
-    solver = NeighbourSolver(lambda s: ball(math.exp(s)), 1e-5)
-    total, worst, film = 0.0, 0.0, 0.0
-    for speed in np.geomspace(10, 1e-7, count):
-        cost, state = relative(partial(solver, math.log(speed)), 1)
-        total, worst, film = total + cost, max(worst, state.error_estimate), max(film, state.minimum_gap_error)
-    print("\n| curve | rtol | cost in all | largest estimate | of the minimum film |\n|---|---|---|---|---|")
-    print(f"| {count} speeds from 10 to 1e-7 | 1e-05 | {total:.0f} | {worst:.0e} | {film:.0e} |")
+    """Print the cost of curves from full film to boundary lubrication, with minimum and transitions, and errors of all points."""
+    print("\n| curve | rtol | states | cost | with transitions | largest estimate | of the minimum film |\n|---|---|---|---|---|---|---|")
+    for points, rtol in ((count, 1e-5), (101, 1e-5), (101, 1e-6)):
+
+        def trace(points: int = points, rtol: float = rtol) -> sb.StribeckCurve:
+            return sb.stribeck_curve(ball(1.0), speed=(1e-7, 10.0), points=points, rtol=rtol)
+
+        cost, found = relative(trace, 1)
+        marks, _ = relative(lambda found=found: found.transitions, 1)
+        film = max(solution.minimum_gap_error for solution in found.solutions)
+        told = f"{found.states} | {cost:.0f} | {cost + marks:.0f} | {found.error_estimate:.0e} | {film:.0e}"
+        print(f"| {points} speeds from 10 to 1e-7 | {rtol:.0e} | {told} |")
 
 
 def breakdown(runs: int) -> None:

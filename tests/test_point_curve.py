@@ -1,6 +1,7 @@
 """The Stribeck curve of a ball: its states, minimum and transitions, and what it becomes in files and pictures."""
 
 import json
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 import stribeck as sb
 from stribeck.curves.regime import Transition
+from stribeck.equations.point.expansion import SMOOTH
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solve import solve_cold
@@ -61,6 +63,65 @@ def test_a_curve_of_a_ball_becomes_files_and_a_picture(curve, tmp_path):
         assert found.attrs["geometry"] == "point"
         np.testing.assert_allclose(found["minimum_radius"], curve.observable("minimum_radius"))
     assert curve.plot(tmp_path / "curve.png") is not None
+
+
+@pytest.fixture(scope="module")
+def persson():
+    spectrum = sb.surfaces.SelfAffine(h_rms=1e-6, q0=3e4, q1=3e6, hurst=0.8)
+    start = sb.Groups(1.0, 3.375, 1e-2 * 3.375 ** (2 / 3), geometry="point")
+    return sb.stribeck_curve(start, speed=(1e-3, 1e-1), points=5, rtol=RTOL, law=sb.surfaces.persson_law(spectrum, 0.45))
+
+
+@pytest.mark.parametrize(("name", "value"), [("curve", 2.3e-4), ("curve", 6e-3), ("persson", 7e-3)])
+def test_a_curve_of_a_ball_is_known_between_its_states_within_the_error_that_it_states(name, value, request):
+    found = request.getfixturevalue(name)
+    at, state = found.at(value), found.solve_at(value)
+    tight = sb.solve(state.groups, rtol=RTOL / 100)
+    assert found.states < 12
+    for each in (*SMOOTH, "minimum_gap", "minimum_gap_on_axis"):
+        wanted = tight.state.values[each]
+        scale = at.errors[each] and abs(wanted) if each.startswith("minimum_gap") else tight.state.scales[each]
+        assert abs(getattr(at, each) - wanted) <= (at.errors[each] + tight.state.errors[each]) * scale, each
+    assert state.errors["central_gap"] <= RTOL
+
+
+def test_many_values_of_a_curve_of_a_ball_are_those_of_each(curve):
+    many, one = curve.at([1e-4, 1e-3]), curve.at(1e-3)
+    assert many.friction.shape == (2,)
+    assert many.friction[1] == one.friction
+    assert many.errors["minimum_gap"][1] == one.errors["minimum_gap"]
+    with pytest.raises(sb.InputError, match="outside of the curve"):
+        curve.at(1.0)
+
+
+def test_a_curve_of_a_ball_over_the_load_moves_all_groups(curve):
+    ball = sb.PointContact(
+        radius=0.01, modulus=2e6, load=0.01, viscosity=1.0, speed=0.01, roughness=5e-8, alpha=2, beta=0.1, boundary_friction=1
+    )
+    found = sb.stribeck_curve(ball.replace(wetted_radius=2e-3), load=(0.005, 0.02), points=3, rtol=RTOL)
+    solved = sb.solve(ball.replace(wetted_radius=2e-3, load=0.013), rtol=RTOL)
+    assert found.at(0.013).friction == pytest.approx(solved.friction.total, rel=2 * RTOL)
+    contact, viscous = (float(part[0]) for part in found._parts_at(np.log([0.013]))[1:])
+    assert contact + viscous == pytest.approx(found.at(0.013).friction, rel=1e-9)
+
+
+def test_a_film_that_does_not_feel_the_roughness_takes_a_few_states():
+    found = sb.stribeck_curve(groups(1.0), roughness=(1e-6, 1e-4), points=3, rtol=RTOL)
+    assert found.states <= 6
+    assert found.minimum is None
+
+
+def test_a_curve_of_a_ball_stays_itself_after_pickling_and_fits_a_screen(curve):
+    other = pickle.loads(pickle.dumps(curve))
+    assert other == curve
+    assert other.at(1e-3).friction == curve.at(1e-3).friction
+    assert len(repr(curve)) < 3000
+
+
+def test_a_ball_at_rest_is_known_at_its_points_only():
+    found = sb.stribeck_curve(groups(0.0), load=(1e-3, 2e-3), points=2, rtol=1e-3)
+    with pytest.raises(sb.InputError, match="known at its points only"):
+        found.at(1.5e-3)
 
 
 def test_a_neighbour_solver_keeps_its_states_without_their_factors():

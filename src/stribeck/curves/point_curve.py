@@ -152,8 +152,9 @@ class PointCurve(StribeckCurve):
 
     def _lowest_of_function(self) -> Landmark | None:
         places = self._places
-        i = int(np.argmin(np.add(*self._parts_at(places)[1:])))
-        if not 0 < i < len(places) - 1:
+        total = np.add(*self._parts_at(places)[1:])
+        i = int(np.argmin(total))
+        if not 0 < i < len(places) - 1 or np.ptp(total) <= self.rtol * total.max():
             return None
 
         def slope(s: float) -> float:

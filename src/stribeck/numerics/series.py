@@ -150,7 +150,7 @@ def _to_taylor(count: int) -> Array:
     to_chebyshev = values * np.where(degrees == 0, 1, 2)[:, None] / count
     to_powers = np.zeros((count, count))
     for n in degrees:
-        to_powers[: n + 1, n] = chebyshev.cheb2poly(np.eye(ON_INTERVAL)[n, : n + 1])
+        to_powers[: n + 1, n] = chebyshev.cheb2poly(np.eye(count)[n, : n + 1])
     return np.asarray(to_powers @ to_chebyshev)
 
 
@@ -192,7 +192,7 @@ def implicit_series(
     return found
 
 
-def radius(coefficients: Array, reach: float = 1.0) -> float:
+def radius(coefficients: Array, reach: float = 1.0, rounding: float = ROUNDING) -> float:
     """Return about the radius of convergence of series: that by which their coefficients fall.
 
     Parameters
@@ -201,6 +201,8 @@ def radius(coefficients: Array, reach: float = 1.0) -> float:
         The coefficients.
     reach : float
         Distance of the samples that they come from: what does not exceed their rounding tells nothing.
+    rounding : float
+        Rounding of values there.
 
     Returns
     -------
@@ -210,9 +212,9 @@ def radius(coefficients: Array, reach: float = 1.0) -> float:
     order = len(coefficients) - 1
     size = np.abs(coefficients[1:]).reshape(order, -1).max(axis=1)
     k = np.arange(order // 2 + 1, order + 1)
-    told = k[size[k - 1] > ROUNDING * reach ** -k.astype(float)]
+    told = k[size[k - 1] > rounding * reach ** -k.astype(float)]
     return float(
-        np.min((max(size[0], ROUNDING / reach) / size[told - 1]) ** (1.0 / np.maximum(told - 1, 1)), initial=LARGEST_RADIUS)
+        np.min((max(size[0], rounding / reach) / size[told - 1]) ** (1.0 / np.maximum(told - 1, 1)), initial=LARGEST_RADIUS)
     )
 
 

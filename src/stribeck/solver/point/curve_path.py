@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -17,6 +18,7 @@ from stribeck.equations.point.observables import minima
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.sensitivity import beside
 from stribeck.equations.point.system import Linear, Unknowns
+from stribeck.numerics.hermite import hermite_weights
 from stribeck.numerics.series import beyond, radius
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, same
@@ -40,6 +42,9 @@ LINEAR = 1e-2
 REACH, NARROWEST, WIDEST = 0.45, 0.2, 0.6
 """Half of the interval on which the equations are evaluated for the series over the radius of convergence, and its limits."""
 
+ROUNDING = 1e-9
+"""Rounding of what is sampled, as solving for the coefficients magnifies it."""
+
 SHORTEST_REACH, FIRST_REACH = 0.05, 0.6
 
 MOST_TRIALS = 3
@@ -54,6 +59,9 @@ UNSEEN = 2.0
 
 MINIMUM_BETWEEN = 2.0
 """Stated error of a minimum of the gap between two states over the larger one of these."""
+
+THIN = 0.4
+"""Logarithm of the gap over its minimum up to which it may become the minimum."""
 
 OFFSET_FLOOR = 0.1
 """The error of the offset is relative to it where it exceeds this: it crosses zero where films become thick."""
@@ -86,6 +94,7 @@ class PointProblem:
         self.order = next(order for least, order in ORDERS if rtol >= least)
         self.failure: PointState | None = None
         self._last: tuple[float, PointState] | None = None
+        self._on_others: dict[tuple[float, float], Array] = {}
 
     @property
     def held(self) -> Flags:
@@ -136,7 +145,8 @@ class PointProblem:
         level = pair.fine
         preconditioner = level.iterated.preconditioner
         reach = max(SHORTEST_REACH, REACH * near)
-        scales = self.scales(np.array([[state.values[name] for name in SMOOTH]]), np.array([s]))
+        values = np.array([state.values[name] for name in SMOOTH])
+        scales = self.scales(values[None], np.array([s]))
         trial = 0
         while True:
             found = expand(
@@ -151,7 +161,7 @@ class PointProblem:
             if found is None:
                 return Outcome.SINGULAR
             gaps = found.unknowns[:, : level.unknowns.gap.size]
-            known = min(radius(gaps, reach), radius(found.observables / scales, reach))
+            known = min(radius(each, reach, ROUNDING) for each in (gaps, found.observables / scales))
             if not (np.isfinite(known) and np.isfinite(found.observables).all()):
                 known, reach = reach, max(SHORTEST_REACH, 0.25 * reach)
             elif reach > WIDEST * known or (trial == 0 and reach < NARROWEST * known):
@@ -161,16 +171,64 @@ class PointProblem:
             trial += 1
             if trial == MOST_TRIALS:
                 break
-        logs = np.full_like(found.observables, np.nan)
-        logs[:, SHARE] = found.log_share
+        series, logs = found.observables, np.full_like(found.observables, np.nan)
+        series[0] = values
+        if values[SHARE] > 0:
+            logs[:, SHARE] = found.log_share
+            logs[0, SHARE] = math.log(values[SHARE])
         errors = np.array([state.absolute_errors[name] for name in SMOOTH]) / scales[0]
-        return Expansion(s, PointPoint(without_factors(state), found.unknowns), found.observables, logs, errors, known)
+        return Expansion(s, PointPoint(without_factors(state), found.unknowns), series, logs, errors, known)
 
     def guess(self, of: Expansion, s: float) -> Unknowns:
         """Return about the unknowns at a coordinate, on the mesh of a state."""
         row, _ = beyond(of.point.unknowns, s - of.coordinate)
         found = from_row(row, of.point.level.unknowns.gap.shape)
         return found if np.isfinite(row).all() and np.isfinite(found.gap).all() else of.point.level.unknowns
+
+    def between(self, left: Expansion, right: Expansion, s: float) -> tuple[Unknowns, Level, float]:
+        """Return the unknowns between two states on the mesh of the nearer one, that one, and what the gap misses at most.
+
+        That is relative to the gap, where it is thin.
+        """
+        own, other = sorted((left, right), key=lambda one: abs(one.coordinate - s))
+        point: PointPoint = own.point
+        shape = point.level.unknowns.gap.shape
+        if own is other or own.coordinate == s:
+            return point.level.unknowns, point.level, 0.0
+        of_own, of_other = point.unknowns, self._carried(other, own)
+        length, order = other.coordinate - own.coordinate, self.order
+        scale = (length ** np.arange(order + 1.0))[:, None]
+        part = np.array([(s - own.coordinate) / length])
+        (row, without), thin = (
+            (
+                sum(
+                    w[0] @ (scale * each)[: k + 1]
+                    for w, each in zip(hermite_weights(k, part), (of_own, of_other), strict=True)
+                )
+                for k in (order, order - 1)
+            ),
+            point.level.unknowns.gap.size,
+        )
+        gap, change = row[:thin], np.abs(row - without)[:thin]
+        return from_row(row, shape), point.level, float(change[gap < gap.min() + THIN].max())
+
+    def _carried(self, one: Expansion, to: Expansion) -> Array:
+        """Return the coefficients of the unknowns of a state on the mesh of another."""
+        if one.point.level.mesh is to.point.level.mesh:
+            return np.asarray(one.point.unknowns)
+        key = one.coordinate, to.coordinate
+        if key not in self._on_others:
+            old, new = one.point.level.mesh, to.point.level.mesh
+            rows, nodes = one.point.unknowns, one.point.level.unknowns.gap.size
+            fields = np.concatenate([rows[:, :nodes], rows[:, nodes:-1]]).reshape(-1, old.modes, old.rings)
+            fields[0] -= np.log1p(old.radii**2)
+            found = old.transfer(new, fields)
+            gaps, fluids = found[: len(rows)], found[len(rows) :]
+            gaps[0] += np.log1p(new.radii**2)
+            fluids = fluids / np.maximum(1.0, new.radii / old.rim) ** 3
+            flat = [each.reshape(len(rows), -1) for each in (gaps, fluids)]
+            self._on_others[key] = np.hstack([*flat, rows[:, -1:]])
+        return self._on_others[key]
 
     def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
         """Return by how much states corrected at ``parts`` contradict ``values`` at most, where the law is not analytic."""
@@ -202,8 +260,9 @@ class PointProblem:
 
     def solved_at(self, path: SolvedPath, s: float) -> PointState:
         """Return the state at a coordinate of a path, solved by the tolerance asked for."""
-        nearest = _nearest(path, s)
-        return next_state(nearest.point.state, self.groups_at(s), self.allowed, predicted=self.guess(nearest, s))
+        left, right = ends_of(path, s)
+        nearest = min((left, right), key=lambda one: abs(one.coordinate - s))
+        return next_state(nearest.point.state, self.groups_at(s), self.allowed, predicted=self.between(left, right, s)[0])
 
 
 def with_factors(state: PointState) -> PointState:
@@ -217,8 +276,10 @@ def with_factors(state: PointState) -> PointState:
     return replace(state, work=replace(pair, fine=replace(level, iterated=replace(level.iterated, preconditioner=own))))
 
 
-def _nearest(path: SolvedPath, s: float) -> Expansion:
-    return min(path.expansions, key=lambda one: abs(one.coordinate - s))
+def ends_of(path: SolvedPath, s: float) -> tuple[Expansion, Expansion]:
+    """Return the two states that a coordinate lies between."""
+    interval = path.intervals[int(path.interval_of(np.array([s]))[0])]
+    return interval.left, interval.right
 
 
 class CurveState(ByValue, PointState):
@@ -228,17 +289,17 @@ class CurveState(ByValue, PointState):
     _lowest: float
 
     def __init__(self, problem: PointProblem, path: SolvedPath, s: float, row: Array, errors: Array) -> None:
-        nearest = _nearest(path, s)
-        level, guess = nearest.point.level, problem.guess(nearest, s)
+        left, right = ends_of(path, s)
+        guess, level, unsure = problem.between(left, right, s)
         lowest = minima(level.mesh, guess.gap)
         groups = problem.groups_at(s)
         values = dict(zip(SMOOTH, row.tolist(), strict=True)) | lowest
         scales = dict(zip(SMOOTH, problem.scales(row[None], np.array([s]))[0].tolist(), strict=True))
         absolute = {name: error * scales[name] for name, error in zip(SMOOTH, errors.tolist(), strict=True)}
-        known: PointState = nearest.point.state
+        known: tuple[PointState, ...] = (left.point.state, right.point.state)
         for name in lowest:
             scales[name] = values[name] if name.startswith("minimum_gap") else 1.0
-            own = MINIMUM_BETWEEN * known.errors[name] + max(problem.allowed, float(errors.max()))
+            own = MINIMUM_BETWEEN * (max(state.errors[name] for state in known) + unsure) + float(errors.max())
             absolute[name] = own * scales[name]
         vars(self).update(
             groups=groups,

@@ -386,6 +386,8 @@ def follow(
             carried.fluid + (at_fine.fluid - before.fluid),
             carried.offset + (at_fine.offset - before.offset),
         )
+    if predicted is not None:  # from afar, and the state is to be expanded with the factors of its own Jacobian
+        kept_fine = None
     fine = solve_level(wanted, speed, law, guess, mesh, tolerance, kept_fine, max_steps=12)
     return pair_of(coarse, fine) if fine.outcome.ok else None
 
