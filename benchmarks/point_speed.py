@@ -12,11 +12,9 @@ memory is the largest resident set of a process (Linux).  Other solvers were mea
 from __future__ import annotations
 
 import argparse
-import math
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
-from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -87,7 +85,9 @@ def report(name: str, rtol: float, cost: float, state: PointState) -> None:
 
 def curve(count: int) -> None:
     """Print the cost of curves from full film to boundary lubrication, with minimum and transitions, and errors of all points."""
-    print("\n| curve | rtol | states | cost | with transitions | largest estimate | of the minimum film |\n|---|---|---|---|---|---|---|")
+    print(
+        "\n| curve | rtol | states | cost | with transitions | largest estimate | of the minimum film |\n|---|---|---|---|---|---|---|"
+    )
     for points, rtol in ((count, 1e-5), (101, 1e-5), (101, 1e-6)):
 
         def trace(points: int = points, rtol: float = rtol) -> sb.StribeckCurve:

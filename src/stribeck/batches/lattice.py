@@ -21,9 +21,9 @@ from stribeck.contacts.cut_off import COUETTE, POISEUILLE
 from stribeck.contacts.friction_rules import IMAGINARY
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.solver.point.finish import finish_point
 from stribeck.solver.point.path import next_state, without_factors
 from stribeck.solver.point.sensitivity import state_derivatives
+from stribeck.solver.point.solution import finish_point
 from stribeck.solver.point.state import PointState
 
 __all__ = ["PARTS", "STEPS", "Lattice"]

@@ -27,9 +27,8 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS
 from stribeck.solver.path import SolvedPath, follow
 from stribeck.solver.point.curve_path import CurveState, PointProblem
-from stribeck.solver.point.finish import finish_point
 from stribeck.solver.point.path import NeighbourSolver
-from stribeck.solver.point.solution import PointSolution, solution_of
+from stribeck.solver.point.solution import PointSolution, finish_point, solution_of
 from stribeck.solver.point.solve import RTOL_RANGE
 from stribeck.solver.point.state import OBSERVABLES, PointState
 from stribeck.solver.solve import SolveError, describe

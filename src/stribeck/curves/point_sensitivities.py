@@ -11,10 +11,10 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
-from stribeck.solver.point.finish import finish_point
 from stribeck.solver.point.path import next_state
 from stribeck.solver.point.sensitivity import GROUPS, derivatives_along, state_derivatives
-from stribeck.solver.point.solution import PointObservables, PointSolution
+from stribeck.solver.point.solution import PointSolution, finish_point
+from stribeck.solver.point.state import PointObservables
 
 __all__ = ["point_sensitivities"]
 

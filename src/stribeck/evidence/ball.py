@@ -15,9 +15,8 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.line import Groups
-from stribeck.solver.point.solution import PointObservables
 from stribeck.solver.point.solve import solve_cold, solve_from
-from stribeck.solver.point.state import PointState
+from stribeck.solver.point.state import PointObservables, PointState
 
 RTOL = 1e-5
 """Relative tolerance of the states that judge."""

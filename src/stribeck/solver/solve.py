@@ -188,7 +188,7 @@ def _line(groups: Groups, contact: Contact | None, rtol: float, on_failure: str)
 
 def _point(groups: Groups, contact: Contact | None, rtol: float, on_failure: str) -> PointSolution:
     """Return the state of a point contact."""
-    from stribeck.solver.point.finish import finish_point
+    from stribeck.solver.point.solution import finish_point
     from stribeck.solver.point.solve import solve_cold
 
     return finish_point(solve_cold(groups, rtol), contact, on_failure)

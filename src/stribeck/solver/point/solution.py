@@ -11,23 +11,20 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.cut_off import far_film, friction_integral, log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
-from stribeck.contacts.point import PURE_SLIDING, PointContact
-from stribeck.equations.point.observables import FrictionWithin
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
-from stribeck.solver.point.refinement import Pair
-from stribeck.solver.point.state import OBSERVABLES, PointState
+from stribeck.solver.point.state import OBSERVABLES, PointObservables, PointState
+from stribeck.solver.solve import SolveError, describe
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Field", "PointObservables", "PointSolution", "solution_of"]
+__all__ = ["Field", "PointSolution", "finish_point", "solution_of"]
 
 NEAR_EDGE = 5.0
 """Radius of the disc of liquid over the Hertz radius below which a note says that friction is coarse."""
@@ -73,79 +70,6 @@ class Field:
     def pressure(self) -> Array:
         """Total pressure, contact and fluid."""
         return self.contact_pressure + self.fluid_pressure
-
-
-@dataclass(frozen=True)
-class PointObservables:
-    """The observables of one state of a ball in Hertz units; the friction integrals J by their finite parts."""
-
-    contact_load_share: float
-    fluid_load_share: float
-    central_gap: float
-    minimum_gap: float
-    minimum_radius: float
-    minimum_angle: float
-    minimum_gap_on_axis: float
-    central_pressure: float
-    offset: float
-    J_couette: float
-    J_poiseuille: float
-    J_balanced: float
-    J_published: float
-    J_pcx: float
-    _groups: Groups = field(repr=False)
-    _slide_to_roll: float = PURE_SLIDING
-    _wetted_radius: float | None = None
-    _within: FrictionWithin | None = field(default=None, repr=False)
-
-    @classmethod
-    def of(cls, state: PointState, contact: Contact | None) -> PointObservables:
-        """Return those of a state, and of the contact's motion and liquid."""
-        values = {name: float(state.values[name]) for name in OBSERVABLES}
-        within = None
-        if state.groups.model.film.uses_speed and isinstance(state.work, Pair) and state.groups.speed > 0:
-            fine = state.work.fine
-            within = FrictionWithin.of(fine.equations, fine.unknowns, values)
-        if not isinstance(contact, PointContact):
-            return cls(**values, _groups=state.groups, _slide_to_roll=2.0 * state.groups.model.film.slide, _within=within)
-        wetted = None if contact.wetted_radius is None else contact.wetted_radius / contact.hertz.half_width
-        return cls(**values, _groups=state.groups, _slide_to_roll=contact.slide_to_roll, _wetted_radius=wetted, _within=within)
-
-    def integral(self, slope: float, definition: Definition = "balanced") -> float:
-        r"""Return the friction integral J up to where the liquid ends.
-
-        .. math:: J = \frac S2 J^\mathrm{couette} + J^\mathrm{poiseuille}
-
-        each with its logarithm, see :func:`stribeck.contacts.cut_off.friction_integral`; of a fluid that thins, which may do
-        so still at that radius, the integrals up to there.
-        """
-        parts = {name: getattr(self, name) for name in ("J_couette", "J_poiseuille", "J_pcx")}
-        wetted = math.inf if self._wetted_radius is None else self._wetted_radius
-        speed, far = float(self._groups.speed), far_film(self._groups.model)
-        found = float(friction_integral(parts, speed, slope, self._slide_to_roll, wetted, definition, far))
-        if self._within is not None:
-            by_shear, by_pressure = (float(each) for each in log_cut_offs(slope, wetted))
-            found += 0.5 * self._slide_to_roll * self._within(0, by_shear) + self._within(1, by_pressure)
-            if definition == "published" and math.isfinite(wetted):
-                found += self._within(2, by_pressure)
-        return found
-
-    def viscous_friction(self, beta: float, definition: Definition = "balanced") -> float:
-        r"""Return the viscous friction coefficient.
-
-        .. math:: \mu_f = \tfrac34 \beta \bar F_N^{1/3} J = \frac{3}{2\pi} \frac aR J
-        """
-        slope = float(self._groups.slope(beta))
-        return 1.5 / math.pi * slope * self.integral(slope, definition)
-
-    def viscous_error(self, beta: float, errors: dict[str, float], definition: Definition = "balanced") -> float:
-        """Return the absolute error of the same from those of the finite parts."""
-        error = errors["J_pcx"] if definition == "published" else 0.0
-        if self._slide_to_roll == PURE_SLIDING:
-            error += errors["J_balanced"]
-        else:
-            error += 0.5 * self._slide_to_roll * errors["J_couette"] + errors["J_poiseuille"]
-        return 1.5 / math.pi * float(self._groups.slope(beta)) * error
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -414,6 +338,36 @@ def solution_of(state: PointState, contact: Contact | None) -> PointSolution:
         observables=values,
         state=state,
     )
+
+
+def finish_point(state: PointState, contact: Contact | None, on_failure: str = "raise") -> PointSolution:
+    """Return the solution that a state is, or raise what its outcome asks for.
+
+    Parameters
+    ----------
+    state : PointState
+        What was reached.
+    contact : Contact or None
+        The contact in SI units it came from.
+    on_failure : {"raise", "return"}
+        What to do where the tolerance was not reached.
+
+    Returns
+    -------
+    PointSolution
+        The solution.
+
+    Raises
+    ------
+    SolveError
+        If the state failed, unless ``on_failure`` is ``"return"`` and there is one to return.
+    """
+    is_there = all(math.isfinite(state.values.get(name, math.nan)) for name in OBSERVABLES)
+    solution = solution_of(state, contact) if is_there else None
+    if solution is not None and (state.outcome.ok or on_failure == "return"):
+        return solution
+    reached = "" if solution is None else f" Achieved: {solution.error_estimate:.1e}, requested: {state.rtol:.1e}."
+    raise SolveError(state.outcome, solution, f"{describe(state.groups)}, of a ball: {state.outcome.value}{reached}")
 
 
 def _notes(state: PointState, contact: Contact | None, values: PointObservables) -> tuple[str, ...]:
