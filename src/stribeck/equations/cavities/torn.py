@@ -110,6 +110,21 @@ class TornEquations(Equations):
         """What unit gas at each node adds to the residual at all; None where it stays at its node."""
         return None
 
+    def shear_doubt(self, y: Unknowns) -> float:
+        """Return about the error of the integral of the shear over h, for what fills the cavity; zero if meshes tell it."""
+        del y
+        return 0.0
+
+    def linear(self, y: Unknowns) -> TornLinear:
+        """Return the Jacobian at a solution."""
+        return TornLinear(self, y, y.fluid <= self.least)
+
+    def pinned(self, y: Unknowns, like: Unknowns) -> Unknowns:
+        """Return unknowns that break where a solution of neighbouring equations does."""
+        least = like.fluid.min()
+        fluid = np.where(like.fluid <= least, self.least, np.maximum(y.fluid, just_above(self.least)))
+        return Unknowns(y.gap, fluid, y.offset)
+
     def passing(self, torn: Flags) -> Passing:
         """Return where gas of torn nodes goes."""
         return Passing(self.spread, torn)
@@ -140,10 +155,17 @@ class TornLinear(Linear):
 
     def right(self, residual: tuple[Array, Array, float]) -> Array:
         """Return the right-hand side of the step."""
+        return self._rows(residual, self.least - self.y.fluid)
+
+    def sources(self, change: tuple[Array, Array, float], least: float) -> Array:
+        """Return the right-hand side for the change of the unknowns with that of the residual and of the least pressure."""
+        return self._rows(change, least)
+
+    def _rows(self, residual: tuple[Array, Array, float], sunk: Array | float) -> Array:
         shape, flow, load = residual
         moved = self.flow(self.contact_slope * shape, -shape)
-        sunk = self.least - self.y.fluid - self.contact_slope * shape
-        rows = np.where(self.torn, sunk, -self.passing.rows(flow + moved) / self.stiffness)
+        torn = sunk - self.contact_slope * shape
+        rows = np.where(self.torn, torn, -self.passing.rows(flow + moved) / self.stiffness)
         return np.append(rows.ravel(), -load)
 
 

@@ -8,8 +8,10 @@ the state and GMRES.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -17,9 +19,8 @@ from stribeck._types import Array
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.point.observables import observables
 from stribeck.equations.point.planes import plane_of
-from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
-from stribeck.numerics.krylov import gmres
+from stribeck.numerics.krylov import Apply, gmres
 
 __all__ = ["Direction", "beside", "log_derivatives", "solved"]
 
@@ -38,7 +39,11 @@ single precision, and what it hides of the first residual the next round takes a
 
 
 def log_derivatives(
-    equations: Equations, y: Unknowns, directions: Mapping[str, Direction], band: int, kept: BandedModes | None = None
+    equations: Equations,
+    y: Unknowns,
+    directions: Mapping[str, Direction],
+    preconditioner: Callable[[Linear, Any], Apply],
+    kept: Any = None,
 ) -> dict[str, Array]:
     """Return the derivatives of all observables along directions.
 
@@ -50,9 +55,9 @@ def log_derivatives(
         Its solution.
     directions : mapping of str to callable
         The groups after a step of a logarithm, by a name for messages.
-    band : int
-        Band of a preconditioner that is made.
-    kept : BandedModes, optional
+    preconditioner : callable
+        ``preconditioner(linear, kept)`` gives one for a Jacobian, from that of the last Newton step or anew without one.
+    kept : object, optional
         That of the last Newton step.
 
     Returns
@@ -62,31 +67,37 @@ def log_derivatives(
 
     Notes
     -----
-    They are those of the discrete equations, within 1e-6 of the largest (``test_point_sensitivity.py``).
+    They are those of the discrete equations, within 1e-6 of the largest (``test_point_sensitivity.py``); of a film that breaks
+    with the nodes held that are torn.
     """
-    linear = Linear(equations, y)
-    preconditioner = BandedModes(linear, band) if kept is None else kept
+    linear = equations.linear(y)
+    precondition = preconditioner(linear, kept)
     columns: dict[str, list[float]] = {}
     for name, moved in directions.items():
-        ahead, behind = (beside(equations, moved(sign * STEP)).residual(y) for sign in (1.0, -1.0))
+        near = [beside(equations, moved(sign * STEP)) for sign in (1.0, -1.0)]
+        ahead, behind = (each.residual(y) for each in near)
         shape, flow = ((a - b) / (2 * STEP) for a, b in zip(ahead[:2], behind[:2], strict=True))
         change = (np.asarray(shape), np.asarray(flow), (ahead[2] - behind[2]) / (2 * STEP))
-        right = linear.right(change)
-        x = solved(linear, preconditioner, right)
+        lift = (near[0].least - near[1].least) / (2 * STEP) if math.isfinite(equations.least) else 0.0
+        right = linear.sources(change, lift)
+        x = solved(linear, precondition, right)
         if x is None and kept is not None:
-            preconditioner, kept = BandedModes(linear, band), None
-            x = solved(linear, preconditioner, right)
+            precondition, kept = preconditioner(linear, None), None
+            x = solved(linear, precondition, right)
         if x is None:
             raise ArithmeticError(f"GMRES did not solve for the derivatives by {name}")
         dy = linear.changes(x, change[0])
         size = CHANGE / max(1.0, float(np.abs(dy.gap / y.gap).max()))
-        values = [observables(beside(equations, moved(sign * size)), y.moved(dy, sign * size)) for sign in (1.0, -1.0)]
+        at = [beside(equations, moved(sign * size)) for sign in (1.0, -1.0)]
+        values = [
+            observables(each, each.pinned(y.moved(dy, sign * size), y)) for each, sign in zip(at, (1.0, -1.0), strict=True)
+        ]
         for each in values[0]:
             columns.setdefault(each, []).append((values[0][each] - values[1][each]) / (2 * size))
     return {name: np.array(column) for name, column in columns.items()}
 
 
-def solved(linear: Linear, preconditioner: BandedModes, right: Array, tolerance: float = FINEST) -> Array | None:
+def solved(linear: Linear, preconditioner: Apply, right: Array, tolerance: float = FINEST) -> Array | None:
     """Return the solution of the linear system to a preconditioned residual, or None where GMRES does not reach it."""
     x, rest, left = np.zeros_like(right), right, 1.0
     while True:
@@ -105,6 +116,6 @@ def beside(equations: Equations, here: Groups) -> Equations:
     speed, solid, operators = float(here.speed), here.model.solid, equations.operators
     if solid != operators.solid:
         operators = Operators(operators.mesh, solid)
-    return replace(
-        equations, operators=operators, speed=speed, law=contact_law(here), film=plane_of(here.model.film.at(speed))
-    )
+    least = here.model.cavity_pressure if math.isfinite(equations.least) else equations.least
+    film = plane_of(here.model.film.at(speed))
+    return replace(equations, operators=operators, speed=speed, law=contact_law(here), film=film, least=least)

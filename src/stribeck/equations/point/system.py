@@ -131,6 +131,15 @@ class Equations:
         """Return by how much the shear over h on each ring is less where the gap is not full of liquid, shape (rings,)."""
         return np.zeros(self.operators.mesh.rings)
 
+    def linear(self, y: Unknowns) -> Linear:
+        """Return the Jacobian at a solution."""
+        return Linear(self, y)
+
+    def pinned(self, y: Unknowns, like: Unknowns) -> Unknowns:
+        """Return unknowns that break where a solution of neighbouring equations does."""
+        del like
+        return y
+
     def residual(self, y: Unknowns) -> tuple[Array, Array, float]:
         """Return R_1 at the nodes, R_2 by node, both of shape (modes, rings), and R_3."""
         op, mesh = self.operators, self.operators.mesh
@@ -223,3 +232,8 @@ class Linear:
         # What R_1 moves, the gap and with it the contact pressure, is taken off the flow.
         moved = self.flow(self.contact_slope * shape, -shape)
         return np.append(-(mesh.cosines.T @ (flow + moved)).ravel(), -load)
+
+    def sources(self, change: tuple[Array, Array, float], least: float) -> Array:
+        """Return the right-hand side for the change of the unknowns with that of the residual and of the least pressure."""
+        del least
+        return self.right(change)

@@ -29,7 +29,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import PROBLEMS, Level, extrapolated, moved, solve_level
-from stribeck.solver.point.refinement import COMPANY, Pair, scales_of
+from stribeck.solver.point.refinement import CENTRAL, COMPANY, Pair, centre_tails, scales_of
 from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
 
 FIRST_ANGLES, LADDER = 10, (20, 30, 45, 65)
@@ -59,11 +59,15 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     balance = 0.3 * abs(identity_error(values, speed, fine.equations.far))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
-    beyond = thinned_beyond(fine.equations, fine.unknowns)
-    for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
-        errors[name] += beyond
+    beyond, doubt = thinned_beyond(fine.equations, fine.unknowns), speed / 6.0 * fine.equations.shear_doubt(fine.unknowns)
+    errors["J_poiseuille"] += beyond
+    for name in ("J_couette", "J_balanced", "J_published"):
+        errors[name] += beyond + doubt
+    for (name, factor), tail in zip(CENTRAL.items(), centre_tails(fine), strict=True):
+        errors[name] = max(errors[name], factor * float(tail))
     # Two meshes may agree by chance in one number, hardly in all.
     widest = max(errors[name] / scales[name] for name in errors if name not in (*WITHOUT_TOLERANCE, *LOOSE_WHERE_TORN))
+    widest = max(widest, doubt / scales["J_balanced"])
     errors = {name: max(error, COMPANY * widest * scales[name]) for name, error in errors.items()}
     ok = coarse.outcome.ok and fine.outcome.ok
     outcome = Outcome.CONVERGED if ok else (fine.outcome if coarse.outcome.ok else coarse.outcome)

@@ -47,6 +47,10 @@ class Level:
         """How the iteration ended."""
         return self.iterated.outcome
 
+    def named(self, model: Model) -> Level:
+        """Return the level as one from which states of a model start."""
+        return replace(self, resolution=replace(self.resolution, model=model))
+
     @property
     def effort(self) -> float:
         """What :func:`stribeck.numerics.continuation.march` steers by."""

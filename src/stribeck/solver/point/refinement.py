@@ -14,6 +14,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
+from stribeck.contacts.model import Model
 from stribeck.equations.point.mesh_choice import (
     EDGE,
     MOST_BYTES,
@@ -98,6 +99,10 @@ class Pair:
     outcome: Outcome
     steps: int
     krylov_steps: int
+
+    def named(self, model: Model) -> Pair:
+        """Return the pair as one from which states of a model start."""
+        return replace(self, coarse=self.coarse.named(model), fine=self.fine.named(model))
 
     @property
     def total(self) -> float:

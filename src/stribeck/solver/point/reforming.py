@@ -32,7 +32,7 @@ def refine_reforming(
 
     ``known`` is the state with a larger error.
     """
-    full = _named(guess, full_model(model))
+    full = guess.named(full_model(model))
     if known is not None and not isinstance(known.fine.equations, TornEquations):
         return _full(speed, law, full, rtol, model, known) or refine_cavitated(speed, law, guess, rtol, model)
     if known is None and guess.unknowns.fluid.min() >= NEARLY * model.cavity_pressure:
@@ -43,7 +43,7 @@ def refine_reforming(
     if not isinstance(torn, Pair):
         return torn
     if torn.outcome.ok and not is_torn(torn):
-        return _full(speed, law, _named(torn.fine, full.resolution.model), rtol, model) or torn
+        return _full(speed, law, torn.fine.named(full.resolution.model), rtol, model) or torn
     reaches_rim = bool((torn.fine.unknowns.fluid[:, -1] <= model.cavity_pressure).any())
     return replace(torn, outcome=Outcome.MESH_LIMIT) if reaches_rim else torn
 
@@ -62,13 +62,13 @@ def follow_reforming(
         found = follow_cavitated(speed, law, neighbour, rtol, line)
         if found is None or is_torn(found):
             return found
-        return _full(speed, law, _named(found.fine, full_model(model)), rtol, model)
+        return _full(speed, law, found.fine.named(full_model(model)), rtol, model)
     full = full_model(model)
-    found = follow(speed, law, _both(neighbour, full), rtol, [(weight, _both(each, full)) for weight, each in line])
+    found = follow(speed, law, neighbour.named(full), rtol, [(weight, each.named(full)) for weight, each in line])
     if found is None or not found.outcome.ok:
         return None
     if found.fine.unknowns.fluid.min() >= model.cavity_pressure:
-        return _both(found, model)
+        return found.named(model)
     torn = refine_cavitated(speed, law, found.fine, rtol, model)
     return torn if isinstance(torn, Pair) and torn.outcome.ok else None
 
@@ -81,15 +81,7 @@ def holds_reforming(pair: Pair, rtol: float) -> bool:
 
 def _full(speed: float, law: ContactLaw, guess: Level, rtol: float, model: Model, known: Pair | None = None) -> Pair | None:
     """Return the full film, named as the model; None where its suction exceeds that of the cavity, or it is not found."""
-    found = refine(speed, law, guess, rtol, None if known is None else _both(known, guess.resolution.model))
+    found = refine(speed, law, guess, rtol, None if known is None else known.named(guess.resolution.model))
     if not isinstance(found, Pair) or not found.fine.unknowns.fluid.min() >= model.cavity_pressure:
         return None
-    return _both(found, model)
-
-
-def _named(level: Level, model: Model) -> Level:
-    return replace(level, resolution=replace(level.resolution, model=model))
-
-
-def _both(pair: Pair, model: Model) -> Pair:
-    return replace(pair, coarse=_named(pair.coarse, model), fine=_named(pair.fine, model))
+    return found.named(model)

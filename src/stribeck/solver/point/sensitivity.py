@@ -6,14 +6,17 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups
+from stribeck.equations.cavities.torn import Capacitance, TornLinear
+from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.sensitivity import Direction, log_derivatives
-from stribeck.fluids.cavitation import Cavitation
-from stribeck.quantities.units import InputError
+from stribeck.equations.point.system import Linear
+from stribeck.numerics.krylov import Apply
 from stribeck.solver.point.level import band_for
 from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.state import PointState
@@ -35,11 +38,6 @@ def state_derivatives(state: PointState) -> dict[str, Array]:
     -------
     dict of str to ndarray, shape (3,)
         By the names of the observables, the other two groups and the model held; zero with respect to a group that is zero.
-
-    Raises
-    ------
-    InputError
-        If the film breaks.
     """
     groups = state.groups
     alive = {name: partial(_moved, groups, name) for name in GROUPS if float(getattr(groups, name)) > 0}
@@ -63,22 +61,19 @@ def derivatives_along(state: PointState, directions: Mapping[str, Direction]) ->
     -------
     dict of str to ndarray
         By the names of the observables, one number for each direction.
-
-    Raises
-    ------
-    InputError
-        If the film breaks.
     """
-    if state.groups.model.cavitation is not Cavitation.NONE:
-        raise InputError(
-            f"cavitation = {str(state.groups.model.cavitation)!r}: derivatives of a ball are for a film that does not break, "
-            "'none'; sensitivities of a ball leave cavitation out."
-        )
     pair = state.work
     assert isinstance(pair, Pair)
     level = pair.fine
     band = band_for(level.equations.speed, level.equations.law)
-    return log_derivatives(level.equations, level.unknowns, directions, band, level.iterated.preconditioner)
+
+    def preconditioner(linear: Linear, kept: Any) -> Apply:
+        if not isinstance(linear, TornLinear):
+            return BandedModes(linear, band) if kept is None else kept
+        found = Capacitance(BandedModes(linear, band), level.mesh, linear.torn.shape) if kept is None else kept
+        return found.of(linear)
+
+    return log_derivatives(level.equations, level.unknowns, directions, preconditioner, level.iterated.preconditioner)
 
 
 def _moved(groups: Groups, name: str, step: float) -> Groups:

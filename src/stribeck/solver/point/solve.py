@@ -119,13 +119,14 @@ def solve_from(
     if groups.speed == 0 or not isinstance(pair, Pair) or not pair.fine.equations.speed > 0:
         return solve_cold(groups, rtol)
     speed, law, model = float(groups.speed), contact_law(groups), as_solved(groups.model)
+    if pair.fine.resolution.model != model and is_alike(pair.fine.resolution.model, model):
+        pair = pair.named(model)
     if pair.fine.resolution.model == model:
         ending = ENDINGS[model.cavitation]
-        pairs = [(weight, state.work) for weight, state in line]
-        usable = pairs if all(isinstance(each, Pair) for _, each in pairs) else ()
+        pairs = [(weight, state.work.named(model)) for weight, state in line if isinstance(state.work, Pair)]
         by_series = {} if predicted is None else {"predicted": predicted}
         try:
-            found = ending.follow(speed, law, pair, rtol, usable, **by_series)
+            found = ending.follow(speed, law, pair, rtol, pairs if len(pairs) == len(line) else (), **by_series)
         except MeshTooLargeError:
             found = None
         if found is not None and ending.holds(found, rtol):
@@ -164,6 +165,12 @@ ENDINGS = {
     Cavitation.REFORM: Ending(refine_reforming, follow_reforming, holds_reforming),
 }
 """How states are refined, by how the film ends."""
+
+
+def is_alike(model: Model, other: Model) -> bool:
+    """Return whether models differ in numbers alone."""
+    kinds = ((each.cavitation, type(each.film), each.film.name, type(each.solid)) for each in (model, other))
+    return len(set(kinds)) == 1
 
 
 def as_solved(model: Model) -> Model:
