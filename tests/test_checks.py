@@ -9,7 +9,7 @@ from command_line import EXAMPLES, FEW, PDMS, call, case_text
 from fit_data import TRUE
 
 import stribeck as sb
-from stribeck.checks.subject import Subject
+from stribeck.checks.subject import Subject, speed_of_film
 from stribeck.checks.table import ROWS, checks_of
 from stribeck.contact_laws.finite_surface import FiniteSurface
 from stribeck.quantities.facts import ROWS as FACTS
@@ -130,6 +130,22 @@ def test_the_finite_surface_has_the_pressures_of_the_simulation():
         FiniteSurface(2.0, sb.GreenwoodTripp())
     with pytest.raises(sb.InputError, match="positive number"):
         FiniteSurface(0)
+
+
+def test_the_speed_of_a_film_of_a_ball_has_the_viscosity_at_its_rate():
+    ball = sb.load_case(EXAMPLES / "pdms_ball.toml").contact
+    fluid = sb.fluids.Carreau("1 ms", 0.4)
+    speeds = [speed_of_film(each, 3.0) for each in (ball, ball.replace(fluid=fluid))]
+    rate = 1e-3 * speeds[1] / (3.0 * ball.roughness)
+    assert rate > 10
+    assert math.isclose(speeds[1] * (1 + rate**2) ** -0.3, speeds[0], rel_tol=1e-6)
+
+
+def test_a_curve_without_minimum_and_transition_leaves_the_tail_unchecked_and_says_so():
+    contact = sb.load_case(PDMS).contact
+    curve = sb.stribeck_curve(contact, speed=("1 nm/s", "2 nm/s"), points=3, rtol=1e-3)
+    found = checks_of(Subject(contact, traced=curve))
+    assert any(said.startswith("tail of the contact law: friction has no minimum") for said in found.unchecked)
 
 
 def test_steel_is_said_to_be_outside_before_any_number(tmp_path, capsys):

@@ -187,7 +187,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
     model = _model(geometry)
     table, parts, wrong = take_parts(table, geometry)
     problems += wrong
-    fit = FitSettings()
+    fit = FitSettings(geometry=geometry)
     if "fit" in table:
         try:
             fit = check_fit_table(table.pop("fit"), geometry)

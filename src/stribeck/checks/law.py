@@ -9,7 +9,7 @@ from stribeck.checks.subject import Subject
 from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential
 from stribeck.curves.regime import Transition
-from stribeck.quantities.units import format_si
+from stribeck.quantities.units import InputError, format_si
 from stribeck.solver.notes import ADVICE, LAW_RANGE, law_notes, matters, minimum_note
 from stribeck.solver.solution import Solution
 
@@ -72,7 +72,8 @@ def tail(subject: Subject) -> Check | None:
         if name in after
     }
     if not moves:
-        return None
+        low, high = (format_si(float(subject.curve.values[end]), "speed") for end in (0, -1))
+        raise InputError(f"friction has no minimum and no transition from {low} to {high}, where it was looked for.")
     largest = max(abs(change) for pair in moves.values() for change in pair)
     said = "; ".join(
         f"{_place(name)}, speed {100 * speed:+.0f} % and friction {100 * friction:+.0f} %"

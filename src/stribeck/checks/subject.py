@@ -8,9 +8,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from stribeck.contact_laws.finite_surface import FiniteSurface
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
+from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.quantities.facts import FACTS
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import solve
@@ -25,6 +28,9 @@ PLAIN = ("", "newtonian", "half-plane", "half-space", "none")
 """Names of the article's own parts, which need no mention."""
 
 RTOL = 1e-4
+
+FIXED_POINT_STEPS = 60
+"""Steps from the speed of a Newtonian film to that of one that thins: each leaves one less the exponent of the error."""
 
 
 class Tracing(NamedTuple):
@@ -142,7 +148,13 @@ def speed_of_film(contact: Contact, film: float) -> float:
     Returns
     -------
     float
-        By the leading law of slow speed, h(0) = 0.42480 u lambda^0.6.
+        By the leading law of slow speed, h(0) = 0.42480 u lambda^0.6, with the viscosity that the fluid has at the rate U/h.
     """
-    at_one = float(contact.replace(speed=1.0).groups.speed)
-    return float((film * contact.roughness / contact.hertz.indentation / 0.42480) ** (1 / 0.6) / at_one)
+    groups, gap = contact.replace(speed=1.0).groups, film * contact.roughness / contact.hertz.indentation
+    newtonian = speed = float((gap / 0.42480) ** (1 / 0.6) / groups.speed)
+    fluid = groups.model.film
+    if isinstance(fluid, ShearThinning):
+        for _ in range(FIXED_POINT_STEPS):
+            rate = np.array([fluid.law.time * float(groups.speed) * speed / gap])
+            speed = newtonian * float(rate[0] / fluid.law.stress(rate)[0][0])
+    return speed

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from stribeck.cases.case import Case, load_case
-from stribeck.cases.fit_settings import DEFAULT_FREE
+from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings
 from stribeck.contact_laws.finite_surface import FiniteSurface, has_endless_tail
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw
@@ -177,9 +177,9 @@ def compare(
     """
     loaded = case if isinstance(case, Case | Contact) else load_case(case)
     contact = loaded.contact if isinstance(loaded, Case) else loaded
-    settings = loaded.fit if isinstance(loaded, Case) else None
+    settings = loaded.fit if isinstance(loaded, Case) else FitSettings(geometry=contact.groups.geometry)
     rows = data if isinstance(data, Measurements) else read_measurements(data, settings)
-    names = tuple(free or (settings.free if settings and settings.free else DEFAULT_FREE))
+    names = tuple(free or settings.free or DEFAULT_FREE)
     if models is not None and laws is not None:
         raise InputError("laws and models are both given; a model may have a law: {'name': {'law': ...}}.")
     found: dict[str, Fit] = {}

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from stribeck._types import Array
+from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
 from stribeck.explorer.asked.inputs import Inputs
 from stribeck.fits.fit import fit
@@ -118,7 +119,7 @@ def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]
         path = Path(folder) / "curve.csv"  # never under the name that came with it
         path.write_bytes(content)
         try:
-            data = read_measurements(path)
+            data = read_measurements(path, FitSettings(geometry=contact.groups.geometry))
         except InputError as problem:
             raise InputError(str(problem).replace(str(path), name)) from None
     found = []
