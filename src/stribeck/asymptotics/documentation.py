@@ -1,4 +1,4 @@
-"""What the docstrings of formulas share: the words for their arguments and values, written once.
+"""Text that the docstrings of formulas share: the descriptions of their arguments and values, written once.
 
 A formula says what it returns, by which equation, and how well.  Arguments, value and errors that many have are filled in
 from the tables here; a section or an argument that a formula describes itself is left as it is.

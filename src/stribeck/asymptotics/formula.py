@@ -1,7 +1,7 @@
 """What a formula is: a function of the groups that knows its range, the order of its error, and its source.
 
-Nothing here is physics.  Used outside its range a formula still answers, and says so by an :class:`OutOfRangeWarning`;
-where it has no value it answers nan, and says so too.
+Nothing here is physics.  Outside its range a formula still returns a value, with an :class:`OutOfRangeWarning`;
+where it has no value it returns nan, with a warning.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ GROUPS = ("speed", "load", "roughness")
 
 
 def coefficient(name: str, value: Any) -> float:
-    """Return a coefficient of the friction; refuse what is no finite number from zero on."""
+    """Return a coefficient of the friction; refuse anything but a finite number, zero or positive."""
     found = real_array(name, value)
     if found.ndim != 0 or not 0 <= found < math.inf:
         raise InputError(f"{name} = {show(value)}; it must be one finite number, zero or positive.")
@@ -319,7 +319,7 @@ def formula(
 ) -> Callable[[Callable[Concatenate[Groups, Arguments], Value]], Formula[Arguments]]:
     """Return the decorator that makes a function a :class:`Formula`; arguments as its attributes.
 
-    ``undefined`` says where the value is nan.  What the docstring leaves out is filled in, see
+    ``undefined`` states where the value is nan.  What the docstring leaves out is filled in, see
     :mod:`stribeck.asymptotics.documentation`.
     """
 

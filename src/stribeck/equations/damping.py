@@ -1,4 +1,4 @@
-"""How much of a Newton step a gap may take, of a line and of a ball."""
+"""The longest part of a Newton step that keeps gap and contact pressure in bounds, for line and ball."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MOST_HALVINGS = 20
 
 
 def longest_step(law: ContactLaw, gap: Array, change: Array, part: float = 1.0) -> float:
-    """Return the longest fraction of a step, at most ``part``, that keeps the gap positive and the contact pressure sane.
+    """Return the longest fraction of a step, at most ``part``, that keeps gap and contact pressure within bounds.
 
     The gap may lose 70 % at most; if contact matters, its pressure may grow or fall by e**3 at most.
     """
@@ -28,7 +28,7 @@ def longest_step(law: ContactLaw, gap: Array, change: Array, part: float = 1.0) 
 
 
 def _held_by_law(law: ContactLaw, gap: Array, change: Array, part: float, log_p: Array, allowed: Array) -> float:
-    """Return the part halved until the pressure of a law that stiffens grows by no more than half as much again."""
+    """Return the part, halved until the pressure of a law that stiffens grows by at most 50 %."""
     for _ in range(MOST_HALVINGS):
         with np.errstate(all="ignore"):
             growth = law.log_pressure(gap + part * change) - log_p

@@ -1,4 +1,4 @@
-r"""A-posteriori error of the observables: what the mesh, Newton's iteration and rounding leave.
+r"""A-posteriori error of the observables: from the mesh, Newton's iteration and rounding.
 
 The state is put on the same panels with more nodes, where the pressures that its gap implies are evaluated anew.  The
 residual that they leave is the defect of the state, and one solve with the factors of Newton's last Jacobian turns it into the
@@ -236,7 +236,7 @@ class ErrorEstimate:
 
 @dataclass(frozen=True)
 class Perturbations:
-    """What may be wrong with states.
+    """Possible errors of states.
 
     ``unknowns``, shape (1 + PATTERNS, rows, unknowns), are the changes that defect and rounding may cause, the defect first;
     ``friction``, shape (2 or 3, rows), is by how much the friction integrals change on the finer nodes: both definitions of
@@ -248,7 +248,7 @@ class Perturbations:
 
 
 def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -> Perturbations:
-    """Return what defect, quadrature and rounding may change in states; ``observed`` as in :func:`error_estimates`."""
+    """Return by how much defect, quadrature and rounding may change states; ``observed`` as in :func:`error_estimates`."""
     equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
     coarse, mesh, film, far_gap = fine.coarse, fine.mesh, states.equations.film, states.equations.far_gap(states.y)
     integral, d = fine.integral(op.restart), equations.dilation(y)
@@ -375,7 +375,7 @@ def interpolation_errors(states: StackedStates, minimum_positions: Array, centra
 def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float, centre: float = 0.0, spread: float = 0.0) -> bool:
     """Return whether central and minimum gap are interpolated to ``rtol``, up to ``spread`` from the place of the minimum.
 
-    A reused mesh loses them first.
+    On a reused mesh they are the first to become unresolved.
     """
     central = int(np.searchsorted(mesh.edges, 0.0)) if centre == 0.0 else int(mesh.locate(np.array([centre]))[0][0])
     lowest = mesh.nodes[int(np.argmin(gap))]
@@ -398,7 +398,7 @@ def _signs(panels: int, order: int, numbers: int, fields: int) -> Array:
 
 
 def error_estimates(states: StackedStates, observed: list[Observables], fine: FineOperators) -> list[ErrorEstimate]:
-    """Return the estimated errors of what was ``observed`` on states.
+    """Return the estimated errors of the observables ``observed``.
 
     At speed zero the values may be those of the same state under another load, see :mod:`stribeck.solver.at_rest`.
     """

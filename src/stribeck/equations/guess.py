@@ -1,4 +1,4 @@
-"""What a guess of a state must tell, on the whole line."""
+"""What a guess of a state must provide, on the whole line."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Guess(Protocol):
 
     @property
     def minimum_position(self) -> float:
-        """About where the gap is at its minimum."""
+        """Approximate position of the minimum gap."""
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""

@@ -201,7 +201,7 @@ class Equations:
         return r
 
     def units(self, y: Array) -> Array:
-        """Return the gaps and the flux gap themselves, and one for all else: what unknowns change relative to.
+        """Return the scales of the unknowns: the gaps and the flux gap themselves, and one for all others.
 
         Where roughness carries fluid along, the flux gap may be zero: its unit is the smallest gap at least.
 
@@ -215,7 +215,7 @@ class Equations:
         return units
 
     def _flux_unit(self, y: Array) -> Array:
-        """Return what the flux gap changes relative to, a column of stacked states."""
+        """Return the scale of the flux gap, a column of stacked states."""
         at = self.layout
         return np.asarray(np.maximum(np.abs(y[..., at.flux_gap]), y[..., at.gap].min(axis=-1, keepdims=True)))
 
@@ -350,7 +350,7 @@ class Equations:
         return found
 
     def admissible(self, y: Array, dy: Array) -> float:
-        """Return the longest fraction of a Newton step that keeps the gap positive and the contact pressure sane.
+        """Return the longest fraction of a Newton step that keeps the gap positive and the contact pressure within bounds.
 
         The gap may lose 70 % at most; if contact matters, its pressure may grow or fall by e**3 at most.
         """

@@ -1,4 +1,4 @@
-r"""What a user reads off a state: load shares, films, friction, and their derivatives with respect to the unknowns.
+r"""The observables of a state: load shares, films, friction, and their derivatives with respect to the unknowns.
 
 Friction is kept for beta = 1 and in the two definitions of :data:`DEFINITIONS`; it is proportional to beta.  With
 :math:`C = 2 \bar F_N^{1/2} \lambda / (3\pi)`, lengths in Hertz units,
@@ -113,7 +113,7 @@ def smooth_observables(equations: Equations, y: Array, load: Numbers) -> Array:
 
 
 def _of_any_film(equations: Equations, y: Array, load: Numbers, known: Array) -> list[Observables]:
-    """Return the observables of films that are not those of the article; ``known`` are those that films do not matter for."""
+    """Return the observables of films other than the article's; ``known`` are those that do not depend on the film."""
     op, mesh, at = equations.operators, equations.operators.mesh, equations.layout
     contact, lowest, positions, flux, offset = known
     h, d = y[:, at.gap], equations.dilation(y)

@@ -1,4 +1,4 @@
-r"""What the equations need of a mesh: the undeformed gap, the integral of the pressure gradient, deflection and load.
+r"""The operators of the equations on a mesh: the undeformed gap, the integral of the pressure gradient, deflection and load.
 
 A film that ends is described from its exit: ``x = x_c + d xi``, with xi the coordinate of the mesh.  Without a second end
 the dilation d is one.  A film that begins anew does so at the edge :attr:`Mesh.restart` of the mesh, so that d is the length

@@ -199,7 +199,7 @@ class State:
 
     @cached_property
     def _nodal(self) -> Array:
-        """Nodal fields of the guess that this state is for others: :attr:`shape` and fluid pressure."""
+        """Nodal fields of this state as a guess for others: :attr:`shape` and fluid pressure."""
         return np.stack([self.shape, self.fluid_pressure])
 
     @cached_property

@@ -1,1 +1,1 @@
-"""What the numbers rest on: maps of the errors of formulas, the atlas and its certificate. Not in the wheel."""
+"""Evidence for the numbers: maps of the errors of formulas, the atlas and its certificate; not in the wheel."""

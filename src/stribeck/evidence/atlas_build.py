@@ -125,7 +125,7 @@ def film_coefficients(name: str) -> Array:
 
 
 def kept(folder: Path, name: str, make: Callable[[], Array]) -> Array:
-    """Return what is kept in a folder under a name, made and kept where it is not there."""
+    """Return what a folder keeps under a name; make and keep it if it is not there."""
     path = folder / f"{name}.npy"
     if path.exists():
         return np.asarray(np.load(path))
@@ -145,7 +145,7 @@ def _kept_line(folder: Path, name: str, breaks: tuple[Array, ...], task: tuple[i
 
 
 def _run(what: str, pool: ProcessPoolExecutor, work: Callable[[Any], Array], tasks: Sequence[Any]) -> list[Array]:
-    """Return the results of all tasks, telling how far they are."""
+    """Return the results of all tasks, and report progress."""
     begun, found = time.monotonic(), []
     for result in pool.map(work, tasks):
         found.append(result)

@@ -1,4 +1,4 @@
-"""How wrong a table of the atlas is: against states solved from cold that it was not made from.
+"""The errors of a table of the atlas, on states solved from cold that it was not made from.
 
 ``make certificate`` (``python -m stribeck.evidence.atlas_certificate``) prints the tables of docs/atlas.md and draws its map.
 """
@@ -48,12 +48,12 @@ The viscous friction itself is judged at the first."""
 
 
 def films_of(row: TableRow) -> tuple[str, ...]:
-    """Return the gaps that a table has."""
+    """Return the names of the gaps in a table."""
     return tuple(name for name in ("central_gap", "minimum_gap", "flux_gap") if name in row.functions)
 
 
 def quantities(row: TableRow) -> tuple[str, ...]:
-    """Return what is judged of a table, in the order of the errors."""
+    """Return the quantities of a table that are judged, in the order of the errors."""
     kinds = DEFINITIONS[::-1]
     frictions = (f"friction, {definition}, beta = {beta:g}" for beta in BETAS[row.geometry] for definition in kinds)
     viscous = (f"viscous friction, {definition}" for definition in kinds)
@@ -125,7 +125,7 @@ def states_of(row: TableRow, speed: Array, load: Array, kappa: Array) -> Groups:
 
 
 def solved(name: str, state: tuple[float, float, float]) -> Array:
-    """Return the observables that tables are made from, of speed, load and relative roughness solved from cold."""
+    """Return the observables in tables at a speed, load and relative roughness, solved from cold."""
     row = next(row for row in TABLES if row.name == name)
     found = solve(groups_of(row, *state), rtol=RTOL.get(name, 1e-6), on_failure="return").observables
     return np.array([getattr(found, observable) for observable in FROM[row.geometry]])

@@ -1,4 +1,4 @@
-"""The states that tables of the atlas are made from: how each table is planned, solved along the speed and tabulated."""
+"""The states of the tables of the atlas: how they are chosen, solved along the speed and tabulated."""
 
 from __future__ import annotations
 

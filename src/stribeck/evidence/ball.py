@@ -1,4 +1,4 @@
-"""The solver of the ball as the judge of its formulas: states, rows of them over the speed, and what is read off.
+"""The solver of the ball as the judge of its formulas: states, rows of them over the speed, and their observables.
 
 Source: none; the counterpart of :mod:`stribeck.evidence.formulas` for the point geometry.
 """

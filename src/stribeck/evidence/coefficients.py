@@ -111,7 +111,7 @@ JUDGED: dict[str, tuple[Formula[Any], dict[str, Any]]] = {
 def largest_errors(
     name: str, ratios: tuple[float, ...] = RATIOS, points: tuple[int, int] = (16, 13)
 ) -> tuple[list[float], list[float]]:
-    """Return the largest and the median error of a formula for each beta/mu0, over its range in the groups.
+    """Return the largest and the median error of a formula at each beta/mu0, over its range in the groups.
 
     Parameters
     ----------

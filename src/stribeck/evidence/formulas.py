@@ -69,7 +69,7 @@ def _curve(groups: Groups, boundary_friction: float, beta: float, definition: De
 
 
 def _coefficients(options: dict[str, Any]) -> dict[str, Any]:
-    """Return what the options of a formula ask of the solver: 1 and the definition of the paper, where they do not say."""
+    """Return the options of a formula for the solver; by default 1 and the definition of the paper."""
     definition = options.get("definition", options.get("viscous"))
     known = definition if definition in DEFINITIONS else "published"
     return {"boundary_friction": options.get("boundary_friction", 1.0), "beta": options.get("beta", 1.0), "definition": known}
@@ -205,7 +205,7 @@ def _field_error(formula: Formula[Any], groups: Groups, state: Solution | PointS
 
 
 def kind_of(formula: Formula[Any]) -> str:
-    """Return what the error of a formula depends on, as a key of :data:`AXES`.
+    """Return the kind of a formula, by what its error depends on, as a key of :data:`AXES`.
 
     Parameters
     ----------

@@ -163,7 +163,7 @@ def _edges(values: Array) -> Array:
 
 
 def _draw_map(axes: Axes, formula: Formula[Any], data: xarray.Dataset, *, left: bool, bottom: bool) -> Any:
-    """Draw one map, with labels where it stands at the left or at the bottom; return what the scale of colours belongs to."""
+    """Draw one map, with labels where it stands at the left or at the bottom; return the artist of the colour scale."""
     from matplotlib.colors import LogNorm
     from scipy.ndimage import median_filter
 
@@ -255,7 +255,7 @@ def _decades(axis: Any, ends: Sequence[float]) -> None:
 
 
 def _explain(figure: Figure, image: Any, lines: Sequence[tuple[Formula[Any], xarray.Dataset]]) -> None:
-    """Draw the scale of colours under the panels, and beside it what lines, shades and hatching mean."""
+    """Draw the colour scale under the panels, and beside it the key to lines, shades and hatching."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 

@@ -28,7 +28,7 @@ _TABLE = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]+\s*(?:#.*)?")
 
 
 def load_fit_case(data: object, path: PathLike) -> Case:
-    """Read the case file of a fit, and tell where it and the data were given in each other's place.
+    """Read the case file of a fit; say so if it and the data were swapped.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def load_fit_case(data: object, path: PathLike) -> Case:
 
 
 def _tables(path: PathLike) -> dict[str, Any]:
-    """Return what a TOML file says, nothing where it is none."""
+    """Return the tables of a TOML file; none if it is not one."""
     try:
         return read_toml(Path(path))
     except InputError:

@@ -1,4 +1,4 @@
-"""Inputs of a contact from measured friction curves: values, intervals, and what the data do not say.
+"""Inputs of a contact from measured friction curves: values, intervals, and what the data cannot determine.
 
 Least squares on the logarithms of the inputs with analytic derivatives.  With a law that it holds they run on
 :mod:`stribeck.atlas` and are then finished on solved states; with other laws all states are solved.  Those of balls run on a
@@ -199,7 +199,7 @@ def _search(goal: Objective, scan: PartsOf | None, report: Step) -> Minimum:
 
 
 def _brought_back(found: Minimum) -> Minimum:
-    """Return the minimum at the inputs nearest to the case of those that the data cannot tell from it."""
+    """Return the minimum, with undetermined inputs moved as near to the case as the data allow."""
     near = _nearest(found)
     if np.allclose(near, found.theta, rtol=0, atol=1e-9):
         return found
@@ -230,9 +230,9 @@ def _places(goal: Objective) -> list[Array]:
 
 
 def _nearest(at: Minimum) -> Array:
-    """Return the inputs nearest to the case of those that change no residual to first order.
+    """Return the inputs nearest to the case among those with the same residuals to first order.
 
-    Along what changes nothing the data say nothing, and a value far from the case would be an accident of the iteration.
+    Along such directions the data determine nothing, and a value far from the case would be an accident of the iteration.
     """
     rows, _ = at.objective.priors
     _, S, V = np.linalg.svd(np.concatenate([at.jacobian, rows]), full_matrices=True)
@@ -436,7 +436,7 @@ def _notes(
 
 
 def _combination(pair: tuple[str, str], correlation: float, covariance: Array) -> str:
-    """Return the sentence that names the combination of two inputs that the data know best."""
+    """Return the sentence that names the combination of two inputs that the data determine best."""
     values, vectors = np.linalg.eigh(covariance)
     a, b = vectors[:, 0]
     first, second = pair if abs(a) >= abs(b) else pair[::-1]

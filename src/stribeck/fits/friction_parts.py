@@ -1,4 +1,4 @@
-"""What the friction of many states is made of, with its derivatives, for fits: read off the atlas, solved, or interpolated.
+"""The contributions to the friction of many states, with derivatives, for fits: off the atlas, solved, or interpolated.
 
 The load share and the observables of the viscous friction come without boundary_friction and beta, which may differ from
 state to state: :mod:`stribeck.contacts.friction_rules` puts them together.
@@ -66,7 +66,7 @@ CLOSE = 0.01
 
 @dataclass(frozen=True)
 class FrictionParts:
-    """What the friction of n states is made of, and the derivatives of that.
+    """The contributions to the friction of n states, and their derivatives.
 
     Parameters
     ----------
@@ -259,7 +259,7 @@ def _along(
 
 
 class Ways(NamedTuple):
-    """How the states of a fit are had.
+    """How the states of a fit are obtained.
 
     Attributes
     ----------
@@ -275,7 +275,7 @@ class Ways(NamedTuple):
 
 
 def ways_of(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
-    """Return how the states of a fit are had: the atlas and the solver, or for a ball a lattice of solved states.
+    """Return how the states of a fit are obtained: from atlas and solver, or for a ball from a lattice of solved states.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
 r"""Which free inputs the data determine, and which only in combination.
 
-The derivatives of the residuals, in units of the noise, are J = U S V^T: the data know the combination :math:`v_k^T \theta` of
-logarithms with standard error :math:`1/S_k`.  One whose 95 % interval is wider than a factor of ten counts as not determined.
+The derivatives of the residuals, in units of the noise, are J = U S V^T: the data determine the combination
+:math:`v_k^T \theta` of logarithms with standard error :math:`1/S_k`.  One whose 95 % interval is wider than a factor of
+ten counts as not determined.
 """
 
 from __future__ import annotations
@@ -139,7 +140,7 @@ def _weak_alone(column: Array) -> bool:
 
 
 def _off_plateau(free: FreeInput, prediction: Prediction) -> bool:
-    """Return whether a friction coefficient shows in no row by itself."""
+    """Return whether no row determines the boundary friction coefficient by itself."""
     return free.name == "boundary_friction" and float(prediction.contact_share.max()) < 0.5
 
 
@@ -164,7 +165,7 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _reason(free: FreeInput, prediction: Prediction) -> str:
-    """Return why the data say nothing of an input, in terms of the fitted curve."""
+    """Return why the data do not determine an input, in terms of the fitted curve."""
     error = float((prediction.error / prediction.friction).max())
     # A share below its error is said to be that at most.
     asperities, fluid = (max(float(part.max()), error) for part in (prediction.contact_share, prediction.fluid_share))

@@ -366,7 +366,7 @@ def _curves(
 
 
 def _has(table: TextTable, settings: FitSettings, meaning: str) -> bool:
-    """Return whether a table has friction, or an abscissa, as a column of its own that cannot mean anything else."""
+    """Return whether a table has an unambiguous column of friction, or of an abscissa."""
     wanted = ABSCISSAS if meaning == "speed" else (meaning,)
     if any(each in settings.columns for each in wanted):
         return True
@@ -413,7 +413,7 @@ def _notes(
 
 
 def _check_spread(data: Measurements, frictions: list[str]) -> None:
-    """Refuse what no curve can be fitted to: a single speed, or one friction throughout."""
+    """Refuse data without a curve: a single speed, or the same friction in all rows."""
     first, last = int(data.rows.min()), int(data.rows.max())
     if len(data) > 1 and np.ptp(data.values) == 0:
         raise InputError(

@@ -122,7 +122,7 @@ def free_inputs(contact: Contact, data: Measurements, names: Sequence[str], sett
 
 
 def _owner(name: str) -> str:
-    """Return what has a number of this name."""
+    """Return the part of the contact that has a parameter of this name."""
     return PART_INPUTS[name].of if name in PART_INPUTS else "another contact"
 
 

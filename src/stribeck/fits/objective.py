@@ -1,4 +1,4 @@
-r"""Residuals of measured friction in units of their error, and the least squares that make them small.
+r"""Residuals of measured friction in units of their error, and the least squares that minimise them.
 
 With :math:`r_i` the residual of a row over its standard error and priors normal in the logarithms,
 
@@ -54,7 +54,7 @@ AT_BOUND = 1e-4
 
 @dataclass(frozen=True)
 class Objective:
-    """What a fit makes small, for one way to get states and one scale of the noise.
+    """What a fit minimises, for one way to obtain states and one scale of the noise.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def objective(model: FrictionModel, parts_of: PartsOf, settings: FitSettings, ro
 
 @dataclass(frozen=True)
 class Minimum:
-    """Where the least squares ended.
+    """Where the least squares converged or stopped.
 
     Parameters
     ----------

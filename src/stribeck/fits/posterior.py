@@ -1,4 +1,4 @@
-"""The posterior of a fit by the ensemble sampler of emcee, for where intervals of single inputs do not say enough.
+"""The posterior of a fit by the ensemble sampler of emcee, for cases in which intervals of single inputs are not enough.
 
 Flat priors in the logarithms within the bounds, beside those given; where the size of the noise comes from the residuals it is
 integrated over with the prior 1/sigma.  All walkers are evaluated at once on the atlas.

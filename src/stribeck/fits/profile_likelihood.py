@@ -1,4 +1,4 @@
-r"""Intervals by profile likelihood: how far an input can be moved, the others following, before noise explains no longer.
+r"""Intervals by profile likelihood: how far an input can be moved, the others fitted anew, until noise cannot explain it.
 
 An end of the interval is where :math:`\min_{\theta: \theta_i \text{ fixed}} q - \min q = t^2`, with t the quantile of
 Student's distribution where the size of the noise comes from the residuals, else of the normal one; for the robust loss times

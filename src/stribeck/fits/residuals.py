@@ -30,7 +30,7 @@ CLIP = 3.0
 
 @dataclass(frozen=True)
 class Quality:
-    """What the residuals say of a fit.
+    """What the residuals say about a fit.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class Quality:
 
 
 def judge_residuals(at: Minimum, curve: Indices, degrees_of_freedom: float) -> Quality:
-    """Return what the residuals of a fit say of it.
+    """Return what the residuals of a fit say about it.
 
     Parameters
     ----------

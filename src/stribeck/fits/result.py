@@ -172,7 +172,7 @@ class Fit(Exported, Shown, ByValue):
 
     @property
     def held(self) -> tuple[str, ...]:
-        """Names of the inputs that were not fitted: they count as known exactly, and no interval holds their uncertainty."""
+        """Names of the inputs that were held fixed; no interval includes their uncertainty."""
         fitted = {each.name for each in self.inputs}
         measured = () if self.data.abscissa == "speed" else ("viscosity",)
         there = {name for name in FREE for contact in self.contacts if getattr(contact, name, None) is not None}

@@ -50,7 +50,7 @@ RUN_IN, CLEAR = 0.03, 3.0
 
 
 def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], bool]) -> tuple[TextTable, tuple[str, ...], str]:
-    """Return a table with friction and speed made of what a rig measured.
+    """Return a table with friction and speed computed from what a rig measured.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
 
 
 def _speed(table: TextTable, found: dict[str, list[str]]) -> tuple[list[float | None], str] | None:
-    """Return the sum of the surface speeds and how it was made; None where the rig gives no speed."""
+    """Return the sum of the surface speeds and how it was obtained; None if the rig gives no speed."""
     if "entrainment_speed" in found:
         name = found["entrainment_speed"][0]
         values = [None if value is None else 2 * value for value in _numbers(table, name, "speed", "m/s")]
@@ -166,7 +166,7 @@ def _cells(table: TextTable, name: str) -> list[float | None]:
 
 
 def _with_column(table: TextTable, name: str, values: Sequence[float | None]) -> TextTable:
-    """Return the table with a column more, in the decimal sign of the others."""
+    """Return the table with one more column, with the decimal sign of the others."""
     texts = ["" if value is None or not math.isfinite(value) else repr(value) for value in values]
     if table.decimal_comma:
         texts = [text.replace(".", ",") for text in texts]
@@ -195,7 +195,7 @@ Row = tuple[str, int, float, float, float, dict[str, float]]
 
 @dataclass(frozen=True)
 class Averaged:
-    """Rows of which repeats were put together.
+    """Rows in which repeats have been averaged.
 
     Attributes
     ----------
@@ -213,7 +213,7 @@ class Averaged:
 
 
 def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool) -> Averaged | None:
-    r"""Put repeats at the same speed of a curve together: their mean, and the standard error of that.
+    r"""Average repeats at the same speed of a curve: their mean and its standard error.
 
     .. math:: \bar\mu = \frac{1}{n} \sum_i \mu_i, \qquad s = \bar\mu \, \sigma / n^{1/2}
 
@@ -270,7 +270,7 @@ def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool)
 
 
 def _run_in(rows: Sequence[Row], runs: Sequence[str]) -> tuple[set[int], list[str]]:
-    """Return the rows of first runs that differ from later ones, and what to say of them."""
+    """Return the rows of first runs that differ from later ones, and a note on them."""
     marked: set[int] = set()
     said = []
     for curve in dict.fromkeys(row[0] for row in rows):

@@ -262,7 +262,7 @@ def _below(x: Value) -> Array:
 
 
 def _second(terms: int) -> int:
-    """Return 1 where the second term is wanted, and 0 where not."""
+    """Return 1 if the second term is asked for, else 0."""
     if terms not in (1, 2):
         raise InputError(f"terms = {show(terms)}; it must be 1 or 2.")
     return int(terms) - 1

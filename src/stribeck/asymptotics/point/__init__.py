@@ -1,4 +1,4 @@
-"""Asymptotic laws of the ball, each with range and source, and the regressions of the trade beside them.
+"""Asymptotic laws of the ball, each with range and source, and published regressions beside them.
 
 All take groups of ``geometry="point"``, whose lengths are in Hertz radii a and gaps in u = a**2/R.
 """

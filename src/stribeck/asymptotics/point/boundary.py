@@ -1,4 +1,4 @@
-r"""Boundary lubrication of a ball: what slow fluid takes from the asperities of a contact of small relative roughness.
+r"""Boundary lubrication of a ball: the load share of a slow fluid in a contact of small relative roughness.
 
 As on the line the total pressure stays Hertz's to first order, so that a fluid pressure
 :math:`(\lambda/\kappa^2) P_1 \cos\theta` opens the gap by :math:`(\lambda/\kappa) H_1 \cos\theta`,
@@ -46,7 +46,7 @@ SLOW = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 0.03), Limit("s
 
 
 def phi_of(load: Value, form: PhiForm = "quadrature") -> Array:
-    """Return :func:`phi` without a word about loads from one on, for formulas, which have their own."""
+    """Return :func:`phi` without its warning for loads of one or more; formulas have a warning of their own."""
     if form == "quadrature":
         return of_load(load, lambda contact: contact.share)
     if form != "closed":
@@ -99,7 +99,7 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
 
 
 def edges(load: Value, kappa: Value, coefficients: tuple[float, float, float]) -> tuple[Array, Array]:
-    """Return the load whose contact at rest has the true gap in the middle, and what the edges make of an integral over it."""
+    """Return the load whose contact at rest has the true central gap, and the factor of the edges on an integral over it."""
     A = -np.log(load) / 3
     below = np.multiply(load, np.exp(-3 * (0.5 + CATALAN) * np.asarray(kappa)))
     factor = 1 + np.polynomial.polynomial.polyval(A, coefficients) * np.power(kappa, 2 / 3)
@@ -116,7 +116,7 @@ def edges(load: Value, kappa: Value, coefficients: tuple[float, float, float]) -
     source="ours",
 )
 def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "quadrature") -> Value:
-    r"""Return the part of the load on the fluid under a slow rough ball.
+    r"""Return the load share of the fluid under a slow rough ball.
 
     .. math::
 
@@ -155,7 +155,7 @@ def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "q
     source="ours",
 )
 def contact_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "quadrature") -> Value:
-    r"""Return the part of the load on the asperities of a slow rough ball.
+    r"""Return the load share of the asperities under a slow rough ball.
 
     .. math:: \frac{F_c}{F_N} = 1 - \frac{F_f}{F_N}
 
@@ -185,7 +185,7 @@ def contact_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = 
 def viscous_friction(
     groups: Groups, beta: float = 1.0, definition: Definition = "balanced", wetted_radius: float | None = None
 ) -> Value:
-    r"""Return the part of the friction from the fluid under a slow rough ball.
+    r"""Return the viscous friction under a slow rough ball.
 
     .. math::
 

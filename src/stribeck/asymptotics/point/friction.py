@@ -121,7 +121,7 @@ def viscous_friction_smooth(
 def viscous_friction(
     groups: Groups, beta: float = 1.0, definition: Definition = "balanced", wetted_radius: float | None = None
 ) -> Value:
-    r"""Return the part of the friction of a ball from the fluid.
+    r"""Return the viscous friction of a ball.
 
     .. math::
 

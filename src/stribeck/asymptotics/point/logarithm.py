@@ -19,7 +19,7 @@ LOGARITHM = COUETTE + POISEUILLE
 
 
 def far_integral(slope: Value, wetted_radius: Value | None = None) -> Array:
-    r"""Return what the liquid around the contact adds to the finite part of the friction integral, over the speed group.
+    r"""Return the contribution of the liquid around the contact to the friction integral, over the speed group.
 
     .. math:: \tfrac{16}{15} \pi \ln X
 

@@ -1,4 +1,4 @@
-r"""Regressions of the trade for the smooth ball, under their authors' names: central film, isoviscous and elastic.
+r"""Published regressions for the smooth ball, under their authors' names: central film, isoviscous and elastic.
 
 They were fitted to solutions with cavitation, in groups of their own:
 

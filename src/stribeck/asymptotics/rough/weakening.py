@@ -1,4 +1,4 @@
-r"""Where friction falls with speed at all: the weakening number, and the roughness from which it only grows.
+r"""Whether friction falls with speed: the weakening number, and the roughness beyond which friction only grows.
 
 The friction of [BP] near its minimum has one on either side of k = 0.4968 or none, see :func:`weakening_number`; ours is
 :func:`stribeck.asymptotics.rough.mixed.friction`, whose minimum is found numerically.
@@ -76,7 +76,7 @@ def weakening_number(groups: Groups, boundary_friction: float = 1.0, beta: float
 
 
 def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.0, form: Form = "uniform") -> Flags:
-    r"""Tell where friction has a minimum over the speed.
+    r"""Return whether friction has a minimum over the speed.
 
     .. math:: k < (3e)^{-1/3} = 0.4968
 
@@ -117,7 +117,7 @@ def has_minimum(groups: Groups, boundary_friction: float = 1.0, beta: float = 1.
 def roughness_without_minimum(
     load: Value, boundary_friction: float = 1.0, beta: float = 1.0, criterion: Criterion = "uniform"
 ) -> Value:
-    r"""Return the roughness from which the branch of falling friction is gone, by formulas.
+    r"""Return the roughness beyond which friction never falls with speed, by formulas.
 
     .. math::
 
@@ -198,7 +198,7 @@ def roughness_without_minimum(
 
 
 def checked_form(form: Form) -> Form:
-    """Return the form; refuse what is none."""
+    """Return the form; refuse an unknown one."""
     if form not in get_args(Form):
         raise InputError(f"form = {show(form)}; it must be 'uniform', 'exact', 'expansion' or 'leading'.")
     return form

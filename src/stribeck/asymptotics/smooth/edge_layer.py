@@ -1,4 +1,4 @@
-r"""The edge of a rough contact at rest: what joins its logarithmic gap to the gap of Hertz outside.
+r"""The edge of a rough contact at rest: how its logarithmic gap passes into the gap of Hertz outside.
 
 For kappa -> 0, with :math:`\xi` from the edge outwards in units of :math:`\kappa^{2/3}` a,
 

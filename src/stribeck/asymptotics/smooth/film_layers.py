@@ -1,4 +1,4 @@
-r"""Inlet and outlet of the smooth film, speed group -> 0: what joins the uniform film to the gap of Hertz outside.
+r"""Inlet and outlet of the smooth film, speed group -> 0: how the uniform film passes into the gap of Hertz outside.
 
 With :math:`\xi` from the edge outwards in units of :math:`\lambda^{2/5}` a, in both layers,
 

@@ -1,4 +1,4 @@
-r"""What the boundary layers at the edge of a contact share: a half-space under a pressure that grows like that of Hertz.
+r"""Common parts of the boundary layers at the edge of a contact: a half-space under a pressure that grows like that of Hertz.
 
 Near an edge of the Hertz contact, in a coordinate :math:`\xi` across the layer with the contact at :math:`\xi < 0`,
 

@@ -122,7 +122,7 @@ def wedge(load: float, fluid_number: float) -> Wedge:
     source="ours, from [BP] Eqs. (thin-film_dl), (contact_pressure_dl), (Hertz)",
 )
 def contact_load_share(groups: Groups) -> Value:
-    r"""Return the part of the load on asperities for a relative roughness of zero at this fluid number.
+    r"""Return the load share of the asperities in the limit of zero relative roughness at this fluid number.
 
     .. math:: S = \frac2\pi \int_{-1}^1 F^{-1/2} e^{-H} dx
 

@@ -80,7 +80,7 @@ class PlaneFilm(Protocol):
     """A film between surfaces that move along x, in the plane."""
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
-        """Return what flows."""
+        """Return the fluxes."""
 
     def slopes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> FluxSlopes:
         """Return its derivatives."""
@@ -125,7 +125,7 @@ class LinearPlane:
         return np.ones_like(gap)
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
-        """Return what flows."""
+        """Return the fluxes."""
         cos, sin = np.cos(mesh.angles)[:, None], np.sin(mesh.angles)[:, None]
         wide, carried = self.flow(gap, pressure)[:2]
         weight, angle = weights_of(mesh)

@@ -1,1 +1,1 @@
-"""Fluids that thin under a ball: the flow across the film, and what it carries in the plane."""
+"""Shear-thinning fluids under a ball: the flow across the film, and the flux in its plane."""

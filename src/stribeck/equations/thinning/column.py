@@ -197,7 +197,7 @@ def _solved(law: RateLaw, curve: FlowCurve, slope: Array, slip: Array, start: Ar
 
 
 def first_guess(law: RateLaw, curve: FlowCurve, slope: Array, slip: Array) -> Array:
-    """Return a mean stress at which the fluid is thinned by the larger one of slip and pressure gradient."""
+    """Return a first mean stress, thinned by the larger of slip and pressure gradient."""
     size = np.sqrt((slip * slip).sum(axis=0))
     by_slope = curve((slope * slope).sum(axis=0) / 12)[0]
     alone = law.stress(size)[0] / np.maximum(size, TINY)
@@ -205,7 +205,7 @@ def first_guess(law: RateLaw, curve: FlowCurve, slope: Array, slip: Array) -> Ar
 
 
 class _Integrals(NamedTuple):
-    """What is known at a mean stress: moments about the smallest stress, the step to take, and what is missing of r_0."""
+    """The integrals at a mean stress: moments about the smallest stress, the step to take, and the residual of r_0."""
 
     mean: Array
     slope: Array
@@ -221,7 +221,7 @@ class _Integrals(NamedTuple):
 
     @classmethod
     def at(cls, curve: FlowCurve, mean: Array, slope: Array, slip: Array) -> _Integrals:
-        """Return what is known at a mean stress."""
+        """Return the integrals at a mean stress."""
         steepness = (slope * slope).sum(axis=0)
         roots, moments = rule(curve.points)
         place = np.clip(-(mean * slope).sum(axis=0) / np.maximum(steepness, TINY), -0.5, 0.5)

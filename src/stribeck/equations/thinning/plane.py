@@ -27,7 +27,7 @@ from stribeck.numerics.fourier_panels import PolarMesh
 
 
 class _Local(NamedTuple):
-    """The flow across the film at the nodes of each panel, and what it was made for; vectors along and across the radius."""
+    """The flow across the film at the nodes of each panel, and the film that it is of; vectors along and across the radius."""
 
     key: tuple[Array, Array]
     gap: Array
@@ -44,7 +44,7 @@ class _Local(NamedTuple):
 
 @dataclass(frozen=True)
 class ThinningPlane:
-    """A fluid that thins, between smooth walls.
+    """A shear-thinning fluid between smooth walls.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class ThinningPlane:
     _last: list[_Local] = field(init=False, repr=False, compare=False, default_factory=list)
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
-        """Return what flows."""
+        """Return the fluxes."""
         at = self._local(mesh, speed, gap, pressure)
         radial, angular = _local_weights(mesh)
         flux = self._flux(at, speed)
