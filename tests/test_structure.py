@@ -39,7 +39,8 @@ LAYERS = (
     ("equations", "atlas", "asymptotics", "cases"),
     ("contacts",),
     ("solids", "contact_laws"),
-    ("numerics", "fluids", "files"),
+    ("fluids", "files"),
+    ("numerics",),
     ("quantities",),
     ("_types",),
 )

@@ -96,7 +96,7 @@ class Table:
             place = np.clip((log_rate - self.smallest) / WIDTH, 0.0, self.count * (1 - 1e-15))
             panel = place.astype(np.intp)
             basis = chebyshev.chebvander(2 * (place - panel) - 1, ORDER - 1)
-            return np.einsum("xfk,xk->fx", self.coefficients[panel], basis)
+            return np.asarray(np.einsum("xfk,xk->fx", self.coefficients[panel], basis))
 
         return Cells.of(by_panels, self.smallest, self.smallest + WIDTH * self.count, CELLS * self.count, TERMS)
 

@@ -53,7 +53,7 @@ class Cells:
     def __call__(self, x: Array) -> Array:
         """Return the functions at x, shape (..., *x.shape)."""
         cell, s = self._place(x)
-        found = self.coefficients[-1].take(cell, axis=-1)
+        found: Array = self.coefficients[-1].take(cell, axis=-1)
         for row in self.coefficients[-2::-1]:
             found *= s
             found += row.take(cell, axis=-1)
