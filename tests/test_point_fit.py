@@ -206,9 +206,3 @@ def test_a_lattice_of_a_smooth_ball_has_no_direction_of_roughness():
     made = Lattice(tuple(logs[0]), smooth.groups.physics, 1e-2, is_smooth=True)
     values, _ = made.at(np.array([[math.log(0.1), logs[0, 1], 0.0]]))
     assert values[0, 0] < 1e-200 and values[1, 0] != 0
-
-
-def test_a_curve_with_another_fluid_is_refused_by_name():
-    other = {"fluid": sb.fluids.Barus("500 1/GPa")}
-    with pytest.raises(sb.InputError, match="fits of a ball are for a Newtonian fluid"):
-        sb.fit(measured([0.5, 0.4, 0.3, 0.2, 0.1] * 2, inputs=({}, other)), TRUE, free=["boundary_friction"])

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -109,11 +108,3 @@ def test_where_the_film_breaks_derivatives_hold_the_torn_nodes(cavity):
             slope = (ends[0].values[each] - ends[1].values[each]) / 0.1
             allowed = (0.06 if cavity else 4e-3) * max(abs(c) for c in found[each])
             assert found[each][column] == pytest.approx(slope, abs=allowed), (group, each)
-
-
-@pytest.mark.quick
-def test_fits_say_what_they_leave_out():
-    from stribeck.fits.friction_parts import WAYS
-
-    with pytest.raises(sb.InputError, match="fits of a ball are for a Newtonian fluid"):
-        WAYS["point"](SimpleNamespace(contacts=(ball_with("barus"),)), "balanced", 1e-4)

@@ -4,9 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from ball_data import BALL
 from numpy.polynomial import legendre
-from test_point_fit import measured
 
 import stribeck as sb
 from stribeck.contact_laws.exponential import ExponentialLaw
@@ -174,13 +172,11 @@ def test_a_fluid_that_thins_breaks_behind_the_ball_too():
 
 
 @pytest.mark.quick
-def test_batches_and_fits_whose_logarithms_are_newtonian_refuse_it_by_name():
+def test_batches_whose_logarithms_are_newtonian_refuse_it_by_name():
     thinning = sb.Groups(0.1, 1e-3, 1e-3, geometry="point", model=Model(FILMS["carreau"]))
     batch = sb.solve_batch(thinning, rtol=1e-2)
     with pytest.raises(sb.InputError, match="fluid = carreau: the friction of a ball in a fluid that thins"):
         batch.friction()
-    with pytest.raises(sb.InputError, match="fits of a ball are for a Newtonian fluid"):
-        sb.fit(measured([0.5, 0.4, 0.35, 0.3, 0.3]), BALL.replace(fluid=Carreau("1 ms", 0.5)), free=["beta"])
 
 
 @pytest.mark.slow

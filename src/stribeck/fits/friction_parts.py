@@ -17,6 +17,7 @@ from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import table_for
 from stribeck.batches.chain import CHAIN_STEPS
+from stribeck.batches.kept import KeptStates
 from stribeck.batches.lattice import PARTS, STEPS, Lattice
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
@@ -53,6 +54,9 @@ MOST_KEPT = 60
 
 LATTICE_RTOL, BALL_RTOL = 3e-4, 1e-4
 """Tolerances of solved balls in the search, and the smallest in the values that a fit returns: far below what rigs resolve."""
+
+KEPT_RTOL = 1e-4
+"""Smallest tolerance of solved balls with other fluids and bodies."""
 
 LATTICE_ERROR = 3e-3
 """Largest relative error of the parts read off a lattice of balls; 2e-3 was found in the middle of a cell."""
@@ -306,15 +310,35 @@ def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> W
 
 def _of_ball(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
     if any(each.groups.model != ARTICLE for each in model.contacts):  # lattices know one model
-        raise InputError(
-            "fits of a ball are for a Newtonian fluid that does not cavitate, on a half-space; leave fluid, cavitation, flow "
-            "factors and solid out."
-        )
+        kept = kept_balls(model, definition, max(rtol, KEPT_RTOL))
+        return Ways(None, kept, kept)
     logs, varies = model.start()
     lattice, solved = lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL))
     if atlas.for_groups(model.contact.groups) is None:
         return Ways(None, lattice, solved)
     return Ways(atlas_parts(definition), _atlas_or(lattice, definition), solved)
+
+
+def kept_balls(model: FrictionModel, definition: Definition, rtol: float) -> PartsOf:
+    """Return the function that solves balls with other fluids and bodies, each from the nearest state of those before.
+
+    A fluid that thins far out counts up to the edge of the liquid of the contact as the fit begins.
+    """
+    states = KeptStates(rtol)
+    others = model.rule.of_contact(model.contact)
+
+    def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
+        rows = np.stack(np.broadcast_arrays(groups.speed, groups.load, groups.roughness), axis=1)
+        n, names = len(rows), [0, *(PARTS.index(name) for name in model.rule.parts(definition))]
+        values, slopes, errors = np.empty((4, n)), np.empty((4, 3 + len(changes), n)), np.empty((4, n))
+        ends = {str(change.input): change[1:] for change in changes}
+        for i in np.lexsort((-rows[:, 0], rows[:, 2], rows[:, 1])).tolist():
+            here = Groups(*rows[i].tolist(), **groups.physics)
+            slope = float(here.slope(others["beta"]))
+            values[:, i], slopes[:, :, i], errors[:, i] = states.at(here, ends, slope, others["wetted_radius"])
+        return FrictionParts(values[names], slopes[names], errors[names], definition)
+
+    return one_blas_thread(parts)
 
 
 WAYS: dict[str, Callable[[FrictionModel, Definition, float], Ways]] = {"line": _of_cylinder, "point": _of_ball}

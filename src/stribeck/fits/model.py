@@ -27,6 +27,7 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.with_parts import check_solid
@@ -353,13 +354,14 @@ class FrictionModel:
         found = self._parts(theta, x, curve, parts_of)
         names = self.rule.parts(found.definition)
         parts, inputs = dict(zip(names, found.values[1:], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
+        fixed = {"far": far_film(self.contact.groups.model)}
 
         def viscous(values: Any, groups: Any, others: Any) -> Any:
             """Return the viscous friction after changes of parts, of the logarithms of speed and load, and of inputs."""
             moved = {name: part + values[i] for i, (name, part) in enumerate(parts.items())}
             taken = {name: value * np.exp(others[i]) if others[i] else value for i, (name, value) in enumerate(inputs.items())}
             speed, load = x[:, 0] * np.exp(groups[0]), x[:, 1] * np.exp(groups[1])
-            return self.rule.viscous(moved, speed, load, taken, found.definition)
+            return self.rule.viscous(moved, speed, load, {**taken, **fixed}, found.definition)
 
         still, no_group, no_input = np.zeros((len(names), 1)), np.zeros(3), np.zeros(len(inputs))
         contact, fluid = x[:, 3] * found.values[0], viscous(still, no_group, no_input)
@@ -381,5 +383,5 @@ class FrictionModel:
             fluid_share=fluid / (contact + fluid),
             load_share=found.values[0],
             error=np.abs(x[:, 3]) * found.errors[0]
-            + self.rule.viscous_error(parts, errors, x[:, 0], x[:, 1], inputs, found.definition),
+            + self.rule.viscous_error(parts, errors, x[:, 0], x[:, 1], {**inputs, **fixed}, found.definition),
         )

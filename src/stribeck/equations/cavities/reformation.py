@@ -73,7 +73,7 @@ class ReformingEquations(TornEquations):
     """The discretised problem of a film that forms anew behind a cavity at the pressure ``least``."""
 
     finest: ClassVar[float] = 2e-3
-    part: ClassVar[float] = 4.0
+    part: ClassVar[float] = 5.0
     """Stated error over the difference between two meshes, as it falls no faster than the number of angles grows."""
 
     @cached_property

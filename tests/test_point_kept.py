@@ -1,0 +1,71 @@
+"""Fits of balls with other fluids: kept states with derivatives by the numbers of the fluid, and fits that find these."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from ball_data import BALL
+from test_point_fit import measured
+
+import stribeck as sb
+from stribeck.batches.kept import KeptStates, between
+from stribeck.cases.fit_settings import FitSettings
+from stribeck.contacts.model import Model
+from stribeck.fits.friction_parts import kept_balls
+from stribeck.fits.model import FrictionModel, free_inputs
+from stribeck.fluids.rate_laws import Carreau
+from stribeck.fluids.shear_thinning import ShearThinning
+
+SPEEDS = BALL.speed * np.geomspace(0.5, 4.0, 4)
+FLUIDS = {
+    "barus": ({"fluid": sb.fluids.Barus("2e-6 1/Pa")}, ("viscosity", "pressure_coefficient", "modulus")),
+    "carreau": ({"fluid": sb.fluids.Carreau("2 ms", 0.5)}, ("boundary_friction", "relaxation_time", "load")),
+}
+
+
+@pytest.mark.quick
+def test_between_two_models_lie_their_numbers():
+    one, other = (Model(ShearThinning(Carreau(t, n), slide=0.5)) for t, n in ((1.0, 0.5), (3.0, 0.7)))
+    found = between(one, other, 0.25)
+    assert found.film.law == Carreau(1.5, 0.55)
+    assert found.film.slide == 0.5
+    assert between(one, one, 0.3) == one
+
+
+@pytest.mark.parametrize("name", ["barus", pytest.param("carreau", marks=pytest.mark.slow)])
+def test_predictions_are_the_friction_of_solved_balls_and_their_slopes_its_differences(name):
+    parts, free = FLUIDS[name]
+    contact, data = BALL.replace(**parts), measured(np.ones(1), SPEEDS[1:2])
+    model = FrictionModel(contact, data, free_inputs(contact, data, free, FitSettings(geometry="point")))
+    of, theta, step = kept_balls(model, "balanced", 1e-5), 0.1 * np.ones(len(free)), 1e-2
+    found = model.predict(theta, of)
+    moved = model.contact_of(0, theta)
+    for i, speed in enumerate(SPEEDS[1:2]):
+        alone = sb.solve(moved.replace(speed=speed), rtol=1e-5).friction().total
+        assert found.friction[i] == pytest.approx(alone, rel=3e-5)
+    for i in range(len(free)):
+        move = step * np.eye(len(free))[i]
+        slope = (model.predict(theta + move, of).friction - model.predict(theta - move, of).friction) / (2 * step)
+        np.testing.assert_allclose(found.jacobian[:, i], slope, atol=1e-3 * np.abs(found.friction).max(), err_msg=free[i])
+
+
+@pytest.mark.quick
+def test_a_state_that_was_solved_is_not_solved_again(monkeypatch):
+    groups = sb.Groups(0.1, 1e-3, 1e-3, geometry="point", model=Model(ShearThinning(Carreau(0.3, 0.5))))
+    states = KeptStates(1e-3)
+    first = states.at(groups, {}, 0.1, math.inf)
+    monkeypatch.setattr("stribeck.batches.kept.next_state", None)
+    np.testing.assert_array_equal(states.at(replace(groups), {}, 0.1, math.inf)[0], first[0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", FLUIDS)
+def test_fits_of_balls_find_the_numbers_of_their_fluid(name):
+    parts, free = FLUIDS[name]
+    contact, free = BALL.replace(**parts), free[:2]
+    friction = np.asarray(sb.stribeck_curve(contact, speed=SPEEDS, rtol=1e-4).friction)
+    start = contact.replace(**{each: 1.2 * getattr(contact, each) for each in free})
+    found = sb.fit(measured(friction, SPEEDS), start, free=list(free))
+    for each in free:
+        assert getattr(found.contact, each) == pytest.approx(getattr(contact, each), rel=0.02), each
