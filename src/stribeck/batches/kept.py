@@ -15,10 +15,10 @@ from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import Model
 from stribeck.equations.point.observables import FrictionWithin
-from stribeck.solver.point.finish import finish_point
 from stribeck.solver.point.path import next_state, without_factors
 from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.sensitivity import GROUPS, derivatives_along, state_derivatives
+from stribeck.solver.point.solution import finish_point
 from stribeck.solver.point.state import PointState
 
 __all__ = ["KeptStates", "between"]
