@@ -174,7 +174,11 @@ def _table(poisson_ratio: float) -> Array:
 def _on_cells(poisson_ratio: float) -> Cells:
     """Return the smooth kernel over ``0 <= xi <= REACH``, quick to evaluate."""
     of_table = _table(poisson_ratio)
-    return Cells.of(lambda xi: np.asarray(chebyshev.chebval(2 * xi / REACH - 1, of_table), dtype=float), 0.0, REACH, CELLS, DEGREES)
+
+    def smooth(xi: Array) -> Array:
+        return np.asarray(chebyshev.chebval(2 * xi / REACH - 1, of_table), dtype=float)
+
+    return Cells.of(smooth, 0.0, REACH, CELLS, DEGREES)
 
 
 def smooth_kernel(xi: Array, poisson_ratio: float) -> Array:
