@@ -2,30 +2,41 @@
 
 Usage::
 
-    python benchmarks/curve_bound.py [--number 50] [--speeds 2001] [--rtol 1e-6] [--seed 17] [--minutes 60]
+    python benchmarks/curve_bound.py [--geometry line] [--number 50] [--speeds 2001] [--rtol 1e-6] [--seed 17] [--minutes 60]
 
-Load 1e-4 to 1 and relative roughness 1e-5 to 10, even in the logarithm; speeds from boundary plateau to hydrodynamic branch.
+Load 1e-4 to 1 and relative roughness 1e-5 to 10, of balls 1e-6 to 0.5 and 1e-3 to 1, even in the logarithm; speeds from
+boundary plateau to hydrodynamic branch.
 Contact laws by turns: exponential, Persson's, Greenwood and Williamson's, Greenwood and Tripp's, a table.  The true values are
-those of states solved one after the other, to 1e-9 or a tenth of a smaller tolerance.  Prints one row a curve: states that it
-was made of, part of the speeds at which all errors are covered, the worst miss over the stated error and the observable.
+those of states solved one after the other, to 1e-9 or a tenth of a smaller tolerance; of balls each from cold, to a twentieth.
+Prints one row a curve: states that it was made of, part of the speeds at which all errors are covered, the worst miss over the
+stated error and the observable.
 """
 
 from __future__ import annotations
 
 import argparse
 import time
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
 import stribeck as sb
 from stribeck.contact_laws.law import AsperityLaw
+from stribeck.contacts.scaling import SCALINGS
 from stribeck.quantities.outputs import ABSOLUTE, NAMES
+from stribeck.solver.point.state import OBSERVABLES
 
 LAWS = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table")
 
 OFFSET_FLOOR = 5e-3
 """The error of the offset is relative to it where it exceeds this."""
+
+BOXES = {"line": ((-4, -5), (0, 1)), "point": ((-6, -3), (np.log10(0.5), 0))}
+"""Ends of the logarithms of load and relative roughness."""
+
+UNPLACED = tuple(name for name in OBSERVABLES if name not in ("minimum_radius", "minimum_angle"))
+"""Observables of a ball but for where its minimum is."""
 
 
 @cache
@@ -39,9 +50,9 @@ def law_of(name: str) -> AsperityLaw | None:
     return {"greenwood-williamson": sb.GreenwoodWilliamson(), "greenwood-tripp": sb.GreenwoodTripp()}.get(name)
 
 
-def draw(seed: int, number: int) -> tuple[str, float, float]:
+def draw(seed: int, number: int, geometry: str = "line") -> tuple[str, float, float]:
     """Return law, load and relative roughness of one curve; that of a number does not depend on the others."""
-    load, kappa = 10 ** np.random.default_rng([seed, number]).uniform((-4, -5), (0, 1))
+    load, kappa = 10 ** np.random.default_rng([seed, number]).uniform(*BOXES[geometry])
     return LAWS[number % len(LAWS)], float(load), float(kappa)
 
 
@@ -61,9 +72,22 @@ def misses(curve: sb.StribeckCurve, speeds: np.ndarray) -> tuple[np.ndarray, int
     return found, int(np.isnan(found).all(axis=1).sum())
 
 
+def misses_of_ball(curve: sb.StribeckCurve, speeds: np.ndarray) -> tuple[np.ndarray, int]:
+    """Return the same for a curve of a ball."""
+    here, found = curve.at(speeds), np.full((len(speeds), len(UNPLACED)), np.nan)
+    scales = {name: np.array([s.state.scales[name] for s in map(curve._at, np.log(speeds))]) for name in UNPLACED}
+    for i, speed in enumerate(speeds.tolist()):
+        exact = sb.solve(replace(curve.solutions[0].groups, speed=speed), rtol=max(1e-8, 0.05 * curve.rtol)).state
+        for j, name in enumerate(UNPLACED):
+            true = exact.values[name]
+            found[i, j] = abs(here.values[name][i] - true) / scales[name][i] / (here.errors[name][i] + exact.errors[name])
+    return found, 0
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--geometry", choices=sorted(BOXES), default="line")
     parser.add_argument("--number", type=int, default=50)
     parser.add_argument("--speeds", type=int, default=2001)
     parser.add_argument("--rtol", type=float, default=1e-6)
@@ -76,20 +100,21 @@ def main() -> None:
     for number in range(arguments.number):
         if time.monotonic() - start > 60 * arguments.minutes:
             break
-        name, load, kappa = draw(arguments.seed, number)
-        law = law_of(name)
-        base = sb.Groups(1.0, load, kappa * load, **({} if law is None else {"law": law}))
+        name, load, kappa = draw(arguments.seed, number, arguments.geometry)
+        law, of = law_of(name), arguments.geometry
+        roughness = kappa * load ** SCALINGS[of].roughness_exponent
+        base = sb.Groups(1.0, load, roughness, geometry=of, **({} if law is None else {"law": law}))
         curve = sb.stribeck_curve(base, points=2, rtol=arguments.rtol)
         speeds = np.geomspace(*curve.values[[0, -1]], arguments.speeds)
         speeds[[0, -1]] = curve.values[[0, -1]]
-        found, lost = misses(curve, speeds)
+        found, lost = (misses if of == "line" else misses_of_ball)(curve, speeds)
         worst = np.nanmax(found, axis=1)
         where = np.unravel_index(np.nanargmax(found), found.shape)
         stated = float(np.nanmax(curve.at(speeds).relative_errors))
         covered = float((worst <= 1).sum() / max(1, len(speeds) - lost))
         print(
             f"| {number} | {name} | {load:.2g} | {kappa:.2g} | {curve.states} | {stated:.1e} | {covered:.4f} "
-            f"| {worst[where[0]]:.2g} | {NAMES[where[1]]} |",
+            f"| {worst[where[0]]:.2g} | {(NAMES if of == 'line' else UNPLACED)[where[1]]} |",
             flush=True,
         )
 

@@ -84,10 +84,9 @@ def report(name: str, rtol: float, cost: float, state: PointState) -> None:
 
 
 def curve(count: int) -> None:
-    """Print the cost of curves from full film to boundary lubrication, with minimum and transitions, and errors of all points."""
-    print(
-        "\n| curve | rtol | states | cost | with transitions | largest estimate | of the minimum film |\n|---|---|---|---|---|---|---|"
-    )
+    """Print the cost of curves from full film to boundary lubrication, and the largest errors of their points."""
+    print("\n| curve | rtol | states | cost | with transitions | largest estimate | of the minimum film |")
+    print("|---|---|---|---|---|---|---|")
     for points, rtol in ((count, 1e-5), (101, 1e-5), (101, 1e-6)):
 
         def trace(points: int = points, rtol: float = rtol) -> sb.StribeckCurve:
