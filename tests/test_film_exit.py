@@ -147,3 +147,16 @@ def test_the_minimum_of_friction_of_a_film_that_ends_is_that_of_an_independent_s
     speed, friction = REFERENCE["friction_minimum"]["0.1,0.001"]["free_exit"]
     assert curve.minimum.friction == pytest.approx(friction, rel=1e-6)
     assert curve.minimum.value == pytest.approx(speed, rel=1e-3)  # the minimum is flat
+
+
+def test_a_cavity_closes_as_the_root_of_the_suction_that_is_too_large():
+    """Close to the speed at which the film ceases to rupture, where no path from a film that ends leads."""
+    parts = {"cavitation": "reform", "cavity_pressure": -0.0864869}
+    lengths = []
+    for speed in (4.895e-4, 4.925e-4, 5.0e-4):
+        s = sb.solve(sb.Groups(speed, 0.21052, 3.4722e-3), **parts)
+        lengths.append(s.reformation_position - s.exit_position)
+    assert 0 < lengths[0] < 0.012
+    squares = np.diff(np.square(lengths)) / np.diff([4.895e-4, 4.925e-4, 5.0e-4])
+    assert squares[0] == pytest.approx(squares[1], rel=0.15)
+    assert np.isnan(sb.solve(sb.Groups(4.87e-4, 0.21052, 3.4722e-3), **parts).exit_position)

@@ -31,6 +31,7 @@ from stribeck.solids.half_plane import HalfPlane
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.base_solution import BaseSolution
 from stribeck.solver.cold_start import first_path
+from stribeck.solver.models.towards import ruptured
 from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
 from stribeck.solver.refinement import RefinedState, converge, order_for
 from stribeck.solver.solution import Solution
@@ -239,6 +240,11 @@ def _reforming(groups: Groups, rtol: float) -> RefinedState:
     assert point.state is not None
     if float(point.state.equations.pressures(point.state.y)[1].min()) >= model.cavity_pressure:
         return replace(point, groups=groups)
+    guess = ruptured(groups, point.state)
+    if guess is not None:
+        found = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+        if found.outcome.ok:
+            return found
     return _refined(groups, groups, rtol, far)
 
 

@@ -9,7 +9,8 @@ must, at once if Newton's iteration manages that, else along
     G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film}, \qquad
     D = (1 - t) \, D_\mathrm{half-plane} + t \, D_\mathrm{solid}
 
-Last a film that ends at ambient pressure begins anew behind a cavity of lower pressure.
+Last a film that ends at ambient pressure begins anew behind a cavity of lower pressure.  That is the long way: the full film of
+the fluid itself mostly tells where it ruptures, see :func:`ruptured`.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.solid import Lengths, Solid, lengths_of
 
-__all__ = ["path_to_model"]
+__all__ = ["path_to_model", "ruptured"]
 
 ORDER = 10
 MESH_TOLERANCE = 1e-3
@@ -48,7 +49,7 @@ FINER = (12, 1e-5)
 MOST_STEPS = 100
 
 LOOKED_AT = 4001
-"""Points at which the end of the full film is looked for."""
+"""Points at which the end of the full film and its largest suction are looked for."""
 
 NEAREST_EXIT = 0.4
 """Part of the width of a contact from the middle within which no film ends."""
@@ -68,6 +69,13 @@ CAVITIES = 4001
 
 FIRST_SUCTIONS = (0.3, 0.03, 1e-3)
 """Parts of the largest suction that a film could begin anew with, with which the cavity begins: the longer the likelier."""
+
+CAVITY_PARTS = (0.52, 0.75, 1.0, 2.0)
+"""Lengths of a cavity over that of the stretch on which the suction of the full film is too large: half of it where the cavity
+is short, as the flow that is missing behind lowers the pressure too."""
+
+BEFORE_LOWEST = 0.03
+"""Distance of the rupture from the place of the largest suction, over the length of the cavity."""
 
 DEEPENING = Steps(0.5, 1.0, 1e-3)
 SLOWING = Steps(0.7, 2.0, 1e-3)
@@ -246,6 +254,28 @@ def path_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> P
     if model.film == Newtonian() and model.solid == solid:
         return _extended(path, state)
     return _blended(groups, path, state)
+
+
+def ruptured(groups: Groups, full: State) -> State | None:
+    """Return a coarse state of groups whose film ruptures and begins anew, from that of their full film; None if none is found.
+
+    However short the cavity: it is the shorter the nearer the full film, and the guess the better.
+    """
+    pressure = groups.model.cavity_pressure
+    x = np.sort(full.mesh.nodes)
+    below = np.flatnonzero(full.fields(x)[1] < pressure)
+    if not len(below):
+        return None
+    x = np.linspace(x[max(below[0] - 1, 0)], x[min(below[-1] + 1, len(x) - 1)], LOOKED_AT)
+    suction = full.fields(x)[1]
+    between = x[suction < pressure]
+    lowest, stretch = float(x[np.argmin(suction)]), float(between[-1] - between[0])
+    for part in CAVITY_PARTS:
+        length = part * stretch
+        found = _settled(groups, SeenFrom(full, lowest - BEFORE_LOWEST * length, length, pressure))
+        if found is not None:
+            return found
+    return None
 
 
 def _reforming(groups: Groups, ended: Path[State]) -> Path[State]:
