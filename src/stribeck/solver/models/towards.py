@@ -9,8 +9,8 @@ must, at once if Newton's iteration manages that, else along
     G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film}, \qquad
     D = (1 - t) \, D_\mathrm{half-plane} + t \, D_\mathrm{solid}
 
-Last a film that ends at ambient pressure begins anew behind a cavity of lower pressure.  That is the long way: the full film of
-the fluid itself mostly tells where it ruptures, see :func:`ruptured`.
+Last a film that ends at ambient pressure begins anew behind a cavity of lower pressure.  That is the long way: the full film
+of the fluid itself mostly tells where it ruptures, see :func:`ruptured`.
 """
 
 from __future__ import annotations
@@ -257,7 +257,7 @@ def path_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> P
 
 
 def ruptured(groups: Groups, full: State) -> State | None:
-    """Return a coarse state of groups whose film ruptures and begins anew, from that of their full film; None if none is found.
+    """Return a coarse state of groups whose film ruptures and begins anew, from that of their full film, or None.
 
     However short the cavity: it is the shorter the nearer the full film, and the guess the better.
     """
