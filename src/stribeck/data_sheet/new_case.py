@@ -17,7 +17,7 @@ __all__ = ["new_case"]
 PARTS = """
 # A fluid that is not Newtonian, a film that breaks, a thin layer: remove the # of a table and of what you know.
 # [fluid]
-# preset = "water"   # or glycerol-water, silicone-oil, pao-4, ...: gives the viscosity too, at temperature = "25 degC"
+# preset = "water"   # or glycerol-water, silicone-oil, pao-10, ...: gives the viscosity too, at temperature = "25 degC"
 # model = "carreau"   # or cross, eyring, power-law; with relaxation_time = "1 ms", exponent = 0.7
 # pressure_viscosity = "20 1/GPa"   # viscosity_law = "barus" or "roelands"
 # [cavitation]

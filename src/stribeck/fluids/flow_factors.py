@@ -94,10 +94,10 @@ class PatirCheng(FlowFactors):
 
     Notes
     -----
-    Fitted for H >= 0.5; below, a note is written, and the flow falls to 1e-4 of that between smooth surfaces.  Where two formulas
-    meet, at 5 and 0.5, bends stand for the jump and the kink: the factors differ from the fits by 0.45 % and 4 % at most.  The factor of
-    the shear, :math:`\phi_f`, is the mean of 1/h, which the authors cut off at widths of :math:`\sigma/100`: where
-    asperities touch, it holds no more than that choice.
+    Fitted for H >= 0.5; below, a note is written, and the flow falls to 1e-4 of that between smooth surfaces.  Where two
+    formulas meet, at 5 and 0.5, bends stand for the jump and the kink: the factors differ from the fits by 0.45 % and 4 % at
+    most.  The factor of the shear, :math:`\phi_f`, is the mean of 1/h, which the authors cut off at widths of
+    :math:`\sigma/100`: where asperities touch, it holds no more than that choice.
 
     Source: [Patir & Cheng 1978] Eq. (15), [Patir & Cheng 1979].
     """
