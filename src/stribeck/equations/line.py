@@ -41,6 +41,9 @@ from stribeck.quantities.outcome import Outcome
 
 __all__ = ["LOAD", "Equations", "Operators", "gradient_in_film", "slopes_in_film"]
 
+COLUMNS = 32
+"""Columns of a Jacobian made at once: a product as large as the whole takes new memory, which costs more than the product."""
+
 
 def gradient_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | None, flux_gap: Numbers) -> Array:
     """Return G at the nodes where the film is full, zero in the cavity."""
@@ -262,7 +265,9 @@ class Equations:
             deflection = scaled.deflection_of_gradient if of_pressure is None else of_pressure[:n]
             load = scaled.load_of_gradient if of_pressure is None else of_pressure[n]
             assert deflection is not None
-            block -= np.multiply(deflection, speed * g_h, out=op.scratch)
+            for first in range(0, n, COLUMNS):
+                part = slice(first, first + COLUMNS)
+                block[:, part] -= deflection[:, part] * (speed * g_h[part])
             matrix[:n, flux] = deflection @ (-speed * g_flux)
             matrix[offset, :n] += load * (speed * g_h)
             matrix[offset, flux] = speed * (load @ g_flux)

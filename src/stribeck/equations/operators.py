@@ -117,11 +117,6 @@ class Operators:
         return np.asfortranarray(self.integral.after(self.deflection))
 
     @cached_property
-    def scratch(self) -> Array:
-        """Memory for a product of that size: what is taken anew each time costs more than the product."""
-        return np.empty_like(self.deflection_of_gradient)
-
-    @cached_property
     def load_of_gradient(self) -> Array:
         """Row w A: nodal pressure gradients -> load."""
         return np.asarray(self.integral.after(self.weights[None, :])[0])

@@ -36,17 +36,19 @@ RELAX = 3.0
 class Corrector:
     """Solve states one after another: ``groups_at(s)`` gives the groups at coordinate s.
 
-    It keeps the operators of the present mesh, whose making costs as much as several states.
+    It keeps the operators of the present mesh, whose making costs as much as several states.  ``gap_part`` is the part of the
+    usual tolerance to which its meshes resolve the gap where it is read off.
     """
 
-    def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
+    def __init__(self, groups_at: Callable[[float], Groups], rtol: float, gap_part: float = 1.0) -> None:
         self.groups_at = groups_at
         self.rtol = rtol
+        self.gap_part = gap_part
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
         self.inverse: Inverse | None = None
         self.since_check = 0
-        self.tolerances = mesh_tolerances_for(rtol)
+        self.tolerances = self._widest
 
     def __call__(self, s: float, history: Sequence[tuple[float, RefinedState]]) -> RefinedState | None:
         """Return the state at ``s`` predicted from ``history``; from cold where that is empty."""
@@ -111,9 +113,15 @@ class Corrector:
         if mesh.size < WORTH_COARSENING * state.mesh.size:
             self.operators, self.fine, self.inverse = Operators(mesh, state.groups.model), FineOperators(mesh), None
 
-    def _relax(self) -> None:
-        """Widen the tolerances, up to those that a first mesh has."""
+    @property
+    def _widest(self) -> tuple[float, float]:
+        """The tolerances that a first mesh has."""
         tail, gap_tail = mesh_tolerances_for(self.rtol)
+        return tail, self.gap_part * gap_tail
+
+    def _relax(self) -> None:
+        """Widen the tolerances, up to the widest."""
+        tail, gap_tail = self._widest
         self.tolerances = min(tail, RELAX * self.tolerances[0]), min(gap_tail, RELAX * self.tolerances[1])
 
     def _adopt(self, point: RefinedState) -> RefinedState:

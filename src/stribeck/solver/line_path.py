@@ -49,6 +49,9 @@ SHORTEST_REACH = 0.02
 MOST_TRIALS = 4
 """Expansions of a state after which the distance is left as it is."""
 
+GAP_PART = 0.1
+"""Part of the usual tolerance to which a mesh resolves the gap where it is read off: states beside it are read there too."""
+
 SPREAD = 1.6
 """Part of the way of the minimum gap from the state before on which a mesh also resolves the gap."""
 
@@ -104,7 +107,7 @@ class LineProblem:
         self.exact = self.analytic and is_exponential(start.law)
         orders = EXACT_ORDER if self.exact else ORDER
         self.order = orders[rtol < 1e-7] if self.analytic else ORDER_OF_ANY_FILM
-        self.corrector = Corrector(groups_at, self.rtol)
+        self.corrector = Corrector(groups_at, self.rtol, GAP_PART)
         self.failure: RefinedState | None = None
 
     @property
