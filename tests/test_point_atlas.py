@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.model import Model
 from stribeck.curves.sensitivities import friction_sensitivities
 from stribeck.evidence.atlas_certificate import compare, quantities, random_states, solved
+from stribeck.evidence.atlas_states import groups_of
 from stribeck.explorer.curves import curve_from_atlas, in_atlas, transition_marks
 from stribeck.fits.friction_parts import atlas_parts, ways_of
 from stribeck.fits.model import FrictionModel, free_inputs
@@ -20,7 +22,7 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.regimes.phase_from_atlas import transition_speeds
 from stribeck.uncertainty.states import states_of
 
-BALL = next(row for row in TABLES if row.name == "ball-exponential")
+BALL, PERSSON = (next(row for row in TABLES if row.name == name) for name in ("ball-exponential", "ball-persson"))
 
 
 def ball(speed=2e-2, load=0.05, kappa=2e-2, beta=0.05, **changes):
@@ -41,6 +43,10 @@ def ball(speed=2e-2, load=0.05, kappa=2e-2, beta=0.05, **changes):
         **{name: speed * modulus * a**4 / (3 * math.pi * viscosity * radius**3) / (2 if changes.get("slide_to_roll") else 1)},
         **changes,
     )
+
+
+PERSSON_LIKE = groups_of(PERSSON, 1e-3, 1.0, 1e-2)
+"""A state under the law of Persson's table."""
 
 
 def of_ball(speed, load, kappa):
@@ -136,6 +142,44 @@ def test_sensitivities_read_off_it_are_the_solved_ones():
     _, right = friction_sensitivities(contact, rtol=1e-5)
     _, found = friction_sensitivities(contact, method="atlas")
     assert found == pytest.approx(right, abs=5e-3)
+
+
+# --- under the law of Persson ---
+
+
+@pytest.fixture(scope="module")
+def rubber():
+    """Return a shipped ball: load group 2.2, and the spectrum of the table."""
+    return sb.load_case(Path(__file__).parents[1] / "examples" / "rubber_ball.toml").contact
+
+
+def test_a_real_ball_with_the_law_of_persson_is_read_off_its_table(rubber):
+    ends = {"speed": (1e-3, 0.1), "points": 4, "rtol": 1e-4}
+    read, exact = (sb.stribeck_curve(rubber, **ends, method=method) for method in ("atlas", "solver"))
+    assert read.table is PERSSON
+    assert (np.abs(read.friction - exact.friction) < read.friction_error).all()
+    assert np.allclose(read.observable("central_gap"), exact.observable("central_gap"), rtol=2e-3)
+    assert in_atlas(rubber)
+    assert transition_marks(rubber, "balanced")
+
+
+def test_heavy_balls_are_as_good():
+    groups = replace(PERSSON_LIKE, load=300.0, roughness=5e-3 * 300.0 ** (2 / 3))
+    speeds = np.array([1e-6, 1e-4, 1e-2])
+    solved = sb.stribeck_curve(groups, speed=speeds, rtol=1e-4, beta=0.02)
+    assert sb.atlas.friction(replace(groups, speed=speeds), beta=0.02) == pytest.approx(solved.friction, rel=PERSSON.error)
+
+
+@pytest.mark.quick
+def test_at_rest_heavy_balls_have_their_friction_and_no_films():
+    at_rest = replace(PERSSON_LIKE, speed=0.0, load=100.0, roughness=1e-2 * 100.0 ** (2 / 3))
+    assert sb.atlas.covers(at_rest)
+    assert sb.atlas.contact_load_share(at_rest) == 1.0
+    assert sb.atlas.friction(at_rest, 0.7, 0.02) == 0.7
+    with pytest.raises(sb.InputError, match="central_gap for loads up to 30"):
+        sb.atlas.central_gap(at_rest)
+    lighter = replace(at_rest, load=1.0, roughness=1e-2)
+    assert sb.atlas.central_gap(lighter) == pytest.approx(sb.solve(lighter, rtol=1e-4).central_gap, rel=2e-3)
 
 
 # --- what reads it ---

@@ -157,6 +157,8 @@ class Grid:
         Power of the speed in the fluid's share at small speed.
     films : tuple of float
         Speeds between which smooth films are tabulated.
+    resting : float
+        Smallest L whose films at rest are held; at larger loads they are far from those of the smallest speed.
     """
 
     regions: tuple[Region, ...]
@@ -164,6 +166,7 @@ class Grid:
     load_factor: float = 1.0
     power: int = 2
     films: tuple[float, float] = (MIN_SPEED, 1e6)
+    resting: float = 0.0
 
     def log_load(self, load: Array) -> Array:
         """Return L of a load group, not beyond the regions."""
@@ -214,6 +217,18 @@ BALL_EXPONENTIAL = Grid(
     films=(1e-3, 1e3),
 )
 """Ball, exponential law, full film: L = -2/3 ln(load), as the pressure goes with the cube root of the load."""
+
+BALL_PERSSON = Grid(
+    (
+        Region((5e-4, 0.1), (0.0, math.log(1e3 / 30)), (1, 1), (9, 6), (0, 8, 8, 6, 7, 8), 8.0),
+        Region((5e-4, 0.1), (math.log(1e3 / 30), math.log(1e6)), (1, 1), (10, 8), (4, 8, 7, 6, 7, 8), 8.0),
+    ),
+    heaviest=1e3,
+    films=(1e-3, 1e3),
+    resting=math.log(1e3 / 30),
+)
+"""Ball, Persson's law, full film. Above load 30 nearly all of the dry surface is in contact, and the share of slow fluid goes
+with so small a power of the speed that rest is far from every speed of use: segments begin at the smallest."""
 
 
 def chebyshev(x: Array, terms: int) -> Array:

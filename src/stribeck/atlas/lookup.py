@@ -66,6 +66,12 @@ def look_up(groups: Groups, names: tuple[str, ...], slopes: bool = False) -> Loo
             f"load has the value {load[closing][0]:g} at speed 0; there, at relative roughness below {NEARLY_SMOOTH:g}, the "
             f"atlas holds the flux gap for loads up to {math.exp(-HEAVY):.4g}. Use solve."
         )
+    unheld = [name for name in (CENTRAL, MINIMUM, DEFLECTION) if name in names]
+    if unheld and (heavy := closing & (log_load < grid.resting)).any():
+        raise InputError(
+            f"load has the value {load[heavy][0]:g} at speed 0; there the table {held.name} holds {unheld[0]} for loads up to "
+            f"{grid.load_at(grid.resting):g}. Use solve."
+        )
     functions = tuple(held.functions.index(name) for name in names)
     found = held.table.read(functions, log_speed, np.where(closing, HEAVY, log_load), inside, slopes)
     # At rest the load shifts the gap and does nothing else.
@@ -74,6 +80,8 @@ def look_up(groups: Groups, names: tuple[str, ...], slopes: bool = False) -> Loo
     for row, name in enumerate(names):
         if name in (CENTRAL, MINIMUM):
             found.values[row, closing] = np.log(np.exp(found.values[row, closing]) + shift)
+        if name == ODDS:
+            found.values[row, closing] = -math.inf
         found.values[row, dry] = DRAG[held.geometry].dry_offset if name == DEFLECTION else -math.inf
     return Lookup(held, speed, load, found)
 

@@ -8,7 +8,15 @@ from functools import lru_cache
 import numpy as np
 
 from stribeck._types import Flags
-from stribeck.atlas.grid import BALL_EXPONENTIAL, LINE_EXPONENTIAL, LINE_PERSSON, MIN_LOAD, MIN_SPEED, Grid
+from stribeck.atlas.grid import (
+    BALL_EXPONENTIAL,
+    BALL_PERSSON,
+    LINE_EXPONENTIAL,
+    LINE_PERSSON,
+    MIN_LOAD,
+    MIN_SPEED,
+    Grid,
+)
 from stribeck.atlas.table import FAR, FUNCTIONS, Table, load_table
 from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contacts.groups import Geometry, Groups
@@ -140,6 +148,16 @@ TABLES = (
         1.5e-3,
         "ball_exponential.npz",
         BALL_EXPONENTIAL,
+    ),
+    TableRow(
+        "ball-persson",
+        "point",
+        "persson",
+        Cavitation.NONE,
+        {"speed": (1e-8, 1e2), "load": (1e-3, 1e3), "relative_roughness": (5e-4, 0.05)},
+        2e-3,
+        "ball_persson.npz",
+        BALL_PERSSON,
     ),
 )
 """The tables; the first that holds answers."""

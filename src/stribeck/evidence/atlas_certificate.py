@@ -19,11 +19,11 @@ from stribeck._types import Array
 from stribeck.atlas.tables import TABLES, Box, TableRow
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.friction_rules import RULES
-from stribeck.contacts.groups import Geometry, Groups
+from stribeck.contacts.groups import Groups
 from stribeck.evidence.atlas_states import FROM, groups_of
 from stribeck.solver.solve import solve
 
-RTOL = {"line-exponential": 1e-7, "ball-exponential": 1e-5}
+RTOL = {"line-exponential": 1e-7, "ball-exponential": 1e-5, "ball-persson": 1e-5}
 """Tolerance of the states that judge, as far as double precision and time give it; 1e-6 for other tables."""
 
 MIN_SHARE = 1e-9
@@ -41,10 +41,14 @@ SHARED = 0.01
 TRIES = 20
 """States drawn for each in mixed lubrication; about one in nine is."""
 
-BETAS: dict[Geometry, tuple[float, float]] = {"line": (1.0, 0.01), "point": (0.1, 0.01)}
-"""Coefficients of the contact law, of whole balls such that a/R is below 0.3, at friction coefficient 1 of the dry contact.
+BETAS: dict[str, tuple[float, float]] = {"ball-exponential": (0.1, 0.01), "ball-persson": (0.02, 0.002)}
+"""Coefficients of the contact law, of whole balls such that a/R is below 0.3, at friction coefficient 1 of the dry contact;
+1 and 0.01 for cylinders. The viscous friction itself is judged at the first."""
 
-The viscous friction itself is judged at the first."""
+
+def betas(row: TableRow) -> tuple[float, float]:
+    """Return the coefficients of the contact law that a table is judged at."""
+    return BETAS.get(row.name, (1.0, 0.01))
 
 
 def films_of(row: TableRow) -> tuple[str, ...]:
@@ -55,7 +59,7 @@ def films_of(row: TableRow) -> tuple[str, ...]:
 def quantities(row: TableRow) -> tuple[str, ...]:
     """Return the quantities of a table that are judged, in the order of the errors."""
     kinds = DEFINITIONS[::-1]
-    frictions = (f"friction, {definition}, beta = {beta:g}" for beta in BETAS[row.geometry] for definition in kinds)
+    frictions = (f"friction, {definition}, beta = {beta:g}" for beta in betas(row) for definition in kinds)
     viscous = (f"viscous friction, {definition}" for definition in kinds)
     return (*frictions, *viscous, *films_of(row), "offset", "contact load share", "fluid load share")
 
@@ -156,7 +160,7 @@ def compare(speed: Array, load: Array, kappa: Array, observed: Array, row: Table
         return share, viscous, rule.viscous(parts, speed, load, inputs, definition)
 
     kinds = DEFINITIONS[::-1]
-    all_terms = [terms(beta, definition) for beta in BETAS[row.geometry] for definition in kinds]
+    all_terms = [terms(beta, definition) for beta in betas(row) for definition in kinds]
     found = [(share + viscous) / (contact + right) for share, viscous, right in all_terms]
     found += [viscous / right for _, viscous, right in all_terms[: len(kinds)]]
     found += [np.asarray(getattr(atlas, name)(groups)) / solved_values[name] for name in films_of(row)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -19,10 +20,12 @@ from stribeck.contacts.groups import Groups
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.solver.solve import solve
 
-GAPS = (0.5, 2.0, 6.5, 30.0)
-"""Central gaps over the relative roughness at which segments end that begin at the smallest speed, where the law has no shares
-of its own to go by."""
+GAPS = (0.5, 2.0, 6.5)
+"""Central gaps over the relative roughness at which segments end that begin at the smallest speed: asperities may carry any
+share there already. The last ends with their share, like the others."""
 
+LOST = 1e-4
+"""Share of the fluid over the tolerance below which it is rounding, and taken by its law of slow speeds."""
 
 SEPARATIONS = np.geomspace(1e-4, 60.0, 600)
 """Separations at which the law of a table is kept."""
@@ -56,6 +59,7 @@ PLANS = {
     "line-exponential": Plan(),
     "line-persson": Plan(1e-5, 1e-3, 1e-6, (5, 4), 0.5, (4, 16)),
     "ball-exponential": Plan(1e-4, 1e-3, 1e-5, (5, 4), 0.9, (1, 18)),
+    "ball-persson": Plan(1e-4, 1e-3, 1e-5, (5, 4), 0.9, (1, 18)),
 }
 """The tables by their names."""
 
@@ -86,15 +90,20 @@ def solved(row: TableRow, log_speeds: Array, log_load: float, kappa: float, rtol
     for s in log_speeds.tolist():
         if round(s, 9) not in states:  # lost from its neighbours: from cold, and finer
             states[round(s, 9)] = solve(groups_of(row, math.exp(s), load, kappa), rtol=0.1 * rtol)
-    return tabulated(row, [states[round(s, 9)].observables for s in log_speeds.tolist()], log_speeds, load)
+    found = [states[round(s, 9)].observables for s in log_speeds.tolist()]
+    return tabulated(row, found, log_speeds, load)
 
 
-def tabulated(row: TableRow, observed: list[object], log_speeds: Array, load: float) -> Array:
+def tabulated(row: TableRow, observed: list[Any], log_speeds: Array, load: float) -> Array:
     """Return the functions of a table on solved states, shape (states, functions)."""
     names = FROM[row.geometry]
     values = dict(zip(names, np.array([[getattr(o, name) for name in names] for o in observed]).T, strict=True))
     with np.errstate(divide="ignore"):
         odds = np.log(values["fluid_load_share"]) - np.log(values["contact_load_share"])
+    slow = values["fluid_load_share"] < LOST * PLANS[row.name].rtol
+    if slow.any() and not slow.all():
+        first = int(np.argmin(slow))
+        odds[:first] = odds[first] + row.grid.power * (log_speeds[:first] - log_speeds[first])
     central, minimum = np.log(values["central_gap"]), np.log(values["minimum_gap"])
     deflection = values["offset"] - values["central_gap"]
     if row.geometry == "line":
@@ -119,11 +128,13 @@ FROM = {
 # --- where segments end ---
 
 
-def speed_range(row: TableRow, log_load: float, kappa: float) -> tuple[float, float]:
+def speed_range(row: TableRow, log_load: float, kappa: float, has_rest: bool = True) -> tuple[float, float]:
     """Return logarithms of speeds from rest to the film without asperities, roughly, by the scales of wedge and film."""
     if row.law == "exponential":
         rest = 0.5 * log_load
         gap = math.log(2) + 0.5 * math.log1p(8 * kappa / math.pi) + rest
+    elif not has_rest:
+        gap = rest = 1.0
     else:
         rest = float(solve(groups_of(row, 0.0, row.grid.load_at(log_load), kappa), rtol=1e-3).central_gap) / kappa
         gap = rest
@@ -145,7 +156,8 @@ def breaks_on(row: TableRow, log_speeds: Array, found: Array, kappa: float, has_
     s, odds, central = log_speeds[there], odds[there], central[there]
     if not has_rest and row.law != "exponential":
         ends = PchipInterpolator(np.log(central), s)(np.log(kappa * np.array(GAPS)))
-        return np.array([math.log(row.box["speed"][0]), *ends.tolist()])
+        last = PchipInterpolator(odds, s)(SHARES[-1])
+        return np.array([math.log(row.box["speed"][0]), *ends.tolist(), float(last)])
     first = math.log(MIN_SPEED)
     if has_rest:
         yielding = np.exp(odds) + central / central[0] - 1
@@ -158,7 +170,7 @@ def breaks_on(row: TableRow, log_speeds: Array, found: Array, kappa: float, has_
 def coarse_breaks(row: TableRow, region: Region, log_load: float, kappa: float) -> Array:
     """Return b_1 .. b_5 of one load and roughness."""
     plan = PLANS[row.name]
-    low, high = speed_range(row, log_load, kappa)
+    low, high = speed_range(row, log_load, kappa, region.has_rest)
     if not region.has_rest:
         low = math.log(row.box["speed"][0])
     speeds = np.linspace(low, high, max(12, int((high - low) / plan.coarse_step)))
