@@ -1,11 +1,14 @@
 """States of films with each fluid against those of an independent solver, on the equations themselves."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from test_model_parts import REFERENCE, observed, solved
 
 import stribeck as sb
 from stribeck.contacts.model import Model
+from stribeck.contacts.with_parts import with_parts
 from stribeck.equations.observables import friction_scale
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.effective_medium import EffectiveMedium
@@ -94,3 +97,14 @@ def test_sharp_turns_that_no_load_feels_are_in_the_error():
     assert fine.flux_gap == pytest.approx(0.63102968, rel=1e-7)
     assert coarse.flux_gap == pytest.approx(fine.flux_gap, rel=1e-4)
     assert coarse.observables.viscous_balanced == pytest.approx(fine.observables.viscous_balanced, rel=1e-4)
+
+
+def test_a_curve_of_a_fluid_that_thins_takes_about_as_many_states_as_another():
+    """On wider intervals of samples it took 108 over two decades: nodes turn sharply where the shear rate passes through zero."""
+    groups = with_parts(sb.Groups(1e-3, 0.1, 1e-4), fluid=sb.fluids.Carreau(0.02, 0.5))
+    speeds = np.geomspace(5e-3, 5e-2, 5)
+    curve = sb.stribeck_curve(groups, speed=speeds, points=5)
+    assert curve.states < 20
+    state = sb.solve(replace(groups, speed=float(speeds[3])))
+    assert curve.observable("central_gap")[3] == pytest.approx(state.central_gap, rel=1e-6)
+    assert curve.observable("viscous_balanced")[3] == pytest.approx(state.viscous_balanced, rel=1e-6)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from stribeck.numerics.cells import Cells
 from stribeck.numerics.hermite import hermite, hermite_weights
 from stribeck.numerics.series import along, exponential, implicit_series, interval, logarithm, product, radius, reciprocal
 
@@ -98,3 +99,12 @@ def test_twelve_orders_interpolate_to_rounding():
     a, b = (np.array([math.exp(t) / math.factorial(k) for k in range(13)]) for t in (0.0, 2.0))
     tau = np.linspace(0, 1, 101)
     np.testing.assert_allclose(hermite(a, b, 2.0, tau), np.exp(2 * tau), rtol=1e-14)
+
+
+def test_cells_are_the_function_and_its_slope_inside_and_constant_beyond():
+    cells = Cells.of(lambda x: np.stack([np.sin(x), np.exp(-x)]), 0.0, 3.0, 40, 8)
+    x = np.linspace(0, 3, 101).reshape(-1, 1)
+    value, slope = cells.with_slope(x)
+    np.testing.assert_allclose(value, [np.sin(x), np.exp(-x)], atol=1e-14)
+    np.testing.assert_allclose(slope, [np.cos(x), -np.exp(-x)], atol=1e-11)
+    np.testing.assert_array_equal(cells(np.array([-5.0, 7.0])), cells(np.array([0.0, 3.0])))

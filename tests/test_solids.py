@@ -165,3 +165,18 @@ def test_a_curve_on_a_viscoelastic_body_is_refused():
 def test_impossible_solids_are_refused_by_name(make, said):
     with pytest.raises(sb.InputError, match=said):
         make()
+
+
+@pytest.mark.quick
+def test_pressures_on_panels_wider_than_a_layer_is_thick_deflect_it_as_on_narrow_ones():
+    layer = sb.solids.Layer(0.4, 0.45)
+    fine = Mesh(np.arange(-6, 6.25, 0.25), 12)
+    coarse = Mesh(np.array([-6.0, -2.0, 2.0, 6.0]), 16)  # panels of ten thicknesses
+
+    def pressure(x):
+        return (1 + 0.3 * x) * np.exp(-0.05 * x * x) * (np.abs(x) < 6)
+
+    found = layer.deflection(coarse) @ pressure(coarse.nodes)
+    exact = fine.interpolate(layer.deflection(fine) @ pressure(fine.nodes), coarse.nodes[: -coarse.order])
+    inner = np.abs(coarse.nodes[: -coarse.order]) < 4
+    np.testing.assert_allclose(found[: -coarse.order][inner], exact[inner], rtol=0, atol=1e-7)
