@@ -38,3 +38,10 @@ def test_the_next_run_of_a_fit_of_the_fluid_is_found():
     plan = sb.next_runs(fit, 1, speeds=[1e-3, 0.3], loads=[contact.load])
     assert plan.runs[0].speed == pytest.approx(0.3)
     assert plan.runs[0].errors["pressure_coefficient"] < plan.before["pressure_coefficient"]
+
+
+def test_a_film_whose_suction_opens_no_cavity_has_the_sensitivities_of_the_full_film():
+    contact = TRUE.replace(speed="10 mm/s")
+    full = friction_sensitivities(contact)[1]
+    found = friction_sensitivities(contact.replace(cavitation="reform", cavity_pressure="-10 bar"))[1]
+    assert {name: found[name] for name in full} == pytest.approx(full, rel=1e-5, abs=1e-7)

@@ -20,6 +20,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import GROUP_EXPONENTS
 from stribeck.quantities.part_inputs import PART_INPUTS
 from stribeck.quantities.units import InputError
+from stribeck.solver.line_path import as_in
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
 
@@ -103,8 +104,10 @@ def friction_sensitivities(
         solution = finish(point, groups, contact, rtol)
         assert point.state is not None
         changes = _changes(contact)
+        state = point.state  # of a film that may form anew, with a cavity or without
+        along = [(as_in(state, below), as_in(state, above), width) for below, above, width in changes.values()]
         rubbing = contact.boundary_friction * sliding_part(2 * groups.model.film.slide)
-        slopes = friction_slopes(point.state, rubbing, contact.beta, definition, list(changes.values()))
+        slopes = friction_slopes(state, rubbing, contact.beta, definition, along)
         through = dict(zip(changes, slopes[3:].tolist(), strict=True))
     friction = solution.friction(definition=definition)
     return solution, _sensitivities(slopes[:3], friction.contact, friction.viscous, through)

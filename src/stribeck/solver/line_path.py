@@ -199,7 +199,7 @@ class LineProblem:
         for trial in range(MOST_TRIALS):
             samples = interval(INTERVAL * reach)
             direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, len(samples.weights) - 1)
-            models = [] if self.uniform else [_as_in(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
+            models = [] if self.uniform else [as_in(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
             around = (state.equations, state.y, inverse, state.groups, direction, shifts)
             found = expand_any_film(*around, samples, models, self.order)
             known = self._radius(s, state, found, reach)
@@ -219,7 +219,7 @@ class LineProblem:
         base, doubt = with_positive_gap(groups)[0], 0.0
         last: LinePoint = near[-1].point
         if base.model.cavitation is not last.state.groups.model.cavitation:
-            base = replace(base, model=_as_in(last.state, base.model))
+            base = replace(base, model=as_in(last.state, base.model))
         if len(near) == 1:
             w, doubt = beyond(last.unknowns, s - near[0].coordinate)
             mesh_of = last
@@ -361,8 +361,8 @@ def _alike(*near: Expansion) -> bool:
     return len({end.point.state.groups.model.cavitation for end in near}) == 1
 
 
-def _as_in(state: State, model: Model) -> Model:
-    """Return a model whose film has the cavity that it has in a state."""
+def as_in(state: State, model: Model) -> Model:
+    """Return a model whose film has the cavity, or none, that it has in a state."""
     cavitation = state.groups.model.cavitation
     if model.cavitation is cavitation:
         return model
