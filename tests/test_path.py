@@ -146,3 +146,13 @@ def test_an_interval_says_what_its_problem_finds_wrong_in_the_middle():
     problem = Doubted()
     ends = [problem.solve(s, []) for s in (0.0, 0.5)]
     assert (Interval(problem, *ends).at(np.array([0.2]))[1][:, 2] >= 1e-5).all()
+
+
+def test_a_path_may_end_itself_and_go_on_from_both_ends():
+    part = follow(Known(), 3.0, -9.0, 1e-6, until=lambda here: here.series[0, 0] > 0.9)
+    assert -9.0 < part.coordinates[0] < 0.0 and part.outcome.ok
+    low = part.joined(follow(part.problem, part.expansions[0], -6.0, 1e-6))
+    both = low.joined(follow(part.problem, low.expansions[-1], 5.0, 1e-6))
+    assert (both.coordinates[0], both.coordinates[-1]) == (-6.0, 5.0) and (np.diff(both.coordinates) > 0).all()
+    difference, errors = wrong(both, np.linspace(-6.0, 5.0, 301))
+    assert (difference <= errors + ROUNDING).all()

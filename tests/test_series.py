@@ -7,7 +7,18 @@ import pytest
 
 from stribeck.numerics.cells import Cells
 from stribeck.numerics.hermite import hermite, hermite_weights
-from stribeck.numerics.series import along, exponential, implicit_series, interval, logarithm, product, radius, reciprocal
+from stribeck.numerics.series import (
+    along,
+    beyond,
+    exponential,
+    implicit_series,
+    integral_of_product,
+    interval,
+    logarithm,
+    product,
+    radius,
+    reciprocal,
+)
 
 pytestmark = pytest.mark.quick
 
@@ -108,3 +119,22 @@ def test_cells_are_the_function_and_its_slope_inside_and_constant_beyond():
     np.testing.assert_allclose(value, [np.sin(x), np.exp(-x)], atol=1e-14)
     np.testing.assert_allclose(slope, [np.cos(x), -np.exp(-x)], atol=1e-11)
     np.testing.assert_array_equal(cells(np.array([-5.0, 7.0])), cells(np.array([0.0, 3.0])))
+
+
+def test_the_integral_of_a_product_is_that_of_its_series():
+    a, b = np.random.default_rng(3).standard_normal((2, 7, 5))
+    weights = np.arange(1.0, 6.0)
+    np.testing.assert_allclose(integral_of_product(a, b, weights), product(a, b) @ weights, rtol=1e-13)
+    assert along(0.7, 4) == pytest.approx([0.7**k / math.factorial(k) for k in range(5)])
+
+
+def test_a_prediction_beyond_the_radius_knows_about_its_error():
+    orders = np.arange(1.0, 17.0)
+    series = np.append(0.0, np.cos(np.pi * orders / 2) / orders)[:, None] * np.array([1.0, 0.3])
+
+    def exact(t):  # -ln(1 + t^2) / 2, of radius one
+        return -0.5 * np.log(1 + t * t) * np.array([1.0, 0.3])
+
+    for t in (0.5, 1.2, 2.0):
+        found, doubt = beyond(series, t)
+        assert np.abs(found - exact(t)).max() <= doubt + 1e-12 and doubt < 0.1 * t
