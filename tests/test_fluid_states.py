@@ -100,7 +100,7 @@ def test_sharp_turns_that_no_load_feels_are_in_the_error():
 
 
 def test_a_curve_of_a_fluid_that_thins_takes_about_as_many_states_as_another():
-    """On wider intervals of samples it took 108 over two decades: nodes turn sharply where the shear rate passes through zero."""
+    """On wider intervals of samples it took 108 over two decades: nodes turn sharply where the rate is zero."""
     groups = with_parts(sb.Groups(1e-3, 0.1, 1e-4), fluid=sb.fluids.Carreau(0.02, 0.5))
     speeds = np.geomspace(5e-3, 5e-2, 5)
     curve = sb.stribeck_curve(groups, speed=speeds, points=5)
