@@ -120,7 +120,6 @@ def march(
     targets: Iterable[float] | None = None,
     history: Sequence[tuple[float, S]] = (),
     accept: Collection[Outcome] = (Outcome.CONVERGED,),
-    stop_when: Callable[[S], bool] | None = None,
     on_point: Callable[[float, S], object] | None = None,
 ) -> Path[S]:
     """Follow states from one coordinate to another in steps that adapt to the effort of the corrector.
@@ -132,7 +131,7 @@ def march(
         It does its own prediction from ``history``, the last accepted (coordinate, state) pairs, latest
         last, empty at the start (see :func:`extrapolation_weights`).
     start, stop : float
-        Ends of the path, in either direction. ``stop`` may be infinite with ``stop_when``.
+        Ends of the path, in either direction.
     steps : Steps
         Their lengths.
     targets : iterable of float, optional
@@ -141,8 +140,6 @@ def march(
         Points already known, the last of them at ``start``, which is then not solved again.
     accept : collection of Outcome, optional
         Outcomes with which a state counts as a point of the path.
-    stop_when : callable, optional
-        ``stop_when(state)`` ends the path after a point for which it is true.
     on_point : callable, optional
         ``on_point(s, state)`` is called after each accepted point, for progress.
 
@@ -161,8 +158,8 @@ def march(
     A step that fails is tried again at half its length, from the same point, until it is shorter than the shortest; the next
     step after a failure does not grow. Before a target the step is halved rather than leave a remnant.
     """
-    if not math.isfinite(start) or math.isnan(stop) or (math.isinf(stop) and stop_when is None):
-        raise ValueError(f"start = {start!r}, stop = {stop!r}; both must be finite, or stop_when given")
+    if not (math.isfinite(start) and math.isfinite(stop)):
+        raise ValueError(f"start = {start!r}, stop = {stop!r}; both must be finite")
     if history and history[-1][0] != start:
         raise ValueError(f"history ends at {history[-1][0]!r}; its last point must lie at start = {start!r}")
     sign = 1.0 if stop >= start else -1.0
@@ -186,7 +183,7 @@ def march(
             points.append((start, state))
             if on_point is not None:
                 on_point(start, state)
-        while ahead and not (stop_when is not None and stop_when(points[-1][1])):
+        while ahead:
             here = points[-1][0]
             target = ahead[0]
             left = abs(target - here)
