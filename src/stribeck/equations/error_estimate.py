@@ -372,7 +372,7 @@ def interpolation_errors(states: StackedStates, minimum_positions: Array, centra
     return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
 
 
-def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float, centre: float = 0.0, spread: float = 0.0) -> bool:
+def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float, *, centre: float = 0.0, spread: float = 0.0) -> bool:
     """Return whether central and minimum gap are interpolated to ``rtol``, up to ``spread`` from the place of the minimum.
 
     On a reused mesh they are the first to become unresolved.
