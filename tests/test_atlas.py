@@ -190,6 +190,25 @@ def test_seals_with_the_law_of_persson_are_read_off_their_table():
     assert (np.abs(read.friction - solved.friction) < read.friction_error).all()
 
 
+def test_films_that_end_are_read_off_a_table_of_their_own():
+    contact = sb.load_case(Path(__file__).parents[1] / "examples" / "pdms_cylinder.toml").contact.replace(cavitation="exit")
+    ends = {"speed": (1e-3, 1.0), "points": 7}
+    read, solved = (sb.stribeck_curve(contact, **ends, rtol=1e-6, method=method) for method in ("atlas", "solver"))
+    assert read.table.name == "line-exit"
+    assert (np.abs(read.friction - solved.friction) < read.friction_error).all()
+    assert read.regimes == solved.regimes
+    full = sb.stribeck_curve(contact.replace(cavitation="none"), **ends, method="atlas")
+    assert read.minimum.friction < 0.99 * full.minimum.friction
+
+
+@pytest.mark.quick
+def test_slow_films_that_end_have_a_share_of_first_order_in_the_speed():
+    groups = sb.Groups(np.array([0.0, 1e-12, 1e-10]), 0.1, 1e-3, model=Model(cavitation=Cavitation.EXIT))
+    rest, slow, faster = sb.atlas.fluid_load_share(groups)
+    assert rest == 0
+    assert faster / slow == pytest.approx(100, rel=1e-3)
+
+
 # --- derivatives ---
 
 

@@ -211,6 +211,16 @@ LINE_PERSSON = Grid(
 )
 """Cylinder, Persson's law, full film: L = ln(20/load), as nothing closes where the law goes on to full contact."""
 
+LINE_EXIT = Grid(
+    (
+        Region((1e-3, 1e-1), (-math.log(0.9), LIGHTEST), (1, 1), (12, 12), (7, 10, 8, 8, 10, 11)),
+        Region((1e-1, 1e1), (-math.log(0.9), LIGHTEST), (1, 1), (10, 11), (7, 10, 8, 8, 10, 11)),
+    ),
+    power=1,
+    films=(1e-7, 1e4),
+)
+"""Cylinder, exponential law, a film that ends: slow, its share is of first order in the speed."""
+
 BALL_EXPONENTIAL = Grid(
     (Region((1e-3, 1.0), (2 / 3 * math.log(2), 2 / 3 * math.log(1e7)), (1, 1), (21, 7), (4, 6, 6, 6, 7, 8), nested=True),),
     load_factor=2 / 3,

@@ -11,6 +11,7 @@ from stribeck._types import Flags
 from stribeck.atlas.grid import (
     BALL_EXPONENTIAL,
     BALL_PERSSON,
+    LINE_EXIT,
     LINE_EXPONENTIAL,
     LINE_PERSSON,
     MIN_LOAD,
@@ -140,6 +141,16 @@ TABLES = (
         LINE_PERSSON,
     ),
     TableRow(
+        "line-exit",
+        "line",
+        "exponential",
+        Cavitation.EXIT,
+        {"speed": (MIN_SPEED, 1e4), "load": (MIN_LOAD, 0.9), "relative_roughness": (1e-3, 10.0)},
+        2e-3,
+        "line_exit.npz",
+        LINE_EXIT,
+    ),
+    TableRow(
         "ball-exponential",
         "point",
         "exponential",
@@ -212,8 +223,8 @@ def table_for(groups: Groups) -> TableRow:
     of_model = [row for row in TABLES if row.is_of_model(groups)]
     if not of_model:
         raise InputError(
-            "the atlas covers a Newtonian fluid that does not cavitate, on a half-space, and these states have another model; "
-            "use the solver."
+            "the atlas covers a Newtonian fluid in a full film, for cylinders also in one that ends at ambient pressure "
+            "(cavitation 'exit'), on a half-space, and these states have another model; use the solver."
         )
     laws = " and ".join(row.law for row in of_model)
     assert groups.law is not None
