@@ -301,7 +301,8 @@ def test_a_curve_of_groups_takes_the_two_that_stay_fixed(capsys, over, fixed, en
 
 def test_a_range_of_speeds_is_found_where_none_is_given(capsys):
     found = strict_json(call(capsys, "curve", "--groups", "0.1", "1e-3", "--points", "3", "--json").out)
-    assert found["points"]["value"][0] < 1e-6
+    assert found["points"]["value"][0] < 1e-5
+    assert found["points"]["fluid_load_share"][0] < 1e-5
     assert found["points"]["value"][-1] > 1e-2
 
 
@@ -597,11 +598,11 @@ def read_until(terminal, pattern, seconds=60):
 def test_ctrl_c_keeps_the_finished_points_marked_incomplete(tmp_path):
     ours, theirs = pty.openpty()
     files = [tmp_path / "curve.nc", tmp_path / "curve.csv"]
-    arguments = ("curve", PDMS, "--points", "20000", "-o", files[0], "-o", files[1])
+    arguments = ("curve", PDMS, "--points", "2000", "--cavitation", "exit", "--rtol", "1e-8", "-o", files[0], "-o", files[1])
     process = start(*arguments, stdout=subprocess.PIPE, stderr=theirs, stdin=subprocess.DEVNULL, text=True)
     os.close(theirs)
     try:
-        shown = read_until(ours, r"[1-9]\d+/20000")
+        shown = read_until(ours, r"[1-9]\d+/2000")
         process.send_signal(signal.SIGINT)
         shown += read_until(ours, r"marked as incomplete\.\r\n")
         out = process.communicate(timeout=60)[0]
@@ -611,9 +612,9 @@ def test_ctrl_c_keeps_the_finished_points_marked_incomplete(tmp_path):
     assert process.returncode == 130
     found = opened(files[0])
     points = found.sizes["speed"]
-    assert 1 < points < 20000
-    assert f"Interrupted after {points} of 20000 points" in shown
-    assert (found.attrs["complete"], found.attrs["requested_points"]) == (0, 20000)
+    assert 1 < points < 2000
+    assert f"Interrupted after {points} of 2000 points" in shown
+    assert (found.attrs["complete"], found.attrs["requested_points"]) == (0, 2000)
     assert np.isfinite(found.friction).all()
     assert f"\n# points: {points}\n" in files[1].read_text()
     assert f"{points} points, speed" in out

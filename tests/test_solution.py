@@ -33,12 +33,10 @@ def test_the_stated_error_of_the_position_covers_the_true_one(name, solved):
         assert state.minimum_position_error < 30 * math.sqrt(rtol)
 
 
-def test_the_position_needs_an_error_of_its_own():
-    """On the meshes of a curve the minimum moves by more than the relative error of films and friction."""
+def test_the_position_along_a_curve_is_within_its_own_error():
     curve = sb.stribeck_curve(sb.Groups(1e-5, 0.1, 1e-4), speed=[1e-4, 10**-3.5, 1e-3])
     exact = [sb.solve(state.groups, rtol=1e-8) for state in curve.solutions]
     wrong = [missed(state, true) for state, true in zip(curve.solutions, exact, strict=True)]
-    assert any(w > state.error_estimate for w, state in zip(wrong, curve.solutions, strict=True))
     for w, state in zip(wrong, curve.solutions, strict=True):
         assert w <= state.minimum_position_error
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from stribeck._types import Array
 from stribeck.asymptotics.smooth import hydrodynamic
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import contact_law
@@ -21,7 +22,7 @@ from stribeck.solver.line_path import LineProblem
 from stribeck.solver.path import Expansion, SolvedPath, follow
 from stribeck.solver.solve import SolveError, describe
 
-__all__ = ["SPEEDS", "automatic_speed_range", "fastest", "grown", "part_of_contact"]
+__all__ = ["SPEEDS", "automatic_speed_range", "fastest", "grown", "no_range", "part_of_contact"]
 
 SPEEDS = (1e-12, 1e12)
 """Speed groups between which a curve begins and ends by itself."""
@@ -44,6 +45,9 @@ LONGEST_EXTENSION = 2
 
 COARSE = 1e-3
 """Tolerance of a curve that is followed for its ends alone."""
+
+LOCATED, STEP = 1e-6, 1e-20
+"""Where the plateau begins is known to this, in the logarithm of the speed; step into the complex plane for a derivative."""
 
 REACH, PLACES = 8.0, 161
 """Half-widths, of a contact that the film widens, on which asperities are felt, and places there."""
@@ -77,10 +81,10 @@ def grown(
     problem: LineProblem,
     start: float,
     bottom: float,
-    contact_part: Callable[[Expansion], float],
+    contact_part: Callable[[Array], float],
     on_interval: Callable[[float, float], object] | None = None,
-) -> SolvedPath:
-    """Return a path from the hydrodynamic branch to the boundary plateau, whose ends are seen on the way.
+) -> tuple[SolvedPath, float]:
+    """Return a path from the hydrodynamic branch to the boundary plateau, whose ends are seen on the way, and its lower end.
 
     Parameters
     ----------
@@ -89,43 +93,56 @@ def grown(
     start, bottom : float
         Where to begin, by :func:`fastest`, and the lowest place.
     contact_part : callable
-        Part of the friction from asperities at a state.
+        Part of the friction from asperities by a row of observables.
     on_interval : callable, optional
         As of :func:`stribeck.solver.path.follow`.
 
     Returns
     -------
-    SolvedPath
-        As far as it was reached.
+    tuple of SolvedPath and float
+        As far as it was reached; the lower end lies a decade below the place where the plateau begins, wherever states are.
     """
 
+    def is_level(slope: float, row: Array) -> bool:
+        return abs(slope) * math.log(10) < PLATEAU and contact_part(row) > 1 - 10 * BRANCH
+
     def is_on_plateau(here: Expansion) -> bool:
-        change = here.series[1, ROW["fluid_load_share"]] * math.log(10) if here.order else math.inf
-        return bool(abs(change) < PLATEAU and contact_part(here) > 1 - 10 * BRANCH)
+        return is_level(float(here.series[1, ROW["fluid_load_share"]]) if here.order else math.inf, here.series[0])
 
     path = follow(problem, start, bottom, problem.tolerance, on_interval, until=is_on_plateau)
     if not path.outcome.ok:
-        return path
+        return path, float(path.coordinates[0]) if path.expansions else math.nan
+    below, above = float(path.coordinates[0]), next((e.coordinate for e in path.expansions if not is_on_plateau(e)), math.nan)
+    while above - below > LOCATED:
+        middle = 0.5 * (below + above)
+        row = path.smooth(np.array([middle + STEP * 1j]))[0]
+        is_below = is_level(float(row[ROW["fluid_load_share"]].imag / STEP), row.real)
+        below, above = (middle, above) if is_below else (below, middle)
     margin = math.log(BELOW)
-    low = max(bottom, float(path.coordinates[0]) - margin)
+    low = max(bottom, below - margin)
     if low < path.coordinates[0]:
         path = path.joined(follow(problem, path.expansions[0], low, problem.tolerance, on_interval))
     for _ in range(LONGEST_EXTENSION):
-        if not path.outcome.ok or contact_part(path.expansions[-1]) < 0.1 * BRANCH:
+        if not path.outcome.ok or contact_part(path.expansions[-1].series[0]) < 0.1 * BRANCH:
             break
         end = float(path.coordinates[-1]) + margin
         path = path.joined(follow(problem, path.expansions[-1], end, problem.tolerance, on_interval))
-    return path
+    return path, max(low, float(path.coordinates[0]))
 
 
-def part_of_contact(boundary_friction: float, beta: float, definition: Definition) -> Callable[[Expansion], float]:
-    """Return the function that is the part of the friction from asperities at a state."""
+def part_of_contact(boundary_friction: float, beta: float, definition: Definition) -> Callable[[Array], float]:
+    """Return the function that is the part of the friction from asperities by a row of observables."""
 
-    def part(here: Expansion) -> float:
-        contact = (boundary_friction or 1.0) * float(here.series[0, ROW["contact_load_share"]])
-        return contact / max(contact + beta * float(here.series[0, ROW[f"viscous_{definition}"]]), 1e-300)
+    def part(row: Array) -> float:
+        contact = (boundary_friction or 1.0) * float(row[ROW["contact_load_share"]])
+        return contact / max(contact + beta * float(row[ROW[f"viscous_{definition}"]]), 1e-300)
 
     return part
+
+
+def no_range(outcome: Outcome, groups: Groups) -> SolveError:
+    """Return the error that no state was found from which a curve could grow."""
+    return SolveError(outcome, None, f"{describe(groups)}: no starting speed was found for the curve; give a range of speeds.")
 
 
 def automatic_speed_range(
@@ -141,12 +158,9 @@ def automatic_speed_range(
         return SMOOTH
     problem = LineProblem(lambda s: replace(groups, speed=math.exp(s)), (1.0, 0.0, 0.0), COARSE)
     top = math.log(fastest(groups, boundary_friction, beta))
-    path = grown(problem, top, math.log(SPEEDS[0]), part_of_contact(boundary_friction, beta, definition))
+    path, lowest = grown(problem, top, math.log(SPEEDS[0]), part_of_contact(boundary_friction, beta, definition))
     if path.outcome is Outcome.INTERRUPTED:
         raise KeyboardInterrupt
     if not path.expansions:
-        raise SolveError(
-            path.outcome, None, f"{describe(groups)}: no starting speed was found for the curve; give a range of speeds."
-        )
-    low, high = np.exp(path.coordinates[[0, -1]]).tolist()
-    return low, high
+        raise no_range(path.outcome, groups)
+    return math.exp(lowest), math.exp(float(path.coordinates[-1]))

@@ -20,7 +20,7 @@ from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_prob
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method
 from stribeck.curves.result import SLACK, StribeckCurve
-from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, part_of_contact
+from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, no_range, part_of_contact
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
@@ -181,10 +181,10 @@ def stribeck_curve(
     line = LineProblem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
     if grows:
         contact_part = part_of_contact(boundary_friction, beta, definition)
-        path = grown(line, float(places[-1]), float(places[0]), contact_part, report)
+        path, lowest = grown(line, float(places[-1]), float(places[0]), contact_part, report)
         if path.expansions:
-            slowest, high = np.exp(path.coordinates[[0, -1]]).tolist()
-            values = np.geomspace(slowest, high, points if path.outcome.ok else max(done, 1))
+            ends = np.exp([lowest, path.coordinates[-1]])
+            values = np.geomspace(*ends, points if path.outcome.ok else max(done, 1))
             places, done = np.log(values), min(done, points - 1) if path.outcome.ok else len(values)
             report(float(places[0]), float(places[-1]))
     else:
@@ -195,6 +195,8 @@ def stribeck_curve(
         if path.outcome is Outcome.INTERRUPTED and grows:
             raise KeyboardInterrupt
         groups = coordinate.groups_at(float(places[-1]))
+        if grows:
+            raise no_range(path.outcome, groups)
         if line.failure is not None:
             finish(line.failure, groups, contact, rtol)
         raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}")

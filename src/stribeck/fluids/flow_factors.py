@@ -36,15 +36,8 @@ MOST_STEPS = 60
 
 Factors = TypeVar("Factors", bound=FlowFactors)
 
-SOFT = 0.03
-"""Width in H of the bends that replace kinks of the fits at their ends, of which no mesh could resolve a film."""
-
-LINKED, BLEND = 5.0, 0.15
-"""H from which the shear flow factor is an exponential, which differs by up to 0.08 % there, and the width over which its
-logarithm goes over: the largest change of the fit is 0.45 %."""
-
-FARTHEST = 12.0
-"""H beyond which the other formula of that factor has no part."""
+LINKED = 5.0
+"""H from which the shear flow factor is an exponential."""
 
 VANISHED = 7.0
 """H from which phi_fs is zero."""
@@ -94,10 +87,9 @@ class PatirCheng(FlowFactors):
 
     Notes
     -----
-    Fitted for H >= 0.5; below, a note is written, and the flow falls to 1e-4 of that between smooth surfaces.  Where two
-    formulas meet, at 5 and 0.5, bends stand for the jump and the kink: the factors differ from the fits by 0.45 % and 4 % at
-    most.  The factor of the shear, :math:`\phi_f`, is the mean of 1/h, which the authors cut off at widths of
-    :math:`\sigma/100`: where asperities touch, it holds no more than that choice.
+    Fitted for H >= 0.5; below, a note is written, and the flow falls to 1e-4 of that between smooth surfaces.  The factor of
+    the shear, :math:`\phi_f`, is the mean of 1/h, which the authors cut off at widths of :math:`\sigma/100`: where
+    asperities touch, it holds no more than that choice.
 
     Source: [Patir & Cheng 1978] Eq. (15), [Patir & Cheng 1979].
     """
@@ -159,9 +151,9 @@ class PatirCheng(FlowFactors):
         H, by_gap = self._separation(gap)
         C, r = FACTORS[self.gamma][:2]
         if self.gamma > 1:
-            inside, share = _above(H, LEAST)
+            inside = np.maximum(H, LEAST)
             power = C * inside**-r
-            return 1 + power, -r * power / inside * share * by_gap
+            return 1 + power, np.where(H > LEAST, -r * power / inside, 0.0) * by_gap
         fall = C * np.exp(-r * H)
         phi, slope = lifted(1 - fall, r * fall)
         return phi, slope * by_gap
@@ -173,14 +165,11 @@ class PatirCheng(FlowFactors):
             return np.zeros_like(gap), np.zeros_like(gap)
         H, by_gap = self._separation(gap)
         _, _, A_1, a_1, a_2, a_3, A_2 = FACTORS[self.gamma]
-        near, share = _above(np.minimum(H, FARTHEST), 0.0)
-        near = np.maximum(near, 1e-300)
-        first = math.log(A_1) + a_1 * np.log(near) - a_2 * near + a_3 * near * near
-        first_slope = (a_1 / near - a_2 + 2 * a_3 * near) * share
-        second = math.log(A_2) - 0.25 * H
-        part = scipy.special.expit((H - LINKED) / BLEND)
-        phi = np.exp(first + part * (second - first))
-        slope = phi * (first_slope + part * (-0.25 - first_slope) + part * (1 - part) / BLEND * (second - first))
+        near = np.clip(H, 1e-9, LINKED)
+        first = A_1 * near**a_1 * np.exp(-a_2 * near + a_3 * near * near)
+        second = A_2 * np.exp(-0.25 * H)
+        phi = np.where(H > LINKED, second, np.where(H > 0, first, 0.0))
+        slope = np.where(H > LINKED, -0.25 * second, np.where(H > 0, first * (a_1 / near - a_2 + 2 * a_3 * near), 0.0))
         assert self.sigma is not None
         return v * self.sigma * phi, v * self.sigma * slope * by_gap
 
@@ -224,12 +213,6 @@ class PatirCheng(FlowFactors):
             return gap / self.sigma, np.full_like(gap, 1 / self.sigma)
         H = nominal_separation(gap / self.sigma)
         return H, 1 / (self.sigma * scipy.special.ndtr(H))
-
-
-def _above(H: Array, least: float) -> tuple[Array, Array]:
-    """Return H where it is above ``least`` and that below, with a bend of the width :data:`SOFT` between, and the slope."""
-    place = (H - least) / SOFT
-    return least + SOFT * np.logaddexp(0.0, place), scipy.special.expit(place)
 
 
 def nominal_separation(width: Array) -> Array:

@@ -74,7 +74,8 @@ def corrected(equations: Equations, y: Array) -> tuple[Array, Inverse]:
 def from_logs(equations: Equations, w: Array) -> Array:
     """Return unknowns from those with the logarithm of the gap."""
     found = w.copy()
-    found[..., equations.layout.gap] = np.exp(w[..., equations.layout.gap])
+    with np.errstate(over="ignore"):  # a prediction beyond all bounds is told by its gap
+        found[..., equations.layout.gap] = np.exp(w[..., equations.layout.gap])
     return found
 
 

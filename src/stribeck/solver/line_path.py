@@ -145,7 +145,8 @@ class LineProblem:
             guess, doubt = self._guess(s, groups, near)
             if not doubt <= DOUBTFUL:
                 return Outcome.PATH_LOST
-            if not (np.isfinite(np.log(guess.y[guess.equations.layout.gap])).all() and guess.dilation > 0):
+            gap = guess.y[guess.equations.layout.gap]
+            if not (np.isfinite(gap).all() and gap.min() > 0 and guess.dilation > 0):
                 return Outcome.NOT_FINITE
             spread = max(abs(guess.minimum_position - one.point.state.minimum_position) for one in near)
             refined: RefinedState | None = self.corrector.solve(guess, groups, SPREAD * spread)

@@ -186,7 +186,8 @@ class Interval:
         tails = TAIL * np.abs(form[-3:]).max(axis=0, initial=0.0)
         largest = errors.max(axis=0, initial=0.0)
         scales = self.problem.read_scales(values)
-        return form, largest + tails / scales, columns, bool((tails <= 0.5 * largest * scales).all())
+        missed = np.divide(tails, scales, out=np.full_like(tails, math.inf), where=scales > 0)
+        return form, largest + missed, columns, bool((tails <= 0.5 * largest * scales).all())
 
     def at(self, parts: Array) -> tuple[Array, Array]:
         """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
@@ -404,7 +405,11 @@ def _refined(interval: Interval, rtol: float, before: float = math.inf) -> list[
     worst = float(np.nanmax(errors[:, problem.held]))
     if interval.length < NOISY and worst > PROGRESS * before:  # rounding, which halving does not take away
         return [interval]
-    middle = problem.solve(0.5 * (left.coordinate + right.coordinate), [left, right])
+    at = 0.5 * (left.coordinate + right.coordinate)
+    for near in ([left, right], [max(left, right, key=lambda end: end.radius)]):  # a series may be good to one side alone
+        middle = problem.solve(at, near)
+        if not isinstance(middle, Outcome):
+            break
     if isinstance(middle, Outcome):
         return [interval]
     halves = Interval(problem, left, middle), Interval(problem, middle, right)
