@@ -183,8 +183,8 @@ def stribeck_curve(
         contact_part = part_of_contact(boundary_friction, beta, definition)
         path, lowest = grown(line, float(places[-1]), float(places[0]), contact_part, report)
         if path.expansions:
-            ends = np.exp([lowest, path.coordinates[-1]])
-            values = np.geomspace(*ends, points if path.outcome.ok else max(done, 1))
+            slowest, high = math.exp(lowest), math.exp(float(path.coordinates[-1]))
+            values = np.geomspace(slowest, high, points if path.outcome.ok else max(done, 1))
             places, done = np.log(values), min(done, points - 1) if path.outcome.ok else len(values)
             report(float(places[0]), float(places[-1]))
     else:
