@@ -48,7 +48,6 @@ def test_a_march_follows_a_branch_through_its_targets():
 def test_a_march_halts_before_a_fold_and_keeps_the_branch_behind_it():
     path = heated(0.5, targets=[0.1, 0.2, 0.3])
     assert path.outcome is Outcome.PATH_LOST
-    assert "lost" in path.outcome.value
     assert not path.failure.outcome.ok
     assert EXPLOSION - 1e-4 < path.coordinates[-1] < EXPLOSION
     for p, root in zip(path.coordinates, path.states, strict=True):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -23,7 +24,7 @@ from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import minimum_estimate, solution_of, state_notes
 
-__all__ = ["CurvePoint", "CurveValues", "rows_of", "solved_at", "within"]
+__all__ = ["CurvePoint", "CurveValues", "Progress", "rows_of", "solved_at", "within"]
 
 COLUMNS = (*ALL_NAMES, "minimum_position")
 """Columns of a path by name."""
@@ -61,6 +62,20 @@ def rows_of(path: SolvedPath, s: Array, rtol: float) -> tuple[Array, Array]:
             errors[i, : len(point.estimate.relative)] = point.estimate.relative
             errors[i, POSITION] = point.estimate.minimum_position
     return found, errors
+
+
+class Progress:
+    """Counts the points of a curve that are known, as its path grows from fast to slow, and says so."""
+
+    def __init__(self, places: Array, on_point: Callable[[int, int], object] | None) -> None:
+        self.places, self.on_point, self.done = places, on_point, 0
+
+    def __call__(self, low: float, high: float) -> None:
+        """Count those between two coordinates."""
+        while self.done < len(self.places) and self.places[-1 - self.done] >= low:
+            self.done += 1
+            if self.on_point is not None:
+                self.on_point(self.done, len(self.places))
 
 
 class CurvePoint(Solution):

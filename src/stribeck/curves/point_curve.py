@@ -16,7 +16,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups
 from stribeck.curves.coordinate import Coordinate
-from stribeck.curves.function import CurveValues
+from stribeck.curves.function import CurveValues, Progress
 from stribeck.curves.landmarks import PARTS, Landmark
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Transition
 from stribeck.curves.result import StribeckCurve
@@ -325,16 +325,7 @@ def _followed(
 ) -> _Traced:
     """Return the points of a curve off its function, from fast to slow, as films are smooth there."""
     problem, places = PointProblem(coordinate.groups_at, solver.rtol), np.log(values)
-    done = 0
-
-    def report(low: float, high: float) -> None:
-        nonlocal done
-        while done < len(places) and places[-1 - done] >= low:
-            done += 1
-            if on_point is not None:
-                on_point(done, len(places))
-
-    path = follow(problem, float(places[-1]), float(places[0]), solver.rtol, report)
+    path = follow(problem, float(places[-1]), float(places[0]), solver.rtol, Progress(places, on_point))
     problem.release()
     known = values[places >= path.coordinates[0]] if path.intervals else values[:0]
     return tuple(_solutions(path, coordinate, np.log(known))), known, path, path.outcome, problem.failure

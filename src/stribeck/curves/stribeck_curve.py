@@ -17,6 +17,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.with_parts import check_solid, with_parts
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_problem
+from stribeck.curves.function import Progress
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method
 from stribeck.curves.result import SLACK, StribeckCurve
@@ -167,30 +168,24 @@ def stribeck_curve(
         settings = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
         found_curve: StribeckCurve = trace(coordinate, values, rtol, on_point, **settings)
         return found_curve
-    done = 0
     places = np.log(values)
-
-    def report(low: float, high: float) -> None:
-        nonlocal done
-        while done < len(values) and places[-1 - done] >= low:
-            done += 1
-            if on_point is not None:
-                on_point(done, len(values))
-
+    progress = Progress(places, on_point)
     direction: tuple[float, float, float] = tuple(coordinate.direction.tolist())
     line = LineProblem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
     if grows:
         contact_part = part_of_contact(boundary_friction, beta, definition)
-        path, lowest = grown(line, float(places[-1]), float(places[0]), contact_part, report)
+        path, lowest = grown(line, float(places[-1]), float(places[0]), contact_part, progress)
         if path.expansions:
+            done = progress.done
             slowest, high = math.exp(lowest), math.exp(float(path.coordinates[-1]))
             values = np.geomspace(slowest, high, points if path.outcome.ok else max(done, 1))
-            places, done = np.log(values), min(done, points - 1) if path.outcome.ok else len(values)
-            report(float(places[0]), float(places[-1]))
+            progress.places, progress.done = np.log(values), min(done, points - 1) if path.outcome.ok else len(values)
+            progress(math.log(slowest), math.log(high))
     else:
-        path = follow(line, float(places[-1]), float(places[0]), rtol, report)
+        path = follow(line, float(places[-1]), float(places[0]), rtol, progress)
         if path.outcome is not Outcome.INTERRUPTED and path.expansions:
-            done = int((places >= path.coordinates[0]).sum())
+            progress.done = int((places >= path.coordinates[0]).sum())
+    done = progress.done
     if not done:
         if path.outcome is Outcome.INTERRUPTED and grows:
             raise KeyboardInterrupt

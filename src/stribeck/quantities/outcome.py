@@ -11,10 +11,10 @@ class Outcome(Enum):
     """How a solve ended, as a sentence; :attr:`ok` is whether the result can be trusted."""
 
     CONVERGED = "Converged."
-    STEP_LIMIT = "Newton's method reached its step limit; try a closer initial guess or smaller parameter steps."
-    SINGULAR = "The Jacobian is singular; the path may turn back at a fold: try smaller parameter steps."
-    NOT_FINITE = "The residual or its Jacobian is not finite; try a closer initial guess."
-    STALLED = "The damped Newton step became too small to make progress; try a closer initial guess."
+    STEP_LIMIT = "Newton's iteration reached its step limit at this state; try values nearby, or a larger rtol."
+    SINGULAR = "The equations do not determine this state, or hardly do; try values nearby."
+    NOT_FINITE = "The equations are not finite near this state; try values nearby, or a larger rtol."
+    STALLED = "Newton's iteration makes no progress at this state; try values nearby, or a larger rtol."
     REFINEMENT_LIMIT = "Mesh refinement reached its limit before the tolerance was met; ask for a larger rtol."
     MESH_LIMIT = (
         "The mesh that resolves this state takes more memory than a solve may use; "
@@ -24,10 +24,7 @@ class Outcome(Enum):
         "Double precision keeps the error of this state above the requested rtol; "
         "ask for a larger rtol, or use the value with its error estimate."
     )
-    PATH_LOST = (
-        "The continuation path to this state was lost; "
-        "the points before it are kept; try smaller steps or another starting point."
-    )
+    PATH_LOST = "No path from states that are known leads to this one; the points before it are kept; try values nearby."
     INTERRUPTED = "Interrupted; the finished points are kept."
 
     @property
