@@ -24,7 +24,7 @@ class Outcome(Enum):
         "Double precision keeps the error of this state above the requested rtol; "
         "ask for a larger rtol, or use the value with its error estimate."
     )
-    PATH_LOST = "No path from states that are known leads to this one; the points before it are kept; try values nearby."
+    PATH_LOST = "The path from known states to this one was lost; the points before it are kept; try values nearby."
     INTERRUPTED = "Interrupted; the finished points are kept."
 
     @property
