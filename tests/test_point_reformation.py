@@ -81,7 +81,8 @@ def test_a_cavity_whose_pressure_the_suction_never_reaches_leaves_the_film_full(
     state = solve_cold(ball(0.1, 0.1, -0.2), 1e-5)
     assert state.rtol == 1e-5
     for name, value in full.values.items():
-        assert abs(state.values[name] - value) <= 1e-9 * full.scales[name], name
+        rounding = 1e-6 if name in ("minimum_radius", "minimum_angle") else 1e-9  # a minimum is flat
+        assert abs(state.values[name] - value) <= rounding * full.scales[name], name
     beside = solve_from(state, ball(0.11, 0.1, -0.2), 1e-5)
     assert beside.outcome.ok
     assert beside.rtol == 1e-5
