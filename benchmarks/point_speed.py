@@ -92,11 +92,14 @@ def curve(count: int) -> None:
         def trace(points: int = points, rtol: float = rtol) -> sb.StribeckCurve:
             return sb.stribeck_curve(ball(1.0), speed=(1e-7, 10.0), points=points, rtol=rtol)
 
-        cost, found = relative(trace, 1)
-        marks, _ = relative(lambda found=found: found.transitions, 1)
+        before = unit()
+        seconds, found = timed(trace)
+        assert isinstance(found, sb.StribeckCurve)
+        marks, _ = timed(lambda found=found: found.transitions)
+        one = 0.5 * (before + unit())
         film = max(solution.minimum_gap_error for solution in found.solutions)
-        told = f"{found.states} | {cost:.0f} | {cost + marks:.0f} | {found.error_estimate:.0e} | {film:.0e}"
-        print(f"| {points} speeds from 10 to 1e-7 | {rtol:.0e} | {told} |")
+        told = f"{found.states} | {seconds / one:.0f} | {(seconds + marks) / one:.0f} | {found.error_estimate:.0e}"
+        print(f"| {points} speeds from 10 to 1e-7 | {rtol:.0e} | {told} | {film:.0e} |")
 
 
 def breakdown(runs: int) -> None:

@@ -367,7 +367,8 @@ def follow(
     neighbour; the meshes change where those of the neighbour do not fit.
     """
     tolerance = newton_tolerance(rtol)
-    wanted, keeps = meshes_for(speed, law, neighbour, rtol)
+    # By series a path goes on by steps of more than that factor.
+    wanted, keeps = meshes_for(speed, law, neighbour, rtol, AHEAD if predicted is None else 1.0)
     kept_coarse, kept_fine = (
         (level.iterated.preconditioner if keeps else None) for level in (neighbour.coarse, neighbour.fine)
     )
@@ -397,12 +398,14 @@ def follow(
     return pair_of(coarse, fine) if fine.outcome.ok else None
 
 
-def meshes_for(speed: float, law: ContactLaw, neighbour: Pair, rtol: float) -> tuple[Resolution, bool]:
-    """Return the finer mesh for a state beside a neighbour, and whether it is that of the neighbour."""
+def meshes_for(speed: float, law: ContactLaw, neighbour: Pair, rtol: float, part: float = AHEAD) -> tuple[Resolution, bool]:
+    """Return the finer mesh for a state beside a neighbour, and whether it is that of the neighbour.
+
+    On the way to slower speeds one that is made serves down to a ``part`` of the speed.
+    """
     now, fine = neighbour.fine.resolution, neighbour.fine
     band = band_for(speed, law, now.model)
-    # What is made for states on the way serves longer.
-    ahead = AHEAD * speed if speed < fine.equations.speed else speed
+    ahead = part * speed if speed < fine.equations.speed else speed
     wasteful = neighbour.total < WASTE * rtol and neighbour.minimum < WASTE * PATH_SLACK * rtol
     if fits(now, speed, law) and not wasteful:
         return now, True
