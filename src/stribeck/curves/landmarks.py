@@ -18,7 +18,7 @@ from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, describe, solution_of
 
-__all__ = ["Landmark", "Landmarks"]
+__all__ = ["Landmark", "Landmarks", "places_of"]
 
 LOCATION_TOLERANCE = 1e-9
 """Relative tolerance to which a minimum or a transition is located; its own error is that of the curve there."""
@@ -58,14 +58,19 @@ class Landmark:
     solution: Solution = field(repr=False)
 
 
+def places_of(path: SolvedPath) -> Array:
+    """Return the coordinates at which a path is looked at for landmarks."""
+    inside = [interval.left.coordinate + PARTS * interval.length for interval in path.intervals]
+    return np.append(np.concatenate(inside), path.coordinates[-1])
+
+
 class Landmarks:
     """The search for landmarks on one path."""
 
     def __init__(self, path: SolvedPath, coordinate: Coordinate, rtol: float) -> None:
         self.path, self.coordinate, self.rtol = path, coordinate, rtol
         self.moves = bool(coordinate.groups_at(float(path.coordinates[0])).speed > 0)
-        inside = [interval.left.coordinate + PARTS * interval.length for interval in path.intervals]
-        self.places = np.append(np.concatenate(inside), path.coordinates[-1])
+        self.places = places_of(path)
         self.rows = path.smooth(self.places)
 
     def lowest(

@@ -17,7 +17,7 @@ from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import CurveValues, Progress
-from stribeck.curves.landmarks import PARTS, Landmark
+from stribeck.curves.landmarks import Landmark, places_of
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Transition
 from stribeck.curves.result import StribeckCurve
 from stribeck.equations.point.expansion import SMOOTH
@@ -150,7 +150,7 @@ class PointCurve(StribeckCurve):
         return self._lowest_of_points() if self._function is None else self._lowest_of_function()
 
     def _lowest_of_function(self) -> Landmark | None:
-        places = self._places
+        places = places_of(self._solved_path)
         total = np.add(*self._parts_at(places)[1:])
         i = int(np.argmin(total))
         if not 0 < i < len(places) - 1 or np.ptp(total) <= self.rtol * total.max():
@@ -161,13 +161,6 @@ class PointCurve(StribeckCurve):
 
         place = root_between(slope, float(places[i - 1]), float(places[i + 1]), LOCATION_TOLERANCE)
         return None if place is None else self._mark(Transition.MINIMUM, place)
-
-    @property
-    def _places(self) -> Array:
-        """Coordinates at which the function is looked at."""
-        path = self._solved_path
-        inside = [interval.left.coordinate + PARTS * interval.length for interval in path.intervals]
-        return np.append(np.concatenate(inside), path.coordinates[-1])
 
     def _lowest_of_points(self) -> Landmark | None:
         """Return the minimum on a polynomial through solved states around it."""
@@ -205,7 +198,7 @@ class PointCurve(StribeckCurve):
             fluid, contact, total = self.observable("fluid_load_share"), self.friction_contact, np.asarray(self.friction)
             places = np.log(self.values)
         else:
-            places = self._places
+            places = places_of(self._solved_path)
             fluid, contact, viscous = self._parts_at(places)
             total = contact + viscous
         by_asperities = contact / np.maximum(total, 1e-300)

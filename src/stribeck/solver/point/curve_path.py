@@ -14,7 +14,7 @@ from stribeck._types import Array, Flags
 from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.groups import Groups
 from stribeck.equations.point.expansion import SHARE, SMOOTH, corrected_once, expand, from_row
-from stribeck.equations.point.observables import minima
+from stribeck.equations.point.observables import identity_error, minima
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.sensitivity import beside
 from stribeck.equations.point.system import Linear, Unknowns
@@ -308,7 +308,7 @@ class CurveState(ByValue, PointState):
             values=values,
             absolute_errors=absolute,
             scales=scales,
-            identity_error=values["J_balanced"] - values["J_published"] - values["J_pcx"] + 0.4 * np.pi * float(groups.speed),
+            identity_error=identity_error(values, float(groups.speed)),
             load_error=values["contact_load_share"] + values["fluid_load_share"] - 1.0,
             _lowest=float(guess.fluid.min()),
             _place=(problem, path, s),
