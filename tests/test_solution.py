@@ -56,6 +56,7 @@ def test_a_second_minimum_of_the_same_depth_is_within_the_error():
         assert error == pytest.approx(distance, abs=0.1)
 
 
+@pytest.mark.quick
 def test_a_wrong_slope_at_the_nodes_moves_the_minimum_by_slope_over_curvature():
     mesh = Mesh(np.linspace(-4, 4, 33), 12)
     gap = 1 + (mesh.nodes - 0.1) ** 2
