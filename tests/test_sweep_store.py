@@ -157,17 +157,19 @@ def test_a_state_without_its_flag_and_temporary_files_are_cleared_away(copy):
 
 
 @pytest.mark.quick
-def test_data_come_before_the_flag(tmp_path, monkeypatch):
-    order = []
+def test_data_come_before_the_flag_and_whole(tmp_path, monkeypatch):
+    order, there = [], []
     replace = os.replace
 
     def noted(a, b):
         if b.name.startswith("c."):
             order.append(b.parent.name)
+            there.append(b.exists())
         replace(a, b)
 
     monkeypatch.setattr(sweep_rows.os, "replace", noted)
     sb.sweep(write(tmp_path, SMALL), tmp_path / "store")
+    assert not any(there)  # a chunk written in place would be seen half by a reader
     states = "".join(name[0] for name in order).split("d")
     assert len(states) == 13
     assert set(states) == {"v", "tv", ""}
