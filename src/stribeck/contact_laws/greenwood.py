@@ -11,7 +11,7 @@ of order 3/2 where a rough surface meets a plane one and 5/2 where two rough sur
 The moments are kept as a spline of order 7 through values of their integral, made on first use.
 
 Source: [GW] Greenwood and Williamson, Proc. R. Soc. A 295 (1966) 300; [GT] Greenwood and Tripp, Proc. Inst. Mech. Eng. 185
-(1970) 625; both derived again in theory.md, section 8.
+(1970) 625; both derived again in docs/contact_laws.md.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ class GreenwoodWilliamson(_GaussianHeights):
     measured from their mean plane.  The law is exact for its model at any separation, also below zero, where the model itself
     (asperities that know nothing of each other) no longer holds; notes of a solution say so.
 
-    Source: [GW]; theory.md, section 8.
+    Source: [GW]; docs/contact_laws.md.
     """
 
     order: ClassVar[float] = 1.5
@@ -198,7 +198,7 @@ class GreenwoodTripp(_GaussianHeights):
     :math:`4.4086 \cdot 10^{-5} (4 - s)^{6.804}` that is often used for it is 74 % too small at three standard deviations, and
     zero from four on (``test_asperity_laws.py::test_the_popular_fit_of_greenwood_and_tripp_is_wrong_where_contact_begins``).
 
-    Source: [GT]; theory.md, section 8.
+    Source: [GT]; docs/contact_laws.md.
     """
 
     order: ClassVar[float] = 2.5
