@@ -84,7 +84,7 @@ def _minimum_on_panel(mesh: Mesh, h: Array, panel: int) -> tuple[float, float]:
     return x, math.exp(_jet(polynomial, s - start)[0]) * (mesh.scale**2 + x * x)
 
 
-def minimum_gaps(mesh: Mesh, log_gap: Array) -> tuple[Array, Array, Array, Indices]:
+def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Array, Array, Indices]:
     """Return the minimum gap of many states, the logarithms of their gaps in rows.
 
     Parameters
@@ -92,44 +92,41 @@ def minimum_gaps(mesh: Mesh, log_gap: Array) -> tuple[Array, Array, Array, Indic
     mesh : Mesh
         The discretisation.
     log_gap : ndarray, shape (rows, nodes)
-        Logarithm of the gap at the nodes.
+        Logarithm of the gap at the nodes of panels side by side, the one through infinity not among them.
+    first : int
+        Number of the first of these panels.
 
     Returns
     -------
     tuple of ndarray, shape (rows,)
         Position, gap, the relative error of its interpolation, and the panel it is on.
     """
-    order, rule = mesh.order, reference(mesh.order)
-    shape = log_gap - np.log(mesh.far)
-    node = np.argmin(log_gap[:, :-order], axis=1)
-    panel, inside = np.divmod(node, order)
-    beside = panel - (inside == 0) + (inside == order - 1)
-    rows, powers = np.arange(len(log_gap)), np.arange(order)
-    found = []
-    # Beside the panel of the lowest node begins where the two meet.
-    sides = [
-        (panel, inside, rule.nodes[inside]),
-        (beside, np.where(inside == 0, order - 1, 0), np.where(inside == 0, 1.0, -1.0)),
-    ]
-    for k, about, start in sides if (beside != panel).any() else sides[:1]:
-        k = np.clip(k, 0, mesh.panels - 2)
-        own = shape.reshape(len(rows), mesh.panels, order)[rows, k]
-        polynomial = np.einsum("rnj,rj->rn", _taylor(order)[about], own)
-        slopes, bends = polynomial[:, 1:] * powers[1:], polynomial[:, 2:] * powers[2:] * powers[1:-1]
-        c, d, s, origin = mesh.centres[k], mesh.half_widths[k], start, rule.nodes[about]
-        for _ in range(NEWTON_STEPS):
-            basis, x = (s - origin)[:, None] ** powers, c + d * s
-            far = mesh.scale**2 + x * x
-            slope = (basis[:, :-1] * slopes).sum(axis=1) + 2 * d * x / far
-            bend = (basis[:, :-2] * bends).sum(axis=1) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
-            step = -slope / np.maximum(np.maximum(bend, np.abs(slope) / LARGEST_STEP), 1e-300)
-            s = np.clip(s + step, -1.0, 1.0)
-        x = c + d * s
-        value = ((s - origin)[:, None] ** powers * polynomial).sum(axis=1) + np.log(mesh.scale**2 + x * x)
-        found.append((value, x, k, 2 * interpolation_error(own)))
-    lower = found[-1][0] < found[0][0]
-    value, x, k, missed = (np.where(lower, b, a) for a, b in zip(found[0], found[-1], strict=True))
-    return x, np.exp(value), missed, k
+    order, rule, count = mesh.order, reference(mesh.order), len(log_gap)
+    panels, powers = log_gap.shape[1] // order, np.arange(order)
+    shape = log_gap - np.log(mesh.far[first * order : (first + panels) * order])
+    k, about = np.divmod(np.argmin(log_gap, axis=1), order)
+    start = rule.nodes[about]
+    beside = np.clip(k - (about == 0) + (about == order - 1), 0, panels - 1)
+    if (beside != k).any():  # beside the panel of the lowest node the search begins where the two meet
+        at_end = np.where(about == 0, 1.0, -1.0)
+        start = np.append(start, at_end)
+        k, about = np.append(k, beside), np.append(about, np.where(about == 0, order - 1, 0))
+    own = shape.reshape(count, panels, order)[np.arange(len(k)) % count, k]
+    polynomial = np.einsum("rnj,rj->rn", _taylor(order)[about], own)
+    slopes, bends = polynomial[:, 1:] * powers[1:], polynomial[:, 2:] * powers[2:] * powers[1:-1]
+    c, d, s, origin = mesh.centres[first + k], mesh.half_widths[first + k], start, rule.nodes[about]
+    for _ in range(NEWTON_STEPS):
+        basis, x = (s - origin)[:, None] ** powers, c + d * s
+        far = mesh.scale**2 + x * x
+        slope = np.einsum("rn,rn->r", basis[:, :-1], slopes) + 2 * d * x / far
+        bend = np.einsum("rn,rn->r", basis[:, :-2], bends) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
+        step = -slope / np.maximum(np.maximum(bend, np.abs(slope) / LARGEST_STEP), 1e-300)
+        s = np.minimum(np.maximum(s + step, -1.0), 1.0)
+    x = c + d * s
+    value = np.einsum("rn,rn->r", (s - origin)[:, None] ** powers, polynomial) + np.log(mesh.scale**2 + x * x)
+    rows = np.arange(count)
+    rows += np.where(value[-count:] < value[:count], len(k) - count, 0)
+    return x[rows], np.exp(value[rows]), 2 * interpolation_error(own[rows]), first + k[rows]
 
 
 @lru_cache(maxsize=32)

@@ -67,6 +67,9 @@ BY_CHANCE = 0.25
 RESOLVED = 0.3
 """Part of the tolerance that the minimum gap may miss on the finer of two meshes before the other is asked too."""
 
+NEGLIGIBLE = 0.1
+"""Part of the tolerance that a polynomial of the minimum gap may miss."""
+
 OFFSET_FLOOR = 5e-3
 """The error of the offset is relative to it where it exceeds this: between states it is that of states where it is larger."""
 
@@ -133,6 +136,11 @@ class LineProblem:
             found[:, GAPS] = np.maximum(found[:, GAPS], GAP_FLOOR * kappa[:, None])
         found[found == 0] = 1.0
         return found
+
+    @property
+    def negligible(self) -> float:
+        """A part of the tolerance."""
+        return NEGLIGIBLE * self.tolerance
 
     def read_scales(self, values: Array) -> Array:
         """Return the lowest minimum gap, and the half-width for its position."""
@@ -283,8 +291,7 @@ class LineProblem:
             return found
         places = left.coordinate + parts * (right.coordinate - left.coordinate)
         corrected = np.stack([self._corrected_once(s, left, right) for s in places.tolist()])
-        known = values[:, :POSITION].copy()
-        known[:, READ[0]] = self.read(left, right, parts)[0][:, 0]
+        known = values[:, :POSITION]
         with np.errstate(all="ignore"):  # what is not finite is as wrong as can be
             wrong = np.abs(corrected - known) / self.scales(np.hstack([known, values[:, POSITION:]]), places)[:, :POSITION]
         wrong = np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf), 0.0).max(axis=0)
@@ -322,24 +329,35 @@ class LineProblem:
 
 
 def _minimum_on(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> tuple[Array, Array]:
-    """Return minimum gap and its position between two expansions, read on the mesh of one, and the error of the gap."""
-    order, mesh, at = min(left.order, right.order), of.state.mesh, of.state.equations.layout
+    """Return minimum gap and its position between two expansions, read on the mesh of one, and the error of the gap.
+
+    It is looked for around the places that it has at the ends, and everywhere if it is not lower there than beside them.
+    """
+    order, mesh, at, ends = min(left.order, right.order), of.state.mesh, of.state.equations.layout, (left, right)
     weights = hermite_weights(order, parts)
     lower = [np.pad(each, ((0, 0), (0, 1))) for each in hermite_weights(order - 1, parts)]
-    scaled = _scaled(left, right, order)
-    a, b = (on_mesh(end.point, each, of) for end, each in zip((left, right), scaled, strict=True))
-    unknowns = weights[0] @ a + weights[1] @ b
-    change = (weights[0] - lower[0]) @ a[:, at.gap] + (weights[1] - lower[1]) @ b[:, at.gap]
-    place, lowest, error, panel = minimum_gaps(mesh, unknowns[:, at.gap])
-    nodes = panel[:, None] * mesh.order + np.arange(mesh.order)
+    scaled, everywhere = _scaled(left, right, order), range(mesh.panels - 1)
+    places = [end.point.state.minimum_position / _stretch(end.point, of) for end in ends]
+    low, high = np.searchsorted(mesh.edges, [min(places), max(places)])
+    for panels in (range(max(0, int(low) - 2), min(everywhere.stop, int(high) + 1)), everywhere):
+        a, b = (gaps_on(end.point, each, of, panels) for end, each in zip(ends, scaled, strict=True))
+        place, lowest, error, panel = minimum_gaps(mesh, weights[0] @ a + weights[1] @ b, panels.start)
+        if panels == everywhere or (panel.min() > panels.start and panel.max() < panels.stop - 1):
+            break
+    nodes = ((panel - panels.start) * mesh.order)[:, None] + np.arange(mesh.order)
+    change = (weights[0] - lower[0]) @ a + (weights[1] - lower[1]) @ b
     error = error + np.abs(np.take_along_axis(change, nodes, axis=1)).max(axis=1)
-    for end, each, w in zip((left, right), scaled, weights, strict=True):
+    for end, each, w in zip(ends, scaled, weights, strict=True):
         if end.point.state.mesh is not mesh:  # what comes from there was interpolated there
             error = error + 2 * _unresolved(end.point, each, w, place * _stretch(end.point, of))
     position = place
-    for block in (at.dilation, at.exit):  # of a frame that moves with the end of the film
-        if block.stop > block.start:
-            position = position * unknowns[:, block.start] if block is at.dilation else position + unknowns[:, block.start]
+    if at.exit.stop > at.exit.start:  # in a frame that moves with the end of the film
+        numbers = sum(
+            w @ numbers_on(end.point, each, of) for end, each, w in zip(ends, scaled, weights, strict=True)
+        )
+        if at.dilation.stop > at.dilation.start:
+            position = position * numbers[:, at.dilation.start - at.numbers.start]
+        position = position + numbers[:, at.exit.start - at.numbers.start]
     return np.stack([lowest, position]), error
 
 
@@ -395,15 +413,32 @@ def on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
     mesh, other = point.state.mesh, of.state.mesh
     if mesh is other:
         return coefficients
-    at, there, stretch = point.state.equations.layout, of.state.equations.layout, _stretch(point, of)
+    at, there = point.state.equations.layout, of.state.equations.layout
     found = np.empty((len(coefficients), there.size))
-    found[:, there.numbers] = coefficients[:, at.numbers]
-    gap = coefficients[:, at.gap].copy()
-    gap[0] -= np.log(mesh.far)
-    nodes = stretch * other.nodes
-    found[:, there.gap] = mesh.interpolate(gap, nodes)
-    found[0, there.gap] += np.log(mesh.scale**2 + nodes**2)
-    found[:, there.dilation] *= stretch
+    found[:, there.numbers] = numbers_on(point, coefficients, of)
+    found[:, there.gap] = gaps_on(point, coefficients, of, range(other.panels))
     if there.pressure.stop > there.pressure.start:
-        found[:, there.pressure] = mesh.interpolate(coefficients[:, at.pressure], nodes)
+        found[:, there.pressure] = mesh.interpolate(coefficients[:, at.pressure], _stretch(point, of) * other.nodes)
+    return found
+
+
+def gaps_on(point: LinePoint, coefficients: Array, of: LinePoint, panels: range) -> Array:
+    """Return those of the logarithm of the gap on panels, side by side, of that mesh."""
+    mesh, other, at = point.state.mesh, of.state.mesh, point.state.equations.layout
+    own = slice(panels.start * other.order, panels.stop * other.order)
+    if mesh is other:
+        return np.asarray(coefficients[:, at.gap][:, own])
+    nodes = _stretch(point, of) * other.nodes[own]
+    shapes = coefficients[:, at.gap].copy()
+    shapes[0] -= np.log(mesh.far)
+    found = mesh.interpolate(shapes, nodes)
+    found[0] += np.log(mesh.scale**2 + nodes**2)
+    return found
+
+
+def numbers_on(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
+    """Return those of the unknowns that are numbers; the dilation is that of the mesh."""
+    at = point.state.equations.layout
+    found = coefficients[:, at.numbers].copy()
+    found[:, at.dilation.start - at.numbers.start : at.dilation.stop - at.numbers.start] *= _stretch(point, of)
     return found

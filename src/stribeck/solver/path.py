@@ -18,7 +18,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from stribeck._types import Array, Flags
+from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, highest_order
 from stribeck.quantities.outcome import Outcome
 
@@ -40,14 +40,11 @@ CHECKED = 0.85
 REDUCIBLE = 0.25
 """Part of the tolerance that interpolation must miss for a shorter interval to help."""
 
-READ_AT = 16
-"""Places of an interval at which what has no series is read, for a polynomial between them."""
+READ_AT = 24
+"""Places of an interval at which what has no series is read, for a polynomial between them, and at which it is checked."""
 
 TAIL = 3.0
 """What a polynomial is wrong by, over the largest of its last three coefficients."""
-
-CHECKS = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 30) / 30)
-"""Where an interval is checked, in parts of it."""
 
 LOST = 1e3
 """Value over what its interpolation misses below which a share goes by its logarithm."""
@@ -120,6 +117,10 @@ class Problem(Protocol):
     def scales(self, values: Array, s: Array) -> Array:
         """Return what errors of observables at coordinates s, shape (len(s), n), are relative to."""
 
+    @property
+    def negligible(self) -> float:
+        """What a polynomial of what has no series may be wrong by, in units of the scales, beside the errors of that."""
+
     def read_scales(self, values: Array) -> Array:
         """Return the same for what has no series."""
 
@@ -174,20 +175,21 @@ class Interval:
     @cached_property
     def inside(self) -> Array:
         """What the problem itself finds wrong between the ends."""
-        values = _Pieces([self]).smooth(np.zeros(len(INSIDE), dtype=int), INSIDE)[0]
+        pieces, where = _Pieces([self]), np.zeros(len(INSIDE), dtype=int)
+        values, _, basis = pieces.smooth(where, INSIDE)
+        pieces.read(values, where, INSIDE, basis)
         return self.problem.missed(self.left, self.right, INSIDE, values)
 
     @cached_property
     def read(self) -> tuple[Array, Array, Sequence[int], bool]:
         """Polynomials of what has no series, their errors and columns, and whether they are good enough."""
-        nodes = chebyshev_nodes(READ_AT)
-        values, errors, columns = self.problem.read(self.left, self.right, nodes)
+        values, errors, columns = self.problem.read(self.left, self.right, chebyshev_nodes(READ_AT))
         form = chebyshev_form(values)
         tails = TAIL * np.abs(form[-3:]).max(axis=0, initial=0.0)
         largest = errors.max(axis=0, initial=0.0)
         scales = self.problem.read_scales(values)
         missed = np.divide(tails, scales, out=np.full_like(tails, math.inf), where=scales > 0)
-        return form, largest + missed, columns, bool((tails <= 0.5 * largest * scales).all())
+        return form, largest + missed, columns, bool((missed <= np.maximum(0.5 * largest, self.problem.negligible)).all())
 
     def at(self, parts: Array) -> tuple[Array, Array]:
         """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
@@ -243,18 +245,25 @@ class _Pieces:
         scales = self.problem.scales(found, self.starts[where] + parts * self.lengths[where])
         relative, absolute = self._errors
         errors = relative[where] + (absolute[where] + missed) / scales
+        for mine, columns, of_read in self.read(found, where, parts, basis):
+            errors[mine, columns] = of_read + self.intervals[where[mine[0, 0]]].inside[columns]
+        return found, errors
+
+    def read(self, found: Array, where: Array, parts: Array, basis: Array) -> list[tuple[Indices, Sequence[int], Array]]:
+        """Write what has no series into ``found``; return the rows and columns of each interval, and the errors there."""
+        written = []
         for k in np.unique(where).tolist() if len(where) > 1 else where.tolist():
-            form, largest, columns, is_smooth = self.intervals[k].read
+            one = self.intervals[k]
+            form, errors, columns, is_smooth = one.read
             if not len(columns):
                 continue
             mine = np.nonzero(where == k)[0][:, None]
-            one = self.intervals[k]
             if is_smooth:
-                found[mine, columns], errors[mine, columns] = basis[mine[:, 0], :READ_AT] @ form, largest
+                found[mine, columns] = basis[mine[:, 0], :READ_AT] @ form
             else:
-                found[mine, columns], errors[mine, columns], _ = self.problem.read(one.left, one.right, parts[mine[:, 0]])
-            errors[mine, columns] += one.inside[columns]
-        return found, errors
+                found[mine, columns], errors, _ = self.problem.read(one.left, one.right, parts[mine[:, 0]])
+            written.append((mine, columns, errors))
+        return written
 
 
 @dataclass(frozen=True, eq=False)
@@ -395,9 +404,10 @@ def _refined(interval: Interval, rtol: float, before: float = math.inf) -> list[
     problem, left, right = interval.problem, interval.left, interval.right
     exists = [np.isfinite(one.series).all(axis=0) for one in (left, right)]
     ends_between = bool((exists[0] != exists[1]).any()) and interval.length > LONGEST_END  # what exists on one side alone
-    values, errors = interval.at(CHECKS)
+    checks = chebyshev_nodes(READ_AT)
+    values, errors = interval.at(checks)
     # What the ends are wrong by does not fall with the length.
-    scales = problem.scales(values, left.coordinate + CHECKS * interval.length)
+    scales = problem.scales(values, left.coordinate + checks * interval.length)
     of_ends = np.where(problem.signed, interval.at_ends[1] / scales, interval.at_ends[0])
     excess = errors - of_ends > REDUCIBLE * rtol
     if not ends_between and not ((errors > CHECKED * rtol) & excess)[:, problem.held].any():

@@ -115,6 +115,8 @@ class PointProblem:
         found[:, FRICTION] = np.maximum(found[:, LARGEST].max(axis=1), speeds)[:, None]
         return found
 
+    negligible = 0.0
+
     def read_scales(self, values: Array) -> Array:
         """Return nothing."""
         return np.empty(0)
