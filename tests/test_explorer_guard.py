@@ -7,6 +7,8 @@ import pytest
 import stribeck as sb
 from stribeck.explorer.serving.guard import LARGEST_REQUEST, Guard, check_host
 
+pytestmark = pytest.mark.quick
+
 TOKEN = "0123abcd"
 OWN = {"host": "127.0.0.1:8765", "cookie": f"stribeck-explorer-8765={TOKEN}"}
 
