@@ -1,5 +1,6 @@
 """A curve as a function: within its stated errors anywhere, whatever points it was sampled at."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -84,6 +85,16 @@ def test_numbers_give_numbers_and_arrays_arrays(curve):
 
 
 @pytest.mark.quick
+def test_what_a_curve_is_somewhere_fits_a_screen_and_is_equal_after_pickling(curve):
+    one, many = curve.at("1 mm/s"), curve.at(curve.values)
+    for values in (one, many):
+        assert pickle.loads(pickle.dumps(values)) == values
+        assert len(repr(values).splitlines()) < 20
+        assert "central_gap" in values._repr_html_()
+    assert one != curve.at("2 mm/s")
+    assert f"friction: {one.friction:.4g}, error {one.friction_error:.1e}" in repr(one)
+
+
 def test_the_points_of_a_curve_lie_on_it(curve):
     here = curve.at(curve.values)
     assert (np.abs(here.friction - curve.friction) <= here.friction_error + curve.friction_error).all()

@@ -17,6 +17,7 @@ from stribeck.equations.observables import ROW, Observables
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ALL_NAMES
+from stribeck.quantities.results import ByValue, Card, Shown, brief
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.line_path import POSITION, LineProblem
 from stribeck.solver.path import SolvedPath
@@ -128,8 +129,8 @@ class CurvePoint(Solution):
     origin = property(lambda self: self._solved.origin)
 
 
-@dataclass(frozen=True, eq=False)
-class CurveValues:
+@dataclass(frozen=True, eq=False, repr=False)
+class CurveValues(Shown, ByValue):
     """What a curve is at one of its values, or at many.
 
     Attributes
@@ -224,6 +225,12 @@ class CurveValues:
     def errors(self) -> dict[str, Any]:
         """Estimated relative error of each observable; absolute for the load shares."""
         return {name: self.relative_errors[..., i] for i, name in enumerate(self.names)}
+
+    def _card(self) -> Card:
+        known = {"friction": (self.friction, self.friction_error)}
+        known |= {name: (self.values[name], error) for name, error in self.errors.items() if np.isfinite(error).all()}
+        rows = [(name, f"{brief(value)}, error {np.max(error):.1e}") for name, (value, error) in known.items()]
+        return Card(f"at {brief(self.value)}", rows, ("Hertz units; errors of friction and load shares are absolute.",))
 
     def __getattr__(self, name: str) -> Any:
         """Return an observable under its own name."""
