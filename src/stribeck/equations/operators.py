@@ -114,7 +114,7 @@ class Operators:
     @cached_property
     def deflection_of_gradient(self) -> Array:
         """D A: nodal pressure gradients -> deflection."""
-        return np.asfortranarray(self.integral.after(self.deflection))
+        return self.integral.after(self.deflection)
 
     @cached_property
     def load_of_gradient(self) -> Array:

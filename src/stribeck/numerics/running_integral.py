@@ -115,41 +115,31 @@ class RunningIntegral:
         found[-self.mesh.order :] = self._tail_weights[1]
         return found
 
+    @cached_property
+    def _arrived(self) -> Array:
+        """Row per panel: nodal values -> the integral from infinity to the edge at which the panel begins."""
+        panels, order, found = self.mesh.panels, self.mesh.order, np.zeros((self.mesh.panels, self.mesh.size))
+        each = self.mesh.weights.reshape(panels, order)
+        for k, row in enumerate(found[:-1].reshape(panels - 1, panels, order)):
+            if k < self.middle:
+                row[:k], row[-1] = each[:k], self._tail_weights[0]
+            elif k >= self.second:
+                row[k + 1 : -1], row[-1] = -each[k + 1 : -1], -self._tail_weights[1]
+        return found
+
     def __call__(self, values: Array) -> Array:
         """Return the integral at the nodes, shape (..., size), of nodal ``values``, shape (..., size)."""
-        mesh, middle = self.mesh, self.middle
-        nodal = values.reshape(*values.shape[:-1], mesh.panels, mesh.order)
+        nodal = values.reshape(*values.shape[:-1], self.mesh.panels, self.mesh.order)
         result = np.matmul(self.blocks, nodal[..., None])[..., 0]
-        whole = np.einsum("pn,...pn->...p", mesh.weights.reshape(nodal.shape[-2:])[:-1], nodal[..., :-1, :])
-        left_tail, right_tail = ((nodal[..., -1, :] @ weights)[..., None] for weights in self._tail_weights)
-        before = np.cumsum(np.concatenate([left_tail, whole[..., : middle - 1]], axis=-1), axis=-1)
-        result[..., :middle, :] += before[..., None]
-        if not self.one_sided:
-            second = self.second
-            after = np.cumsum(np.concatenate([right_tail, whole[..., :second:-1]], axis=-1), axis=-1)[..., ::-1]
-            result[..., second:-1, :] -= after[..., None]
+        result += (values @ self._arrived.T)[..., None]
         return np.asarray(result.reshape(values.shape))
 
     def after(self, operator: Array) -> Array:
-        """Return ``operator @ A``, shape (rows, size), in O(rows size order)."""
-        mesh, middle = self.mesh, self.middle
-        rows = len(operator)
-        nodal = operator.reshape(rows, mesh.panels, mesh.order)
-        result = np.matmul(nodal.transpose(1, 0, 2), self.blocks).transpose(1, 0, 2)
-        sums = nodal.sum(axis=2)
-        whole = mesh.weights.reshape(mesh.panels, mesh.order)[:-1]
-        left_tail, right_tail = self._tail_weights
-        # Panel k left of zero adds its whole integral to the panels between it and zero, and so on the right.
-        later = np.cumsum(sums[:, middle - 1 :: -1], axis=1)[:, ::-1]
-        result[:, : middle - 1] += later[:, 1:, None] * whole[: middle - 1]
-        if self.one_sided:
-            result[:, -1] += np.outer(later[:, 0], left_tail)
-        else:
-            second = self.second
-            earlier = np.cumsum(sums[:, second:-1], axis=1)
-            result[:, second + 1 : -1] -= earlier[:, :-1, None] * whole[second + 1 :]
-            result[:, -1] += np.outer(later[:, 0], left_tail) - np.outer(earlier[:, -1], right_tail)
-        return np.asarray(result.reshape(rows, mesh.size))
+        """Return ``operator @ A``, shape (rows, size), in Fortran order."""
+        columns = np.ascontiguousarray(operator.T).reshape(self.mesh.panels, self.mesh.order, -1)
+        result = np.matmul(self.blocks.transpose(0, 2, 1), columns).reshape(self.mesh.size, -1)
+        result += self._arrived.T @ columns.sum(axis=1)
+        return np.asarray(result.T)
 
 
 @dataclass(frozen=True, eq=False)
