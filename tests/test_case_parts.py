@@ -112,6 +112,8 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
         ({"fluid": {"name": "water"}}, r"\[fluid\] name = 'water' is not a known key; did you mean preset or model"),
         ({"fluid": {"model": "bingham"}}, r"\[fluid\] model = 'bingham' must be one of"),
         ({"fluid": {"viscosity_law": "barus"}}, r"\[fluid\] pressure_viscosity is missing"),
+        ({"fluid": {"viscosity_law": "constant", "pressure_viscosity": 1}}, r"\[fluid\] pressure_viscosity = 1 is given, but"),
+        ({"fluid": {"pressure_viscosity": "15 1/GPa", "reference_pressure": 1}}, r"but viscosity_law = 'barus' has no such"),
         ({"fluid": {"pressure_viscosity": "15 GPa"}}, r"\[fluid\] pressure_coefficient = '15 GPa' is a pressure"),
         ({"fluid": {"preset": "honey"}}, r"\[fluid\] preset = 'honey' must be one of"),
         ({"fluid": {"preset": "water", "model": "cross"}}, r"\[fluid\] model = 'cross' is given, but a preset"),

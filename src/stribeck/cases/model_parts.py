@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from stribeck.fluids.description import Fluid
 from stribeck.fluids.effective_medium import EffectiveMedium
@@ -21,33 +21,54 @@ from stribeck.solids.viscoelastic import Prony, StandardLinearSolid
 
 __all__ = ["KEYS", "take_parts"]
 
-RHEOLOGIES: dict[str, tuple[Any, tuple[str, ...], tuple[str, ...]]] = {
-    "newtonian": (None, (), ()),
-    "carreau": (Carreau, ("relaxation_time", "exponent"), ("infinite_viscosity",)),
-    "cross": (Cross, ("relaxation_time", "exponent"), ("infinite_viscosity",)),
-    "eyring": (Eyring, ("stress",), ()),
-    "power-law": (PowerLaw, ("relaxation_time", "exponent"), ()),
-}
-"""Model of a fluid -> its class, its keys that are needed and those that are not."""
 
-VISCOSITY_LAWS = ("constant", "barus", "roelands")
-DENSITIES = ("incompressible", "dowson-higginson")
+class Part(NamedTuple):
+    """A law that a case may name.
+
+    Attributes
+    ----------
+    law : callable
+        ``law(*needed, **optional)``; None for the one that does nothing.
+    needed : dict
+        Key that it must have -> an example.
+    optional : tuple of str
+        Keys that it may have.
+    """
+
+    law: Callable[..., Any] | None = None
+    needed: dict[str, str] = {}
+    optional: tuple[str, ...] = ()
+
+
+RELAXATION = {"relaxation_time": '"1 ms"', "exponent": "0.5"}
+PRESSURE = {"pressure_viscosity": '"15 1/GPa"'}
+
+RHEOLOGIES = {
+    "newtonian": Part(),
+    "carreau": Part(Carreau, RELAXATION, ("infinite_viscosity",)),
+    "cross": Part(Cross, RELAXATION, ("infinite_viscosity",)),
+    "eyring": Part(Eyring, {"stress": '"5 MPa"'}),
+    "power-law": Part(PowerLaw, RELAXATION),
+}
+VISCOSITY_LAWS = {
+    "constant": Part(),
+    "barus": Part(Barus, PRESSURE),
+    "roelands": Part(Roelands, PRESSURE, ("reference_pressure", "reference_viscosity")),
+}
+DENSITIES = {"incompressible": Part(), "dowson-higginson": Part(DowsonHigginson)}
+FLUID_LAWS = {"model": RHEOLOGIES, "viscosity_law": VISCOSITY_LAWS, "density": DENSITIES}
+"""Key of ``[fluid]`` -> the laws that it names; the first does nothing."""
+
 CONDITIONS = ("weight_fraction", "temperature", "grade")
 NAMES = ("name", "type", "kind", "law", "fluid", "liquid")
 """Keys that people write for the one that says which."""
 
 KEYS = {
     "fluid": (
-        "model",
-        "relaxation_time",
-        "exponent",
-        "infinite_viscosity",
-        "stress",
-        "pressure_viscosity",
-        "viscosity_law",
-        "reference_pressure",
-        "reference_viscosity",
-        "density",
+        *FLUID_LAWS,
+        *dict.fromkeys(
+            key for laws in FLUID_LAWS.values() for each in laws.values() for key in (*each.needed, *each.optional)
+        ),
         "preset",
         *CONDITIONS,
     ),
@@ -138,38 +159,24 @@ def _fluid(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     if "preset" in table:
         return _preset(table, contact)
     _only(table, tuple(key for key in KEYS["fluid"] if key not in CONDITIONS), "a fluid without preset")
-    model = _one_of(table, "model", tuple(RHEOLOGIES), "newtonian")
-    law, needed, optional = RHEOLOGIES[model]
-    for key in ("relaxation_time", "exponent", "infinite_viscosity", "stress"):
+    given = {"viscosity_law": "barus"} | table if PRESSURE.keys() & table.keys() else table
+    return {"fluid": Fluid(*(_law(given, key) for key in FLUID_LAWS))}
+
+
+def _law(table: dict[str, Any], kind: str) -> Any:
+    """Return the law that a table names, with its numbers; None for the one that does nothing."""
+    laws = FLUID_LAWS[kind]
+    name = _one_of(table, kind, tuple(laws), next(iter(laws)))
+    law, needed, optional = laws[name]
+    for key in dict.fromkeys(key for other in laws.values() for key in (*other.needed, *other.optional)):
         if key in table and key not in (*needed, *optional):
-            raise InputError(f"{key} = {show(table[key])} is given, but model = {model!r} has no such key; remove it.")
-    missing = [key for key in needed if key not in table]
-    if missing:
-        examples = {"relaxation_time": '"1 ms"', "exponent": "0.5", "stress": '"5 MPa"'}
-        raise InputError(f"{missing[0]} is missing, which model = {model!r} needs; add {missing[0]} = {examples[missing[0]]}.")
-    rheology = None if law is None else law(**{key: table[key] for key in (*needed, *optional) if key in table})
-    return {"fluid": Fluid(rheology, _viscosity(table), _density(table))}
-
-
-def _viscosity(table: dict[str, Any]) -> Barus | Roelands | None:
-    given = "pressure_viscosity" in table
-    law = _one_of(table, "viscosity_law", VISCOSITY_LAWS, "barus" if given else "constant")
-    if law == "constant":
-        if given:
-            raise InputError("pressure_viscosity is given with viscosity_law = 'constant'; remove one of them.")
+            raise InputError(f"{key} = {show(table[key])} is given, but {kind} = {name!r} has no such key; remove it.")
+    for key, example in needed.items():
+        if key not in table:
+            raise InputError(f"{key} is missing, which {kind} = {name!r} needs; add {key} = {example}.")
+    if law is None:
         return None
-    if not given:
-        raise InputError(f'pressure_viscosity is missing, which viscosity_law = {law!r} needs; add "15 1/GPa" for an oil.')
-    references = {key: table[key] for key in ("reference_pressure", "reference_viscosity") if key in table}
-    if law == "barus":
-        if references:
-            raise InputError(f"{next(iter(references))} is given, but viscosity_law = 'barus' has no such key; remove it.")
-        return Barus(table["pressure_viscosity"])
-    return Roelands(table["pressure_viscosity"], **references)
-
-
-def _density(table: dict[str, Any]) -> DowsonHigginson | None:
-    return DowsonHigginson() if _one_of(table, "density", DENSITIES, DENSITIES[0]) == DENSITIES[1] else None
+    return law(*(table[key] for key in needed), **{key: table[key] for key in optional if key in table})
 
 
 def _preset(table: dict[str, Any], contact: Any) -> dict[str, Any]:

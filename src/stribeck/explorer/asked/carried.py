@@ -15,12 +15,11 @@ from typing import Any
 
 from stribeck.cases.case import Case, check_case
 from stribeck.cases.law import self_contained
-from stribeck.cases.model_parts import KEYS, RHEOLOGIES, take_parts
+from stribeck.cases.model_parts import FLUID_LAWS, KEYS, take_parts
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import CONTACTS, check_geometry
 from stribeck.fluids.description import Fluid
-from stribeck.fluids.viscosity import Roelands
 from stribeck.quantities.facts import FACTS, fact_values
 from stribeck.quantities.inputs import INPUT_TABLES
 from stribeck.quantities.units import InputError, show
@@ -102,19 +101,20 @@ def geometry_of(model: str) -> Any:
     return check_geometry(_object("model", model, MODEL).get("geometry", "line")) if model else "line"
 
 
+ATTRIBUTES = {"stress": "eyring_stress", "pressure_viscosity": "pressure_coefficient"}
+"""Key of a table -> attribute of its law, where they differ."""
+
+
 def fluid_table(fluid: Fluid) -> dict[str, Any]:
     """Return a fluid as the table ``[fluid]``, with its numbers in SI units; empty for one that is always the same."""
     found: dict[str, Any] = {}
-    for name, (law, needed, optional) in RHEOLOGIES.items():
-        if law is not None and isinstance(fluid.rheology, law):
-            attributes = {key: {"stress": "eyring_stress"}.get(key, key) for key in (*needed, *optional)}
-            found = {"model": name, **{key: getattr(fluid.rheology, kept) for key, kept in attributes.items()}}
-    if fluid.viscosity is not None:
-        found["pressure_viscosity"] = fluid.viscosity.pressure_coefficient  # type: ignore[attr-defined]
-        if isinstance(fluid.viscosity, Roelands):
-            references = {key: getattr(fluid.viscosity, key) for key in ("reference_pressure", "reference_viscosity")}
-            found |= {"viscosity_law": "roelands", **references}
-    return found | ({"density": "dowson-higginson"} if fluid.density is not None else {})
+    for key, laws, kept in zip(FLUID_LAWS, FLUID_LAWS.values(), (fluid.rheology, fluid.viscosity, fluid.density), strict=True):
+        for name, part in laws.items():
+            if part.law is not None and type(kept) is part.law:
+                found |= {key: name} | {
+                    each: getattr(kept, ATTRIBUTES.get(each, each)) for each in (*part.needed, *part.optional)
+                }
+    return found
 
 
 def contact_of(model: str, numbers: Mapping[str, Any]) -> Contact:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from stribeck.cases.law import LAWS, law_of_file
-from stribeck.cases.model_parts import DENSITIES, RHEOLOGIES, VISCOSITY_LAWS, take_parts
+from stribeck.cases.model_parts import FLUID_LAWS, take_parts
 from stribeck.explorer.asked.carried import LAW_NAMES, fluid_table, json_text, tables_of
 from stribeck.explorer.asked.inputs import Inputs, exact_text, with_model
 from stribeck.fluids.cavitation import Cavitation
@@ -81,7 +81,13 @@ class Choice:
         return next(iter(self.options))
 
 
-REFERENCES = ("reference_pressure", "reference_viscosity")
+LAW_OF_FLUID = (
+    ("fluid", "Fluid", "model"),
+    ("viscosity_law", "Viscosity under pressure", "viscosity_law"),
+    ("density", "Density", "density"),
+)
+"""Name of a choice, its label, and its key in the table ``[fluid]``."""
+
 SURFACE: Keys = (("hurst", "longest_wavelength", "shortest_wavelength"), ("roll_off_wavelength", "gamma"))
 
 CHOICES = {
@@ -94,18 +100,16 @@ CHOICES = {
         Choice(
             "preset", "Fluid preset", "", "", {"": ("choose ...", NONE)} | {k: (p.label, NONE) for k, p in PRESETS.items()}
         ),
-        Choice("fluid", "Fluid", "fluid", "model", {name: (name, row[1:]) for name, row in RHEOLOGIES.items()}),
-        Choice(
-            "viscosity_law",
-            "Viscosity under pressure",
-            "fluid",
-            "viscosity_law",
-            {
-                name: (name, (("pressure_viscosity",), REFERENCES if name == "roelands" else ()) if i else NONE)
-                for i, name in enumerate(VISCOSITY_LAWS)
-            },
+        *(
+            Choice(
+                name,
+                label,
+                "fluid",
+                key,
+                {law: (law, (tuple(part.needed), part.optional)) for law, part in FLUID_LAWS[key].items()},
+            )
+            for name, label, key in LAW_OF_FLUID
         ),
-        Choice("density", "Density", "fluid", "density", {name: (name, NONE) for name in DENSITIES}),
         Choice(
             "cavitation",
             "Cavitation",
