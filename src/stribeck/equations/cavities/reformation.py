@@ -73,8 +73,8 @@ class ReformingEquations(TornEquations):
     """The discretised problem of a film that forms anew behind a cavity at the pressure ``least``."""
 
     finest: ClassVar[float] = 2e-3
-    part: ClassVar[float] = 5.0
-    """Stated error over the difference between two meshes, as it falls no faster than the number of angles grows."""
+    order: ClassVar[float] = 1.0
+    slack: ClassVar[float] = 2.5
 
     @cached_property
     def spread(self) -> csc_matrix:

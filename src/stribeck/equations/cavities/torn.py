@@ -48,6 +48,9 @@ MOST_KRYLOV = 60
 LINEAR = 1e-3
 """Relative error of a step that GMRES may leave; less near the solution."""
 
+LOOSE = 3e-2
+"""The same while other nodes break or heal."""
+
 FEW = 0.15
 """Nodes that break or heal, over those that the factors of the capacitance matrix are for, up to which these serve."""
 
@@ -102,8 +105,10 @@ class TornEquations(Equations):
 
     least: float = 0.0
 
-    part: ClassVar[float] = 1.0
-    """Stated error over the difference between two meshes: that of the finer one is about 0.8 of it."""
+    order: ClassVar[float] = 2.0
+    """Power of the number of angles with which errors fall."""
+    slack: ClassVar[float] = 1.25
+    """Stated error over that which the difference between two meshes tells by this power."""
 
     @property
     def spread(self) -> csc_matrix | None:
@@ -337,7 +342,7 @@ def iterate_cavitated(
         return np.asarray(gas * passing.weights / stiff > y.fluid - least)
 
     krylov = factorisations = steps = 0
-    left, size = math.inf, math.inf
+    left, size, same = math.inf, math.inf, False
     if kept is not None:  # a neighbour's start is good enough to ask which nodes are torn
         torn = now_torn(stiffness(Linear(equations, y)), equations.passing(torn))
 
@@ -356,8 +361,10 @@ def iterate_cavitated(
             if kept is None:
                 kept = Capacitance(BandedModes(linear, band), equations.operators.mesh, y.gap.shape)
                 factorisations += 1
-            wanted = min(LINEAR, 0.1 * size)
-            solved = gmres(linear.product, kept.of(linear), right, max(wanted, 0.1 * tolerance), MOST_KRYLOV)
+            wanted = LOOSE
+            if same:
+                wanted = min(LOOSE, max(LINEAR * min(1.0, size / LOOSE), 0.3 * tolerance / size))
+            solved = gmres(linear.product, kept.of(linear), right, wanted, MOST_KRYLOV)
             krylov += solved.steps
             if not np.isfinite(solved.x).all():
                 return ended(Outcome.SINGULAR)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from stribeck.equations.cavities.torn import TornEquations, just_above
 from stribeck.equations.point.mesh_choice import (
     RIGID_CAVITATED,
     MeshTooLargeError,
+    Resolution,
     fits,
     operators_of,
     resolution,
@@ -32,7 +34,7 @@ from stribeck.solver.point.level import PROBLEMS, Level, extrapolated, moved, so
 from stribeck.solver.point.refinement import CENTRAL, COMPANY, Pair, centre_tails, scales_of
 from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
 
-FIRST_ANGLES, LADDER = 10, (20, 30, 45, 65)
+FIRST_ANGLES, LADDER = 10, (20, 30, 45, 65, 95)
 """Numbers of angles: of the first mesh, and of the meshes of which neighbours tell the error."""
 
 WASTE = 0.12
@@ -44,14 +46,15 @@ DEGREE = 10
 RIGID = 2.0
 """Speed from which a rigid ball is nearer to the state than that of the full film."""
 
-TOLERANCE = 1e-7
-"""Relative error of the gap that an iteration may leave."""
+TOLERANCE = 1e-6
+"""Relative error of the gap that an iteration may leave: a hundredth of the smallest tolerance."""
 
 
 def pair_of(coarse: Level, fine: Level) -> Pair:
     """Return the pair of two levels of one state."""
     assert isinstance(fine.equations, TornEquations)
-    speed, part = fine.equations.speed, fine.equations.part
+    speed, slack, order = fine.equations.speed, fine.equations.slack, fine.equations.order
+    part = slack / ((fine.mesh.modes / coarse.mesh.modes) ** order - 1.0)
     values, rough = observables(fine.equations, fine.unknowns), observables(coarse.equations, coarse.unknowns)
     scales = scales_of(values, speed)
     scales["offset"] = max(abs(values["offset"]), values["central_gap"])  # it passes zero
@@ -90,29 +93,40 @@ def refine_cavitated(
     ``known`` is the state with a larger error.
     """
     rtol = max(rtol, PROBLEMS[model.cavitation][0].finest)
-    found = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
-    base = resolution(speed, law, DEGREE, FIRST_ANGLES, model)
-    base = replace(base, splits=found.splits if base.doublings == found.doublings else ())
-    start, mesh = guess.unknowns, guess.mesh
-    if speed >= RIGID and model.cavitation is Cavitation.EXIT:
-        mesh = operators_of(base).mesh
-        start = rigid(mesh, speed)
     best = known
     try:
-        last = solve_level(base, speed, law, start, mesh, TOLERANCE)
-        if not last.outcome.ok:
-            return last.outcome
-        for few, many in zip(LADDER[:-1], LADDER[1:], strict=True):
-            coarse = solve_level(replace(base, modes=few), speed, law, last.unknowns, last.mesh, TOLERANCE)
-            pair = _pair(coarse, many, speed, law)
-            if isinstance(pair, Outcome):
-                return pair if best is None else replace(best, outcome=pair)
-            best, last = pair, pair.fine
-            if held(pair) <= rtol:
-                return pair
+        if known is not None:
+            base, last, rungs = known.fine.resolution, known.fine, LADDER[LADDER.index(known.fine.mesh.modes) :]
+        else:
+            base, rungs = _base(speed, law, guess, model), LADDER
+            start, mesh = guess.unknowns, guess.mesh
+            if speed >= RIGID and model.cavitation is Cavitation.EXIT:
+                mesh = operators_of(base).mesh
+                start = rigid(mesh, speed)
+            last = solve_level(base, speed, law, start, mesh, TOLERANCE)
+            if not last.outcome.ok:
+                return last.outcome
+        for few, many in pairwise(rungs):
+            found = _pair(base, few, many, speed, law, last.unknowns, last.mesh)
+            if isinstance(found, Outcome):
+                return found if best is None else replace(best, outcome=found)
+            best, last = found, found.fine
+            if held(found) <= rtol:
+                return found
     except MeshTooLargeError:
         pass
     return Outcome.REFINEMENT_LIMIT if best is None else replace(best, outcome=Outcome.REFINEMENT_LIMIT)
+
+
+def _base(speed: float, law: ContactLaw, guess: Level, model: Model) -> Resolution:
+    """Return the first resolution of a state of which a level is a guess."""
+    base = resolution(speed, law, DEGREE, FIRST_ANGLES, model)
+    if isinstance(guess.equations, TornEquations):  # its line of rupture is no edge of the contact
+        mesh = base.mesh
+        contact = law.pressure(moved(guess.unknowns, guess.mesh, mesh, guess.equations.least).gap)
+        return split_where_poor(base, mesh, np.zeros_like(contact), contact)
+    found = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
+    return replace(base, splits=found.splits if base.doublings == found.doublings else ())
 
 
 def rigid(mesh: PolarMesh, speed: float) -> Unknowns:
@@ -123,10 +137,14 @@ def rigid(mesh: PolarMesh, speed: float) -> Unknowns:
     return Unknowns(gap, np.maximum(-0.2 * speed * x / gap**2, 0.0), offset)
 
 
-def _pair(coarse: Level, angles: int, speed: float, law: ContactLaw) -> Pair | Outcome:
+def _pair(
+    base: Resolution, few: int, many: int, speed: float, law: ContactLaw, start: Unknowns, mesh: PolarMesh
+) -> Pair | Outcome:
+    """Return a state on two meshes of a resolution, with few and with many angles, or why there is none."""
+    coarse = solve_level(replace(base, modes=few, degree=DEGREE), speed, law, start, mesh, TOLERANCE)
     if not coarse.outcome.ok:
         return coarse.outcome
-    finer = replace(coarse.resolution, modes=angles, degree=DEGREE + 2)
+    finer = replace(base, modes=many, degree=DEGREE + 2)
     fine = solve_level(finer, speed, law, coarse.unknowns, coarse.mesh, TOLERANCE)
     return pair_of(coarse, fine) if fine.outcome.ok else fine.outcome
 
@@ -136,25 +154,30 @@ def follow_cavitated(
 ) -> Pair | None:
     """Return the state of a neighbour's meshes at other groups, or None where it does not come from there.
 
-    ``line`` has neighbours, and the weights with which they predict the state, its line of rupture too.
+    Where these meshes do not serve, or are finer than need be, the state is that of others.  ``line`` has neighbours, and the
+    weights with which they predict the state, its line of rupture too.
     """
     rtol = max(rtol, neighbour.fine.equations.finest)
-    if not fits(neighbour.fine.resolution, speed, law):
-        return None
-    now = neighbour.fine.resolution
-    if held(neighbour) < WASTE * rtol and now.modes in LADDER[2:]:
-        many = LADDER[LADDER.index(now.modes) - 1]
-        few = LADDER[LADDER.index(many) - 1]
-        start = neighbour.coarse
-        coarse = solve_level(replace(now, modes=few, degree=DEGREE), speed, law, start.unknowns, start.mesh, TOLERANCE)
-        found = _pair(coarse, many, speed, law)
+    now, weights = neighbour.fine.resolution, [weight for weight, _ in line]
+
+    def predicted(name: str, mesh: PolarMesh) -> Unknowns:
+        return extrapolated(weights, [getattr(pair, name) for _, pair in line], mesh)
+
+    serves, rung = fits(now, speed, law), LADDER.index(now.modes)
+    is_waste = held(neighbour) < WASTE * rtol and rung > 1
+    if not serves or is_waste:
+        fine = neighbour.fine
+        base = now if serves else _base(speed, law, fine, now.model)
+        start = predicted("fine", fine.mesh) if line else fine.unknowns
+        rung -= int(is_waste)
+        found = _pair(base, LADDER[rung - 1], LADDER[rung], speed, law, start, fine.mesh)
         return found if isinstance(found, Pair) else None
     levels: list[Level] = []
     for name in ("coarse", "fine"):
         old: Level = getattr(neighbour, name)
         guess = old.unknowns
         if line:
-            guess = extrapolated([w for w, _ in line], [getattr(pair, name) for _, pair in line], old.mesh)
+            guess = predicted(name, old.mesh)
         elif levels:
             guess = _carried(levels[0], neighbour)
         kept = old.iterated.preconditioner
