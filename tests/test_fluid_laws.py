@@ -223,8 +223,8 @@ def test_the_local_flow_is_found_for_all_rates_slips_and_fluxes(law):
     r_0 = size * rng.choice([0, 1, 1, 1e-3, -1, 1e-6], 3000)
     r_1 = size * 10 ** rng.uniform(-6, 1, 3000) * rng.choice([-1, 1], 3000)
     flow = local_flow.profile(law, r_0, r_1)
-    walls = (np.sign(x) * law.stress(np.abs(x))[0] for x in flow[:2])
-    i_0, i_1, *_ = local_flow._integrals(law, flow.x_a, flow.x_b, *walls)
+    walls = np.stack(flow[:2])
+    (i_0, i_1), _ = local_flow._integrals(law, walls, np.sign(walls) * law.stress(np.abs(walls))[0])
     scale = np.abs(r_0) + 6 * np.abs(r_1)
     assert np.abs((i_0 - r_0) / scale).max() < 1e-12
     assert np.abs((i_1 - r_1) / scale).max() < 1e-12

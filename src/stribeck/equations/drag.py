@@ -67,25 +67,29 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
     t = t * mesh.half_widths[-1]
     xi, t_nodes = 1 / t, mesh.local[-1]
     smooth = nodal.gap[..., -order:] - far(mesh.nodes[-order:])
-    h = np.concatenate([nodal.gap[..., :-order], smooth @ to_tail.T + far(xi)], axis=-1)
-    weights = np.concatenate([mesh.weights[:-order], tail_weights * mesh.half_widths[-1] * xi**2])
-    wet = nodal.integral.outside_gap
-    wet = np.concatenate([wet[:-order], t < 0 if nodal.integral.one_sided else np.ones_like(t, dtype=bool)])
+    h = smooth @ to_tail.T + far(xi)
+    tail_weights = tail_weights * mesh.half_widths[-1] * xi**2
     p = None
     if film.uses_pressure:
-        density = nodal.pressure[..., -order:] * t_nodes**-2
-        p = np.concatenate([nodal.pressure[..., :-order], (density @ to_tail.T) * t**2], axis=-1)
-    walls = film.tractions(h[..., wet], None if p is None else p[..., wet], h_star)
-    lower, upper = (np.asarray(traction @ weights[wet]) for traction in walls)
-    if not wet.all():
-        torn = film.cavity_traction(h[..., ~wet], None if p is None else p[..., ~wet], h_star) @ weights[~wet]
-        lower, upper = lower + torn, upper + torn
+        p = ((nodal.pressure[..., -order:] * t_nodes**-2) @ to_tail.T) * t**2
+    weights = mesh.weights.copy()
+    weights[-order:] = 0.0
+    full = nodal.integral.integrated
+    lower, upper = 0.0, 0.0
+    for gap, pressure, wet, own in (
+        (nodal.gap, nodal.pressure if film.uses_pressure else None, full, weights),
+        (h, p, t < 0 if nodal.integral.one_sided else np.ones_like(t, dtype=bool), tail_weights),
+    ):
+        walls = film.tractions(*_at(wet, gap, pressure), h_star)
+        lower, upper = (total + traction @ own[wet] for total, traction in zip((lower, upper), walls, strict=True))
+        if not wet.all():
+            torn = film.cavity_traction(*_at(~wet, gap, pressure), h_star) @ own[~wet]
+            lower, upper = lower + torn, upper + torn
     scale = friction_scale(load, equations.speed)
     stretch = np.ones(1) if d is None else d
     # Beyond the panels in x, by parts: there the gap is known better than the pressure.
-    beyond = wet[-len(t) :]
-    g = film.gradient(h[..., wet], None if p is None else p[..., wet], h_star)[..., -int(beyond.sum()) :]
-    leverage = 0.5 * (mesh.edges[-1] ** 2 - xi[beyond] ** 2) * weights[-len(t) :][beyond]
+    g = film.gradient(*_at(wet, h, p), h_star)
+    leverage = 0.5 * (mesh.edges[-1] ** 2 - xi[wet] ** 2) * tail_weights[wet]
     inner = slice(0, -order)
     moment = nodal.pressure[..., inner] @ (mesh.weights * mesh.nodes)[inner]
     moment = moment + np.ravel(equations.speed * stretch) * (g @ leverage)
@@ -96,6 +100,13 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
     scale = np.ravel(scale)
     upper = scale * upper
     return np.stack([upper - 6 * scale / np.ravel(equations.speed) * moment, scale * lower, upper])
+
+
+def _at(nodes: Flags, gap: Array, pressure: Array | None) -> tuple[Array, Array | None]:
+    """Return gap and pressure at some nodes; where these are all, as they are."""
+    if nodes.all():
+        return gap, pressure
+    return gap[..., nodes], None if pressure is None else pressure[..., nodes]
 
 
 def drag_gradients(equations: Equations, y: Array, load: Numbers) -> Array:

@@ -76,7 +76,7 @@ DRAG = [ROW[name] for name in VISCOUS]
 POSITIONS = [ROW[row.name] for row in ENDS]
 
 PRESSURE_STEPS = 2
-"""Newton steps to the fluid pressure that a gap implies, from that at the nodes."""
+"""Steps to the fluid pressure that a gap implies, from that at the nodes, with the derivative there."""
 
 
 def _by_highest(s: Array, order: int) -> Array:
@@ -325,13 +325,13 @@ def _implied_pressure(equations: Equations, y: Array, integral: RunningIntegral,
     d = equations.dilation(y)
     speed = np.broadcast_to(equations.speed * (1.0 if d is None else d), (len(y), 1))
     cavity = np.where(integral.outside_gap, 0.0, op.model.cavity_pressure if op.has_reformation else 0.0)
+    by_pressure = slopes_in_film(film, integral, gap, guess, h_star).by_pressure
+    assert by_pressure is not None
+    solved = [Volterra(integral, row) for row in speed * by_pressure]
     pressure = guess
     for _ in range(PRESSURE_STEPS):
         rest = speed * integral(gradient_in_film(film, integral, gap, pressure, h_star)) + cavity - pressure
-        by_pressure = slopes_in_film(film, integral, gap, pressure, h_star).by_pressure
-        assert by_pressure is not None
-        factor = speed * by_pressure
-        pressure = pressure + rest + np.stack([Volterra(integral, f)(f * r) for f, r in zip(factor, rest, strict=True)])
+        pressure = pressure + rest + np.stack([each(each.factor * r) for each, r in zip(solved, rest, strict=True)])
     return pressure
 
 

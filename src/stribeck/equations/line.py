@@ -196,7 +196,7 @@ class Equations:
             r[..., at.gap] -= op.deflected(fluid, d)
             r[..., at.offset.start] += fluid @ op.weights
         elif self.is_sliding:
-            g *= self.speed
+            g = self.speed * g
             r[..., at.gap] -= g @ op.deflection_of_gradient.T
             r[..., at.offset.start] += g @ op.load_of_gradient
         if d is not None:

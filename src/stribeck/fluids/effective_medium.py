@@ -52,7 +52,7 @@ NEAREST, FARTHEST = 1e-5, 1e9
 """Mean gaps beyond the threshold, over the roughness, between which the medium is tabulated: at the first the flow is far
 below its floor, at the second it is that between smooth surfaces to rounding."""
 
-CELLS, TERMS = 1024, 8
+CELLS, TERMS = 2048, 6
 """Cells of that table in the logarithm, and terms of the polynomial on each."""
 
 
@@ -107,11 +107,11 @@ class EffectiveMedium(FlowFactors):
         """Return phi_x and its slope."""
         if self.sigma is None:
             raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
-        beyond = np.maximum(gap / self.sigma - PERCOLATION, 0.0)
-        ratio, slope = _relative_width().with_slope(np.log(np.maximum(beyond, NEAREST)))
-        inside = (beyond > NEAREST) & (beyond < FARTHEST)
-        by_gap = np.where(inside, 3 * ratio**2 * slope / np.maximum(beyond, NEAREST) / self.sigma, 0.0)
-        return lifted(ratio**3, by_gap)
+        beyond = np.maximum(gap / self.sigma - PERCOLATION, NEAREST)
+        phi, slope = _lifted_factor().with_slope(np.log(beyond))
+        slope *= (beyond > NEAREST) & (beyond < FARTHEST)
+        slope /= beyond * self.sigma
+        return phi, slope
 
     def shear(self, gap: Array) -> tuple[Array, Array]:
         """Return zero twice."""
@@ -148,14 +148,15 @@ def medium_width(d: Array) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=1)
-def _relative_width() -> Cells:
-    """Return the width of the medium over the mean gap, a function of ln(mean gap over the roughness - threshold)."""
+def _lifted_factor() -> Cells:
+    """Return phi_x, kept above zero, a function of ln(mean gap over the roughness - threshold)."""
 
-    def ratio(logarithm: Array) -> Array:
+    def factor(logarithm: Array) -> Array:
         width = PERCOLATION + np.exp(logarithm)
-        return medium_width(nominal_separation(width))[0] / width
+        phi = (medium_width(nominal_separation(width))[0] / width) ** 3
+        return lifted(phi, np.zeros_like(phi))[0]
 
-    return Cells.of(ratio, math.log(NEAREST), math.log(FARTHEST), CELLS, TERMS)
+    return Cells.of(factor, math.log(NEAREST), math.log(FARTHEST), CELLS, TERMS)
 
 
 @lru_cache(maxsize=1)

@@ -13,7 +13,28 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol, Self
 
+import numpy as np
+
 from stribeck._types import Array, Numbers
+
+MOST_KEPT = 16
+"""Shapes of arrays of nodes for which what a film last was is kept."""
+
+Key = tuple[Array | Numbers | None, ...]
+"""What a film was asked for, what mostly differs first: flux gap, gap, pressure, and the speed group where it matters."""
+
+
+def kept(key: Key) -> Key:
+    """Return copies of what a film was asked for."""
+    return tuple(None if each is None else np.array(each) for each in key)
+
+
+def same(first: Key, second: Key) -> bool:
+    """Return whether a film was asked for the same to the bit."""
+    for a, b in zip(first, second, strict=True):
+        if (a is None) != (b is None) or np.shape(a) != np.shape(b) or not np.all(a == b):
+            return False
+    return True
 
 
 class Slopes(NamedTuple):

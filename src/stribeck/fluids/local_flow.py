@@ -51,6 +51,9 @@ SMALL_STEP = 0.01
 LARGEST_STEP = 4.0
 """Factor by which the larger wall rate may grow in a step; it may fall by as much."""
 
+SIDES = np.array([[-0.5], [0.5]])
+"""Where the walls are across the film."""
+
 
 class Profile(NamedTuple):
     """The flow across the film at many nodes: rates x, stresses g and slopes dg/dx at the walls a and b, and A, B, C."""
@@ -83,27 +86,27 @@ def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | N
     start : pair of ndarray, optional
         Wall rates to start from.
     """
-    x_a, x_b = (r_0 - 6 * r_1, r_0 + 6 * r_1) if start is None else start
-    size = np.maximum(np.abs(x_a), np.abs(x_b))
-    # A wall at rest is singular in laws without a plateau.
-    x_a, x_b = (np.where(np.abs(x) < AT_REST * size, AT_REST * size, x) for x in (x_a, x_b))
+    x = np.stack((r_0 - 6 * r_1, r_0 + 6 * r_1) if start is None else start)
+    size = AT_REST * np.abs(x).max(axis=0)
+    x = np.where(np.abs(x) < size, size, x)  # a wall at rest is singular in laws without a plateau
     found = np.empty((9, len(r_0)))
     left = np.arange(len(r_0))
     wanted = np.stack([r_0, r_1])
-    here = _Walls.at(law, x_a, x_b, wanted)
+    here = _Walls.at(law, x, wanted)
     part = np.ones(len(r_0))
     for _ in range(MOST_STEPS):
-        ahead = here.moved(law, part)
-        change = np.maximum(np.abs(ahead[0] - here.x_a), np.abs(ahead[1] - here.x_b)) / here.size
-        done = (np.maximum(change, here.stress_change) < CLOSE) & (part == 1.0)
+        ahead = _moved(law, here.x, here.g, part * here.step, here.slope)
+        done = (part == 1.0) & (here.step_over_stress() < CLOSE)
+        done &= np.abs(ahead - here.x).max(axis=0) < CLOSE * np.abs(here.x).max(axis=0)
         if done.any():
-            found[:, left[done]] = here.ending(ahead, done)
-            more = ~done
-            left, wanted, part = left[more], wanted[:, more], part[more]
-            here, ahead = here.of(more), (ahead[0][more], ahead[1][more])
-            if not len(left):
+            ended = (ahead, here.g + here.step, here.slope, here.by)
+            found[:, left[done]] = np.concatenate(ended)[:, done]
+            if done.all():
                 return Profile(*found)
-        there = _Walls.at(law, *ahead, wanted)
+            more = ~done
+            left, wanted, part, ahead = left[more], wanted[:, more], part[more], ahead[:, more]
+            here = here.of(more)
+        there = _Walls.at(law, ahead, wanted)
         worse = ~(there.defect < here.defect)
         part = np.where(worse, 0.5 * part, 1.0)
         here = here.where(worse, there)
@@ -112,46 +115,36 @@ def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | N
 
 
 class _Walls(NamedTuple):
-    """Rates, stresses and slopes of the law at both walls, A, B, C, the step to take and how much is missing."""
+    """Rates, stresses and slopes of the law at both walls, A, B, C, the step of the stresses and how much is missing.
 
-    x_a: Array
-    x_b: Array
-    g_a: Array
-    g_b: Array
-    slope_a: Array
-    slope_b: Array
-    by_mean: Array
-    mixed: Array
-    by_slope: Array
-    step_a: Array
-    step_b: Array
-    size: Array
+    Both walls, or A, B and C, are in the first axis.
+    """
+
+    x: Array
+    g: Array
+    slope: Array
+    by: Array
+    step: Array
     defect: Array
 
     @classmethod
-    def at(cls, law: RateLaw, x_a: Array, x_b: Array, wanted: Array) -> _Walls:
+    def at(cls, law: RateLaw, x: Array, wanted: Array) -> _Walls:
         """Return what is known at these wall rates."""
-        g_a, slope_a = _odd(law, x_a)
-        g_b, slope_b = _odd(law, x_b)
-        i_0, i_1, by_mean, mixed, by_slope = _integrals(law, x_a, x_b, g_a, g_b)
-        missing_0, missing_1 = wanted[0] - i_0, wanted[1] - i_1
-        determinant = by_mean * by_slope - mixed**2
-        d_mean = (by_slope * missing_0 - mixed * missing_1) / determinant
-        d_slope = (by_mean * missing_1 - mixed * missing_0) / determinant
-        step_a, step_b = d_mean - 0.5 * d_slope, d_mean + 0.5 * d_slope
-        size = np.maximum(np.abs(x_a), np.abs(x_b))
-        defect = np.hypot(missing_0, 3 * missing_1)
-        return cls(x_a, x_b, g_a, g_b, slope_a, slope_b, by_mean, mixed, by_slope, step_a, step_b, size, defect)
+        g, slope = _odd(law, x)
+        integrals, by = _integrals(law, x, g)
+        missing = wanted - integrals
+        determinant = by[0] * by[2] - by[1] ** 2
+        of_mean = (by[2] * missing[0] - by[1] * missing[1]) / determinant
+        of_slope = (by[0] * missing[1] - by[1] * missing[0]) / determinant
+        return cls(x, g, slope, by, of_mean + SIDES * of_slope, np.hypot(missing[0], 3 * missing[1]))
 
-    @property
-    def stress_change(self) -> Array:
-        """The step of the stresses over the larger of these."""
-        largest = np.maximum(np.abs(self.g_a), np.abs(self.g_b))
-        return np.asarray(np.maximum(np.abs(self.step_a), np.abs(self.step_b)) / largest)
+    def step_over_stress(self) -> Array:
+        """Return the step of the stresses over the larger of these."""
+        return np.asarray(np.abs(self.step).max(axis=0) / np.abs(self.g).max(axis=0))
 
     def of(self, chosen: Flags) -> _Walls:
         """Return the chosen nodes."""
-        return _Walls(*(each[chosen] for each in self))
+        return _Walls(*(each[..., chosen] for each in self))
 
     def where(self, kept: Flags, other: _Walls) -> _Walls:
         """Return the kept nodes, and the others of ``other``."""
@@ -159,67 +152,54 @@ class _Walls(NamedTuple):
             return other
         return _Walls(*(np.where(kept, mine, its) for mine, its in zip(self, other, strict=True)))
 
-    def moved(self, law: RateLaw, part: Array) -> tuple[Array, Array]:
-        """Return the wall rates after a part of the step."""
-        return (
-            _moved(law, self.x_a, self.g_a, part * self.step_a, self.slope_a, self.x_b),
-            _moved(law, self.x_b, self.g_b, part * self.step_b, self.slope_b, self.x_a),
-        )
-
-    def ending(self, ahead: tuple[Array, Array], done: Flags) -> Array:
-        """Return the fields of the profile after a last step."""
-        x_a, x_b = ahead
-        g_a, g_b = self.g_a + self.step_a, self.g_b + self.step_b
-        slopes = (self.slope_a, self.slope_b)
-        return np.stack([x_a, x_b, g_a, g_b, *slopes, self.by_mean, self.mixed, self.by_slope])[:, done]
-
 
 def _odd(law: RateLaw, rate: Array) -> tuple[Array, Array]:
     g, slope = law.stress(np.abs(rate))
     return np.copysign(g, rate), slope
 
 
-def _moved(law: RateLaw, x: Array, g: Array, step: Array, slope: Array, other: Array) -> Array:
+def _moved(law: RateLaw, x: Array, g: Array, step: Array, slope: Array) -> Array:
     """Return the wall rates after a step of the stress: linear in the rate at the wall of the larger, else in the stress."""
-    linear = x + step / slope
-    bound = np.maximum(np.abs(x), np.abs(other))
-    linear = np.clip(linear, -LARGEST_STEP * bound, LARGEST_STEP * bound)
-    minor = (np.abs(x) < ALIKE * np.abs(other)) & (np.abs(step) > SMALL_STEP * np.abs(g))
+    size = np.abs(x)
+    bound = LARGEST_STEP * size.max(axis=0)
+    linear = np.clip(x + step / slope, -bound, bound)
+    minor = (size < ALIKE * size[::-1]) & (np.abs(step) > SMALL_STEP * np.abs(g))
     if minor.any():
         moved = g[minor] + step[minor]
-        largest = law.stress(LARGEST_STEP * np.abs(other[minor]))[0]
+        largest = law.stress(LARGEST_STEP * size[::-1][minor])[0]
         moved = np.clip(moved, -largest, largest)
         linear[minor] = np.copysign(law.rate(np.abs(moved)), moved)
     return linear
 
 
-def _integrals(law: RateLaw, x_a: Array, x_b: Array, g_a: Array, g_b: Array) -> tuple[Array, Array, Array, Array, Array]:
+def _integrals(law: RateLaw, x: Array, g: Array) -> tuple[Array, Array]:
     """Return both integrals and their derivatives A, B, C."""
-    alike: Flags = (x_a * x_b > 0) & (np.minimum(np.abs(x_a), np.abs(x_b)) > ALIKE * np.maximum(np.abs(x_a), np.abs(x_b)))
-    found = np.empty((5, len(x_a)))
-    apart = ~alike
-    if apart.any():
-        found[:, apart] = _by_moments(law, *(each[apart] for each in (x_a, x_b, g_a, g_b)))
-    if alike.any():
-        found[:, alike] = _by_rule(law, *(each[alike] for each in (x_a, x_b, g_a, g_b)))
-    return tuple(found)  # type: ignore[return-value]
+    size = np.abs(x)
+    alike: Flags = (x[0] * x[1] > 0) & (size.min(axis=0) > ALIKE * size.max(axis=0))
+    found = np.empty((5, x.shape[1]))
+    for nodes, rule in ((~alike, _by_moments), (alike, _by_rule)):
+        if nodes.all():
+            found[:] = rule(law, x, g)
+        elif nodes.any():
+            found[:, nodes] = rule(law, x[:, nodes], g[:, nodes])
+    return found[:2], found[2:]
 
 
-def _by_moments(law: RateLaw, x_a: Array, x_b: Array, g_a: Array, g_b: Array) -> tuple[Array, ...]:
+def _by_moments(law: RateLaw, x: Array, g: Array) -> tuple[Array, ...]:
     """Return integrals and derivatives from the moments of the law at the walls."""
-    first, second = law.moments(np.abs(np.concatenate([x_a, x_b])))
-    n = len(x_a)
-    area = first[n:] - first[:n]
-    moment = np.copysign(second[n:], x_b) - np.copysign(second[:n], x_a)
-    Q, T = g_b - g_a, 0.5 * (g_a + g_b)
+    first, second = law.moments(np.abs(x))
+    second = np.copysign(second, x)
+    area, moment = first[1] - first[0], second[1] - second[0]
+    Q, T = g[1] - g[0], 0.5 * (g[0] + g[1])
+    span = x[1] - x[0]
     i_0 = area / Q
     i_1 = (moment - T * area) / Q**2
-    return i_0, i_1, (x_b - x_a) / Q, (0.5 * (x_a + x_b) - i_0) / Q, (0.25 * (x_b - x_a) - 2 * i_1) / Q
+    return i_0, i_1, span / Q, (0.5 * (x[0] + x[1]) - i_0) / Q, (0.25 * span - 2 * i_1) / Q
 
 
-def _by_rule(law: RateLaw, x_a: Array, x_b: Array, g_a: Array, g_b: Array) -> tuple[Array, ...]:
+def _by_rule(law: RateLaw, x: Array, g_walls: Array) -> tuple[Array, ...]:
     """Return integrals and derivatives by the Gauss rule in the rate."""
-    middle, half = 0.5 * (x_a + x_b), 0.5 * (x_b - x_a)
+    middle, half = 0.5 * (x[0] + x[1]), 0.5 * (x[1] - x[0])
     offset = half * NODES[:, None]
     g, slope = _odd(law, middle + offset)
     weights = 0.5 * WEIGHTS[:, None]
@@ -228,7 +208,7 @@ def _by_rule(law: RateLaw, x_a: Array, x_b: Array, g_a: Array, g_b: Array) -> tu
     # zeta at the nodes: the stress relative to that in the middle of the film, over Q.
     flat = np.abs(half) < STEEPEST * np.abs(middle)
     Q = np.where(flat, 1.0, 2 * half * mean_slope)
-    zeta = np.where(flat, 0.5 * NODES[:, None], (g - 0.5 * (g_a + g_b)) / Q)
+    zeta = np.where(flat, 0.5 * NODES[:, None], (g - 0.5 * (g_walls[0] + g_walls[1])) / Q)
     i_0 = middle + (share * offset).sum(axis=0)
     i_1 = (share * zeta * offset).sum(axis=0)  # the mean of zeta is zero
     by_mean = 1 / mean_slope

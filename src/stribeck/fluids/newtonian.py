@@ -16,7 +16,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.fluids.fluid import Slopes
+from stribeck.fluids.fluid import MOST_KEPT, Key, Slopes, kept, same
 from stribeck.fluids.laws import DensityLaw, FlowFactors, Smooth, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.viscosity import Constant, Incompressible
 
@@ -65,12 +65,14 @@ class Newtonian:
     slide: float = 1.0
     uses_pressure: bool = field(init=False, repr=False, compare=False)
     is_plain: bool = field(init=False, repr=False, compare=False)
+    _known: dict[tuple[int, ...], tuple[Key, tuple[Array, Slopes]]] = field(init=False, repr=False, compare=False)
     uses_speed: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         """Note whether viscosity or density depend on the pressure, and whether all is constant and smooth."""
         uses_pressure = not (isinstance(self.viscosity, Constant) and isinstance(self.density, Incompressible))
         object.__setattr__(self, "uses_pressure", uses_pressure)
+        object.__setattr__(self, "_known", {})
         object.__setattr__(self, "is_plain", not uses_pressure and isinstance(self.flow, Smooth))
 
     @property
@@ -150,6 +152,22 @@ class Newtonian:
         return np.exp(log), log_slope, *self.density.ratio(pressure)
 
     def _parts(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Slopes]:
+        """Return G and its derivatives, those known if the last on as many nodes were for the same film."""
+        if len(gap.shape) == 2 and len(gap) == 1:
+            g, slopes = self._parts(gap[0], None if pressure is None else pressure[0], np.ravel(flux_gap))
+            return g[None], Slopes(*(None if each is None else each[None] for each in slopes))
+        key = (flux_gap, gap, pressure)
+        last = self._known.get(gap.shape)
+        if last is not None and same(last[0], key):
+            return last[1]
+        if len(self._known) >= MOST_KEPT:
+            self._known.clear()
+        found = self._made(gap, pressure, flux_gap)
+        found[0].flags.writeable = False
+        self._known[gap.shape] = kept(key), found
+        return found
+
+    def _made(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Slopes]:
         """Return G and its derivatives."""
         h, m, s = gap, flux_gap, self.slide
         eta, eta_slope, rho, rho_slope = self._of_pressure(pressure)

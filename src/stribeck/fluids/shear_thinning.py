@@ -21,7 +21,7 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from stribeck._types import Array, Numbers
-from stribeck.fluids.fluid import Fall, Slopes
+from stribeck.fluids.fluid import MOST_KEPT, Fall, Key, Slopes, kept, same
 from stribeck.fluids.laws import DensityLaw, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
 from stribeck.fluids.local_flow import Profile, profile
 from stribeck.fluids.viscosity import Constant, Incompressible
@@ -39,13 +39,6 @@ NEAR = 0.3
 """Change of a wall rate over the larger one up to which first order is a good start."""
 
 
-MOST_KEPT = 16
-"""Shapes of arrays of nodes for which the last local solution is kept."""
-
-Key = tuple[Array, Array | None, Numbers, Numbers]
-"""Gap, pressure, flux gap and speed group."""
-
-
 class _Local(NamedTuple):
     """What the film is at nodes, and what it was made for."""
 
@@ -58,6 +51,12 @@ class _Local(NamedTuple):
     rho_slope: Array
     r_0: Array
     r_1: Array
+
+    @property
+    def as_row(self) -> _Local:
+        """The same of a single row of nodes."""
+        fields = (each[None] for each in self[2:])
+        return _Local(self.key, Profile(*(each[None] for each in self.flow)), *fields)
 
 
 @dataclass(frozen=True)
@@ -226,9 +225,11 @@ class ShearThinning:
 
     def _local(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> _Local:
         """Return the local solutions, those known if the last on as many nodes were for the same film."""
-        key = (gap, pressure, flux_gap, self.speed)
+        if len(gap.shape) == 2 and len(gap) == 1 and np.ndim(self.speed) == 0:
+            return self._local(gap[0], None if pressure is None else pressure[0], np.ravel(flux_gap)).as_row
+        key = (flux_gap, gap, pressure, self.speed)
         last = self._known.get(gap.shape)
-        if last is not None and _same(last.key, key):
+        if last is not None and same(last.key, key):
             return last
         of_pressure = self._of_pressure(gap, pressure)
         eta, _, rho, _ = of_pressure
@@ -240,19 +241,11 @@ class ShearThinning:
         shape = r_0.shape
         flow = profile(self.law, r_0.ravel(), r_1.ravel(), start)
         flow = Profile(*(each.reshape(shape) for each in flow))
-        kept = (gap.copy(), None if pressure is None else pressure.copy(), np.copy(flux_gap), np.copy(self.speed))
-        found = _Local(kept, flow, wi, *of_pressure, r_0, r_1)
+        found = _Local(kept(key), flow, wi, *of_pressure, r_0, r_1)
         if len(self._known) >= MOST_KEPT:
             self._known.clear()
         self._known[gap.shape] = found
         return found
-
-
-def _same(first: Key, second: Key) -> bool:
-    """Return whether two films are the same to the bit."""
-    if (first[1] is None) != (second[1] is None):
-        return False
-    return all(np.array_equal(a, b) for a, b in zip(first, second, strict=True) if a is not None and b is not None)
 
 
 def _scaled(last: _Local, r_0: Array, r_1: Array) -> tuple[Array, Array]:

@@ -18,7 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
-from stribeck._types import Array, Flags
+from stribeck._types import Array, Flags, Indices
 from stribeck.numerics.panels import Mesh, reference
 
 
@@ -168,48 +168,59 @@ class Volterra:
         return np.asarray(np.linalg.inv(np.eye(blocks.shape[-1]) - blocks * self._factor[:, None, :]))
 
     @cached_property
-    def _adjoint(self) -> Array:
-        """``(I - f a)^-1`` of the block a of each panel."""
-        blocks = self.integral.blocks
-        return np.asarray(np.linalg.inv(np.eye(blocks.shape[-1]) - self._factor[:, :, None] * blocks))
+    def _own(self) -> Array:
+        """``(I - a f)^-1 a`` of each panel, the same as ``a (I - f a)^-1``: what it does by itself."""
+        return self._resolved @ self.integral.blocks
 
-    def _chains(self) -> list[tuple[range, Array, float]]:
-        """Return the panels of each side from infinity to zero, the weights of that side of the last panel, and its sign."""
-        left, right = self.integral._tail_weights
-        chains = [(range(self.integral.middle), left, 1.0)]
-        if not self.integral.one_sided:
-            chains.append((range(self.integral.mesh.panels - 2, self.integral.second - 1, -1), right, -1.0))
-        return chains
+    @cached_property
+    def _whole(self) -> Array:
+        """Weights of the integral over each panel."""
+        return self.integral.mesh.weights.reshape(self._factor.shape)
+
+    @cached_property
+    def _chains(self) -> list[tuple[Indices, Array, float, Array]]:
+        """The panels of each side from infinity to zero, the weights of that side of the last panel, its sign, and a matrix.
+
+        The matrix takes what comes from infinity, and what each panel but the last adds, to what arrives at each.
+        """
+        integral = self.integral
+        left, right = integral._tail_weights
+        chains = [(np.arange(integral.middle), left, 1.0)]
+        if not integral.one_sided:
+            chains.append((np.arange(integral.mesh.panels - 2, integral.second - 1, -1), right, -1.0))
+        passed = (self._whole * self._factor * self._resolved.sum(axis=2)).sum(axis=1)
+        found = []
+        for panels, tail, sign in chains:
+            step = np.eye(len(panels))
+            np.fill_diagonal(step[1:], -1.0 - sign * passed[panels[:-1]])
+            found.append((panels, tail, sign, np.linalg.inv(step)))
+        return found
 
     def __call__(self, values: Array) -> Array:
         """Return q at the nodes, shape (..., size), of nodal ``values`` v, shape (..., size)."""
-        mesh, f, resolved = self.integral.mesh, self._factor, self._resolved
-        whole = mesh.weights.reshape(mesh.panels, mesh.order)
-        v = values.reshape(*values.shape[:-1], mesh.panels, mesh.order)
-        own = np.einsum("pij,pjk,...pk->...pi", resolved, self.integral.blocks, v)  # each panel by itself
-        answer = resolved.sum(axis=2)  # what a panel makes of one that arrives at its edge
-        result = np.zeros(v.shape)
-        result[..., -1, :] = own[..., -1, :]
-        for panels, tail, sign in self._chains():
-            arrived = sign * ((v[..., -1, :] + f[-1] * result[..., -1, :]) @ tail)
-            for k in panels:
-                result[..., k, :] = own[..., k, :] + arrived[..., None] * answer[k]
-                arrived = arrived + sign * ((v[..., k, :] + f[k] * result[..., k, :]) @ whole[k])
+        f = self._factor
+        v = values.reshape(*values.shape[:-1], *f.shape)
+        result = np.matmul(self._own, v[..., None])[..., 0]
+        density = v + f * result
+        added = (density * self._whole).sum(axis=-1)
+        answer = self._resolved.sum(axis=2)  # what a panel makes of one that arrives at its edge
+        for panels, tail, sign, to_edges in self._chains:
+            sources = np.concatenate([(density[..., -1, :] @ tail)[..., None], added[..., panels[:-1]]], axis=-1)
+            arrived = sign * sources @ to_edges.T
+            result[..., panels, :] += arrived[..., None] * answer[panels]
         return np.asarray(result.reshape(values.shape))
 
     def after(self, operator: Array) -> Array:
         """Return ``operator @ (I - A f)^-1 A``, shape (rows, size)."""
-        mesh, f = self.integral.mesh, self._factor
-        whole = mesh.weights.reshape(mesh.panels, mesh.order)
-        nodal = operator.reshape(len(operator), mesh.panels, mesh.order)
-        result = np.zeros(nodal.shape)
-        own = np.matmul(nodal.transpose(1, 0, 2), self.integral.blocks)
-        at_tail = own[-1]
-        for panels, tail, sign in self._chains():
-            later = np.zeros(len(operator))
-            for k in reversed(panels):
-                result[:, k] = (own[k] + sign * np.outer(later, whole[k])) @ self._adjoint[k]
-                later = later + (nodal[:, k] + result[:, k] * f[k]).sum(axis=1)
-            at_tail = at_tail + sign * np.outer(later, tail)
-        result[:, -1] = at_tail @ self._adjoint[-1]
-        return np.asarray(result.reshape(operator.shape))
+        f, own = self._factor, self._own
+        nodal = operator.reshape(len(operator), *f.shape).transpose(1, 0, 2)
+        result = np.matmul(nodal, own)
+        felt = (nodal + result * f[:, None, :]).sum(axis=2)
+        passed_on = self._whole[:, None, :] + (self._whole * f)[:, None, :] @ own
+        at_tail = 0.0
+        for panels, tail, sign, to_edges in self._chains:
+            later = to_edges.T @ felt[panels]  # what each panel and those behind it feel of one that arrives
+            result[panels[:-1]] += sign * later[1:, :, None] * passed_on[panels[:-1]]
+            at_tail = at_tail + sign * np.outer(later[0], tail)
+        result[-1] += at_tail @ (np.eye(f.shape[1]) + f[-1][:, None] * own[-1])
+        return np.asarray(result.transpose(1, 0, 2).reshape(operator.shape))
