@@ -7,7 +7,7 @@ from fit_data import TRUE, measured
 import stribeck as sb
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.fits.case_file import write_fitted_case
-from stribeck.fits.friction_parts import kept_parts, solved_parts
+from stribeck.fits.friction_parts import kept_parts, solved_parts, ways_of
 from stribeck.fits.model import FrictionModel, free_inputs
 
 SPEEDS = np.geomspace(1e-3, 0.3, 6)
@@ -54,6 +54,17 @@ def test_states_from_those_before_are_those_of_the_curve():
     found, curve = (model.predict(np.zeros(2), parts) for parts in (kept, solved_parts("balanced", 1e-6)))
     assert found.friction == pytest.approx(curve.friction, rel=2e-6)
     assert found.jacobian == pytest.approx(curve.jacobian, abs=1e-5)
+
+
+def test_a_fit_of_films_that_end_reads_their_table_and_finds_what_made_the_data():
+    true, free = TRUE.replace(cavitation="exit"), ("roughness", "boundary_friction")
+    data = measured(SPEEDS, friction_of(true), error=1e-4)
+    start = true.replace(roughness=1.5 * true.roughness, boundary_friction=0.8 * true.boundary_friction)
+    model = FrictionModel(start, data, free_inputs(start, data, free, FitSettings()))
+    assert ways_of(model, "balanced", 1e-6).scan is not None
+    found = sb.fit(data, start, free=free, intervals=False)
+    for name in free:
+        assert found[name].value == pytest.approx(getattr(true, name), rel=1e-4)
 
 
 @pytest.mark.parametrize(

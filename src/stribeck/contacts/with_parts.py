@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -10,13 +11,16 @@ import numpy as np
 
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.parts import NAMES, Parts
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.laws import FilmUnits
 from stribeck.quantities.units import InputError
 
-__all__ = ["check_solid", "hertz_units", "part_attributes", "with_parts"]
+__all__ = ["check_solid", "hertz_units", "model_at", "models_beside", "part_attributes", "with_parts"]
+
+STEP = 1e-5
+"""Change of a logarithm to both sides by which a model is differentiated."""
 
 Problem = TypeVar("Problem")
 
@@ -53,6 +57,23 @@ def with_parts(problem: Problem, **given: Any) -> Problem:
     if given and isinstance(problem, Groups):
         return replace(problem, model=Parts(**given).model(hertz_units(problem)))
     return problem
+
+
+def model_at(contact: Contact, name: str, step: float) -> Model:
+    """Return fluid, cavitation and solid in Hertz units with one input of a contact times ``exp(step)``."""
+    changes: dict[str, Any] = {name: getattr(contact, name) * math.exp(step)}
+    return contact.replace(**changes).groups.model
+
+
+def models_beside(
+    contact: Contact, name: str, steps: tuple[float, float] = (-STEP, STEP)
+) -> tuple[Model, Model, float] | None:
+    """Return the models at two values of one input of a contact, below and above, and the distance of the logarithms.
+
+    None where the input changes no number of fluid or solid in Hertz units.
+    """
+    below, above = (model_at(contact, name, step) for step in steps)
+    return None if below == above else (below, above, steps[1] - steps[0])
 
 
 def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str, float | str]:

@@ -11,6 +11,7 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.with_parts import model_at, models_beside
 from stribeck.solver.point.path import next_state
 from stribeck.solver.point.sensitivity import GROUPS, derivatives_along, state_derivatives
 from stribeck.solver.point.solution import PointSolution, finish_point
@@ -88,12 +89,12 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
 def _of_model(contact: Contact, groups: Groups) -> dict[str, Callable[[float], Groups]]:
     """Return the inputs that move numbers of fluid or solid in Hertz units, and how, the groups held."""
 
-    def along(name: str, value: float, step: float) -> Groups:
-        return replace(groups, model=contact.replace(**{name: value * math.exp(step)}).groups.model)
+    def along(name: str, step: float) -> Groups:
+        return replace(groups, model=model_at(contact, name, step))
 
     # The sliding moves no field of these films: the closed forms of the friction hold all that it does.
-    ways = {name: partial(along, name, value) for name, value in contact.inputs() if value > 0 and name != "slide_to_roll"}
-    return {name: way for name, way in ways.items() if way(SMALL).model != groups.model}
+    names = (name for name, value in contact.inputs() if value > 0 and name != "slide_to_roll")
+    return {name: partial(along, name) for name in names if models_beside(contact, name) is not None}
 
 
 def _moved(values: PointObservables, changes: Mapping[str, Array], column: int, name: str, step: float) -> PointObservables:

@@ -13,7 +13,8 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, check_definition, sliding_part
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
-from stribeck.contacts.model import ARTICLE, Model
+from stribeck.contacts.model import ARTICLE
+from stribeck.contacts.with_parts import models_beside
 from stribeck.curves.regime import Method, check_method
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.numerics.threads import one_blas_thread
@@ -23,9 +24,6 @@ from stribeck.quantities.units import InputError
 from stribeck.solver.line_path import as_in
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import check_rtol, finish, solve, solved_point
-
-STEP = 1e-5
-"""Change of a logarithm to both sides by which the model is differentiated."""
 
 
 @overload
@@ -103,31 +101,17 @@ def friction_sensitivities(
         point = solved_point(groups, rtol)
         solution = finish(point, groups, contact, rtol)
         assert point.state is not None
-        changes = _changes(contact)
+        names = [name for name in (*GROUP_EXPONENTS, *PART_INPUTS) if getattr(contact, name, None)]
+        names = names if groups.model != ARTICLE else []
+        changes = {name: beside for name in names if (beside := models_beside(contact, name)) is not None}
         state = point.state  # of a film that may form anew, with a cavity or without
         along = [(as_in(state, below), as_in(state, above), width) for below, above, width in changes.values()]
         rubbing = contact.boundary_friction * sliding_part(2 * groups.model.film.slide)
         slopes = friction_slopes(state, rubbing, contact.beta, definition, along)
-        through = dict(zip(changes, slopes[3:].tolist(), strict=True))
+        through = dict.fromkeys((name for name in names if name in PART_INPUTS), 0.0)
+        through |= zip(changes, slopes[3:].tolist(), strict=True)
     friction = solution.friction(definition=definition)
     return solution, _sensitivities(slopes[:3], friction.contact, friction.viscous, through)
-
-
-def _changes(contact: Contact) -> dict[str, tuple[Model, Model, float]]:
-    """Return the inputs that change the model in Hertz units: models at values below and above, and their distance."""
-    found = {}
-    for name in (*GROUP_EXPONENTS, *PART_INPUTS):
-        value = getattr(contact, name, None)
-        if value and contact.groups.model != ARTICLE:
-            below, above = (_model_at(contact, name, value * math.exp(step)) for step in (-STEP, STEP))
-            if below != above or name in PART_INPUTS:
-                found[name] = below, above, 2 * STEP
-    return found
-
-
-def _model_at(contact: Contact, name: str, value: float) -> Model:
-    changes: dict[str, Any] = {name: value}
-    return contact.replace(**changes).groups.model
 
 
 def sensitivities_if_known(

@@ -43,7 +43,7 @@ __all__ = [
     "PartsOf",
     "Ways",
     "atlas_parts",
-    "atlas_or_solved_parts",
+    "atlas_or",
     "solved_parts",
     "ways_of",
 ]
@@ -213,12 +213,8 @@ class _Kept:
         return float(np.abs(self.place - place).max())
 
 
-def atlas_or_solved_parts(definition: Definition, rtol: float) -> PartsOf:
-    """Return the function that reads the states off the atlas where it holds all of them, and else solves them."""
-    return _atlas_or(solved_parts(definition, rtol), definition)
-
-
-def _atlas_or(slow: PartsOf, definition: Definition) -> PartsOf:
+def atlas_or(slow: PartsOf, definition: Definition) -> PartsOf:
+    """Return the function that reads the states off the atlas where it holds all of them, and else takes the ``slow`` way."""
     quick = atlas_parts(definition)
 
     def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
@@ -299,13 +295,11 @@ def ways_of(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
 
 
 def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
-    solved = solved_parts(definition, rtol)
-    if any(each.groups.model != ARTICLE for each in model.contacts):
-        kept = kept_parts(definition, rtol)
-        return Ways(None, kept, kept)
-    if atlas.for_groups(model.contact.groups) is None:
+    kinds = {each.groups.model for each in model.contacts}
+    solved = solved_parts(definition, rtol) if kinds == {ARTICLE} else kept_parts(definition, rtol)
+    if len(kinds) > 1 or any(model.moving) or atlas.for_groups(model.contact.groups) is None:
         return Ways(None, solved, solved)
-    return Ways(atlas_parts(definition), atlas_or_solved_parts(definition, rtol), solved)
+    return Ways(atlas_parts(definition), atlas_or(solved, definition), solved)
 
 
 def _of_ball(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
@@ -316,7 +310,7 @@ def _of_ball(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
     lattice, solved = lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL))
     if atlas.for_groups(model.contact.groups) is None:
         return Ways(None, lattice, solved)
-    return Ways(atlas_parts(definition), _atlas_or(lattice, definition), solved)
+    return Ways(atlas_parts(definition), atlas_or(lattice, definition), solved)
 
 
 def kept_balls(model: FrictionModel, definition: Definition, rtol: float) -> PartsOf:

@@ -30,7 +30,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups, Physics
-from stribeck.contacts.with_parts import check_solid
+from stribeck.contacts.with_parts import STEP, check_solid, models_beside
 from stribeck.fits.friction_parts import FrictionParts, ModelChange, PartsOf
 from stribeck.fits.measurements import Measurements
 from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
@@ -41,8 +41,9 @@ __all__ = ["FreeInput", "FrictionModel", "Prediction", "free_inputs"]
 DEFAULT_FACTOR = 1e3
 """Bounds of a free input without any of its own: this factor below and above its first value."""
 
-MODEL_STEP = 1e-5
-"""Change of a logarithm to both sides by which the model is differentiated."""
+
+INSIDE = 1 - 1e-9
+"""Part of the way to a bound that rounding does not carry beyond."""
 
 
 @dataclass(frozen=True)
@@ -228,13 +229,15 @@ class FrictionModel:
 
     def _changes(self, curve: int, theta: Array, of: Iterable[int]) -> tuple[ModelChange, ...]:
         """Return what each of some free inputs changes of the model of a curve, those that change nothing left out."""
-        found = []
+        contact, found = self.contact_of(curve, theta), []
         for k in of:
-            ends = [min(max(theta[k] + step, self.free[k].low), self.free[k].high) for step in (-MODEL_STEP, MODEL_STEP)]
-            moved = [np.where(np.arange(len(theta)) == k, end, theta) for end in ends]
-            below, above = (self.contact_of(curve, each).groups.model for each in moved)
-            if below != above:
-                found.append(ModelChange(k, below, above, ends[1] - ends[0]))
+            free = self.free[k]
+            if free.curve not in (None, curve) or getattr(contact, free.name, None) is None:
+                continue
+            steps = (max(-STEP, INSIDE * (free.low - theta[k])), min(STEP, INSIDE * (free.high - theta[k])))
+            beside = models_beside(contact, free.name, steps)
+            if beside is not None:
+                found.append(ModelChange(k, *beside))
         return tuple(found)
 
     def _parts(self, theta: Array, x: Array, curve: Indices, parts_of: PartsOf) -> FrictionParts:
