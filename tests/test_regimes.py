@@ -446,3 +446,14 @@ def test_a_part_without_derivatives_leaves_the_sensitivities_out_and_says_so(mon
     monkeypatch.setitem(sensitivities.SENSITIVITIES, "line", refuse)
     solution, slopes, reason = sensitivities_if_known(CONTACT, rtol=1e-3)
     assert solution.outcome.ok and slopes == {} and reason == "this solid has no derivatives."
+
+
+@pytest.mark.quick
+def test_a_regime_beyond_the_next_one_is_not_called_out_of_reach():
+    """The search along the speed ended at the mixed regime, behind which the hydrodynamic one is."""
+    speed = Margin("speed", None, Crossing("mixed", 0.1, 10.0), (1e-6, 0.1))
+    load = Margin("load", Crossing("hydrodynamic", 1e-6, 1e-5), None, (1e-6, 1.0))
+    roughness = Margin("roughness", None, None, (1e-9, 1e-3))
+    sentences = list(ways_to(RegimeMargins("boundary", (speed, load, roughness), ())))
+    assert sentences[1].startswith("To reach hydrodynamic lubrication: load / ")
+    assert "not reachable by changing roughness (range" in sentences[1] and "speed" not in sentences[1]

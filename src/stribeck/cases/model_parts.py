@@ -39,6 +39,11 @@ class Part(NamedTuple):
     needed: dict[str, str] = {}
     optional: tuple[str, ...] = ()
 
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """All keys."""
+        return (*self.needed, *self.optional)
+
 
 RELAXATION = {"relaxation_time": '"1 ms"', "exponent": "0.5"}
 PRESSURE = {"pressure_viscosity": '"15 1/GPa"'}
@@ -66,9 +71,7 @@ NAMES = ("name", "type", "kind", "law", "fluid", "liquid")
 KEYS = {
     "fluid": (
         *FLUID_LAWS,
-        *dict.fromkeys(
-            key for laws in FLUID_LAWS.values() for each in laws.values() for key in (*each.needed, *each.optional)
-        ),
+        *dict.fromkeys(key for laws in FLUID_LAWS.values() for part in laws.values() for key in part.keys),
         "preset",
         *CONDITIONS,
     ),
@@ -167,16 +170,16 @@ def _law(table: dict[str, Any], kind: str) -> Any:
     """Return the law that a table names, with its numbers; None for the one that does nothing."""
     laws = FLUID_LAWS[kind]
     name = _one_of(table, kind, tuple(laws), next(iter(laws)))
-    law, needed, optional = laws[name]
-    for key in dict.fromkeys(key for other in laws.values() for key in (*other.needed, *other.optional)):
-        if key in table and key not in (*needed, *optional):
+    part = laws[name]
+    for key in dict.fromkeys(key for other in laws.values() for key in other.keys):
+        if key in table and key not in part.keys:
             raise InputError(f"{key} = {show(table[key])} is given, but {kind} = {name!r} has no such key; remove it.")
-    for key, example in needed.items():
+    for key, example in part.needed.items():
         if key not in table:
             raise InputError(f"{key} is missing, which {kind} = {name!r} needs; add {key} = {example}.")
-    if law is None:
+    if part.law is None:
         return None
-    return law(*(table[key] for key in needed), **{key: table[key] for key in optional if key in table})
+    return part.law(*(table[key] for key in part.needed), **{key: table[key] for key in part.optional if key in table})
 
 
 def _preset(table: dict[str, Any], contact: Any) -> dict[str, Any]:

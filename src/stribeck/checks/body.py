@@ -90,8 +90,8 @@ def layer(subject: Subject) -> Check | None:
     verdict = verdict_of(ratio, FINE_LAYER, THIN_LAYER)
     meaning = {
         "fine": "The layer is as good as a half-space.",
-        "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than computed.",
-        "outside": "The layer is thinner than the contact is wide: the half-space does not apply, and films differ.",
+        "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than computed; give layer_thickness in [solid].",
+        "outside": "The layer is thinner than the contact is wide: the half-space does not apply, and films differ; give layer_thickness in [solid].",
     }[verdict]
     return Check(
         "layer a/thickness",

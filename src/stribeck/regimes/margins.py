@@ -158,6 +158,10 @@ class RegimeMargins:
         entered = [mark.regime for margin in self.margins for mark in (margin.less, margin.more) if mark is not None]
         return tuple(dict.fromkeys([*NEIGHBOURS[self.regime], *entered]))
 
+    def is_beyond(self, regime: Regime, margin: Margin) -> bool:
+        """Return whether a regime may lie beyond the one at which the search along an input ended."""
+        return regime not in NEIGHBOURS[self.regime] and (margin.less is not None or margin.more is not None)
+
 
 @one_blas_thread
 def regime_margins(

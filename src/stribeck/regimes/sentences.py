@@ -29,7 +29,7 @@ def ways_to(margins: RegimeMargins) -> Iterator[str]:
     for regime in margins.targets:
         found = [(margin, margin.crossing_into(regime)) for margin in margins.margins]
         ways = [f"{margin.name} {_step(margin.name, mark, table)}" for margin, mark in found if mark is not None]
-        barren = [_searched(margin, table) for margin, mark in found if mark is None]
+        barren = [_searched(margin, table) for margin, mark in found if mark is None and not margins.is_beyond(regime, margin)]
         if not ways:
             yield f"To reach {regime} lubrication: not reachable by changing {', '.join(barren)}."
             continue

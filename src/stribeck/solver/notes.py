@@ -115,7 +115,7 @@ def width_notes(contact: Contact) -> tuple[str, ...]:
     return (
         f"The contact is wide: the {contact.WIDTH} is {slope:.2g} of the radius. The parabola on a "
         f"half-space is accurate up to "
-        f"about 0.1 and rough at {WIDEST_CONTACT}; check modulus, load and radius.",
+        f"about 0.1 and coarse at {WIDEST_CONTACT}; check modulus, load and radius.",
     )
 
 

@@ -111,9 +111,7 @@ def fluid_table(fluid: Fluid) -> dict[str, Any]:
     for key, laws, kept in zip(FLUID_LAWS, FLUID_LAWS.values(), (fluid.rheology, fluid.viscosity, fluid.density), strict=True):
         for name, part in laws.items():
             if part.law is not None and type(kept) is part.law:
-                found |= {key: name} | {
-                    each: getattr(kept, ATTRIBUTES.get(each, each)) for each in (*part.needed, *part.optional)
-                }
+                found |= {key: name} | {each: getattr(kept, ATTRIBUTES.get(each, each)) for each in part.keys}
     return found
 
 
