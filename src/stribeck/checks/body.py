@@ -77,6 +77,9 @@ def width(subject: Subject) -> Check:
     return Check("contact width a/R", slope, FINE_WIDTH, verdict, sentence)
 
 
+ADVICE = " Give layer_thickness in [solid]: the layer is then solved."
+
+
 def layer(subject: Subject) -> Check | None:
     """Return the check of the layer: half-width over its thickness; None where the thickness is not known."""
     thickness = subject.fact("layer_thickness")
@@ -90,8 +93,8 @@ def layer(subject: Subject) -> Check | None:
     verdict = verdict_of(ratio, FINE_LAYER, THIN_LAYER)
     meaning = {
         "fine": "The layer is as good as a half-space.",
-        "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than computed; give layer_thickness in [solid].",
-        "outside": "The layer is thinner than the contact is wide: the half-space does not apply, and films differ; give layer_thickness in [solid].",
+        "doubtful": "The layer feels its substrate: the contact is narrower and stiffer than computed." + ADVICE,
+        "outside": "The layer is thinner than the contact is wide: the half-space does not apply, and films differ." + ADVICE,
     }[verdict]
     return Check(
         "layer a/thickness",

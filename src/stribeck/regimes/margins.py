@@ -69,8 +69,8 @@ DECADE = math.log(10.0)
 POINTS: dict[Geometry, int] = {"line": 41, "point": 6}
 """States looked at on a decade, by geometry: read off a function, or solved."""
 
-FINER: dict[Geometry, int] = {"line": 0, "point": 9}
-"""States solved anew between the two between which the regime changes; none where the curve is a function."""
+FINER = 9
+"""States solved anew between the two between which the regime changes, where the curve is no function."""
 
 THRESHOLD = 5e-3
 """Logarithm of the factor below which a contact is said to stand at the threshold."""
@@ -401,8 +401,8 @@ class _Scan:
         """Return the regime entered first between two values, and the value where its share passes the bound."""
         if near == far:
             return regime, near
-        if points := FINER[start.groups.geometry]:
-            finer = self._curve(start, name, near, far, points)
+        if not curve.is_function:
+            finer = self._curve(start, name, near, far, FINER)
             if finer is None:
                 return regime, math.sqrt(near * far)
             curve = finer
