@@ -108,3 +108,9 @@ def test_a_curve_of_a_fluid_that_thins_takes_about_as_many_states_as_another():
     state = sb.solve(replace(groups, speed=float(speeds[3])))
     assert curve.observable("central_gap")[3] == pytest.approx(state.central_gap, rel=1e-6)
     assert curve.observable("viscous_balanced")[3] == pytest.approx(state.viscous_balanced, rel=1e-6)
+
+
+def test_where_the_fits_of_sliding_flow_do_not_meet_the_mesh_resolves_it_and_the_error_knows():
+    groups, factors = sb.Groups(5e3, 0.013, 5.4), sb.fluids.PatirCheng(3.2, 3.0, 0.0)
+    found, exact = (sb.solve(groups, rtol=rtol, flow_factors=factors) for rtol in (1e-6, 1e-8))
+    assert found.flux_gap == pytest.approx(exact.flux_gap, rel=found.error_estimate)

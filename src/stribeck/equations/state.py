@@ -234,6 +234,12 @@ def is_thinning(film: Film) -> bool:
     return hasattr(film, "fall")
 
 
+def jumps_between_nodes(film: Film, gap: Array, pressure: Array | None) -> Array | None:
+    """Return by how much the pressure gradient of a film jumps between each node and the next one; None if it never does."""
+    told = getattr(film, "jump", None)
+    return None if told is None else told(gap, pressure)
+
+
 def mesh_for(
     guess: Guess,
     groups: Groups,
@@ -334,6 +340,12 @@ def mesh_for(
             wrong = wrong + pressure * np.exp(-np.abs(flat - centre) / thickness) * stiff
             wide = half_widths * np.where(half_widths > FINEST_OF_LAYER * thickness, wrong.reshape(x.shape).max(axis=1), 0.0)
             missed = wide > (tolerance / TAIL_OF_ERROR) ** 2
+            fields.append(np.where(missed[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
+        jumps = jumps_between_nodes(groups.model.film, gap, fluid) if stretch[0, 0] == 1.0 else None
+        if jumps is not None:
+            wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
+            wrong /= np.fmax(np.abs(fluid).max(), 1e-300)
+            missed = wrong > (tolerance / TAIL_OF_ERROR) ** 2
             fields.append(np.where(missed[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
         if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
             behind = x - (centre + float(width.mean()))

@@ -164,14 +164,34 @@ class PatirCheng(FlowFactors):
         if v == 0:
             return np.zeros_like(gap), np.zeros_like(gap)
         H, by_gap = self._separation(gap)
-        _, _, A_1, a_1, a_2, a_3, A_2 = FACTORS[self.gamma]
+        _, _, _, a_1, a_2, a_3, _ = FACTORS[self.gamma]
         near = np.clip(H, 1e-9, LINKED)
-        first = A_1 * near**a_1 * np.exp(-a_2 * near + a_3 * near * near)
-        second = A_2 * np.exp(-0.25 * H)
+        first, second = self._near(near), self._far(H)
         phi = np.where(H > LINKED, second, np.where(H > 0, first, 0.0))
         slope = np.where(H > LINKED, -0.25 * second, np.where(H > 0, first * (a_1 / near - a_2 + 2 * a_3 * near), 0.0))
         assert self.sigma is not None
         return v * self.sigma * phi, v * self.sigma * slope * by_gap
+
+    def _near(self, H: Array) -> Array:
+        """Return the fit of phi_s up to :data:`LINKED`, for v = 1."""
+        _, _, A_1, a_1, a_2, a_3, _ = FACTORS[self.gamma]
+        return np.asarray(A_1 * H**a_1 * np.exp(-a_2 * H + a_3 * H * H))
+
+    def _far(self, H: Array) -> Array:
+        """Return the fit of phi_s beyond, for v = 1."""
+        return np.asarray(FACTORS[self.gamma][6] * np.exp(-0.25 * H))
+
+    def jump(self, gap: Array) -> Array | None:
+        """Return by how much sigma phi_s jumps between each node and the next one: the two fits do not meet."""
+        v = 2 * self.substrate_share - 1
+        if v == 0:
+            return None
+        is_far = self._separation(gap)[0] > LINKED
+        at = np.array(LINKED)
+        height = abs(v * float(self._far(at) - self._near(at))) * (self.sigma or 0.0)
+        found = np.zeros_like(gap)
+        found[..., :-1] = np.where(is_far[..., 1:] != is_far[..., :-1], height, 0.0)
+        return found
 
     def friction(self, gap: Array) -> tuple[tuple[Array, Array], tuple[Array, Array], tuple[Array, Array]]:
         """Return phi_f (of eta s over the mean gap), phi_fs and phi_fp, each with its slope."""

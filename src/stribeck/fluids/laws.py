@@ -103,6 +103,10 @@ class FlowFactors(Law, Protocol):
     def shear(self, gap: Array) -> tuple[Array, Array]:
         """Return what sliding carries along in valleys, sigma phi_s [u_Hz], and its slope."""
 
+    def jump(self, gap: Array) -> Array | None:
+        """Return by how much :meth:`shear` jumps between each node and the next one, zero mostly; None if it never does."""
+        return None
+
     def friction(self, gap: Array) -> tuple[tuple[Array, Array], tuple[Array, Array], tuple[Array, Array]]:
         """Return phi_f, phi_fs and phi_fp, the factors of the drag, each with its slope; by default those of smooth walls."""
         one, zero = np.ones_like(gap), np.zeros_like(gap)

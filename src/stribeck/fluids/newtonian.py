@@ -109,6 +109,14 @@ class Newtonian:
             return Slopes(gap_derivative(gap, flux_gap), None, flux_derivative(gap))
         return self._parts(gap, pressure, flux_gap)[1]
 
+    def jump(self, gap: Array, pressure: Array | None) -> Array | None:
+        """Return by how much G jumps between each node and the next one, zero mostly; None if it never does."""
+        height = self.flow.jump(gap)
+        if height is None or not height.any():
+            return None
+        eta = self._of_pressure(pressure)[0]
+        return np.asarray(eta / (self.flow.pressure(gap)[0] * gap**3) * abs(self.slide) * height)
+
     def tractions(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Array]:
         r"""Return :math:`(\phi_f \pm \phi_{fs}) \eta s/h \pm 3 \phi_{fp} h G`, at the substrate and at the cylinder."""
         shear, pull, _, _ = self._drag(gap, pressure, flux_gap)
