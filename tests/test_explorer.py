@@ -458,7 +458,15 @@ def test_a_measured_curve_is_fitted_and_the_inputs_follow():
     fitted = fit_measured(START, measured, lambda *_: None)
     assert fitted.inputs.contact.roughness == pytest.approx(1.4e-6, rel=1e-3)
     assert fitted.inputs.contact.boundary_friction == pytest.approx(0.5, rel=1e-3)
-    assert "roughness 1.4 µm" in fitted.words
+    assert "roughness 1.4 µm" in fitted.words and fitted.words.startswith("Fitted to m.csv: ")
+
+
+def test_the_axis_of_speeds_holds_all_that_was_measured(answer):
+    low, high = answer.speeds
+    text = f"curve;speed [m/s];friction\na;{low / 5!r};0.6\na;{high!r};0.1\nb;{low!r};0.5\nb;{3 * high!r};0.2\n"
+    measured = read_measured("two.csv", text.encode(), START.contact)
+    ends = charts.axis_of(answer, measured)
+    assert ends[0] <= low / 5 and ends[1] >= 3 * high and charts.axis_of(answer, []) == (low, high)
 
 
 # --- addresses ---
@@ -708,7 +716,7 @@ def test_pictures_are_whole_and_hold_pinned_and_measured_curves(answer):
 def test_a_pin_is_named_after_what_differs_from_the_start():
     assert files.pin_name(START, START, []) == "start"
     other = inputs.typed(inputs.typed(START, "load", "50"), "roughness", "2 um")
-    assert files.pin_name(other, START, []) == "load 50 N/m, roughness 2 um"
+    assert files.pin_name(other, START, []) == "load 50 N/m, roughness 2 µm"
     assert files.pin_name(START, START, ["start"]) == "start (2)"
 
 

@@ -20,6 +20,7 @@ from stribeck.explorer.asked.carried import model_changes, model_words, tables_o
 from stribeck.explorer.asked.inputs import Inputs, exact_text
 from stribeck.explorer.curves import Curve, hersey_scale
 from stribeck.explorer.measured import Measured
+from stribeck.quantities.inputs import si_text
 from stribeck.quantities.units import InputError, show
 from stribeck.solver.base_solution import BaseSolution
 
@@ -123,7 +124,7 @@ def name_of(kind: str, title: str) -> str:
 def pin_name(inputs: Inputs, start: Inputs, taken: Sequence[str]) -> str:
     """Return the name of a pinned curve: the inputs in which it differs from the start."""
     changed = [
-        f"{shown.label.lower()} {exact_text(inputs, name).replace('*', '·') or 'none'}"
+        f"{shown.label.lower()} {_rounded(inputs, name)}"
         for name, shown in inputs.fields.items()
         if name != "speed" and getattr(inputs.contact, name) != getattr(start.contact, name, None)
     ]
@@ -137,6 +138,12 @@ def pin_name(inputs: Inputs, start: Inputs, taken: Sequence[str]) -> str:
     while unique in taken:
         unique, number = f"{name} ({number})", number + 1
     return unique
+
+
+def _rounded(inputs: Inputs, name: str) -> str:
+    """Return an input as text with four digits: a fitted one has sixteen."""
+    value = getattr(inputs.contact, name)
+    return "none" if value is None else si_text(float(value), name, 4, inputs.table)
 
 
 def content(kind: str, shown: View) -> bytes:

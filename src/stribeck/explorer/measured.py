@@ -28,6 +28,8 @@ class Measured:
     ----------
     name : str
         Name of its file, and of the curve where that holds several.
+    file : str
+        Name of its file.
     speed : ndarray, shape (n,)
         Sliding speed, ascending [m/s].
     friction : ndarray, shape (n,)
@@ -37,6 +39,7 @@ class Measured:
     """
 
     name: str
+    file: str
     speed: Array
     friction: Array
     source: Measurements
@@ -88,7 +91,9 @@ def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]
     words = ", ".join(
         f"{now.fields[name].label.lower()} {si_text(value, name, 3, now.table)}" for name, value in values.items()
     )
-    return Fitted(after, f"Fitted to {measured.name}: {words}. Undo brings back the values before; intervals: stribeck fit.")
+    curves = len(measured.source.curves)
+    target = measured.name if curves == 1 else f"all {curves} curves of {measured.file}"
+    return Fitted(after, f"Fitted to {target}: {words}. Undo brings back the values before; intervals: stribeck fit.")
 
 
 def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]:
@@ -128,5 +133,5 @@ def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]
         factor = {"speed": 1.0, "speed_viscosity": 1 / viscosity, "hersey_number": load / viscosity}[data.abscissa]
         mine = data.curve == k
         label = name if len(data.curves) == 1 else f"{name}: {curve}"
-        found.append(Measured(label, data.values[mine] * factor, data.friction[mine], data))
+        found.append(Measured(label, name, data.values[mine] * factor, data.friction[mine], data))
     return found

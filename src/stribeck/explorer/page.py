@@ -252,7 +252,12 @@ class Page:
         if isinstance(self.knobs.get(name), Slider | ChoiceRow):
             self.knobs[name].run_method("complain", text, sentence)
         else:
-            self.status.text = sentence
+            self.say(sentence, bad=True)
+
+    def say(self, sentence: str, *, bad: bool = False) -> None:
+        """Show a sentence above the numbers, in red where something went wrong."""
+        self.status.text = sentence
+        self.status.classes(remove="said") if bad else self.status.classes("said")
 
     def renew(self, name: str) -> None:
         """Let a field be shown anew, without mark."""

@@ -332,7 +332,7 @@ class Tab:
     async def fit(self) -> None:
         """Fit the inputs to the measured curves of the last file; undo brings back those before."""
         now, last = self.inputs, self.measured[-1]
-        self.page.status.text = f"Fitting to {last.name} ..."
+        self.page.say(f"Fitting to {last.file} ...")
 
         def step(*_: Any) -> None:
             if self.closed or self.inputs is not now:
@@ -341,9 +341,9 @@ class Tab:
         try:
             fitted = await self.run(SLOW, fit_measured, now, last, step)
         except Superseded:
-            self.page.status.text = "The fit was given up, as the inputs changed."
+            self.page.say("The fit was given up, as the inputs changed.", bad=True)
         except (InputError, SolveError) as problem:
-            self.page.status.text = f"No fit: {without_rtol(str(problem))}"
+            self.page.say(f"No fit: {without_rtol(str(problem))}", bad=True)
         else:
             with self.page.client:
                 self.change(fitted.inputs)
@@ -383,11 +383,12 @@ class Tab:
                 try:
                     await self.answered(now)
                 except (InputError, SolveError) as problem:
-                    self.page.status.text = f"{without_rtol(str(problem))} The last picture is kept."
+                    self.page.say(f"{without_rtol(str(problem))} The last picture is kept.", bad=True)
                 except Exception as problem:  # a page that silently no longer follows would be worse
-                    self.page.status.text = f"Internal error ({problem!r}). The last picture is kept."
+                    self.page.say(f"Internal error ({problem!r}). The last picture is kept.", bad=True)
                 else:
-                    self.page.status.text, self.said = self.said, ""
+                    self.page.say(self.said)
+                    self.said = ""
                 await self.page.draw(self.inputs, self.seen())
         finally:
             self.working = False

@@ -273,7 +273,8 @@ def margins_html(margins: RegimeMargins) -> str:
         for target in targets:
             mark = margin.crossing_into(target)
             if mark is None:
-                lines.append(f"<td>{'farther on' if margins.is_beyond(target, margin) else 'not reachable'}</td>")
+                another = margin.less is not None or margin.more is not None  # at which the search that way ended
+                lines.append(f"<td>{'not directly' if another else 'not reachable'}</td>")
                 continue
             value = format_si(mark.value, INPUT_TABLES[margins.geometry].quantities[margin.name].dimension).replace("*", "·")
             factor = f"{_times(mark.factor)} " if 0 < mark.factor < math.inf else ""

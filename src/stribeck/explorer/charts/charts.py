@@ -58,6 +58,16 @@ def all_charts(
     }
 
 
+def axis_of(answer: Answer, measured: Sequence[Measured]) -> tuple[float, float]:
+    """Return the ends of the axis of speeds, in whole decades farther where something was measured beyond [m/s]."""
+    low, high = answer.speeds
+    speeds = [speed for found in measured for speed in found.speed.tolist() if speed > 0]
+    if speeds:
+        low = min(low, 10.0 ** math.floor(math.log10(min(speeds)) + 1e-9))
+        high = max(high, 10.0 ** math.ceil(math.log10(max(speeds)) - 1e-9))
+    return low, high
+
+
 def friction_chart(
     answer: Answer, pins: Sequence[tuple[str, Curve, float]], measured: Sequence[Measured], palette: Palette
 ) -> Options:
@@ -66,7 +76,8 @@ def friction_chart(
     contact = inputs.contact
     hersey = hersey_scale(contact)
     scale = 1.0 if inputs.abscissa == "speed" else hersey
-    ends = answer.speeds[0] * scale, answer.speeds[1] * scale
+    ends = axis_of(answer, measured)
+    ends = ends[0] * scale, ends[1] * scale
     chosen = inputs.definition
     other: Definition = "balanced" if chosen == "published" else "published"
     names = {"balanced": "balanced", "published": "as published"}
