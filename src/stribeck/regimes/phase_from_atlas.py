@@ -31,6 +31,9 @@ COARSE = 5
 NARROWINGS = 6
 """Rounds of that, false position and trisection of the logarithm of the speed by turns, with both ends kept."""
 
+NARROW_ENOUGH = 0.2
+"""Part of the table's error below which the ends of a passage are no longer moved together."""
+
 
 @dataclass(frozen=True, eq=False)
 class TransitionSpeeds:
@@ -146,6 +149,8 @@ def _passages(
     low, high = grid[first], grid[first + 1]
     below, above = values[which, rows, first], values[which, rows, first + 1]
     for number in range(narrowings):
+        if np.all(above - below <= NARROW_ENOUGH * stated):
+            break
         # Two points around the one by false position, so that both ends close in.
         middle, width = low + (high - low) * below / (below - above), 0.02 * (high - low)
         if number % 2:  # where false position leaves one end behind
