@@ -150,6 +150,18 @@ def test_an_interval_says_what_its_problem_finds_wrong_in_the_middle():
     assert (Interval(problem, *ends).at(np.array([0.2]))[1][:, 2] >= 1e-5).all()
 
 
+def test_what_two_states_have_and_no_series_tells_between_them_is_wrong_without_bound():
+    problem = Known()
+    left, right = (problem.solve(s, []) for s in (0.0, 0.3))
+    left.series[1:, 2] = np.nan
+    right.series[:, 1] = np.nan  # what one of both has not is nothing between
+    found, errors = Interval(problem, left, right).at(np.array([0.5]))
+    assert np.isnan(found[0, 1:]).all()
+    assert np.isfinite(errors[0, 0])
+    assert np.isnan(errors[0, 1])
+    assert errors[0, 2] == math.inf
+
+
 def test_a_path_may_end_itself_and_go_on_from_both_ends():
     part = follow(Known(), 3.0, -9.0, 1e-6, until=lambda here: here.series[0, 0] > 0.9)
     assert -9.0 < part.coordinates[0] < 0.0 and part.outcome.ok

@@ -247,7 +247,13 @@ class _Pieces:
         errors = relative[where] + (absolute[where] + missed) / scales
         for mine, columns, of_read in self.read(found, where, parts, basis):
             errors[mine, columns] = of_read + self.intervals[where[mine[0, 0]]].inside[columns]
-        return found, errors
+        unknown = np.isnan(found) & self._expected[where]
+        return found, np.where(unknown, np.inf, errors)
+
+    @cached_property
+    def _expected(self) -> Flags:
+        """Which observables both states of an interval have; where a film ruptures no series need lead to the other."""
+        return np.stack([np.isfinite([one.left.series[0], one.right.series[0]]).all(axis=0) for one in self.intervals])
 
     def read(self, found: Array, where: Array, parts: Array, basis: Array) -> list[tuple[Indices, Sequence[int], Array]]:
         """Write what has no series into ``found``; return the rows and columns of each interval, and the errors there."""
