@@ -48,6 +48,10 @@ FINEST_OF_LAYER = 6.0
 REACH_OF_LAYER = 24.0
 """Distance in thicknesses beyond which a layer is not felt."""
 
+DRAG_OF_LAYER = 0.02
+"""Error of the drag far away, over the central gap and the fourth power of the distance, where a layer is thicker than that:
+there the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses."""
+
 BROKEN = 30.0
 """Factor by which a pressure that falls off as a broken power is resolved better at infinity than one that is smooth there."""
 
@@ -356,7 +360,8 @@ def mesh_for(
     reach = (8 if order < LONG_REACH_ORDER else 16) * scale
     if thickness < math.inf:  # beyond the panels in x a layer is felt only where it is pressed
         carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_OF_ERROR / tolerance
-        reach = max(reach, min(REACH_OF_LAYER * thickness, carried))
+        dragged = reach * (DRAG_OF_LAYER * min(1.0, float(central_gap.max())) * (TAIL_OF_ERROR / tolerance) ** 2) ** 0.25
+        reach = max(reach, min(REACH_OF_LAYER * thickness, carried), min(thickness, dragged))
     if broken and tolerance < COARSE:
         reach = max(reach, plateau, FAR_OFF * scale)
     if memories:  # where the panel through infinity begins, all is forgotten
