@@ -24,6 +24,9 @@ from stribeck.equations.point.system import Unknowns
 
 __all__ = ["CavitatedEquations"]
 
+STREAKS = 0.05
+"""Stated error of what the dry streaks take off the shear, over the spacing of the angles in half turns."""
+
 
 @dataclass(frozen=True, eq=False)
 class CavitatedEquations(TornEquations):
@@ -59,3 +62,8 @@ class CavitatedEquations(TornEquations):
     def shear_missing(self, y: Unknowns) -> Array:
         """Return by how much the shear over h on each ring is less for the dry streaks of the wake, shape (rings,)."""
         return shear_missing(self.operators.mesh, y.gap, y.fluid, partial(self.film.sheared, self.speed))
+
+    def shear_doubt(self, y: Unknowns) -> float:
+        """Return about the error of the shear over h of all: streaks begin at a line that is known within a spacing."""
+        mesh = self.operators.mesh
+        return STREAKS / mesh.modes * abs(float(mesh.ring_weights @ self.shear_missing(y)))

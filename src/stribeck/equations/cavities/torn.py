@@ -54,11 +54,14 @@ LOOSE = 3e-2
 FEW = 0.15
 """Nodes that break or heal, over those that the factors of the capacitance matrix are for, up to which these serve."""
 
+ROOM = 1.2
+"""Columns that are kept room for, over those of the nodes that are known, as a few come with each step."""
+
 FLUID = 10.0
 """Part of the film pressure that GMRES may leave over that of the gap."""
 
-WORN = 12
-"""Steps of GMRES from which the next step makes its own preconditioner."""
+WORN = 4.0
+"""Steps of GMRES for a digit from which the next step makes its own preconditioner."""
 
 
 class Passing:
@@ -116,9 +119,8 @@ class TornEquations(Equations):
         return None
 
     def shear_doubt(self, y: Unknowns) -> float:
-        """Return about the error of the integral of the shear over h, for what fills the cavity; zero if meshes tell it."""
-        del y
-        return 0.0
+        """Return about the error of the integral of the shear over h for what fills the cavity."""
+        raise NotImplementedError
 
     def linear(self, y: Unknowns) -> TornLinear:
         """Return the Jacobian at a solution."""
@@ -187,6 +189,8 @@ class Capacitance:
     totals: Single = field(default_factory=lambda: np.zeros((0, 0), dtype=np.float32))
     gaps: Single = field(default_factory=lambda: np.zeros((0, 0), dtype=np.float32))
     """The same at the nodes of the mesh, shape (size, nodes)."""
+    room: list[Single] = field(default_factory=list)
+    """Arrays of which these are the first columns."""
     last: _Factors | None = None
 
     def include(self, linear: TornLinear) -> None:
@@ -199,20 +203,22 @@ class Capacitance:
         unit = (csc_matrix(own, shape=(size, new.size)) if linear.spread is None else linear.spread[:, new]).tocoo()
         angle, ring = np.divmod(unit.row, mesh.rings)
         waves, modes = mesh.cosines[angle].T * unit.data, np.arange(mesh.modes)[:, None]
-        at = (modes * mesh.rings + ring, np.broadcast_to(unit.col, waves.shape))
-        right = np.zeros((size + 1, new.size))
-        right[:-1] = csc_matrix((waves.ravel(), tuple(each.ravel() for each in at)), shape=(size, new.size)).toarray()
+        right: Single = np.zeros((size + 1, new.size), dtype=np.float32)
+        np.add.at(right, (modes * mesh.rings + ring, unit.col), waves.astype(np.float32))
         found = self.banded(right)
-        by_mode = found[:-1].reshape(mesh.modes, mesh.rings, -1)
-        deflected = np.matmul(linear.equations.operators.deflection, by_mode).reshape(mesh.modes, -1)
-        total = (mesh.cosines @ by_mode.reshape(mesh.modes, -1)).reshape(size, -1)
-        gap = (mesh.cosines @ deflected).reshape(size, -1) + found[-1]
-        parts = [each.astype(np.float32) for each in (found, total, gap)]
-        if self.nodes.size:
-            old = (self.answers, self.totals, self.gaps)
-            parts = [np.hstack(pair) for pair in zip(old, parts, strict=True)]
-        self.answers, self.totals, self.gaps = parts
-        self.nodes = np.append(self.nodes, new)
+        by_mode, cosines = found[:-1].reshape(mesh.modes, mesh.rings, -1), mesh.cosines.astype(np.float32)
+        deflected = np.matmul(linear.equations.operators.deflection.astype(np.float32), by_mode)
+        total = (cosines @ by_mode.reshape(mesh.modes, -1)).reshape(size, -1)
+        gap = (cosines @ deflected.reshape(mesh.modes, -1)).reshape(size, -1) + found[-1]
+        before, self.nodes = self.nodes.size, np.append(self.nodes, new)
+        if not self.room or self.room[0].shape[1] < self.nodes.size:
+            wide = [np.empty((each.shape[0], int(ROOM * self.nodes.size)), dtype=np.float32) for each in (found, total, gap)]
+            for new_room, old_room in zip(wide, self.room, strict=False):
+                new_room[:, :before] = old_room[:, :before]
+            self.room = wide
+        for each, part in zip(self.room, (found, total, gap), strict=True):
+            each[:, before : self.nodes.size] = part
+        self.answers, self.totals, self.gaps = (each[:, : self.nodes.size] for each in self.room)
 
     def block(self, linear: TornLinear, rows: Indices, columns: Indices) -> Array:
         """Return C Z, the film pressures of torn nodes under unit residuals; both are places among the kept nodes."""
@@ -284,7 +290,7 @@ class _Preconditioner:
         rows = np.where(linear.torn, 0.0, right[:-1].reshape(linear.torn.shape) * linear.stiffness)
         x = self.kept.banded(np.append((mesh.cosines.T @ rows).ravel(), right[-1]))
         if not self.at.size:
-            return x
+            return np.asarray(x)
         missing = right[self.at] - linear.changes(x).fluid.ravel()[self.at]
         old = self.base.solve(missing[: self.base.columns.size])
         new = missing[self.base.columns.size :]
@@ -375,7 +381,7 @@ def iterate_cavitated(
             size = step_size(law, y.gap, step.gap)
             y = y.moved(step, part)
             steps += 1
-            if solved.steps > WORN:
+            if solved.steps > -WORN * math.log10(wanted):
                 kept = None
             now = now_torn(linear.stiffness, linear.passing)
             same = bool((now == torn).all())

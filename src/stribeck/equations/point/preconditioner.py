@@ -7,6 +7,7 @@ Products of fields with cosines couple modes whose difference is small, as field
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -32,21 +33,19 @@ class BandedModes:
         self.column = self.factors.solve(coupling.of_offset())
         self.pivot = float(self.row @ self.column[0])
 
-    def __call__(self, right: Array) -> Array:
-        """Return about the change of total pressure, by mode, and of the offset that removes residuals.
+    def __call__(self, right: Any) -> Any:
+        """Return about the change of total pressure, by mode, and of the offset that removes residuals, in their precision.
 
         ::
 
             [ B  g ] [dp]   [r]
             [ w  0 ] [dz] = [s]
         """
-        found = np.empty_like(right)
         many = right.shape[1:]
         x = self.factors.solve(right[:-1].reshape(*self.shape, *many))
         offset = (self.row @ x[0] - right[-1]) / self.pivot
-        found[:-1] = (x - np.multiply.outer(self.column, offset)).reshape(-1, *many)
-        found[-1] = offset
-        return found
+        x -= np.multiply.outer(self.column.astype(x.dtype), np.asarray(offset, dtype=x.dtype))
+        return np.concatenate([x.reshape(-1, *many), np.asarray(offset, dtype=x.dtype)[None]])
 
 
 def _sums(waves: Array, values: Array, sign: float) -> Array:
@@ -192,9 +191,13 @@ class BlockLU:
         self.right.append(np.ascontiguousarray(right))
         self.below.append(below)
 
-    def solve(self, right: Array) -> Array:
-        """Return the solution for a right-hand side of the shape (count, size), or for many, (count, size, many)."""
-        x = (right * self.scale.reshape(*self.scale.shape, *(1 for _ in right.shape[2:]))).astype(np.float32)
+    def solve(self, right: Any) -> Any:
+        """Return the solution for a right-hand side of the shape (count, size), or for many, (count, size, many).
+
+        It has the precision of the right-hand side, and is good to single precision.
+        """
+        scale = self.scale.reshape(*self.scale.shape, *(1 for _ in right.shape[2:])).astype(right.dtype)
+        x = (right * scale).astype(np.float32, copy=False)
         one = x.shape[1:]
         for k in range(self.count):
             x[k] = lapack.sgetrs(*self.pivots[k], x[k])[0]
@@ -204,4 +207,4 @@ class BlockLU:
         for k in range(self.count - 2, -1, -1):
             last = min(self.count, k + self.band + 1)
             x[k] -= self.right[k] @ x[k + 1 : last].reshape(-1, *one[1:])
-        return x.astype(np.float64)
+        return x.astype(right.dtype, copy=False)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -31,14 +30,21 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import PROBLEMS, Level, extrapolated, moved, solve_level
-from stribeck.solver.point.refinement import CENTRAL, COMPANY, Pair, centre_tails, scales_of
+from stribeck.solver.point.refinement import CENTRAL, Pair, centre_tails, scales_of
 from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
 
-FIRST_ANGLES, LADDER = 10, (20, 30, 45, 65, 95)
-"""Numbers of angles: of the first mesh, and of the meshes of which neighbours tell the error."""
+LADDER = ((10, 20), (15, 30), (20, 45), (30, 65), (45, 95))
+"""Numbers of angles of the two meshes that tell the error."""
 
-WASTE = 0.12
+WASTE = 0.45
 """Stated error over the tolerance below which a state is followed on the pair of meshes before the neighbour's."""
+
+COMPANY, FRONT = 0.6, 0.05
+"""Smallest error that is stated of one observable over the largest, and that of the largest times the square of the number of
+angles: as the line of rupture walks from node to node, errors change sign by chance."""
+
+ALONE = 10.0
+"""Smallest error of the minimum film and its place over the largest of all, which the tolerance does not hold."""
 
 DEGREE = 10
 """Degree of the panels of all but the finer of these, which has two more."""
@@ -54,11 +60,15 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     """Return the pair of two levels of one state."""
     assert isinstance(fine.equations, TornEquations)
     speed, slack, order = fine.equations.speed, fine.equations.slack, fine.equations.order
-    part = slack / ((fine.mesh.modes / coarse.mesh.modes) ** order - 1.0)
+    finer = fine.mesh.modes / coarse.mesh.modes
+    part, loose = slack / (finer**order - 1.0), slack / (finer - 1.0)
     values, rough = observables(fine.equations, fine.unknowns), observables(coarse.equations, coarse.unknowns)
     scales = scales_of(values, speed)
     scales["offset"] = max(abs(values["offset"]), values["central_gap"])  # it passes zero
-    errors = {name: part * abs(value - rough[name]) + fine.iterated.left * scales[name] for name, value in values.items()}
+    parts = (
+        dict.fromkeys(values, part) | dict.fromkeys(LOOSE_WHERE_TORN, loose) | dict.fromkeys(WITHOUT_TOLERANCE, 2.0 * loose)
+    )
+    errors = {n: parts[n] * abs(value - rough[n]) + fine.iterated.left * scales[n] for n, value in values.items()}
     balance = 0.3 * abs(identity_error(values, speed, fine.equations.far))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
@@ -70,8 +80,11 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         errors[name] = max(errors[name], factor * float(tail))
     # Two meshes may agree by chance in one number, hardly in all.
     widest = max(errors[name] / scales[name] for name in errors if name not in (*WITHOUT_TOLERANCE, *LOOSE_WHERE_TORN))
-    widest = max(widest, doubt / scales["J_balanced"])
-    errors = {name: max(error, COMPANY * widest * scales[name]) for name, error in errors.items()}
+    widest = max(widest, FRONT / fine.mesh.modes**2)
+    if fine.equations.spread is not None:  # where gas goes the film follows
+        widest = max(widest, doubt / scales["J_balanced"])
+    company = dict.fromkeys(values, COMPANY) | dict.fromkeys(WITHOUT_TOLERANCE, ALONE)
+    errors = {name: max(error, company[name] * widest * scales[name]) for name, error in errors.items()}
     ok = coarse.outcome.ok and fine.outcome.ok
     outcome = Outcome.CONVERGED if ok else (fine.outcome if coarse.outcome.ok else coarse.outcome)
     steps, krylov = (getattr(coarse.iterated, name) + getattr(fine.iterated, name) for name in ("steps", "krylov_steps"))
@@ -96,21 +109,20 @@ def refine_cavitated(
     best = known
     try:
         if known is not None:
-            base, last, rungs = known.fine.resolution, known.fine, LADDER[LADDER.index(known.fine.mesh.modes) :]
+            base, start, mesh = _base(speed, law, known.fine, model), known.fine.unknowns, known.fine.mesh
+            serve = base.halvings == known.fine.resolution.halvings
+            rungs = LADDER[_rung(known) + serve :]
         else:
             base, rungs = _base(speed, law, guess, model), LADDER
             start, mesh = guess.unknowns, guess.mesh
             if speed >= RIGID and model.cavitation is Cavitation.EXIT:
                 mesh = operators_of(base).mesh
                 start = rigid(mesh, speed)
-            last = solve_level(base, speed, law, start, mesh, TOLERANCE)
-            if not last.outcome.ok:
-                return last.outcome
-        for few, many in pairwise(rungs):
-            found = _pair(base, few, many, speed, law, last.unknowns, last.mesh)
+        for angles in rungs:
+            found = _pair(base, angles, speed, law, start, mesh)
             if isinstance(found, Outcome):
                 return found if best is None else replace(best, outcome=found)
-            best, last = found, found.fine
+            best, start, mesh = found, found.fine.unknowns, found.fine.mesh
             if held(found) <= rtol:
                 return found
     except MeshTooLargeError:
@@ -120,7 +132,7 @@ def refine_cavitated(
 
 def _base(speed: float, law: ContactLaw, guess: Level, model: Model) -> Resolution:
     """Return the first resolution of a state of which a level is a guess."""
-    base = resolution(speed, law, DEGREE, FIRST_ANGLES, model)
+    base = resolution(speed, law, DEGREE, LADDER[0][0], model)
     if isinstance(guess.equations, TornEquations):  # its line of rupture is no edge of the contact
         mesh = base.mesh
         contact = law.pressure(moved(guess.unknowns, guess.mesh, mesh, guess.equations.least).gap)
@@ -137,10 +149,16 @@ def rigid(mesh: PolarMesh, speed: float) -> Unknowns:
     return Unknowns(gap, np.maximum(-0.2 * speed * x / gap**2, 0.0), offset)
 
 
+def _rung(pair: Pair) -> int:
+    """Return the place on the ladder of a pair."""
+    return [many for _, many in LADDER].index(pair.fine.mesh.modes)
+
+
 def _pair(
-    base: Resolution, few: int, many: int, speed: float, law: ContactLaw, start: Unknowns, mesh: PolarMesh
+    base: Resolution, angles: tuple[int, int], speed: float, law: ContactLaw, start: Unknowns, mesh: PolarMesh
 ) -> Pair | Outcome:
     """Return a state on two meshes of a resolution, with few and with many angles, or why there is none."""
+    few, many = angles
     coarse = solve_level(replace(base, modes=few, degree=DEGREE), speed, law, start, mesh, TOLERANCE)
     if not coarse.outcome.ok:
         return coarse.outcome
@@ -163,14 +181,13 @@ def follow_cavitated(
     def predicted(name: str, mesh: PolarMesh) -> Unknowns:
         return extrapolated(weights, [getattr(pair, name) for _, pair in line], mesh)
 
-    serves, rung = fits(now, speed, law), LADDER.index(now.modes)
-    is_waste = held(neighbour) < WASTE * rtol and rung > 1
+    serves, rung = fits(now, speed, law), _rung(neighbour)
+    is_waste = held(neighbour) < WASTE * rtol and rung > 0
     if not serves or is_waste:
         fine = neighbour.fine
         base = now if serves else _base(speed, law, fine, now.model)
         start = predicted("fine", fine.mesh) if line else fine.unknowns
-        rung -= int(is_waste)
-        found = _pair(base, LADDER[rung - 1], LADDER[rung], speed, law, start, fine.mesh)
+        found = _pair(base, LADDER[rung - is_waste], speed, law, start, fine.mesh)
         return found if isinstance(found, Pair) else None
     levels: list[Level] = []
     for name in ("coarse", "fine"):
