@@ -1,6 +1,7 @@
 """The atlas: its error on states it was not made from, its derivatives, its limits, and what it refuses."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -382,6 +383,25 @@ def test_a_build_goes_on_with_what_is_kept(tmp_path):
     for _ in range(2):
         assert (atlas_build.kept(tmp_path, "rows", make) == np.arange(3.0)).all()
     assert len(calls) == 1
+
+
+def test_lines_are_kept_by_what_they_follow_from(monkeypatch):
+    name = "ball-exponential"
+    row, keys = atlas_build.ROWS[name], [atlas_build.key_of(name, region) for region in (0, 1)]
+    assert keys[0] != keys[1]
+    assert atlas_build.key_of(name, 0, 1e-4) != keys[0]
+    moved = replace(row, grid=replace(row.grid, regions=row.grid.regions[::-1]))
+    monkeypatch.setitem(atlas_build.ROWS, name, moved)
+    assert [atlas_build.key_of(name, region) for region in (1, 0)] == keys
+
+
+@pytest.mark.quick
+def test_nested_nodes_hold_those_of_half_the_degree():
+    finer, coarser = (
+        atlas_grid.Region((1e-3, 1.0), (0.0, 1.0), (1, 1), (n, 2), (0,) * 6, nested=True).roughness_nodes for n in (9, 5)
+    )
+    assert finer[::2] == pytest.approx(coarser, abs=1e-15)
+    assert (finer[0], finer[-1]) == (-1.0, 1.0)
 
 
 # --- curves, diagrams and sensitivities read off it ---

@@ -104,6 +104,21 @@ def test_it_is_within_its_stated_error_of_states_it_was_not_made_from():
     assert found.friction.max() < BALL.error
 
 
+def test_nearly_smooth_balls_are_as_good():
+    speed, load, kappa = np.array([[1e-5, 1e-3, 2e-4], [2e-6, 1e-2, 1e-4], [3e-7, 0.2, 6e-5]]).T
+    observed = np.array([solved(BALL.name, state) for state in zip(speed, load, kappa, strict=True)])
+    assert compare(speed, load, kappa, observed, BALL).friction.max() < BALL.error
+
+
+@pytest.mark.quick
+def test_regions_of_balls_meet_within_the_stated_error():
+    rng = np.random.default_rng(5)
+    ends = [np.log(BALL.box[name]) for name in ("speed", "load")]
+    speed, load = (np.exp(rng.uniform(*each, 1000)) for each in ends)
+    below, above = (sb.atlas.friction(of_ball(speed, load, 1e-3 * (1 + side * 1e-9)), beta=0.1) for side in (-1, 1))
+    assert np.abs(below / above - 1).max() < 0.2 * BALL.error
+
+
 @pytest.mark.parametrize("changes", [{}, {"wetted_radius": 2e-3}, {"slide_to_roll": 0.5}])
 def test_friction_of_a_contact_is_the_solved_one_whatever_its_liquid_and_motion(changes):
     contact = ball(**changes)

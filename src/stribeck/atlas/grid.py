@@ -71,8 +71,8 @@ class Region:
     closing : float
         A constant delta; zero for ``2 kappa/(1 + kappa)``.
     nested : bool
-        Whether the nodes in roughness are the zeros of a Chebyshev polynomial of the second kind. Every other one is a zero of
-        that of the first kind of half the degree, so that a table is refined with the states it has.
+        Whether the nodes in roughness are the ends and the extrema of a Chebyshev polynomial. Every other one belongs to that
+        of half the degree, so that a table is refined with the states it has.
     """
 
     roughness: tuple[float, float]
@@ -87,7 +87,7 @@ class Region:
     def roughness_nodes(self) -> Array:
         """Nodes of a piece in roughness, ascending in [-1, 1]."""
         count = self.nodes[0]
-        return np.asarray(-np.cos(math.pi * np.arange(1, count + 1) / (count + 1))) if self.nested else nodes(count)
+        return np.asarray(-np.cos(math.pi * np.arange(count) / (count - 1))) if self.nested else nodes(count)
 
     @property
     def has_rest(self) -> bool:
@@ -222,9 +222,12 @@ LINE_EXIT = Grid(
 """Cylinder, exponential law, a film that ends: slow, its share is of first order in the speed."""
 
 BALL_EXPONENTIAL = Grid(
-    (Region((1e-3, 1.0), (2 / 3 * math.log(2), 2 / 3 * math.log(1e7)), (1, 1), (21, 7), (4, 6, 6, 6, 7, 8), nested=True),),
+    (
+        Region((1e-5, 1e-3), (2 / 3 * math.log(2), 2 / 3 * math.log(1e7)), (1, 1), (11, 7), (4, 7, 7, 6, 8, 8), nested=True),
+        Region((1e-3, 1.0), (2 / 3 * math.log(2), 2 / 3 * math.log(1e7)), (1, 1), (23, 7), (4, 6, 6, 6, 7, 8), nested=True),
+    ),
     load_factor=2 / 3,
-    films=(1e-3, 1e3),
+    films=(1e-5, 1e3),
 )
 """Ball, exponential law, full film: L = -2/3 ln(load), as the pressure goes with the cube root of the load."""
 

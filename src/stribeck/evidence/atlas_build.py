@@ -136,12 +136,26 @@ def kept(folder: Path, name: str, make: Callable[[], Array]) -> Array:
     return made
 
 
+def key_of(name: str, region: int, *more: Any) -> str:
+    """Return a name for all that the ends of the segments of a region follow from, and for what there is besides."""
+    grid, plan = ROWS[name].grid, PLANS[name]
+    where = grid.regions[region]
+    coordinates = grid.heaviest, grid.load_factor, grid.power, where.roughness, where.logs, where.closing, where.has_rest
+    coarse = plan.coarse_nodes, plan.coarse_step, plan.coarse_rtol, SHARES, YIELDING
+    return f"{name}-{hashlib.sha256(repr((coordinates, coarse, *more)).encode()).hexdigest()[:8]}"
+
+
 def _kept_coarse(folder: Path, name: str, task: tuple[int, int]) -> Array:
-    return kept(folder, "coarse_{}_{}".format(*task), partial(coarse_line, name, *task))
+    region, i = task
+    return kept(folder, f"{key_of(name, region)}-coarse-{i}", partial(coarse_line, name, *task))
 
 
 def _kept_line(folder: Path, name: str, breaks: tuple[Array, ...], task: tuple[int, int, int, int]) -> Array:
-    return kept(folder, "line_{}_{}_{}_{}".format(*task), partial(line, name, breaks[task[0]], *task))
+    region, i, j, k = task
+    where = ROWS[name].grid.regions[region]
+    x = in_region(i, where.pieces[0], where.roughness_nodes[k : k + 1])
+    key = key_of(name, region, where.pieces[1], where.nodes[1], where.speeds, BREAK_TERMS, PLANS[name].rtol)
+    return kept(folder, f"{key}-line-{j}-{round(float(x[0]), 9) + 0.0:+.9f}", partial(line, name, breaks[region], *task))
 
 
 def _run(what: str, pool: ProcessPoolExecutor, work: Callable[[Any], Array], tasks: Sequence[Any]) -> list[Array]:
@@ -172,13 +186,13 @@ def build(row: TableRow, target: Path, folder: Path, workers: int) -> None:
     target : Path
         The file.
     folder : Path
-        Where finished lines are kept; one folder for each solver and grid.
+        Where finished lines are kept, in a folder for each solver. A table of which regions or nodes in roughness are changed
+        is made from the lines that it had.
     workers : int
         Processes.
     """
     begun, plan, regions = time.monotonic(), PLANS[row.name], row.grid.regions
-    what = hashlib.sha256(repr((row.name, row.grid, plan, SHARES, YIELDING, BREAK_TERMS)).encode()).hexdigest()
-    folder = folder / f"{solver_hash()[:8]}-{what[:8]}"
+    folder = folder / solver_hash()[:8]
     folder.mkdir(parents=True, exist_ok=True)
     with ProcessPoolExecutor(workers) as pool:
         coarse = [(number, i) for number in range(len(regions)) for i in range(plan.coarse_nodes[0])]
@@ -188,7 +202,8 @@ def build(row: TableRow, target: Path, folder: Path, workers: int) -> None:
         pieces = list(tasks_of_pieces(row.grid))
         tasks = [(*piece, k) for piece in pieces for k in range(regions[piece[0]].nodes[0])]
         lines = dict(zip(tasks, _run("lines", pool, partial(_kept_line, folder, row.name, breaks), tasks), strict=True))
-    film = kept(folder, "film_{}_{}".format(*plan.films), partial(film_coefficients, row.name))
+    films = "-".join(f"{each:g}" for each in (*row.grid.films, *plan.films, plan.film_rtol))
+    film = kept(folder, f"{row.name}-film-{films}", partial(film_coefficients, row.name))
     blocks: list[Array] = []
     for piece in pieces:
         where = regions[piece[0]]

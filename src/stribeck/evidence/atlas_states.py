@@ -67,7 +67,7 @@ PLANS = {
     "line-exponential": Plan(),
     "line-persson": Plan(1e-5, 1e-3, 1e-6, (5, 4), 0.5, (4, 16)),
     "line-exit": Plan(1e-6, 1e-5, 1e-6, (5, 4), 0.5, (6, 16)),
-    "ball-exponential": Plan(1e-4, 1e-3, 1e-5, (5, 4), 0.9, (1, 18)),
+    "ball-exponential": Plan(1e-4, 1e-3, 1e-5, (5, 4), 0.9, (2, 16)),
     "ball-persson": Plan(1e-4, 1e-3, 1e-5, (5, 4), 0.9, (1, 18)),
 }
 """The tables by their names."""
