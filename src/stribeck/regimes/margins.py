@@ -45,6 +45,9 @@ class Search(NamedTuple):
         Smallest load: of a cylinder, per length, that of a thread of 10 um; of a ball that of a grain of dust [SI].
     heaviest : callable
         ``heaviest(contact)`` is the load at which the Hertz contact is as wide as the body [SI].
+    roughest : callable
+        ``roughest(contact)`` is the largest roughness: of a cylinder the half-width of the Hertz contact, of a ball its
+        indentation, beyond which states at heavy loads are no longer determined [m].
     largest_group : float
         Load group up to which the solver is tested, where the contact law allows it.
     rtol : float
@@ -53,13 +56,14 @@ class Search(NamedTuple):
 
     lightest: float
     heaviest: Callable[[Contact], float]
+    roughest: Callable[[Contact], float]
     largest_group: float
     rtol: float
 
 
 SEARCHES: dict[Geometry, Search] = {
-    "line": Search(1e-6, lambda each: math.pi / 4 * each.modulus * each.radius, 10.0, 0.0),
-    "point": Search(1e-9, lambda each: 4 / 3 * each.modulus * each.radius**2, 1e4, 1e-3),
+    "line": Search(1e-6, lambda each: math.pi / 4 * each.modulus * each.radius, lambda each: each.hertz.half_width, 10.0, 0.0),
+    "point": Search(1e-9, lambda each: 4 / 3 * each.modulus * each.radius**2, lambda each: each.hertz.indentation, 1e4, 1e-3),
 }
 """The searches by geometry."""
 
@@ -242,7 +246,7 @@ def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:
     r"""Return between which values an input of a contact can be sought, whatever the model says beyond.
 
     .. math:: F_N \le \frac{\pi}{4} E^* R \text{ on the line}, \quad \frac43 E^* R^2 \text{ on the ball} \;\;(a \le R),
-        \qquad h_\mathrm{rms} \le a
+        \qquad h_\mathrm{rms} \le a \text{ and } u_\mathrm{Hz}
 
     Parameters
     ----------
@@ -255,20 +259,21 @@ def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:
     -------
     tuple of float
         Lowest and highest value [SI]: speed 1e-12 to 1000 m/s, viscosity 1e-5 to 1e8 Pa s, load from 1e-6 N/m or 1e-9 N to
-        where the Hertz contact is as wide as the body, roughness from 0.1 nm to the half-width of that contact.
+        where the Hertz contact is as wide as the body, roughness from 0.1 nm to the half-width of that contact,
+        of a ball to its indentation.
 
     Notes
     -----
     Rules of thumb: roughness higher than the contact is half wide is a matter of shape, and the present value counts as
     possible even where it is none.
     """
+    search = SEARCHES[contact.groups.geometry]
     if name == "load":
-        search = SEARCHES[contact.groups.geometry]
         low, high = search.lightest, search.heaviest(contact)
     else:
         low, high = PHYSICAL[name]
     if name == "roughness":
-        high = contact.hertz.half_width
+        high = search.roughest(contact)
     value = float(getattr(contact, name))
     return (min(low, value), max(high, value)) if value > 0 else (low, high)
 
