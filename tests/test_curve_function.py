@@ -117,6 +117,12 @@ def test_fields_are_solved_where_they_are_asked_for(curve):
         np.testing.assert_allclose(found, exact, atol=1e-3 * np.abs(exact[10:31]).max())
 
 
+@pytest.mark.slow
+def test_films_as_thin_as_rounding_take_few_states():
+    curve = sb.stribeck_curve(load=0.1, roughness=0.0, speed=(1e-11, 3e-11), points=2, rtol=1e-7)
+    assert curve.states <= 6 and curve.error_estimate <= 1e-7
+
+
 @pytest.mark.quick
 @pytest.mark.parametrize(
     ("value", "words"),

@@ -196,9 +196,9 @@ class Equations:
             r[..., at.gap] -= op.deflected(fluid, d)
             r[..., at.offset.start] += fluid @ op.weights
         elif self.is_sliding:
-            g = self.speed * g
-            r[..., at.gap] -= g @ op.deflection_of_gradient.T
-            r[..., at.offset.start] += g @ op.load_of_gradient
+            fluid = self.speed * op.integral(g)
+            r[..., at.gap] -= op.deflected(fluid, d)
+            r[..., at.offset.start] += fluid @ op.weights
         if d is not None:
             r[..., at.offset] += (d - 1) * (r[..., at.offset] + LOAD)
         return r

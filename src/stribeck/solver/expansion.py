@@ -45,6 +45,9 @@ SHIFTED = [ROW["central_gap"], ROW["offset"]]
 GAP_POWERS = np.array([1.0, -1.0, -2.0, -3.0, 1.0])
 """Powers of the gap that film and friction are composed of, and that of the separation."""
 
+REFINED = 2
+"""Orders that are corrected once more with the residual that they leave: rounding of thin films is seen in the first ones."""
+
 Direction = tuple[float, float, float]
 """Derivatives of ln(speed), ln(load), ln(roughness) along a curve."""
 
@@ -183,33 +186,35 @@ def expand_article(
     gradient, flow = np.zeros((2, order + 1, op.mesh.size))
     gradient[0] = powers[0, 2] - powers[0, 3] * start[at.flux_gap]
     flow[0] = speed[0] * gradient[0]
-    flux, top = w[:, at.flux_gap.start], np.exp(contact.top)
+    flux, top, weights = w[:, at.flux_gap.start], np.exp(contact.top), op.mesh.weights
     for k in range(1, order + 1):
         powers[k] = exponential_term(slopes, powers, k)
         contact.extend(k, powers[k, -1])
         gradient[k] = powers[k, 2] - flux[k::-1] @ powers[: k + 1, 3]
-        r, pressure = np.zeros(at.size), top * contact.pressure[k]
-        r[at.gap] = powers[k, 0] - op.deflection @ pressure
-        r[at.offset] = op.mesh.weights @ pressure
-        r[at.flux_gap] = equations.flux_scale * (op.mesh.weights @ gradient[k])
         if equations.is_sliding:
             flow[k] = speed[k::-1][: k + 1] @ gradient[: k + 1]
-            r[at.gap] -= op.deflection_of_gradient @ flow[k]
-            r[at.offset] += op.load_of_gradient @ flow[k]
-        w[k] = units * inverse(r)
-        change = w[k, at.gap]
-        of_logs = GAP_POWERS[:, None] * change
-        slopes[k] += k * of_logs
-        of_powers = of_logs * powers[0]
-        powers[k] += of_powers
-        contact.add(k, change, of_powers[-1])
-        of_gradient = of_powers[2] - of_powers[3] * flux[0] - powers[0, 3] * flux[k]
-        gradient[k] += of_gradient
-        flow[k] += speed[0] * of_gradient
+        for _ in range(2 if k <= REFINED else 1):
+            r, pressure = np.zeros(at.size), top * contact.pressure[k]
+            if equations.is_sliding:
+                pressure += op.integral(flow[k])
+            r[at.gap] = powers[k, 0] - w[k, at.offset] - op.deflection @ pressure
+            r[at.offset] = weights @ pressure
+            r[at.flux_gap] = equations.flux_scale * (weights @ gradient[k])
+            step = units * inverse(r)
+            w[k] += step
+            change = step[at.gap]
+            of_logs = GAP_POWERS[:, None] * change
+            slopes[k] += k * of_logs
+            of_powers = of_logs * powers[0]
+            powers[k] += of_powers
+            contact.add(k, change, of_powers[-1])
+            of_gradient = of_powers[2] - of_powers[3] * flux[0] - powers[0, 3] * step[at.flux_gap]
+            gradient[k] += of_gradient
+            flow[k] += speed[0] * of_gradient
     found, found_logs = np.zeros((2, order + 1, len(ALL_NAMES)))
     found[:, len(NAMES) + 1 :] = np.nan
     found_logs[:] = np.nan
-    share, found_logs[:, ROW["contact_load_share"]] = contact.share(op.mesh.weights)
+    share, found_logs[:, ROW["contact_load_share"]] = contact.share(weights)
     found[:, ROW["contact_load_share"]] = share
     found[:, ROW["fluid_load_share"]] = flow @ op.load_of_gradient / LOAD
     found[:, ROW["central_gap"]] = _central_gap(equations, y, w[:, at.gap])
@@ -221,7 +226,7 @@ def expand_article(
             found[:, ROW[name]] = product(scale, integral)
     else:
         found[:, SHIFTED] += shifts[:, None]
-        found[:, ROW["flux_gap"]] = _flux_gap(powers[:, 0] + shifts[:, None], op.mesh.weights)
+        found[:, ROW["flux_gap"]] = _flux_gap(powers[:, 0] + shifts[:, None], weights)
         found[:, ROW["minimum_gap"]] = found[:, ROW["central_gap"]]
     return Expanded(w, found, found_logs)
 
