@@ -75,13 +75,13 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
     weights = mesh.weights.copy()
     weights[-order:] = 0.0
     full = nodal.integral.integrated
-    lower, upper = 0.0, 0.0
+    lower, upper = np.zeros((2, *y.shape[:-1]))
     for gap, pressure, wet, own in (
         (nodal.gap, nodal.pressure if film.uses_pressure else None, full, weights),
         (h, p, t < 0 if nodal.integral.one_sided else np.ones_like(t, dtype=bool), tail_weights),
     ):
         walls = film.tractions(*_at(wet, gap, pressure), h_star)
-        lower, upper = (total + traction @ own[wet] for total, traction in zip((lower, upper), walls, strict=True))
+        lower, upper = lower + walls[0] @ own[wet], upper + walls[1] @ own[wet]
         if not wet.all():
             torn = film.cavity_traction(*_at(~wet, gap, pressure), h_star) @ own[~wet]
             lower, upper = lower + torn, upper + torn

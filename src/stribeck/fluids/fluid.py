@@ -32,7 +32,10 @@ def kept(key: Key) -> Key:
 def same(first: Key, second: Key) -> bool:
     """Return whether a film was asked for the same to the bit."""
     for a, b in zip(first, second, strict=True):
-        if (a is None) != (b is None) or np.shape(a) != np.shape(b) or not np.all(a == b):
+        if a is None or b is None:
+            if a is not b:
+                return False
+        elif np.shape(a) != np.shape(b) or not np.all(a == b):
             return False
     return True
 

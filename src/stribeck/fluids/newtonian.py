@@ -163,7 +163,8 @@ class Newtonian:
         """Return G and its derivatives, those known if the last on as many nodes were for the same film."""
         if len(gap.shape) == 2 and len(gap) == 1:
             g, slopes = self._parts(gap[0], None if pressure is None else pressure[0], np.ravel(flux_gap))
-            return g[None], Slopes(*(None if each is None else each[None] for each in slopes))
+            by_gap, by_pressure, by_flux, _ = slopes
+            return g[None], Slopes(by_gap[None], None if by_pressure is None else by_pressure[None], by_flux[None])
         key = (flux_gap, gap, pressure)
         last = self._known.get(gap.shape)
         if last is not None and same(last[0], key):

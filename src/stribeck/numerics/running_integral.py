@@ -193,7 +193,7 @@ class Volterra:
         for panels, tail, sign in chains:
             step = np.eye(len(panels))
             np.fill_diagonal(step[1:], -1.0 - sign * passed[panels[:-1]])
-            found.append((panels, tail, sign, np.linalg.inv(step)))
+            found.append((panels, tail, sign, np.asarray(np.linalg.inv(step), dtype=np.float64)))
         return found
 
     def __call__(self, values: Array) -> Array:
@@ -217,7 +217,7 @@ class Volterra:
         result = np.matmul(nodal, own)
         felt = (nodal + result * f[:, None, :]).sum(axis=2)
         passed_on = self._whole[:, None, :] + (self._whole * f)[:, None, :] @ own
-        at_tail = 0.0
+        at_tail = np.zeros((len(operator), f.shape[1]))
         for panels, tail, sign, to_edges in self._chains:
             later = to_edges.T @ felt[panels]  # what each panel and those behind it feel of one that arrives
             result[panels[:-1]] += sign * later[1:, :, None] * passed_on[panels[:-1]]

@@ -33,6 +33,10 @@ RELAX = 3.0
 """Factor by which mesh tolerances that once had to be lowered are raised again."""
 
 
+MOVING = 0.5
+"""Part of the tolerances of a mesh that moves with the end of a film: the contact passes through its panels."""
+
+
 class Corrector:
     """Solve states one after another: ``groups_at(s)`` gives the groups at coordinate s.
 
@@ -89,7 +93,9 @@ class Corrector:
                         self._look_for_coarser(state)
                         return self._kept(point)
                 guess = state
-        return self._adopt(converge(guess, groups, self.rtol, self.tolerances, spread=spread))
+        part = 1.0 if base.model.cavitation is Cavitation.NONE else MOVING
+        tail, gap_tail = self.tolerances
+        return self._adopt(converge(guess, groups, self.rtol, (part * tail, part * gap_tail), spread=spread))
 
     def _kept(self, point: RefinedState) -> RefinedState:
         """Return the state with its inverse kept here, for the next one, instead of there."""
