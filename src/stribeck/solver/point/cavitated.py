@@ -36,10 +36,11 @@ from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
 LADDER = ((10, 20), (15, 30), (20, 45), (30, 65), (45, 95))
 """Numbers of angles of the two meshes that tell the error."""
 
-WASTE = 0.45
-"""Stated error over the tolerance below which a state is followed on the pair of meshes before the neighbour's."""
+WASTE, WASTE_ANEW = 0.25, 0.4
+"""Stated error over the tolerance below which a state is followed on the pair of meshes before the neighbour's, and where it
+needs other meshes anyway."""
 
-COMPANY, FRONT = 0.6, 0.05
+COMPANY, FRONT = 0.6, 0.04
 """Smallest error that is stated of one observable over the largest, and that of the largest times the square of the number of
 angles: as the line of rupture walks from node to node, errors change sign by chance."""
 
@@ -182,7 +183,7 @@ def follow_cavitated(
         return extrapolated(weights, [getattr(pair, name) for _, pair in line], mesh)
 
     serves, rung = fits(now, speed, law), _rung(neighbour)
-    is_waste = held(neighbour) < WASTE * rtol and rung > 0
+    is_waste = held(neighbour) < (WASTE if serves else WASTE_ANEW) * rtol and rung > 0
     if not serves or is_waste:
         fine = neighbour.fine
         base = now if serves else _base(speed, law, fine, now.model)
