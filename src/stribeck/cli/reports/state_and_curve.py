@@ -63,7 +63,8 @@ def print_solution(
     for row in _solution_rows(solution, boundary_friction, beta):
         table.add_row(*(row[i] for i in columns))
     print_table(console, table)
-    print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes, checks)
+    film = getattr(solution, "minimum_gap_error", 0.0)  # of a ball, whose tolerance does not hold it
+    print_outcome(console, solution.outcome.value, solution.error_estimate, solution.notes, checks, film)
 
 
 def _solution_rows(

@@ -156,9 +156,12 @@ def law_sentence(law: AsperityLaw) -> str:
     return f"Contact law: {law.name}{f' ({numbers})' if numbers else ''}."
 
 
-def print_outcome(console: Console, outcome: str, error: float, notes: Sequence[str], checks: Checks | None = None) -> None:
-    """Print how a solve ended, its error and the notes that :func:`print_first` leaves."""
-    say(console, f"{outcome} Largest estimated relative error: {error:.1e}.")
+def print_outcome(
+    console: Console, outcome: str, error: float, notes: Sequence[str], checks: Checks | None = None, of_film: float = 0.0
+) -> None:
+    """Print how a solve ended, its error, that of the minimum film if larger, and what :func:`print_first` leaves."""
+    film = f" That of the minimum film: {of_film:.1e}." if of_film > error else ""
+    say(console, f"{outcome} Largest estimated relative error: {error:.1e}.{film}")
     for note in notes:
         if checks is None or not checks.covers(note):
             console.print(f"Note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
