@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from fit_data import TRUE
 from scipy.integrate import trapezoid
 from test_model_parts import REFERENCE, observed
 
@@ -145,9 +146,19 @@ def test_solids_of_a_contact_are_scaled_from_si_units():
 
 
 @pytest.mark.quick
-def test_a_curve_on_a_viscoelastic_body_is_refused():
-    with pytest.raises(sb.InputError, match="solve the states one by one"):
+def test_groups_that_hold_a_memory_at_one_speed_have_no_curve_over_it():
+    with pytest.raises(sb.InputError, match="give a contact, or vary load or roughness"):
         sb.stribeck_curve(sb.Groups(1e-3, 0.1, 1e-4), solid=StandardLinearSolid(0.3, 2.0), points=3)
+
+
+@pytest.mark.parametrize("solid", [StandardLinearSolid("1 ms", 2.0), Prony(["1 ms", "30 ms"], [0.7, 0.5])])
+def test_along_a_curve_the_memory_of_a_body_moves_with_the_speed(solid):
+    contact = TRUE.replace(solid=solid)
+    curve = sb.stribeck_curve(contact, speed=(0.01, 0.1), points=3)
+    for speed in (0.02, 0.07):
+        state = sb.solve(contact.replace(speed=speed))
+        assert float(curve.at(speed).friction) == pytest.approx(state.friction().total, rel=1e-6)
+        assert curve.at(speed).central_gap == pytest.approx(state.central_gap, rel=1e-6)
 
 
 @pytest.mark.quick

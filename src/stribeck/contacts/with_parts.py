@@ -133,11 +133,8 @@ def hertz_units(groups: Groups) -> FilmUnits:
     return FilmUnits(pressure=1.0, time=speed or 1.0, gap=1.0, viscosity=1.0, decay_length=roughness)
 
 
-def check_solid(problem: Contact | Groups) -> None:
-    """Refuse curves on a viscoelastic body, whose deflection changes with the speed."""
-    groups = problem.groups if isinstance(problem, Contact) else problem
-    if getattr(groups.model.solid, "uses_speed", False):
-        raise InputError(
-            f"solid = {groups.model.solid.name}: its deflection changes with the speed, which curves do not follow; "
-            "solve the states one by one."
-        )
+def check_solid(groups: Groups, reason: str) -> None:
+    """Refuse a viscoelastic body where its memory, in units of the contact, would have to change with the speed."""
+    solid = groups.model.solid
+    if getattr(solid, "uses_speed", False):
+        raise InputError(f"solid = {solid.name}: in units of the contact its memory changes with the speed, {reason}")

@@ -146,8 +146,9 @@ def stribeck_curve(
     base, over, ends = read_problem(problem, given)
     base = with_law(base, law)
     base = with_parts(base, **parts) if parts else base
-    check_solid(base)
     contact = base if isinstance(base, Contact) else None
+    if isinstance(base, Groups) and over == "speed":
+        check_solid(base, "and groups hold it at one; give a contact, or vary load or roughness.")
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     if isinstance(points, bool) or not isinstance(points, int) or not POINTS_RANGE[0] <= points <= POINTS_RANGE[1]:
         raise InputError(f"points = {show(points)}; it must be a whole number from {POINTS_RANGE[0]} to {POINTS_RANGE[1]}.")
