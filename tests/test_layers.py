@@ -268,3 +268,9 @@ def test_a_solve_that_fails_says_so(name, monkeypatch):
 @EVERY_LAYER
 def test_a_layer_is_solved_once(name):
     assert LAYERS[name]() is LAYERS[name]()
+
+
+def test_the_mesh_on_a_thick_layer_reaches_where_its_drag_feels_it():
+    groups, layer = sb.Groups(3.92e-5, 2.43e-6, 0.0), sb.solids.Layer(33.2, 0.0977)
+    found, exact = (sb.solve(groups, rtol=rtol, solid=layer).observables.viscous_published for rtol in (1e-6, 1e-8))
+    assert found == pytest.approx(exact, rel=1e-6)
