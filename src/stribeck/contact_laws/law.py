@@ -3,7 +3,9 @@ r"""The protocols of a contact law: dimensionless, and scaled to a load and a ro
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from typing import Any, Protocol, runtime_checkable
+from weakref import WeakValueDictionary
 
 from stribeck._types import Array, Numbers
 from stribeck.quantities.units import InputError, show
@@ -98,9 +100,17 @@ def largest_load(law: AsperityLaw | None) -> float:
     return 1.0 if is_exponential(law) else math.inf
 
 
+_ACCEPTED: WeakValueDictionary[int, Any] = WeakValueDictionary()
+"""Laws that were looked at: those of a curve are the same object at all its states."""
+
+
 def check_law(law: Any) -> AsperityLaw | None:
     """Return a contact law, or None for the exponential one; refuse objects without its methods."""
-    if law is None or (isinstance(law, AsperityLaw) and not isinstance(law, type)):
+    if law is None or _ACCEPTED.get(id(law)) is law:
+        return law
+    if isinstance(law, AsperityLaw) and not isinstance(law, type):
+        with suppress(TypeError):  # what allows no weak reference is looked at again
+            _ACCEPTED[id(law)] = law
         return law
     advice = f"write {law.__name__}()" if isinstance(law, type) else "give an object such as GreenwoodWilliamson(), or None"
     raise InputError(f"law = {show(law)} is not a contact law; {advice}.")
