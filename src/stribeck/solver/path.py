@@ -159,6 +159,11 @@ class Interval:
         return np.vstack([np.hstack([end.series, end.logs])[: self.order + 1] * scale for end in (self.left, self.right)])
 
     @cached_property
+    def form(self) -> Array:
+        """Coefficients of Chebyshev polynomials of the observables and of their logarithms."""
+        return hermite_form(self.order) @ self.ends
+
+    @cached_property
     def missed(self) -> Array:
         """What the interpolation of the observables changes with its highest order, at most, over ``(tau (1 - tau))**K``."""
         values = self.ends[:, : self.left.series.shape[1]]
@@ -173,11 +178,15 @@ class Interval:
         return np.stack([relative.max(axis=0), (relative * scales).max(axis=0)])
 
     @cached_property
+    def _alone(self) -> _Pieces:
+        return _Pieces([self])
+
+    @cached_property
     def inside(self) -> Array:
         """What the problem itself finds wrong between the ends."""
-        pieces, where = _Pieces([self]), np.zeros(len(INSIDE), dtype=int)
-        values, _, basis = pieces.smooth(where, INSIDE)
-        pieces.read(values, where, INSIDE, basis)
+        where = np.zeros(len(INSIDE), dtype=int)
+        values, _, basis = self._alone.smooth(where, INSIDE)
+        self._alone.read(values, where, INSIDE, basis)
         return self.problem.missed(self.left, self.right, INSIDE, values)
 
     @cached_property
@@ -193,7 +202,7 @@ class Interval:
 
     def at(self, parts: Array) -> tuple[Array, Array]:
         """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
-        return _Pieces([self]).at(np.zeros(len(parts), dtype=int), parts)
+        return self._alone.at(np.zeros(len(parts), dtype=int), parts)
 
 
 class _Pieces:
@@ -204,7 +213,7 @@ class _Pieces:
         self.count = intervals[0].left.series.shape[1]
         self.orders = np.array([one.order for one in intervals])
         self.degree = max(READ_AT, 2 * int(self.orders.max()) + 2)
-        self.forms = [hermite_form(one.order) @ one.ends for one in intervals]
+        self.forms = [one.form for one in intervals]
         self.missed = np.stack([one.missed for one in intervals])
         with_logs = np.stack([np.isfinite(form[:, self.count :]).all(axis=0) for form in self.forms])
         self.starts = np.array([one.left.coordinate for one in intervals])
