@@ -23,7 +23,6 @@ __all__ = [
     "chebyshev_basis",
     "chebyshev_form",
     "chebyshev_nodes",
-    "hermite",
     "hermite_form",
     "hermite_weights",
     "highest_order",
@@ -59,29 +58,6 @@ def hermite_weights(order: int, tau: Array) -> tuple[Array, Array]:
     left = (tau[:, None] ** powers @ sums) * (1 - tau[:, None]) ** (order + 1)
     right = ((1 - tau[:, None]) ** powers @ sums) * tau[:, None] ** (order + 1)
     return left, right * (-1.0) ** powers
-
-
-def hermite(left: Array, right: Array, length: float, tau: Array) -> Array:
-    """Return the interpolating polynomial at places of an interval.
-
-    Parameters
-    ----------
-    left, right : ndarray, shape (K + 1, ...)
-        Taylor coefficients at both ends.
-    length : float
-        Of the interval.
-    tau : ndarray, shape (n,)
-        Places, 0 to 1.
-
-    Returns
-    -------
-    ndarray, shape (n, ...)
-        Its values.
-    """
-    order = len(left) - 1
-    of_left, of_right = hermite_weights(order, tau)
-    scale = length ** np.arange(order + 1)
-    return np.asarray(np.tensordot(of_left * scale, left, 1) + np.tensordot(of_right * scale, right, 1))
 
 
 @lru_cache(maxsize=64)

@@ -352,9 +352,8 @@ def _minimum_on(left: Expansion, right: Expansion, of: LinePoint, parts: Array) 
             error = error + 2 * _unresolved(end.point, each, w, place * _stretch(end.point, of))
     position = place
     if at.exit.stop > at.exit.start:  # in a frame that moves with the end of the film
-        numbers = np.sum(
-            [w @ numbers_on(end.point, each, of) for end, each, w in zip(ends, scaled, weights, strict=True)], axis=0
-        )
+        own, others = (numbers_on(end.point, each, of) for end, each in zip(ends, scaled, strict=True))
+        numbers = weights[0] @ own + weights[1] @ others
         if at.dilation.stop > at.dilation.start:
             position = position * numbers[:, at.dilation.start - at.numbers.start]
         position = position + numbers[:, at.exit.start - at.numbers.start]
