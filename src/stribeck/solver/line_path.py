@@ -294,7 +294,7 @@ class LineProblem:
         known = values[:, :POSITION]
         with np.errstate(all="ignore"):  # what is not finite is as wrong as can be
             wrong = np.abs(corrected - known) / self.scales(np.hstack([known, values[:, POSITION:]]), places)[:, :POSITION]
-        wrong = np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf), 0.0).max(axis=0)
+        wrong = np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf, posinf=np.inf), 0.0).max(axis=0)
         beyond = wrong - np.maximum(left.errors, right.errors)[:POSITION]
         found[:POSITION] += UNSEEN * np.where(beyond > 0, beyond, 0.0)
         return found
