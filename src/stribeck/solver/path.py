@@ -34,6 +34,9 @@ REACH = 1.2
 KNOT_PART = 0.75
 """Part of the tolerance that a solved state must hold: the rest is for what lies between."""
 
+APART = 1.0
+"""Error, in units of the scales, of an interval at which a path ends: what it would say is worth nothing."""
+
 CHECKED = 0.85
 """Part of the tolerance that an interval must hold where it is checked."""
 
@@ -388,13 +391,22 @@ def follow(
                     return SolvedPath(problem, _ascending(found) or alone, new)
             low, high = (here, new) if upwards else (new, here)
             parts = _refined(Interval(problem, low, high), rtol)
-            found += parts if upwards else parts[::-1]
+            for part in parts if upwards else parts[::-1]:
+                if _is_lost(part):
+                    return SolvedPath(problem, _ascending(found) or alone, Outcome.PATH_LOST)
+                found.append(part)
             if on_interval is not None:
                 on_interval(low.coordinate, high.coordinate)
             here = new
     except KeyboardInterrupt:
         outcome = Outcome.INTERRUPTED
     return SolvedPath(problem, _ascending(found) or alone, outcome)
+
+
+def _is_lost(interval: Interval) -> bool:
+    """Return whether the two states of an interval tell nothing about what is between them: they are of two branches."""
+    errors = interval.at(CHECKS)[1][:, interval.problem.held]
+    return bool((errors > APART).any())
 
 
 def _beyond(here: Expansion, end: float, step: float) -> float:
