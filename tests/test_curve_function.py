@@ -199,3 +199,13 @@ def test_a_whole_curve_is_within_three_times_its_stated_errors_and_nearly_everyw
     speeds = np.exp(np.random.default_rng(SEED).uniform(*np.log(curve.values[[0, -1]]), 25)).tolist()
     ratios = [worst(curve, speed, replace(groups, speed=speed), max(1e-10, min(1e-9, 0.1 * rtol))) for speed in speeds]
     assert max(ratios) < 3 and np.mean(np.array(ratios) < 1) > 0.9
+
+
+@pytest.mark.slow
+def test_a_path_that_is_lost_says_nothing_of_what_no_state_tells():
+    """The cavity of this cylinder opens at 160 um/s, where its path ends; a share of 4e9 was read off there."""
+    inputs = {"radius": 0.01, "modulus": 2.1e6, "load": 50.0, "viscosity": 0.05, "speed": 0.02, "roughness": 1e-6}
+    contact = sb.LineContact(**inputs, alpha=2.0, beta=0.06, boundary_friction=0.8, cavitation="reform", cavity_pressure=-5e3)
+    curve = sb.stribeck_curve(contact)
+    share = curve.at(np.geomspace(*curve.values[[0, -1]] * (1 + 1e-9, 1 - 1e-9), 997)).fluid_load_share
+    assert np.isfinite(share).all() and share.min() > 0 and share.max() < 1 + 1e-6
