@@ -33,7 +33,7 @@ GROWTH = 2.5
 REACH = 50.0
 """Radius of the rim over the scale of the contact."""
 
-THINNED_BEYOND, MOST_FARTHER = 1e-7, 4
+THINNED_BEYOND, MOST_FARTHER = 1e-7, 6
 """Part of the viscosity that a fluid may lose to its rate at the rim, and the most panels beyond the usual one for it."""
 
 ROLLING, FILM_ROUNDS = 0.3, 20

@@ -45,8 +45,8 @@ AHEAD = 0.2
 PART = 0.35
 """Stated error over the difference between the two meshes: the finer one is better by more than that."""
 
-COMPANY = 0.1
-"""Smallest error that is stated of one observable, over the largest of all, each relative to its scale."""
+COMPANY, THINNED_COMPANY = 0.1, 0.6
+"""Smallest error that is stated of one observable, over the largest of all, each relative to its scale; where a fluid thins."""
 
 CENTRAL = {"central_gap": 0.5, "central_pressure": 2.0}
 """Stated error of gap and pressure at the centre over the last coefficients of their series on the first panel, where no
@@ -204,10 +204,12 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         unseen += unseen_in_angle(fine)
     # Two meshes may agree by chance in one number, hardly in all.
     widest = max(errors[name] / scales[name] for name in errors if name not in BY_NAME_MINIMUM)
+    least = COMPANY * widest
     if fine.resolution.model.film.uses_speed:
         unseen *= THINNED_MINIMUM
+        least = max(THINNED_COMPANY * widest, THINNED * unseen)
         widest = max(widest, THINNED * unseen / COMPANY)
-    errors = {name: max(error, COMPANY * widest * scales[name]) for name, error in errors.items()}
+    errors = {name: max(error, least * scales[name]) for name, error in errors.items()}
     # The series of the side lobes falls from one mesh to the other as the error of the minimum does.
     last, before = (float(modal_amplitudes(level)[-2:].max()) for level in (fine, coarse))
     gained = 2.0 * min(PART, max(0.05, last / max(before, 1e-300)))
