@@ -102,9 +102,9 @@ class StribeckCurve(Exported, Shown, ByValue):
     def _solved_path(self) -> SolvedPath:
         if self._function is None:
             raise InputError(
-                "this curve is known at its points only: of a ball that is so at rest, where the film breaks or the fluid thins, "
-                "and where the numbers of a fluid or a layer vary along the curve, as over the load; give the values that are "
-                "wanted as an array."
+                "this curve is known at its points only: of a ball that is so at rest, where the film breaks or the fluid "
+                "thins, and where the numbers of a fluid or a layer vary along the curve, as over the load; give "
+                "the values that are wanted as an array."
             )
         return self._function
 

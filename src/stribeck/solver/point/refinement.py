@@ -46,7 +46,7 @@ PART = 0.35
 """Stated error over the difference between the two meshes: the finer one is better by more than that."""
 
 COMPANY, THINNED_COMPANY = 0.1, 0.6
-"""Smallest error that is stated of one observable, over the largest of all, each relative to its scale; where a fluid thins."""
+"""Smallest error that is stated of one observable over the largest of all, each relative to its scale; where a fluid thins."""
 
 CENTRAL = {"central_gap": 0.5, "central_pressure": 2.0}
 """Stated error of gap and pressure at the centre over the last coefficients of their series on the first panel, where no
