@@ -40,7 +40,7 @@ help:
 	@echo "make notebooks  the notebooks with results, build/notebooks"
 	@echo "make validity   docs/validity.md: the maps of the errors of all formulas"
 	@echo "make atlas      the table of solved states, 6 minutes on two cores      make certificate  its errors"
-	@echo "make atlas-point  those of balls, 35 minutes of one core               make certificate TABLE=ball-exponential"
+	@echo "make atlas-point  those of balls, 50 minutes of one core               make certificate TABLE=ball-exponential"
 	@echo "make clean      remove what make made"
 
 $(READY): pyproject.toml requirements.lock

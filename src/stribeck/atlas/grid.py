@@ -233,12 +233,13 @@ BALL_EXPONENTIAL = Grid(
 
 BALL_PERSSON = Grid(
     (
-        Region((5e-4, 0.1), (0.0, math.log(1e3 / 30)), (1, 1), (9, 6), (0, 8, 8, 6, 7, 8), 8.0),
-        Region((5e-4, 0.1), (math.log(1e3 / 30), math.log(1e6)), (1, 1), (10, 8), (4, 8, 7, 6, 7, 8), 8.0),
+        Region((5e-4, 0.05), (0.0, math.log(1e4 / 300)), (1, 1), (8, 5), (0, 8, 8, 6, 7, 8), 6.0),
+        Region((5e-4, 0.1), (math.log(10), math.log(1e4 / 30)), (1, 1), (9, 6), (0, 8, 8, 6, 7, 8), 8.0 - math.log(10)),
+        Region((5e-4, 0.1), (math.log(1e4 / 30), math.log(1e7)), (1, 1), (10, 8), (4, 8, 7, 6, 7, 8), 8.0 - math.log(10)),
     ),
-    heaviest=1e3,
+    heaviest=1e4,
     films=(1e-3, 1e3),
-    resting=math.log(1e3 / 30),
+    resting=math.log(1e4 / 30),
 )
 """Ball, Persson's law, full film. Above load 30 nearly all of the dry surface is in contact, and the share of slow fluid goes
 with so small a power of the speed that rest is far from every speed of use: segments begin at the smallest."""

@@ -165,7 +165,7 @@ TABLES = (
         "point",
         "persson",
         Cavitation.NONE,
-        {"speed": (1e-8, 1e2), "load": (1e-3, 1e3), "relative_roughness": (5e-4, 0.05)},
+        {"speed": (1e-8, 1e2), "load": (1e-3, 1e4), "relative_roughness": (5e-4, 0.05)},
         2e-3,
         "ball_persson.npz",
         BALL_PERSSON,
