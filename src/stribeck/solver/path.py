@@ -405,8 +405,8 @@ def follow(
 
 def _is_lost(interval: Interval) -> bool:
     """Return whether the two states of an interval tell nothing about what is between them: they are of two branches."""
-    errors = interval.at(CHECKS)[1][:, interval.problem.held]
-    return bool((errors > APART).any())
+    values, errors = interval.at(chebyshev_nodes(READ_AT))
+    return bool((np.isfinite(values) & (errors > APART))[:, interval.problem.held].any())
 
 
 def _beyond(here: Expansion, end: float, step: float) -> float:
