@@ -35,7 +35,7 @@ KNOT_PART = 0.75
 """Part of the tolerance that a solved state must hold: the rest is for what lies between."""
 
 APART = 1.0
-"""Error, in units of the scales, of an interval at which a path ends: what it would say is worth nothing."""
+"""Distance from both ends of an interval and error, in units of the scales, from which on a path ends there."""
 
 CHECKED = 0.85
 """Part of the tolerance that an interval must hold where it is checked."""
@@ -404,9 +404,12 @@ def follow(
 
 
 def _is_lost(interval: Interval) -> bool:
-    """Return whether the two states of an interval tell nothing about what is between them: they are of two branches."""
+    """Return whether what is read between two states is far from both: they are of two branches."""
+    ends = np.stack([interval.left.series[0], interval.right.series[0]])
+    scales = interval.problem.scales(ends, np.array([interval.left.coordinate, interval.right.coordinate])).max(axis=0)
     values, errors = interval.at(chebyshev_nodes(READ_AT))
-    return bool((np.isfinite(values) & (errors > APART))[:, interval.problem.held].any())
+    far = np.maximum(values - ends.max(axis=0), ends.min(axis=0) - values) > APART * scales
+    return bool((far & (errors > APART))[:, interval.problem.held].any())
 
 
 def _beyond(here: Expansion, end: float, step: float) -> float:
