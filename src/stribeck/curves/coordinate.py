@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -35,8 +36,19 @@ class Coordinate:
         """Return the contact at coordinate s."""
         return self.base.replace(**{self.over: math.exp(s)}) if isinstance(self.base, Contact) else None
 
+    @cached_property
+    def _formed(self) -> dict[float, Groups]:
+        """Groups that were asked for, as a path asks for those of a place many times."""
+        return {}
+
     def groups_at(self, s: float) -> Groups:
         """Return the groups at coordinate s."""
+        found = self._formed.get(s)
+        if found is None:
+            found = self._formed[s] = self._form(s)
+        return found
+
+    def _form(self, s: float) -> Groups:
         contact = self.contact_at(s)
         if contact is not None:
             return contact.groups

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cache
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -173,7 +172,7 @@ def stribeck_curve(
     places = np.log(values)
     progress = Progress(places, on_point)
     direction: tuple[float, float, float] = tuple(coordinate.direction.tolist())
-    line = LineProblem(cache(coordinate.groups_at), direction, rtol, coordinate.is_uniform(values))
+    line = LineProblem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
     if grows:
         contact_part = part_of_contact(boundary_friction, beta, definition)
         path, lowest = grown(line, float(places[-1]), float(places[0]), contact_part, progress)
