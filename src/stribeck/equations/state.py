@@ -240,7 +240,7 @@ def is_thinning(film: Film) -> bool:
 
 def jumps_between_nodes(film: Film, gap: Array, pressure: Array | None) -> Array | None:
     """Return by how much the pressure gradient of a film jumps between each node and the next one; None if it never does."""
-    told = getattr(film, "jump", None)
+    told = None if getattr(film, "is_plain", False) else getattr(film, "jump", None)
     return None if told is None else told(gap, pressure)
 
 
