@@ -80,6 +80,20 @@ def test_the_defect_measures_the_error_at_the_nodes(case):
     assert min(ratios) > 0.03
 
 
+@pytest.mark.parametrize(("load", "kappa"), [(0.001835, 0.5123), (0.007547, 0.4913)])
+def test_the_defect_sees_a_contact_pressure_that_dies_away_on_wide_panels(load, kappa):
+    """That of a Gaussian surface falls to nothing at a few roughnesses: finer nodes must resolve it where panels do not."""
+    groups = sb.Groups(3e-3, load, kappa * load, law=sb.GreenwoodTripp())
+    solution = sb.solve(groups, rtol=1e-9)
+    edges = np.array([-8.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 8.0])
+    guess = cold_start(groups).states[-1]
+    values, parts, estimate = judged(solve_state(groups, Operators(Mesh(edges, 12)), guess, 1e-9))
+    offset = NAMES.index("offset")
+    error = abs(values[offset] - solution.offset) / estimate.scales[offset]
+    assert error > 3e-8
+    assert 1 < parts["discretisation"][offset] / error < 10
+
+
 @pytest.mark.parametrize("speed", [1e-12, 1e-11])
 def test_rounding_is_not_below_the_scatter_of_equivalent_meshes(speed):
     groups = sb.Groups(speed, 0.1, 0.0)
