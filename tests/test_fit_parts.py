@@ -112,7 +112,7 @@ def test_what_the_contact_does_not_have_cannot_be_free():
 
 def test_a_body_that_remembers_is_refused_by_name():
     contact = TRUE.replace(solid=sb.solids.StandardLinearSolid("10 ms", 3.0))
-    with pytest.raises(sb.InputError, match="standard linear solid, half-plane: .* its memory changes with the speed"):
+    with pytest.raises(sb.InputError, match="standard linear solid, half-plane: its Deborah number changes with the speed"):
         sb.fit(measured(SPEEDS, np.ones(6)), contact, free=["roughness"])
 
 

@@ -134,7 +134,7 @@ def hertz_units(groups: Groups) -> FilmUnits:
 
 
 def check_solid(groups: Groups, reason: str) -> None:
-    """Refuse a viscoelastic body where its memory, in units of the contact, would have to change with the speed."""
+    """Refuse a viscoelastic body where its Deborah number would have to change with the speed."""
     solid = groups.model.solid
     if getattr(solid, "uses_speed", False):
-        raise InputError(f"solid = {solid.name}: in units of the contact its memory changes with the speed, {reason}")
+        raise InputError(f"solid = {solid.name}: its Deborah number changes with the speed, {reason}")

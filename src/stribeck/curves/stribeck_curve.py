@@ -137,8 +137,8 @@ def stribeck_curve(
 
     Notes
     -----
-    A few states are solved and expanded into Taylor series; the points lie between them, each within ``rtol`` by its estimated
-    error.  What more of them costs is next to nothing.
+    A few states are solved and expanded into Taylor series; the points are read off these, each within ``rtol`` by its
+    estimated error.  More points cost next to nothing.
     """
     check_rtol(rtol)
     definition = check_definition(definition)
@@ -148,7 +148,7 @@ def stribeck_curve(
     base = with_parts(base, **parts) if parts else base
     contact = base if isinstance(base, Contact) else None
     if isinstance(base, Groups) and over == "speed":
-        check_solid(base, "and groups hold it at one; give a contact, or vary load or roughness.")
+        check_solid(base, "and groups hold it fixed; give a contact, or vary load or roughness.")
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
     if isinstance(points, bool) or not isinstance(points, int) or not POINTS_RANGE[0] <= points <= POINTS_RANGE[1]:
         raise InputError(f"points = {show(points)}; it must be a whole number from {POINTS_RANGE[0]} to {POINTS_RANGE[1]}.")
@@ -215,14 +215,14 @@ def stribeck_curve(
 def continued(
     curve: StribeckCurve, end: float, points: int, on_point: Callable[[int, int], object] | None = None
 ) -> StribeckCurve:
-    """Return the curve from that end of another which is nearer to ``end`` on to there, without a start from cold.
+    """Continue a curve from its nearer end to ``end``, without a cold start.
 
     Parameters
     ----------
     curve : StribeckCurve
-        The other, of a contact or groups of a line.
+        The curve to continue, of a line contact or its groups.
     end : float
-        What the curve runs over at its other end, outside of the other.
+        Value at which the continuation ends, outside ``curve``.
     points : int
         Number of points.
     on_point : callable, optional
@@ -256,7 +256,7 @@ def _of_ball() -> tuple[Callable[..., StribeckCurve], Callable[..., tuple[float,
 
 
 CURVES = {"point": _of_ball}
-"""How curves are traced and where they begin and end, by geometry, beside the line."""
+"""How curves are traced, and where they begin and end, for geometries other than the line."""
 
 
 def _automatic(
@@ -264,7 +264,7 @@ def _automatic(
 ) -> Array:
     """Return speeds from the boundary plateau to the hydrodynamic branch, evenly in the logarithm.
 
-    Of a curve that ``grows`` until it sees its ends the lower one is the lowest that it may have.
+    If the curve ``grows`` until it finds its ends, the first speed is the lowest that it may reach.
     """
     groups = coordinate.groups_at(0.0)
     if grows:

@@ -216,7 +216,7 @@ class FrictionModel:
         self.rule = RULES[contact.groups.geometry]
         self.contacts = tuple(contact.replace(speed=1.0, **inputs) for inputs in data.inputs)
         for each in self.contacts:
-            check_solid(each.groups, "and a fit takes all rows of a curve with one solid; solve the states one by one.")
+            check_solid(each.groups, "and a fit takes one solid for all rows of a curve; fit with an elastic solid.")
         exponents = [self._exponents(curve) for curve in range(len(data.curves))]
         self.exponents = np.array(exponents).reshape(len(data.curves), len(self.free), 4 + len(self.rule.inputs))
         self.logs = self.logs_at(data.curve, data.values)
