@@ -127,8 +127,8 @@ def test_films_as_thin_as_rounding_take_few_states():
 @pytest.mark.parametrize(
     ("value", "words"),
     [
-        (10.0, "speed = 10.0 is outside of the curve, which runs from speed .* ask for a curve that holds it"),
-        ([0.005, 1e-12], "is outside of the curve"),
+        (10.0, "speed = 10.0 is outside the curve, which runs from speed .* compute a curve that contains it"),
+        ([0.005, 1e-12], "is outside the curve"),
         (-1.0, "speed = -1.0 must be finite and positive"),
         ("5 mm", "speed = '5 mm' is a length"),
         ("fast", "speed = 'fast'"),

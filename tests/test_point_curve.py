@@ -90,7 +90,7 @@ def test_many_values_of_a_curve_of_a_ball_are_those_of_each(curve):
     assert many.friction.shape == (2,)
     assert many.friction[1] == one.friction
     assert many.errors["minimum_gap"][1] == one.errors["minimum_gap"]
-    with pytest.raises(sb.InputError, match="outside of the curve"):
+    with pytest.raises(sb.InputError, match="outside the curve"):
         curve.at(1.0)
 
 

@@ -34,7 +34,7 @@ class Mark:
     Attributes
     ----------
     name : str
-        What it is, in words, as on a solved curve.
+        Its name, as on a solved curve.
     value : float
         Where along the curve: group [-], or SI where the curve has a contact.
     friction : float
@@ -48,7 +48,7 @@ class Mark:
 
 @dataclass(frozen=True, eq=False)
 class AtlasCurve:
-    """Friction along one coordinate as the atlas has it: what a :class:`StribeckCurve` tells, without its solved fields.
+    """Friction along one coordinate, read off the atlas: a :class:`StribeckCurve` without solved fields.
 
     Attributes
     ----------
@@ -184,12 +184,12 @@ class AtlasCurve:
 
     @cached_property
     def _rubbing(self) -> float:
-        """The part of boundary_friction that acts."""
+        """The fraction of ``boundary_friction`` that acts."""
         inputs = self._rule.of_contact(self.contact)
         return self.boundary_friction * abs(float(self._rule.rubbing(self.groups_at(self.values[:1]), inputs)))
 
     def _inputs(self, groups: Groups) -> dict[str, Any]:
-        """Return what the friction takes beside the groups; a length in Hertz radii goes with the load."""
+        """Return the arguments of the friction other than the groups; a length in Hertz radii changes with the load."""
         found: dict[str, Any] = {**self._rule.of_contact(self.contact), "beta": self.beta}
         for name in self._moving:
             assert self.contact is not None
@@ -198,7 +198,7 @@ class AtlasCurve:
 
     @property
     def _moving(self) -> dict[str, float]:
-        """Exponents of the load in those of these that move with it along the curve."""
+        """Exponents of the load in those of these arguments that change with it along the curve."""
         if self.contact is None or self.over != "load":
             return {}
         return {name: powers["load"] for name, powers in self._rule.exponents.items()}

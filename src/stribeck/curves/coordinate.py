@@ -1,4 +1,4 @@
-"""What a curve runs along: speed, load or roughness, as the arguments of a curve say it.
+"""The coordinate of a curve: speed, load or roughness, as read from its arguments.
 
 One group varies, or one SI quantity of a contact, on a logarithmic scale; all else stays.
 """
@@ -57,7 +57,7 @@ class Coordinate:
         return replace(self.base, **varied)
 
     def groups_along(self, values: Array) -> Groups:
-        """Return the groups at many values of what varies, as arrays."""
+        """Return the groups at many values of the coordinate, as arrays."""
         groups = [self.groups_at(s) for s in np.log(values).tolist()]
         return Groups(*(np.array([float(getattr(g, name)) for g in groups]) for name in GROUPS), **groups[0].physics)
 
@@ -80,7 +80,7 @@ class Coordinate:
 
 
 def read_problem(problem: Contact | Groups | None, given: dict[Over, Any]) -> tuple[Contact | Groups, Over, Array | None]:
-    """Return what stays fixed, what varies, and its ends or points; None where they are to be found."""
+    """Return the fixed inputs, the name of the one that varies, and its ends or points; None if these are not given."""
     ranges = [name for name, value in given.items() if value is not None and _dimensions(name, value) > 0]
     if len(ranges) > 1:
         raise InputError(f"{' and '.join(ranges)} are both ranges; a curve varies one of speed, load and roughness.")
@@ -105,7 +105,7 @@ def read_problem(problem: Contact | Groups | None, given: dict[Over, Any]) -> tu
 
 
 def _dimensions(name: str, value: Any) -> int:
-    """Return 0 for a number and 1 for a range; refuse ragged and nested lists, and what is no number at all."""
+    """Return 0 for a number and 1 for a range; refuse ragged and nested lists, and anything that is not a number."""
     try:
         found = np.ndim(value)
     except ValueError:  # ragged lists
@@ -134,7 +134,7 @@ def _ends(over: Over, value: Any, table: InputTable | None) -> Array:
 
 
 def given_values(over: Over, value: Any, contact: Contact | None) -> Array:
-    """Return values of what a curve runs over, a number or an array of them, as positive numbers."""
+    """Return one or many values of the coordinate as positive numbers."""
     many = _dimensions(over, value) > 0
     items = list(value) if many else [value]
     if contact is not None:

@@ -1,4 +1,4 @@
-"""A curve as a function: observables, friction and their errors at any of its values, and fields where they are asked for."""
+"""A curve as a function: observables, friction and their errors at any of its values, and fields on request."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ def _beside(path: SolvedPath, s: float) -> tuple[LineProblem, Any, Any]:
 
 @one_blas_thread
 def solved_at(path: SolvedPath, s: float, rtol: float | None = None) -> RefinedState:
-    """Return the state at a coordinate of a path, verified, by the tolerance of the path unless another is given."""
+    """Return the verified state at a coordinate of a path; without ``rtol`` the tolerance is that of the path."""
     problem, left, right = _beside(path, s)
     return problem.point_at(left, right, s, rtol)
 
 
 def within(path: SolvedPath, found: Array, errors: Array, rtol: float) -> Flags:
-    """Return which rows of a path state no error above the tolerance."""
+    """Return which rows of a path have no estimated error above the tolerance."""
     exists = path.problem.held & np.isfinite(found).any(axis=0)
     return np.asarray((errors[:, exists] <= rtol).all(axis=1))
 
@@ -53,7 +53,7 @@ def within(path: SolvedPath, found: Array, errors: Array, rtol: float) -> Flags:
 def rows_of(path: SolvedPath, s: Array, rtol: float) -> tuple[Array, Array]:
     """Return observables and position of the minimum at coordinates of a path, and their errors, shape (len(s), columns).
 
-    Where the path states more than the tolerance, or no error, the state is solved.
+    Where the estimated error exceeds the tolerance, or there is none, the state is solved.
     """
     found, errors = path.at(s)
     for i in np.nonzero(~within(path, found, errors, rtol))[0].tolist():
@@ -66,7 +66,7 @@ def rows_of(path: SolvedPath, s: Array, rtol: float) -> tuple[Array, Array]:
 
 
 class Progress:
-    """Counts the points of a curve that are known, as its path grows from fast to slow, and says so."""
+    """Counts and reports the finished points of a curve as its path grows from fast to slow."""
 
     def __init__(self, places: Array, on_point: Callable[[int, int], object] | None) -> None:
         self.places, self.on_point, self.done = places, on_point, 0
@@ -80,7 +80,7 @@ class Progress:
 
 
 class CurvePoint(Solution):
-    """A point of a curve: its numbers are those of the curve, its fields and notes those of a state solved on first use."""
+    """A point of a curve: its numbers come from the curve, its fields and notes from a state that is solved on first use."""
 
     _place: tuple[SolvedPath, float]
 
@@ -131,7 +131,7 @@ class CurvePoint(Solution):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CurveValues(Shown, ByValue):
-    """What a curve is at one of its values, or at many.
+    """Observables and friction of a curve at one value, or at many.
 
     Attributes
     ----------
@@ -164,7 +164,7 @@ class CurveValues(Shown, ByValue):
 
     @classmethod
     def of(cls, value: Array, found: Array, errors: Array, sliding: float, least: float) -> CurveValues:
-        """Return the values that rows of a path are, without friction; numbers where ``value`` is one.
+        """Return the values held in rows of a path, without friction; numbers if ``value`` is a number.
 
         Parameters
         ----------
@@ -173,7 +173,7 @@ class CurveValues(Shown, ByValue):
         found, errors : ndarray, shape (n, observables)
             Of a path.
         sliding : float
-            Part and sign of the sliding friction of asperities that acts.
+            Fraction of the sliding friction of asperities that acts, with its sign.
         least : float
             Smallest error that is stated.
 
@@ -196,7 +196,7 @@ class CurveValues(Shown, ByValue):
         )
 
     def with_friction(self, boundary_friction: float, beta: float, definition: Definition) -> CurveValues:
-        """Return the values with the friction by other coefficients.
+        """Return the values with friction for other coefficients.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Landmarks of a curve, the minimum and the transitions: roots of its series, solved there where these are too coarse."""
+"""Landmarks of a curve, the minimum and the transitions: roots of its series, or states solved there."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ STATES_RTOL = 1e-6
 """Largest tolerance of these states: a coarse curve has a few of them, and they are its headline."""
 
 PARTS = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 9)
-"""Where a function is looked at in an interval between two solved states, in parts of it."""
+"""Where a function is evaluated between two solved states, as fractions of the interval."""
 
 STEP = 1e-20
 """Step into the complex plane for a derivative."""
 
 MOST_POLISHES = 4
-"""States solved for one landmark, at most: each leaves the square of the error before."""
+"""Most states solved for one landmark: each squares the error."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Landmark:
     Attributes
     ----------
     name : str
-        What it is, in words.
+        Its name.
     value : float
         Where along the curve: group [-], or SI where the curve has a contact.
     friction : float
@@ -59,7 +59,7 @@ class Landmark:
 
 
 def places_of(path: SolvedPath) -> Array:
-    """Return the coordinates at which a path is looked at for landmarks."""
+    """Return the coordinates of a path at which landmarks are searched for."""
     inside = [interval.left.coordinate + PARTS * interval.length for interval in path.intervals]
     return np.append(np.concatenate(inside), path.coordinates[-1])
 
@@ -76,7 +76,7 @@ class Landmarks:
     def lowest(
         self, function: Callable[[Array], Array], slope_of: Callable[[RefinedState], float]
     ) -> tuple[float, Solution] | None:
-        """Return where a function of the observables is at its minimum inside the path, and the state there, or None."""
+        """Return the coordinate and the state of the minimum of a function of the observables inside the path, or None."""
         places, values = self._known(function)
         i = int(np.argmin(values))
         if not 0 < i < len(places) - 1:
@@ -89,7 +89,7 @@ class Landmarks:
         return self._polished(slope, float(low), float(high), slope_of)
 
     def first(self, function: Callable[[Array], Array], of: Callable[[RefinedState], float]) -> tuple[float, Solution] | None:
-        """Return where a function of the observables vanishes first, ascending, and the state there, or None."""
+        """Return the coordinate and the state of the first zero of a function of the observables, ascending, or None."""
         places, values = self._known(function)
         crossings = np.nonzero(np.diff(np.sign(values)))[0]
         if not len(crossings):
@@ -102,7 +102,10 @@ class Landmarks:
         return self._polished(value, float(places[i]), float(places[i + 1]), of)
 
     def _known(self, function: Callable[[Array], Array]) -> tuple[Array, Array]:
-        """Return where a function of the observables has values, and these: beside the birth of a cavity no series has."""
+        """Return the coordinates at which a function of the observables is known, and its values.
+
+        Close to where a cavity opens no series holds.
+        """
         values = function(self.rows)
         known = np.isfinite(values)
         return self.places[known], values[known]

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 __all__ = ["plot_curve", "plot_profile"]
 
 DECADES_BELOW = 1.3
-"""How far below the minimum friction the axis goes on, so that both parts of the friction show."""
+"""How far the axis extends below the minimum friction, so that both parts of the friction show."""
 
 SYMBOLS_OF_GROUPS = {
     "speed": r"$\lambda$",
@@ -60,9 +60,9 @@ def plot_curve(
 ) -> Figure:
     """Draw a Stribeck curve.
 
-    The first panel shows friction and its parts against the Hersey number, or against what varies where that
-    is not the speed; the second shows friction against the law of the hydrodynamic branch, or the shares of
-    the load where that law says nothing. Regimes are shaded, minimum and transitions marked; the footer holds
+    The first panel shows friction and its parts against the Hersey number, or, over load or roughness, against that
+    quantity; the second shows friction against the law of the hydrodynamic branch, or the shares of the load where
+    that law does not hold. Regimes are shaded, minimum and transitions marked; the footer holds
     the inputs.
 
     Parameters
@@ -70,7 +70,7 @@ def plot_curve(
     curve : StribeckCurve
         The curve.
     ax : matplotlib.axes.Axes, optional
-        Axes to draw friction into, over what varies, in place of a new figure.
+        Axes to draw friction into, over the coordinate of the curve, instead of a new figure.
     """
     if ax is not None:
         figure = figure_of(ax)
@@ -136,7 +136,7 @@ def _abscissa(curve: StribeckCurve) -> tuple[Array, str]:
 
 
 def _abscissa_of_values(curve: StribeckCurve) -> str:
-    """Return the label of what varies."""
+    """Return the label of the coordinate."""
     if curve.contact is None:
         symbol = SYMBOLS_OF_GROUPS[curve.over]
         return f"{curve.over} group {symbol}"

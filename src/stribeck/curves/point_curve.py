@@ -42,16 +42,17 @@ MINIMUM_WIDTH = 0.8
 """Width of the logarithms around a minimum on which friction is a polynomial."""
 
 MINIMUM_NODES = 7
-"""Solved states that it goes through."""
+"""Solved states on this polynomial."""
 
 SLOWEST, FASTEST = 1e-8, 1e3
-"""Speed groups between which a curve lies that chooses its range."""
+"""Smallest and largest speed group of a curve that chooses its own range."""
 
 COARSE = 1e-3
 """Tolerance of the states on which the range is found."""
 
 PLATEAU, BRANCH = 1e-3, 1e-2
-"""Change of the load share over a decade of speed, and asperities' part of the friction, below which the curve ends."""
+"""The curve ends where the load share changes by less than this over a decade of speed, and asperities cause less than this
+part of the friction."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,7 +76,7 @@ class PointCurve(StribeckCurve):
 
     @property
     def hydrodynamic_friction(self) -> Array:
-        """Nothing: the law of the paper for smooth surfaces is one of the line."""
+        """None: the article's law for smooth surfaces is of the line contact."""
         return np.full(len(self), math.nan)
 
     def _values(self, value: Any, s: Array) -> CurveValues:
@@ -111,7 +112,7 @@ class PointCurve(StribeckCurve):
         return np.array([[f.contact, f.viscous, f.total, f.error] for f in found]).reshape(-1, 4)
 
     def _at(self, s: float) -> PointSolution:
-        """Return the solution at a coordinate: of a function what it is there, else solved."""
+        """Return the solution at a coordinate: read off the function if there is one, else solved."""
         if self._function is not None:
             return solution_of(_state_at(self._function, s), self._path.contact_at(s))
         return finish_point(self._solver(s), self._path.contact_at(s))
@@ -128,7 +129,7 @@ class PointCurve(StribeckCurve):
         return Landmark(name, math.exp(s), self._total(solution), solution)  # type: ignore[arg-type]
 
     def _parts_at(self, s: Array) -> tuple[Array, Array, Array]:
-        """Return the share of the fluid and the two parts of the friction at coordinates, complex ones too."""
+        """Return the load share of the fluid and both parts of the friction at real or complex coordinates."""
         rule, start = RULES["point"], self._path.groups_at(0.0)
         rows = dict(zip(SMOOTH, self._solved_path.smooth(s).T, strict=True))
         rates = dict(zip(GROUPS, self._path.direction.tolist(), strict=True))
@@ -211,7 +212,7 @@ class PointCurve(StribeckCurve):
         return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
 
     def _excess(self, name: Transition, s: float) -> float:
-        """Return by how much what a transition goes by is above its line."""
+        """Return by how much the criterion of a transition exceeds its threshold."""
         if self._function is not None:
             fluid, contact, viscous = (float(part[0]) for part in self._parts_at(np.array([s])))
             share = contact / max(contact + viscous, 1e-300)
@@ -223,7 +224,7 @@ class PointCurve(StribeckCurve):
         return fluid - (BOUNDARY_FLUID_SHARE if name is Transition.BOUNDARY_END else 0.5)
 
     def _crossing(self, name: Transition, places: Array, excess: Array) -> Landmark | None:
-        """Return the first transition of a name between places, or None."""
+        """Return the first transition of this name between the given coordinates, or None."""
         crossings = np.nonzero(np.diff(np.sign(excess)))[0]
         if not len(crossings):
             return None
@@ -236,7 +237,7 @@ class PointCurve(StribeckCurve):
 
 
 def _state_at(path: SolvedPath, s: float) -> PointState:
-    """Return the state of a path at a coordinate: off the function, or solved where that states more than the tolerance."""
+    """Return the state of a path at a coordinate: read off the function, or solved where its error exceeds the tolerance."""
     problem = path.problem
     assert isinstance(problem, PointProblem)
     row, errors = (each[0] for each in path.at(np.array([s])))
@@ -316,7 +317,7 @@ _Traced = tuple[tuple[PointSolution, ...], Array, SolvedPath | None, Outcome, Po
 def _followed(
     coordinate: Coordinate, values: Array, solver: NeighbourSolver, on_point: Callable[[int, int], object] | None
 ) -> _Traced:
-    """Return the points of a curve off its function, from fast to slow, as films are smooth there."""
+    """Return the points of a curve, read off its function, from fast to slow, as the film is smooth at high speed."""
     problem, places = PointProblem(coordinate.groups_at, solver.rtol), np.log(values)
     path = follow(problem, float(places[-1]), float(places[0]), solver.rtol, Progress(places, on_point))
     problem.release()
@@ -327,7 +328,7 @@ def _followed(
 def _point_by_point(
     coordinate: Coordinate, values: Array, solver: NeighbourSolver, on_point: Callable[[int, int], object] | None
 ) -> _Traced:
-    """Return the points of a curve each from its neighbour, from fast to slow."""
+    """Return the points of a curve, each solved from its neighbour, from fast to slow."""
     solutions: list[PointSolution] = []
     where: list[float] = []
     outcome, failed = Outcome.CONVERGED, None

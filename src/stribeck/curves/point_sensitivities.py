@@ -1,4 +1,4 @@
-"""What would move the friction of a ball: exact derivatives by the groups, all else in closed form."""
+"""Sensitivities of the friction of a ball: exact derivatives with respect to the groups, all else in closed form."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from stribeck.solver.point.state import PointObservables
 __all__ = ["point_sensitivities"]
 
 SMALL = 1e-4
-"""Step of the logarithms in differences of closed forms."""
+"""Step of the logarithms in finite differences of closed forms."""
 
 WIDTH_EXPONENTS = {"radius": 1 / 3, "modulus": -1 / 3, "load": 1 / 3}
-"""Exponents with which inputs enter the Hertz radius, in which a wetted radius is measured."""
+"""Exponents of the inputs in the Hertz radius, the unit of a wetted radius."""
 
 
 def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -> tuple[PointSolution, dict[str, float]]:
@@ -55,7 +55,7 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
         return rubbing * found.contact_load_share + found.viscous_friction(beta, definition)
 
     def slope(name: str) -> float:
-        """Return the derivative with respect to what the closed forms of a state take beside its groups."""
+        """Return the derivative with respect to an argument of the closed forms that is not a group."""
         here = getattr(values, name)
         more, less = (replace(values, **{name: here * math.exp(step)}) for step in (SMALL, -SMALL))
         return (total(more) - total(less)) / (2 * SMALL)
@@ -87,12 +87,12 @@ def point_sensitivities(contact: Contact, rtol: float, definition: Definition) -
 
 
 def _of_model(contact: Contact, groups: Groups) -> dict[str, Callable[[float], Groups]]:
-    """Return the inputs that move numbers of fluid or solid in Hertz units, and how, the groups held."""
+    """Return how inputs change the friction through numbers of fluid or solid in Hertz units, at fixed groups."""
 
     def along(name: str, step: float) -> Groups:
         return replace(groups, model=model_at(contact, name, step))
 
-    # The sliding moves no field of these films: the closed forms of the friction hold all that it does.
+    # Sliding changes no field of these films: it enters through the closed forms of the friction alone.
     names = (name for name, value in contact.inputs() if value > 0 and name != "slide_to_roll")
     return {name: partial(along, name) for name in names if models_beside(contact, name) is not None}
 

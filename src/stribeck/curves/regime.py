@@ -26,7 +26,7 @@ METHODS: tuple[Method, ...] = ("solver", "atlas")
 
 
 class Transition(StrEnum):
-    """The places of a curve that have a name; the value is what outputs call them."""
+    """The named places of a curve; the values are their names in outputs."""
 
     BOUNDARY_END = f"fluid carries {BOUNDARY_FLUID_SHARE:.0%} of the load"
     EQUAL_SHARES = "fluid carries 50% of the load"

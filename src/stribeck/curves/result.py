@@ -93,7 +93,7 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @cached_property
     def solutions(self) -> tuple[Solution, ...]:
-        """The state of each point: its numbers are those of the curve, its fields are solved when they are first asked for."""
+        """The state of each point: its numbers come from the curve, its fields are solved on first use."""
         path = self._solved_path
         rows = zip(np.log(self.values).tolist(), *self._rows, strict=True)
         return tuple(CurvePoint(self._path, path, s, row, errors, self.rtol) for s, row, errors in rows)
@@ -102,15 +102,15 @@ class StribeckCurve(Exported, Shown, ByValue):
     def _solved_path(self) -> SolvedPath:
         if self._function is None:
             raise InputError(
-                "this curve is known at its points only: of a ball that is so at rest, where the film breaks or the fluid "
-                "thins, and where the numbers of a fluid or a layer vary along the curve, as over the load; give "
-                "the values that are wanted as an array."
+                "this curve is known at its points only. That is so for a ball at rest, for one whose film breaks or whose "
+                "fluid thins, and where the numbers of a fluid or a layer in Hertz units vary along the curve, as over the "
+                "load; ask for a curve with the values you want as an array."
             )
         return self._function
 
     @property
     def is_function(self) -> bool:
-        """Whether the curve is known anywhere, and not at its points alone."""
+        """Whether the curve is known between its points too."""
         return self._function is not None
 
     @property
@@ -162,27 +162,28 @@ class StribeckCurve(Exported, Shown, ByValue):
         Raises
         ------
         InputError
-            If a value is outside of the curve.
+            If a value is outside the curve.
         SolveError
             If no states can be solved along the curve.
 
         Notes
         -----
         A curve is about a dozen solved states, expanded into Taylor series.  Between them observables are polynomials in the
-        logarithm of ``value``, whose difference from ones of lower order is part of the error (``test_curve_function.py``).
+        logarithm of ``value``; their difference from polynomials of lower order is part of the error
+        (``test_curve_function.py``).
         """
         values = given_values(self.over, value, self.contact)
         path = self._solved_path
         low, high = (float(end) for end in np.exp(path.coordinates[[0, -1]]))
         if not ((values >= low * (1 - SLACK)) & (values <= high * (1 + SLACK))).all():
             raise InputError(
-                f"{self.over} = {show(value)} is outside of the curve, which runs from {self._where(low)} to "
-                f"{self._where(high).removeprefix(self.over + ' ')}; ask for a curve that holds it."
+                f"{self.over} = {show(value)} is outside the curve, which runs from {self._where(low)} to "
+                f"{self._where(high).removeprefix(self.over + ' ')}; compute a curve that contains it."
             )
         return self._values(values if np.ndim(values) else float(values), np.log(np.atleast_1d(values)))
 
     def _values(self, value: Any, s: Array) -> CurveValues:
-        """Return what the curve is at coordinates."""
+        """Return the values of the curve at coordinates."""
         plain = CurveValues.of(value, *self._solved_path.at(s), self._sliding, self._least_error)
         return plain.with_friction(self.boundary_friction, self.beta, self.definition)
 
@@ -192,7 +193,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         Parameters
         ----------
         value : float or str
-            As for :meth:`at`, one.
+            One value, as for :meth:`at`.
 
         Returns
         -------
@@ -202,13 +203,13 @@ class StribeckCurve(Exported, Shown, ByValue):
         Raises
         ------
         InputError
-            If the value is outside of the curve, or more than one.
+            If the value is outside the curve, or more than one.
         SolveError
             If the state does not reach the tolerance.
         """
         found = self.at(value)
         if np.ndim(found.value):
-            raise InputError(f"{self.over} = {show(value)}; give one value, a solution is that of one state.")
+            raise InputError(f"{self.over} = {show(value)}; give one value: a solution is one state.")
         return self._solution_at(math.log(found.value))
 
     def _solution_at(self, s: float) -> Solution:
@@ -221,7 +222,7 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @cached_property
     def _sliding(self) -> float:
-        """Part and sign of the sliding friction of asperities that acts."""
+        """Fraction of the sliding friction of asperities that acts, with its sign."""
         return sliding_part(2 * self._path.groups_at(0.0).model.film.slide)
 
     @cached_property
@@ -252,8 +253,8 @@ class StribeckCurve(Exported, Shown, ByValue):
     def friction(self) -> FrictionArray:
         """Friction coefficients [-]: an array with its parts ``contact``, ``viscous`` and its ``error``.
 
-        By coefficients and definition of the curve; ``friction(boundary_friction, beta, definition)`` is the same for others,
-        each of which may be left out.
+        For the coefficients and the definition of the curve; ``friction(boundary_friction, beta, definition)`` returns it for
+        others, each optional.
         """
         return self._friction_for()
 
@@ -283,7 +284,7 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @property
     def hydrodynamic_friction(self) -> Array:
-        """Friction of smooth surfaces by the paper's law, the abscissa of its second representation; nan of other models."""
+        """Friction of smooth surfaces by the article's law, the abscissa of its second plot; nan for other models."""
         if self.groups.model != ARTICLE:
             return np.full(len(self), np.nan)
         return np.asarray(hydrodynamic.friction(self.groups, self.beta))
@@ -319,11 +320,11 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What to know before using the numbers; each sentence says which points it concerns, or that it is the minimum."""
+        """What to know before using the numbers; each sentence names the points, or the minimum, that it concerns."""
         found: dict[str, list[tuple[float, str]]] = {}
         for value, solution in zip(self.values.tolist(), self.solutions, strict=True):
             for note in solution.notes:
-                # The numbers in it, which differ from point to point, are those of the first point.
+                # A note holds numbers that differ from point to point; those of the first point are kept.
                 kind = re.sub(r"[-+]?[0-9][-+.0-9e]*", "", note)
                 found.setdefault(kind, []).append((value, note))
         told = [self._note(points) for points in found.values()]
@@ -331,7 +332,7 @@ class StribeckCurve(Exported, Shown, ByValue):
 
     @property
     def minimum_notes(self) -> tuple[str, ...]:
-        """The sentence on a minimum that lies where the contact law does not hold, one of :attr:`notes`; or nothing."""
+        """The note on a minimum outside the range of the contact law, one of :attr:`notes`; empty if there is none."""
         if self.minimum is None:
             return ()
         state = self.minimum.solution
@@ -346,7 +347,7 @@ class StribeckCurve(Exported, Shown, ByValue):
         return (note,) if note else ()
 
     def _where(self, *values: float) -> str:
-        """Return values of what the curve runs over in words, such as ``"speed 1 mm/s to 1 m/s"``."""
+        """Return values of the coordinate in words, such as ``"speed 1 mm/s to 1 m/s"``."""
         if self.contact is None:
             return f"{self.over} group {' to '.join(f'{value:.3g}' for value in values)}"
         dimension = self.contact.INPUTS.quantities[self.over].dimension
@@ -374,7 +375,7 @@ class StribeckCurve(Exported, Shown, ByValue):
     @cached_property
     def minimum(self) -> Landmark | None:
         """The friction minimum, on a state where the slope vanishes; None where the curve has none inside."""
-        if not self._landmarks.moves:  # at rest friction is that of the dry contact throughout
+        if not self._landmarks.moves:  # at rest the friction is that of the dry contact along the whole curve
             return None
 
         def slope(point: RefinedState) -> float:

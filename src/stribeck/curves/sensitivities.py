@@ -1,4 +1,4 @@
-"""What would move the friction of a state: its logarithmic derivatives with respect to the inputs."""
+"""Sensitivities of the friction of a state: its logarithmic derivatives with respect to the inputs."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def friction_sensitivities(
     definition: Definition = "balanced",
     method: Method = "solver",
 ) -> tuple[Solution | None, dict[str, float]]:
-    r"""Solve a contact and tell how its friction answers to each input.
+    r"""Solve a contact and return the sensitivity of its friction to each input.
 
     .. math::
 
@@ -67,7 +67,7 @@ def friction_sensitivities(
     definition : {"balanced", "published"}
         Definition of the viscous friction.
     method : {"solver", "atlas"}
-        Whether the state is solved, or read off :mod:`stribeck.atlas`, where nothing but the numbers comes back.
+        Whether the state is solved, or read off :mod:`stribeck.atlas`, which returns the sensitivities alone.
 
     Returns
     -------
@@ -117,7 +117,7 @@ def friction_sensitivities(
 def sensitivities_if_known(
     contact: Contact, *, rtol: float = 1e-6, definition: Definition = "balanced"
 ) -> tuple[Solution, dict[str, float], str]:
-    """Return the state of a contact with its sensitivities, or with none and the reason where they cannot be computed.
+    """Return the state of a contact with its sensitivities, or with none and the reason if they cannot be computed.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def _of_ball(contact: Contact, rtol: float, definition: Definition) -> tuple[Any
 
 
 SENSITIVITIES = {"point": _of_ball}
-"""How friction answers to the inputs, by geometry, beside the line."""
+"""Sensitivities to the inputs, for geometries other than the line."""
 
 
 def _from_atlas(contact: Contact, definition: Definition) -> dict[str, float]:
@@ -179,7 +179,7 @@ def _from_atlas(contact: Contact, definition: Definition) -> dict[str, float]:
 def _sensitivities(
     slopes: Array, contact: float, viscous: float, through: Mapping[str, float] | None = None
 ) -> dict[str, float]:
-    """Return the sensitivities by the derivatives of the friction and its two parts, and those through the model."""
+    """Return the sensitivities from the derivatives of the friction and its two parts, and those through the model."""
     direct = {"boundary_friction": contact, "beta": viscous}
     total = (contact + viscous) or math.nan
     model = through or {}

@@ -25,7 +25,7 @@ from stribeck.solver.solve import SolveError, describe
 __all__ = ["SPEEDS", "automatic_speed_range", "fastest", "grown", "no_range", "part_of_contact"]
 
 SPEEDS = (1e-12, 1e12)
-"""Speed groups between which a curve begins and ends by itself."""
+"""Smallest and largest speed group of a curve that chooses its own range."""
 
 SMOOTH = (1e-9, 10.0)
 """Speed groups of curves of smooth surfaces, which have no plateau."""
@@ -38,26 +38,26 @@ BRANCH = 1e-2
 plateau."""
 
 BELOW, BEYOND = 10.0, 30.0
-"""Factors by which the curve goes on below the first state on the plateau, and beyond the branch."""
+"""Factors by which the curve extends below the first state on the plateau, and beyond the start of the branch."""
 
 LONGEST_EXTENSION = 2
-"""Times that the curve goes on beyond a branch that is not yet hydrodynamic."""
+"""Most extensions of a curve whose fast end is not hydrodynamic yet."""
 
 COARSE = 1e-3
 """Tolerance of a curve that is followed for its ends alone."""
 
 LOCATED, STEP = 1e-6, 1e-20
-"""Where the plateau begins is known to this, in the logarithm of the speed; step into the complex plane for a derivative."""
+"""Tolerance of the start of the plateau, in the logarithm of the speed; step into the complex plane for a derivative."""
 
 REACH, PLACES = 8.0, 161
-"""Half-widths, of a contact that the film widens, on which asperities are felt, and places there."""
+"""Half-widths within which asperities count, of a contact that the film widens, and number of places there."""
 
 
 def fastest(groups: Groups, boundary_friction: float, beta: float) -> float:
     """Return the speed group up to which a curve runs, by formulas, for the load and roughness of ``groups``.
 
-    The film is that of smooth surfaces, from where on asperities carry what their law makes of it, between those and a
-    cylinder of the shape that Hertz found.
+    The film is that of smooth surfaces under a cylinder of Hertz's shape; asperities carry the pressure that their law has
+    at this gap.
     """
     law = contact_law(groups)
     x = np.linspace(-REACH, REACH, PLACES)
@@ -85,23 +85,23 @@ def grown(
     contact_part: Callable[[Array], float],
     on_interval: Callable[[float, float], object] | None = None,
 ) -> tuple[SolvedPath, float]:
-    """Return a path from the hydrodynamic branch to the boundary plateau, whose ends are seen on the way, and its lower end.
+    """Return a path from the hydrodynamic branch down to the boundary plateau, and its lower end, found on the way.
 
     Parameters
     ----------
     problem : LineProblem
-        What is followed along the logarithm of the speed.
+        The contact, followed along the logarithm of the speed.
     start, bottom : float
         Where to begin, by :func:`fastest`, and the lowest place.
     contact_part : callable
-        Part of the friction from asperities by a row of observables.
+        Part of the friction caused by asperities, from a row of observables.
     on_interval : callable, optional
         As of :func:`stribeck.solver.path.follow`.
 
     Returns
     -------
     tuple of SolvedPath and float
-        As far as it was reached; the lower end lies a decade below the place where the plateau begins, wherever states are.
+        The path as far as it was reached; the lower end lies a decade below the start of the plateau.
     """
 
     def is_level(slope: float, row: Array) -> bool:
@@ -132,7 +132,7 @@ def grown(
 
 
 def part_of_contact(boundary_friction: float, beta: float, definition: Definition) -> Callable[[Array], float]:
-    """Return the function that is the part of the friction from asperities by a row of observables."""
+    """Return the function that takes a row of observables to the part of the friction caused by asperities."""
 
     def part(row: Array) -> float:
         contact = (boundary_friction or 1.0) * float(row[ROW["contact_load_share"]])
@@ -142,7 +142,7 @@ def part_of_contact(boundary_friction: float, beta: float, definition: Definitio
 
 
 def no_range(outcome: Outcome, groups: Groups) -> SolveError:
-    """Return the error that no state was found from which a curve could grow."""
+    """Return the error for a curve without a first state."""
     return SolveError(outcome, None, f"{describe(groups)}: no starting speed was found for the curve; give a range of speeds.")
 
 
@@ -151,7 +151,7 @@ def automatic_speed_range(
 ) -> tuple[float, float]:
     """Return the speed groups from boundary plateau to hydrodynamic branch for the load and roughness of ``groups``.
 
-    They are those of a coarse curve with the fluid and the solid of the article: other parts change what the film carries by
+    They are those of a coarse curve with the fluid and the solid of the article: other parts change the load on the film by
     less than the margin.  Smooth surfaces have no plateau: their curve covers ten decades up to speed 10.
     """
     groups = replace(groups, model=ARTICLE)
