@@ -18,11 +18,11 @@ STATIC_LOAD = 0.01
 """Load at which heavier contacts at rest are solved: all gaps are positive there."""
 
 SAFE_SEPARATION = 2.3
-"""Separation at the largest pressure from which all gaps are positive at rest; that of the exponential law at load 0.01."""
+"""Separation at the largest pressure with which all gaps at rest are positive; that of the exponential law at load 0.01."""
 
 
 def separation_at(shape: AsperityLaw, log_pressure: float) -> float:
-    """Return the separation at which ln(Phi) has a value, by bisection; minus or plus 1e6 where it has none between them."""
+    """Return the separation at which ln(Phi) has a given value, by bisection from -1e6 to 1e6, or the nearer end."""
     low, high = max(-1e6, shape.lowest), 1e6
     for _ in range(100):
         middle = 0.5 * (low + high)
@@ -33,7 +33,7 @@ def separation_at(shape: AsperityLaw, log_pressure: float) -> float:
 
 
 def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
-    r"""Return the groups that are solved for, whose gap is positive everywhere, and what their gap lacks [u_Hz].
+    r"""Return the groups to solve for, whose gap is positive everywhere, and the shift to add to their gap [u_Hz].
 
     .. math::
 
@@ -46,7 +46,7 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
     """
     if groups.speed > 0:
         return groups, 0.0
-    if groups.model != ARTICLE:  # no fluid matters at rest, nor where its film would end
+    if groups.model != ARTICLE:  # at rest neither the fluid nor the end of its film matters
         groups = replace(groups, model=Model(solid=groups.model.solid))
     shape = groups.law
     if shape is None or has_constant_decay(shape):
@@ -68,7 +68,7 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
 def shift_along(
     groups: Groups, base: Groups, direction: tuple[float, float, float], order: int
 ) -> tuple[tuple[float, float, float], Array]:
-    """Return the direction in which the groups that are solved for move, and the series of what their gap lacks.
+    """Return the direction in which the groups to solve for move, and the series of the shift of their gap.
 
     ``base`` are those of ``groups`` by :func:`with_positive_gap`; load and shift of the law are held along the path.
     """

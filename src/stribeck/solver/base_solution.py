@@ -1,4 +1,4 @@
-"""What solutions of every geometry have in common: observables by name, errors, friction, and what files say of them."""
+"""What solutions of every geometry share: observables by name, errors, friction, and their entries in files."""
 
 from __future__ import annotations
 
@@ -114,12 +114,12 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
 
     @property
     def is_sliding(self) -> bool:
-        """Whether asperities rub: not where both surfaces move at one speed."""
+        """Whether asperities rub: false if both surfaces move at the same speed."""
         return getattr(self.contact, "slide_to_roll", 2.0) > 0
 
     @property
     def _sliding(self) -> float:
-        """Part and sign of the sliding friction of asperities that acts."""
+        """Fraction of the sliding friction of asperities that acts, with its sign."""
         return float(self.is_sliding)
 
     def _walls(self, beta: float) -> tuple[float, float]:
@@ -163,12 +163,12 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
 
     @property
     def central_area_fraction(self) -> float:
-        """Real area of contact over the apparent one at x = 0 [-]; nan where the law knows no spectrum of the surface."""
+        """Real area of contact over the apparent one at x = 0 [-]; nan for a law without a spectrum of the surface."""
         return self._central_area()[0]
 
     @property
     def central_area_fraction_error(self) -> float:
-        """Estimated absolute error of :attr:`central_area_fraction` [-], by that of the central gap."""
+        """Estimated absolute error of :attr:`central_area_fraction` [-], from that of the central gap."""
         return self._central_area()[1]
 
     def _central_area(self) -> tuple[float, float]:
@@ -197,13 +197,13 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
         .. math:: \mu = \mu_0 \frac{F_c}{F_N} + \mu_f(\beta)
 
         The coefficients are those of the contact, or 1 where only groups are known.  ``friction(boundary_friction, beta,
-        definition)`` is the same for other coefficients, each of which may be left out.  By definition ``"balanced"`` the
-        viscous part is the force on the substrate, which balances all forces on the other body, by ``"published"`` that of
-        the article.  They agree where asperities carry nothing; in boundary lubrication the published one is larger.
+        definition)`` returns it for others, each optional.  With the definition ``"balanced"`` the viscous part is the force
+        on the substrate, which balances all forces on the other body; with ``"published"`` it is that of the article.
+        They agree where asperities carry nothing; in boundary lubrication the published one is larger.
 
         Notes
         -----
-        On the line the viscous part is proportional to beta; on the ball its logarithm of the slope a/R comes in, see
+        On the line the viscous part is proportional to beta; on the ball it also holds the logarithm of the slope a/R, see
         :mod:`stribeck.contacts.cut_off`.
 
         Source: [BP] Eq. (friction); theory.md, section 6, for the balanced form.

@@ -1,4 +1,4 @@
-r"""Cold start: a first state anywhere, by loading the contact from where the elastic body hardly deforms.
+r"""Cold start: a first state for any groups, by loading the contact from where the elastic body hardly deforms.
 
 Lifting the load of a sliding cylinder by a factor s multiplies the speed group by :math:`s^2`, divides the load group by s
 and keeps the roughness group.  Far enough up this path the gap is the parabola :math:`h_0 + x^2/2`, with the small
@@ -33,14 +33,14 @@ RIGID_SPEED = 30.0
 """Speed group above which the rigid film starts Newton's iteration safely."""
 
 RIGID_ROUGHNESS = 30.0
-"""Relative roughness above which the rigid contact does."""
+"""Relative roughness above which the rigid contact starts it safely."""
 
 SATURATED_LOAD = 0.5
 """Load group above which the contact pressure nears its largest value: the path then comes down in speed, as loading
 at low speed would cross the sudden hand-over from asperities to film."""
 
 HEIGHTS = (80.0, 400.0)
-"""Logarithms of the largest height of a rigid film, and of one over the smallest: of contacts, then of double precision."""
+"""Logarithms of the largest height of a rigid film and of 1 over the smallest: of contacts, then of double precision."""
 
 MAX_NEWTON_STEPS = 600
 """Newton steps after which a path is given up; no state of the box of :mod:`stribeck.solver.solve` takes more than 300."""
@@ -63,7 +63,7 @@ class RigidGuess:
     flux_gap : float
         Flux gap of the rigid parabola, 4/3 of its height [u_Hz].
     minimum_position, exit, dilation, restart : float
-        Those of a full film: a rigid film starts no other [a].
+        Those of a full film: a rigid film is the guess of no other [a].
     """
 
     speed: float
@@ -88,18 +88,18 @@ class RigidGuess:
 
 
 def unloaded(groups: Groups, log_factor: float) -> Groups:
-    """Return the groups at the load divided by ``exp(log_factor)``, all else being held."""
+    """Return the groups with the load divided by ``exp(log_factor)``, all else fixed."""
     factor = math.exp(log_factor)
     return replace(groups, speed=groups.speed * factor * factor, load=groups.load / factor)
 
 
 def faster(groups: Groups, log_factor: float) -> Groups:
-    """Return the groups at the speed times ``exp(2 log_factor)``, all else being held."""
+    """Return the groups with the speed times ``exp(2 log_factor)``, all else fixed."""
     return replace(groups, speed=groups.speed * math.exp(2 * log_factor))
 
 
 def rigid_guess(groups: Groups) -> RigidGuess | None:
-    r"""Return the rigid parabola whose film and contact carry the load, None where double precision holds none.
+    r"""Return the rigid parabola whose film and contact carry the load; None if it is outside double precision.
 
     .. math:: \frac{\pi}{48} \frac{\lambda^2}{h_0^3}
               + \int p_c(h_0 + x^2/2) \, dx = \frac{\pi}{2}
@@ -134,7 +134,7 @@ def cold_start(groups: Groups) -> Path[State]:
     Returns
     -------
     Path
-        Of states on meshes that resolve them to about 1e-3; its outcome tells whether the end was reached.
+        Of states on meshes that resolve them to about 1e-3; its outcome says whether the end was reached.
     """
     kappa = float(groups.relative_roughness)
     by_speed = groups.speed > 0 and groups.load > SATURATED_LOAD and kappa < RIGID_ROUGHNESS
@@ -187,9 +187,9 @@ def path_of_article(groups: Groups) -> Path[State]:
 
 
 def start_by_exponential(groups: Groups) -> Path[State]:
-    """Return the path from the state of the exponential law to that of another, which changes the one into the other.
+    """Return the path from the state of the exponential law to that of another law, by changing one law into the other.
 
-    The way out where :func:`cold_start` fails.
+    The fallback if :func:`cold_start` fails.
     """
     start = cold_start(replace(groups, law=None))
     if not start.outcome.ok:

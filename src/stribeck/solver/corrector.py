@@ -1,4 +1,4 @@
-"""Correcting a prediction: on the mesh of the state before for as long as it resolves, refined where it does not."""
+"""Correcting a prediction: on the mesh of the previous state while it resolves, else on a refined one."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from stribeck.solver.cold_start import first_path
 from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_for, newton_tolerance, order_for, verify
 
 MOST_STEPS = 16
-"""Newton and chord steps after which the present mesh is given up."""
+"""Newton and chord steps after which the current mesh is given up."""
 
 CHECK_EVERY = 25
-"""States between two looks at whether a coarser mesh would do."""
+"""States between two tests of whether a coarser mesh would do."""
 
 WORTH_COARSENING = 0.85
 """Ratio of sizes from which the coarser mesh is taken."""
 
 RELAX = 3.0
-"""Factor by which mesh tolerances that once had to be lowered are raised again."""
+"""Factor by which mesh tolerances are raised again after they had to be lowered."""
 
 
 MOVING = 0.5
@@ -40,8 +40,8 @@ MOVING = 0.5
 class Corrector:
     """Solve states one after another: ``groups_at(s)`` gives the groups at coordinate s.
 
-    It keeps the operators of the present mesh, whose making costs as much as several states.  ``gap_part`` is the part of the
-    usual tolerance to which its meshes resolve the gap where it is read off.
+    It keeps the operators of the current mesh, which cost as much as several states.  Its meshes resolve the gap to
+    ``gap_part`` of the usual tolerance where the gap is read off.
     """
 
     def __init__(self, groups_at: Callable[[float], Groups], rtol: float, gap_part: float = 1.0) -> None:
@@ -55,14 +55,14 @@ class Corrector:
         self.tolerances = self._widest
 
     def __call__(self, s: float, history: Sequence[tuple[float, RefinedState]]) -> RefinedState | None:
-        """Return the state at ``s`` predicted from ``history``; from cold where that is empty."""
+        """Return the state at ``s`` predicted from ``history``; from cold if that is empty."""
         groups = self.groups_at(s)
         if not history:
             return self.cold(groups)
         return self.solve(extrapolate([(c, p.state) for c, p in history if p.state is not None], s), groups)
 
     def cold(self, groups: Groups) -> RefinedState | None:
-        """Return the state of ``groups`` from cold, None where no path leads there."""
+        """Return the state of ``groups`` from cold; None if no path leads there."""
         if _cavity_may_vanish(groups):
             return from_cold(groups, self.rtol)
         path = first_path(with_positive_gap(groups)[0])
@@ -98,7 +98,7 @@ class Corrector:
         return self._adopt(converge(guess, groups, self.rtol, (part * tail, part * gap_tail), spread=spread))
 
     def _kept(self, point: RefinedState) -> RefinedState:
-        """Return the state with its inverse kept here, for the next one, instead of there."""
+        """Return the state without its inverse, which is kept here for the next one."""
         if point.state is None:
             return point
         same_mesh = self.operators is not None and point.state.mesh is self.operators.mesh
@@ -106,7 +106,7 @@ class Corrector:
         return replace(point, state=point.state.without_inverse())
 
     def _look_for_coarser(self, state: State) -> None:
-        """From time to time, take the mesh that wider tolerances make if it is clearly smaller than the present one."""
+        """From time to time, take the mesh for wider tolerances if it is clearly smaller than the current one."""
         self.since_check += 1
         if self.since_check < CHECK_EVERY:
             return
@@ -121,7 +121,7 @@ class Corrector:
 
     @property
     def _widest(self) -> tuple[float, float]:
-        """The tolerances that a first mesh has."""
+        """The tolerances of a first mesh."""
         tail, gap_tail = mesh_tolerances_for(self.rtol)
         return tail, self.gap_part * gap_tail
 
@@ -145,7 +145,7 @@ def _cavity_may_vanish(groups: Groups) -> bool:
 
 
 def keeps_cavity(point: RefinedState, groups: Groups) -> bool:
-    """Return whether a full film has no suction by which it would rupture; with a cavity it is what it was solved for."""
+    """Return whether a state may stay as it is: one with a cavity always, a full film if its suction would not rupture it."""
     state = point.state
     if state is None or state.groups.model.cavitation is not Cavitation.NONE:
         return True
@@ -153,7 +153,7 @@ def keeps_cavity(point: RefinedState, groups: Groups) -> bool:
 
 
 def from_cold(groups: Groups, rtol: float) -> RefinedState:
-    """Return the state from cold, with the outcome of what failed in its place."""
+    """Return the state from cold, with the outcome of the failure if there was one."""
     from stribeck.solver.solve import SolveError, solved_point
 
     try:

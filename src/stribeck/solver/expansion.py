@@ -1,8 +1,8 @@
-r"""Taylor series of a state of the line in the logarithm of what varies, and of its observables.
+r"""Taylor series of a state of the line, and of its observables, in the logarithm of the quantity that varies.
 
-The unknowns are those of the equations, the gap by its logarithm.  In a film of the article all is composed of products and
-exponentials, whose coefficients follow order by order, for two matrix-vector products and one back-substitution each; the
-contact law is a polynomial around each separation.  Of any other film the whole residual is sampled, see
+The unknowns are those of the equations, with the logarithm of the gap.  For the film of the article the residual is composed
+of products and exponentials, whose coefficients follow order by order: each costs two matrix-vector products and one
+back-substitution; the contact law is a polynomial around each separation.  For any other film the residual is sampled, see
 :func:`stribeck.numerics.series.implicit_series`.
 """
 
@@ -43,10 +43,10 @@ __all__ = ["Direction", "Expanded", "corrected", "expand_any_film", "expand_arti
 SHIFTED = [ROW["central_gap"], ROW["offset"]]
 
 GAP_POWERS = np.array([1.0, -1.0, -2.0, -3.0, 1.0])
-"""Powers of the gap that film and friction are composed of, and that of the separation."""
+"""Powers of the gap in film and friction, and that of the separation."""
 
 REFINED = 2
-"""Orders that are corrected once more with the residual that they leave: rounding of thin films is seen in the first ones."""
+"""Orders that are corrected once more with their residual: the rounding of thin films shows in the first ones."""
 
 Direction = tuple[float, float, float]
 """Derivatives of ln(speed), ln(load), ln(roughness) along a curve."""
@@ -58,9 +58,10 @@ class Expanded(NamedTuple):
     Attributes
     ----------
     unknowns : ndarray, shape (K + 1, unknowns)
-        Those of the unknowns, of the gap its logarithm.
+        Coefficients of the unknowns, with the logarithm of the gap.
     observables, logs : ndarray, shape (K + 1, n)
-        Those of the observables, none of the minimum gap; of the share of asperities its logarithm too, else nan.
+        Coefficients of the observables without the minimum gap; in ``logs`` those of the logarithm of the asperities'
+        share, else nan.
     """
 
     unknowns: Array
@@ -69,15 +70,15 @@ class Expanded(NamedTuple):
 
 
 def corrected(equations: Equations, y: Array) -> tuple[Array, Inverse]:
-    """Return the unknowns of a converged state, corrected once more with the Jacobian at it, and the inverse of this."""
+    """Return the unknowns of a converged state after one more Newton step, and the inverse of the Jacobian there."""
     inverse = equations.inverse(y)
     return y + equations.units(y) * inverse(equations.residual(y)), inverse
 
 
 def from_logs(equations: Equations, w: Array) -> Array:
-    """Return unknowns from those with the logarithm of the gap."""
+    """Return the unknowns from a row that holds the logarithm of the gap."""
     found = w.copy()
-    with np.errstate(over="ignore"):  # a prediction beyond all bounds is told by its gap
+    with np.errstate(over="ignore"):  # a prediction out of bounds shows in its gap
         found[..., equations.layout.gap] = np.exp(w[..., equations.layout.gap])
     return found
 
@@ -113,7 +114,7 @@ class _Contact:
         self.powers[:, 0] = self.near.coefficients
 
     def extend(self, k: int, separation: Array) -> None:
-        """Find order k from that of the separation as if the logarithm of the gap had no coefficient of that order."""
+        """Find order k from the separation, as if the logarithm of the gap had no coefficient of this order."""
         if not self.exists:
             return
         if not self.near.logarithmic:
@@ -125,7 +126,7 @@ class _Contact:
         self.pressure[k] = exponential_term(self.of_pressure, self.pressure, k)
 
     def add(self, k: int, change: Array, of_separation: Array) -> None:
-        """Add what that coefficient changes, itself and in the separation."""
+        """Add the effect of that coefficient, by itself and through the separation."""
         if not self.exists:
             return
         of_place = (change if self.near.logarithmic else of_separation) / self.near.reach
@@ -163,7 +164,7 @@ def expand_article(
     direction : tuple of float
         Derivatives of ln(speed), ln(load), ln(roughness).
     shifts : ndarray, shape (order + 1,)
-        Series of what the gap lacks, see :func:`stribeck.solver.at_rest.with_positive_gap`.
+        Series of the shift of the gap, see :func:`stribeck.solver.at_rest.with_positive_gap`.
     order : int
         The highest order.
 
@@ -252,7 +253,7 @@ def _flux_gap(gap: Array, weights: Array) -> Array:
 def _friction_integrals(equations: Equations, powers: Array, gradient: Array, flux: Array) -> tuple[Array, Array, Array]:
     """Return the series of the integrals of :func:`stribeck.equations.observables.friction_integrands`, and of the upper wall.
 
-    Inside from the ``powers`` of the gap at the nodes; beyond the panels in x the gap is interpolated first.
+    Inside they follow from the ``powers`` of the gap at the nodes; beyond the panels in x the gap is interpolated first.
     """
     op = equations.operators
     mesh, inner = op.mesh, slice(0, -op.mesh.order)
@@ -277,7 +278,7 @@ def expand_any_film(
     models: Sequence[Model],
     order: int,
 ) -> Expanded:
-    """Return the series of a state with any film, of which the whole residual is sampled.
+    """Return the series of a state with any film, by sampling the residual.
 
     Parameters
     ----------
@@ -286,7 +287,7 @@ def expand_any_film(
     samples : Samples
         Where along the path.
     models : sequence of Model
-        The model there; none where it does not vary.
+        The model at each sample; empty if it does not vary.
 
     Returns
     -------

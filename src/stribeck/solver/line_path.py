@@ -30,51 +30,51 @@ from stribeck.solver.path import KNOT_PART, Expansion
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
 
 EXACT_ORDER, ORDER, ORDER_OF_ANY_FILM = (16, 18), (10, 12), 6
-"""Highest orders of series to a tolerance of 1e-7 and below: in films of the article where the contact law has an exact series
-and where it is a polynomial near each separation; and of films that are sampled."""
+"""Highest orders of series for tolerances of 1e-7 and below: for films of the article if the contact law has an exact series,
+and if it is a polynomial near each separation; and for films that are sampled."""
 
 REACH, NEAREST, FARTHEST = 0.2, 0.1, 0.27
-"""Distance at which the equations are evaluated for the series, over the radius of convergence, and what it may be."""
+"""Distance at which the equations are evaluated for the series, over the radius of convergence, and its limits."""
 
 INTERVAL = 1.0
 """Half of the interval on which films are sampled, over that distance.  Where the shear rate passes through zero at a node of
 a fluid that thins, that node turns sharply with the speed: on twice the interval series were wrong from order two on."""
 
 THINNING_PART = 0.3
-"""Part of the tolerance that states of fluids that thin must hold: what their meshes leave differs from one to the next."""
+"""Part of the tolerance that states of fluids that thin must hold: their errors differ from mesh to mesh."""
 
 SHORTEST_REACH = 0.02
 """Shortest such distance: the shorter it is, the more rounding counts."""
 
 MOST_TRIALS = 4
-"""Expansions of a state after which the distance is left as it is."""
+"""Most expansions of a state with a new distance."""
 
 GAP_PART = 0.1
-"""Part of the usual tolerance to which a mesh resolves the gap where it is read off: states beside it are read there too."""
+"""Part of the usual tolerance to which a mesh resolves the gap where it is read off, for neighbouring states too."""
 
 SPREAD = 1.6
-"""Part of the way of the minimum gap from the state before on which a mesh also resolves the gap."""
+"""Distance from the minimum gap up to which a mesh resolves the gap, over the shift of that minimum since the last state."""
 
 BETWEEN_MESHES = 0.2
-"""Part of the tolerance by which states between two meshes may be less resolved than those that these were made for."""
+"""Part of the tolerance by which states between two meshes may be less resolved than those for which these were made."""
 
 UNSEEN = 2.0
-"""Error over the largest of three corrections with the Jacobian of a neighbour: what they leave unseen."""
+"""Stated error over the largest of three corrections with the Jacobian of a neighbour, for what they do not see."""
 
 BY_CHANCE = 0.25
-"""Part of the largest error of a state that any observable has beside it: that of one may pass through zero there."""
+"""Smallest error of an observable near a state, over the largest error of that state: a single one may pass through zero."""
 
 RESOLVED = 0.3
-"""Part of the tolerance that the minimum gap may miss on the finer of two meshes before the other is asked too."""
+"""Error of the minimum gap on the finer of two meshes, over the tolerance, above which the other is read too."""
 
 NEGLIGIBLE = 0.1
-"""Part of the tolerance that a polynomial of the minimum gap may miss."""
+"""Error of a polynomial for the minimum gap over the tolerance, at most."""
 
 OFFSET_FLOOR = 5e-3
-"""The error of the offset is relative to it where it exceeds this: between states it is that of states where it is larger."""
+"""The error of the offset is relative to it where it exceeds this."""
 
 DOUBTFUL = 0.4
-"""Doubt of a prediction from which Newton's iteration is not begun there."""
+"""Uncertainty of a prediction above which Newton's iteration does not start from it."""
 
 POSITION = len(ALL_NAMES)
 """Column of the position of the minimum gap, after those of the observables."""
@@ -89,7 +89,7 @@ ANY_MESH = Mesh(np.array([-1.0, 0.0, 1.0]), 2)
 
 
 class LinePoint(NamedTuple):
-    """A solved state, the coefficients of its unknowns, and what its mesh has."""
+    """A solved state, the coefficients of its unknowns, and the operators of its mesh."""
 
     refined: RefinedState
     state: State
@@ -120,16 +120,16 @@ class LineProblem:
 
     @property
     def signed(self) -> Flags:
-        """The offset and what is a position; at rest the gaps too."""
+        """The offset and positions; at rest the gaps too."""
         return np.isin(np.arange(POSITION + 1), [ROW["offset"], *UNLIMITED, *([] if self.moves else GAPS)])
 
     def scales(self, values: Array, s: Array) -> Array:
-        """Return what errors of observables are relative to: themselves but for what may vanish."""
+        """Return the scales of the errors of observables: the observables themselves unless they may vanish."""
         found = np.abs(values)
         found[:, SHARES] = 1.0
         found[:, ROW["exit_position"] :] = 1.0
         found[:, ROW["offset"]] = np.maximum(found[:, ROW["offset"]], OFFSET_FLOOR)
-        # What the upper wall feels is the small difference of larger numbers in thick films, and none at some slides.
+        # The drag on the upper wall is a small difference of large numbers in thick films, zero at some slide-to-roll ratios.
         found[:, ROW["viscous_upper"]] = np.fmax(found[:, ROW["viscous_upper"]], found[:, ROW["viscous_balanced"]])
         if not self.moves:
             kappa = np.array([float(self.groups_at(c).relative_roughness) for c in s.tolist()])
@@ -165,7 +165,7 @@ class LineProblem:
         if refined.state is None or refined.estimate is None or not refined.estimate.total <= self.tolerance:
             self.failure = refined
             return refined.outcome
-        refined = replace(refined, outcome=Outcome.CONVERGED)  # where rounding leaves no more than the tolerance
+        refined = replace(refined, outcome=Outcome.CONVERGED)  # rounding limits it, within the tolerance
         return self._expanded(s, refined, min((one.radius for one in near), default=2.0))
 
     def _expanded(self, s: float, refined: RefinedState, near: float) -> Expansion:
@@ -173,7 +173,7 @@ class LineProblem:
         assert state is not None and values is not None and estimate is not None and refined.fine is not None
         y, inverse = corrected(state.equations, state.y)
         state = replace(state, y=y, root=replace(state.root, x=y, inverse=None))
-        with np.errstate(all="ignore"):  # what is not finite is cut off below
+        with np.errstate(all="ignore"):  # values that are not finite are cut off below
             if self.analytic:
                 direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, self.order)
                 found = expand_article(state.equations, y, inverse, state.groups, direction, shifts, self.order)
@@ -198,12 +198,12 @@ class LineProblem:
         return Expansion(s, point, series, logs, errors, known)
 
     def _radius(self, s: float, state: State, found: Expanded, reach: float) -> float:
-        """Return about the radius of convergence of gap and observables."""
+        """Return an estimate of the radius of convergence of gap and observables."""
         of_values = found.observables[:, SMOOTH] / self.scales(found.observables[:1], np.array([s]))[:, SMOOTH]
         return min(radius(found.unknowns[:, : state.mesh.size], reach), radius(of_values, reach))
 
     def _sampled(self, s: float, state: State, inverse: Inverse, near: float) -> tuple[Expanded, float]:
-        """Return the series of a film that is sampled, and about its radius; samples as far off as it allows."""
+        """Return the series of a film that is sampled, and an estimate of its radius, on which the samples depend."""
         reach = max(SHORTEST_REACH, REACH * near)
         for trial in range(MOST_TRIALS):
             samples = interval(INTERVAL * reach)
@@ -214,7 +214,7 @@ class LineProblem:
             known = self._radius(s, state, found, reach)
             if not (
                 np.isfinite(found.unknowns).all() and np.isfinite(known)
-            ):  # a law is too steep for so wide a neighbourhood
+            ):  # the law is too steep for so wide a neighbourhood
                 known = reach
                 reach = 0.25 * reach
             elif reach > FARTHEST * known or (trial == 0 and reach < NEAREST * known):
@@ -224,7 +224,7 @@ class LineProblem:
         return found, known
 
     def _guess(self, s: float, groups: Groups, near: Sequence[Expansion]) -> tuple[State, float]:
-        """Return about the state at ``s``, and by how much the logarithms of its unknowns are in doubt."""
+        """Return a guess of the state at ``s``, and the uncertainty of the logarithms of its unknowns."""
         base, doubt = with_positive_gap(groups)[0], 0.0
         last: LinePoint = near[-1].point
         if base.model.cavitation is not last.state.groups.model.cavitation:
@@ -240,7 +240,7 @@ class LineProblem:
         return self.state(base, mesh_of, w), doubt
 
     def guess_at(self, left: Expansion, right: Expansion, s: float) -> State:
-        """Return about the state between two expansions, on the mesh of the nearer one."""
+        """Return a guess of the state between two expansions, on the mesh of the nearer one."""
         for end in (left, right):
             if s == end.coordinate:
                 found: State = end.point.state
@@ -259,7 +259,7 @@ class LineProblem:
         return solve_state(guess.groups, guess.equations.operators, guess, tolerance, kept=kept.inverse if kept else None)
 
     def point_at(self, left: Expansion, right: Expansion, s: float, rtol: float | None = None) -> RefinedState:
-        """Return the same, verified, and refined where its mesh is too coarse for the tolerance."""
+        """Return the same, verified, and refined if its mesh is too coarse for the tolerance."""
         rtol = self.tolerance if rtol is None else rtol
         state, groups = self.state_at(left, right, s), self.groups_at(s)
         end = on(state.mesh, (left, right))
@@ -273,7 +273,7 @@ class LineProblem:
         return replace(point, groups=groups) if keeps_cavity(point, groups) else from_cold(groups, rtol)
 
     def state(self, groups: Groups, of: LinePoint, w: Array) -> State:
-        """Return the state with unknowns ``w``, those of gaps as logarithms, on the mesh of a point."""
+        """Return the state with unknowns ``w``, which hold logarithms of gaps, on the mesh of a point."""
         operators = of.state.equations.operators
         y = from_logs(of.state.equations, w)
         if operators.model != groups.model:
@@ -283,7 +283,7 @@ class LineProblem:
         return State(groups, equations, y, Root(y, Outcome.CONVERGED, 0, 0, 0.0, 0.0, 0.0, None), 0.0)
 
     def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
-        """Return by how much states corrected at ``parts`` contradict ``values`` at most, where laws are not analytic."""
+        """Return the largest difference between ``values`` and states corrected at ``parts``, for non-analytic laws."""
         same = left.point.state.mesh is right.point.state.mesh
         found = np.full(POSITION + 1, 0.0 if same else BETWEEN_MESHES * self.tolerance)
         found[READ] = 0.0
@@ -292,7 +292,7 @@ class LineProblem:
         places = left.coordinate + parts * (right.coordinate - left.coordinate)
         corrected = np.stack([self._corrected_once(s, left, right) for s in places.tolist()])
         known = values[:, :POSITION]
-        with np.errstate(all="ignore"):  # what is not finite is as wrong as can be
+        with np.errstate(all="ignore"):  # values that are not finite count as wrong
             wrong = np.abs(corrected - known) / self.scales(np.hstack([known, values[:, POSITION:]]), places)[:, :POSITION]
         wrong = np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf, posinf=np.inf), 0.0).max(axis=0)
         beyond = wrong - np.maximum(left.errors, right.errors)[:POSITION]
@@ -310,7 +310,7 @@ class LineProblem:
             return observables(equations, y, float(guess.groups.load)).array(in_article=False)
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
-        """Return the minimum gap and its position, on the finer mesh, or each on that whose panel there resolves it better."""
+        """Return the minimum gap and its position on the finer mesh, or each on the mesh that resolves it better."""
         if not self.moves:
             return np.empty((len(parts), 0)), np.empty((len(parts), 0)), []
         ends = (left, right)
@@ -331,7 +331,7 @@ class LineProblem:
 def _minimum_on(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> tuple[Array, Array]:
     """Return minimum gap and its position between two expansions, read on the mesh of one, and the error of the gap.
 
-    It is looked for around the places that it has at the ends, and everywhere if it is not lower there than beside them.
+    The search covers the surroundings of its positions at both ends, and the whole mesh if it is not lowest there.
     """
     order, mesh, at, ends = min(left.order, right.order), of.state.mesh, of.state.equations.layout, (left, right)
     weights = hermite_weights(order, parts)
@@ -348,7 +348,7 @@ def _minimum_on(left: Expansion, right: Expansion, of: LinePoint, parts: Array) 
     change = (weights[0] - lower[0]) @ a + (weights[1] - lower[1]) @ b
     error = error + np.abs(np.take_along_axis(change, nodes, axis=1)).max(axis=1)
     for end, each, w in zip(ends, scaled, weights, strict=True):
-        if end.point.state.mesh is not mesh:  # what comes from there was interpolated there
+        if end.point.state.mesh is not mesh:  # values from another mesh were interpolated
             error = error + 2 * _unresolved(end.point, each, w, place * _stretch(end.point, of))
     position = place
     if at.exit.stop > at.exit.start:  # in a frame that moves with the end of the film
@@ -361,7 +361,7 @@ def _minimum_on(left: Expansion, right: Expansion, of: LinePoint, parts: Array) 
 
 
 def _unresolved(point: LinePoint, coefficients: Array, weights: Array, places: Array) -> Array:
-    """Return what polynomials of the mesh of a point miss, at places, of what it has in the logarithms of gaps."""
+    """Return the interpolation error of logarithms of gaps at places on the mesh of a point."""
     mesh = point.state.mesh
     shapes = coefficients[:, point.state.equations.layout.gap].copy()
     shapes[0] -= np.log(mesh.far)
@@ -370,7 +370,7 @@ def _unresolved(point: LinePoint, coefficients: Array, weights: Array, places: A
 
 
 def on(mesh: Mesh, near: Sequence[Expansion]) -> LinePoint | None:
-    """Return the first point that is on a mesh."""
+    """Return the first point whose state lies on a mesh."""
     return next((one.point for one in near if one.point.state.mesh is mesh), None)
 
 
@@ -380,7 +380,7 @@ def _alike(*near: Expansion) -> bool:
 
 
 def as_in(state: State, model: Model) -> Model:
-    """Return a model whose film has the cavity, or none, that it has in a state."""
+    """Return a model with a cavity if a state has one, else without."""
     cavitation = state.groups.model.cavitation
     if model.cavitation is cavitation:
         return model
@@ -388,7 +388,7 @@ def as_in(state: State, model: Model) -> Model:
 
 
 def between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> Array:
-    """Return the unknowns between two expansions on the mesh of one of them, gaps as logarithms."""
+    """Return the unknowns between two expansions on the mesh of one of them, with the logarithms of gaps."""
     order = min(left.order, right.order)
     a, b = (on_mesh(end.point, each, of) for end, each in zip((left, right), _scaled(left, right, order), strict=True))
     of_left, of_right = hermite_weights(order, parts)
@@ -396,7 +396,7 @@ def between(left: Expansion, right: Expansion, of: LinePoint, parts: Array) -> A
 
 
 def _scaled(left: Expansion, right: Expansion, order: int) -> list[Array]:
-    """Return the coefficients of the unknowns of both ends, of an interval of length one."""
+    """Return the coefficients of the unknowns at both ends, for an interval of length one."""
     scale = (right.coordinate - left.coordinate) ** np.arange(order + 1.0)[:, None]
     return [end.point.unknowns[: order + 1] * scale for end in (left, right)]
 
@@ -422,7 +422,7 @@ def on_mesh(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
 
 
 def gaps_on(point: LinePoint, coefficients: Array, of: LinePoint, panels: range) -> Array:
-    """Return those of the logarithm of the gap on panels, side by side, of that mesh."""
+    """Return the coefficients of the logarithm of the gap on neighbouring panels of that mesh."""
     mesh, other, at = point.state.mesh, of.state.mesh, point.state.equations.layout
     own = slice(panels.start * other.order, panels.stop * other.order)
     if mesh is other:
@@ -436,7 +436,7 @@ def gaps_on(point: LinePoint, coefficients: Array, of: LinePoint, panels: range)
 
 
 def numbers_on(point: LinePoint, coefficients: Array, of: LinePoint) -> Array:
-    """Return those of the unknowns that are numbers; the dilation is that of the mesh."""
+    """Return the coefficients of the unknowns that are numbers; the dilation is that of the mesh."""
     at = point.state.equations.layout
     found = coefficients[:, at.numbers].copy()
     found[:, at.dilation.start - at.numbers.start : at.dilation.stop - at.numbers.start] *= _stretch(point, of)

@@ -1,4 +1,4 @@
-"""States of a contact that is changed by hand: each from the last one, which takes a millisecond instead of thirty."""
+"""States of a contact that is changed by hand: each starts from the last one, in a millisecond instead of thirty."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LARGEST_CHANGE = 30.0
 
 
 class WarmStartSolver:
-    """Solves one state after another, each from the last where that is near, from cold where it is not.
+    """Solves one state after another, each from the last one if that is near, else from cold.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class WarmStartSolver:
 
     Notes
     -----
-    Each state meets ``rtol`` by its own error estimate, whatever it was solved from
+    Each state meets ``rtol`` by its own error estimate, wherever it started from
     (``test_near.py::test_a_state_does_not_depend_on_what_it_was_solved_from``).
     """
 
@@ -108,7 +108,7 @@ class WarmStartSolver:
 
 
 def _near(last: Groups, new: Groups) -> bool:
-    """Return whether no group changed by too much, nor between zero and more."""
+    """Return whether the groups are near those of the last state: none changed too much, or from or to zero."""
     for name in ("speed", "load", "roughness"):
         before, after = float(getattr(last, name)), float(getattr(new, name))
         if (before == 0) != (after == 0) or (before and abs(math.log(after / before)) > math.log(LARGEST_CHANGE)):

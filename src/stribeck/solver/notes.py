@@ -1,4 +1,4 @@
-"""Where the model leaves its range, in sentences for the user: pressure, width, contact law, suction."""
+"""Notes for the user on where the model leaves its range: pressure, width, contact law, suction."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ HARD = "Hard elastohydrodynamics:"
 """How the sentence of :func:`pressure_notes` begins; outputs show it before all else."""
 
 HIGHEST_PRESSURE = 5e7
-"""Hertz pressure that the model is for [Pa]: there an oil of :data:`OIL` is e times as viscous as at rest."""
+"""Largest Hertz pressure that the model is meant for [Pa]: there an oil of :data:`OIL` is e times as viscous as at ambient
+pressure."""
 
 OIL = 2e-8
 """Pressure-viscosity coefficient of mineral oil [1/Pa], in the middle of the usual 15 to 25 1/GPa."""
@@ -41,13 +42,13 @@ USUAL_ALPHA, USUAL_BETA = 2.0, 0.05
 """Coefficients of self-affine surfaces, by which groups alone are verified."""
 
 NEGLIGIBLE_SHARE = 0.01
-"""Share of load and of friction up to which it does not matter by which law asperities carry them."""
+"""Share of load and of friction of the asperities up to which their contact law does not matter."""
 
 ADVICE = ", by 10 to 20 % (stribeck check gives the amount)."
-"""How the sentence on a minimum ends that only the tail of the law decides."""
+"""End of the note on a minimum that the tail of the law decides."""
 
 ATMOSPHERE = 1.01325e5
-"""Ambient pressure of a contact in the open [Pa], by which the fluid pressure may fall before nothing is left."""
+"""Ambient pressure of a contact in the open [Pa], the largest suction that it allows."""
 
 
 class Values(Protocol):
@@ -77,12 +78,12 @@ def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
     Parameters
     ----------
     contact : Contact or None
-        The contact; without one nothing is known of pressures in Pa.
+        The contact; without one pressures in Pa are not known.
 
     Returns
     -------
     tuple of str
-        The sentence, or nothing up to a Hertz pressure of 50 MPa.
+        The sentence; empty up to a Hertz pressure of 50 MPa.
 
     Notes
     -----
@@ -101,7 +102,7 @@ def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
 
 
 def shape_notes(contact: Contact | None) -> tuple[str, ...]:
-    """Return the sentences about the dry contact alone: its pressure, and its width where that is too much for a parabola."""
+    """Return the notes on the dry contact: its pressure, and its width if that is too large for a parabola."""
     if contact is None:
         return ()
     return (*pressure_notes(contact), *width_notes(contact))
@@ -165,12 +166,12 @@ def law_notes(groups: Groups, contact: Contact | None, values: Values) -> tuple[
 
 
 def matters(contact: Contact | None, values: Values) -> bool:
-    """Return whether asperities have more than 1 % of load or friction, so that it matters by which law they carry it."""
+    """Return whether asperities have more than 1 % of load or friction, so that their contact law matters."""
     return max(_shares(contact, values)) > NEGLIGIBLE_SHARE
 
 
 def minimum_note(groups: Groups, contact: Contact | None, values: Values, friction: float, where: str) -> str:
-    """Return what to know of a minimum of friction whose gap the contact law is not made for; empty if there is nothing.
+    """Return the note on a friction minimum whose gap is outside the range of the contact law; empty if it is inside.
 
     Parameters
     ----------
@@ -211,14 +212,14 @@ def _gap_ratio(groups: Groups, contact: Contact | None, values: Values) -> tuple
 
 
 def _shares(contact: Contact | None, values: Values) -> tuple[float, float]:
-    """Return the shares of load and friction that are the asperities'."""
+    """Return the asperities' shares of load and friction."""
     boundary, beta = (1.0, USUAL_BETA) if contact is None else (contact.boundary_friction, contact.beta)
     dry, viscous = boundary * values.contact_load_share, values.viscous_friction(beta)
     return values.contact_load_share, dry / (dry + viscous) if dry > 0 else 0.0
 
 
 def _is_limit_of_persson(groups: Groups) -> bool:
-    """Return whether the law of a state falls exponentially far apart as Persson's does."""
+    """Return whether the pressure of the law falls as that of Persson's at large gaps."""
     return is_exponential(groups.law) or (groups.law is not None and groups.law.name == "persson")
 
 
@@ -230,7 +231,7 @@ def _range(groups: Groups) -> str:
 
 
 def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, float], known: bool) -> tuple[str, ...]:
-    """Return the sentence about a gap above the range; a contact's friction is known, that of groups alone is not."""
+    """Return the note on a gap above the range; groups alone do not fix the friction, so it states what it assumes."""
     if ratio <= LAW_RANGE[1] or not _is_limit_of_persson(groups):
         return ()
     load, friction = shares
@@ -250,7 +251,7 @@ LINE_BREAKS = (
 
 
 def cavitation_notes(contact: Contact | None, fluid_pressure: Array, consequence: str = LINE_BREAKS) -> tuple[str, ...]:
-    """Return the sentence that says where the suction behind a contact is more than an atmosphere.
+    """Return the note on a suction behind the contact of more than an atmosphere.
 
     Parameters
     ----------

@@ -1,11 +1,11 @@
-r"""A path of states along one coordinate, the logarithm of whatever varies, as a function of it.
+r"""A path of states along one coordinate, the logarithm of the quantity that varies, as a function of it.
 
-A few states are solved and expanded into Taylor series; between two of them each observable is the polynomial that has the
-coefficients of both.  A step is as long as their radius of convergence allows; where the polynomial of all orders differs from
-that without the highest by more than the tolerance a state is solved in between.  The stated error of an observable is the
-larger of those of both ends, and this difference.
+A few states are solved and expanded into Taylor series; between two of them each observable is the polynomial with the
+coefficients of both.  A step is as long as their radius of convergence allows.  If the polynomial of all orders differs from
+that without the highest by more than the tolerance, a state is solved in between.  The stated error of an observable is the
+larger of those at both ends, plus this difference.
 
-What the states are is known to a :class:`Problem` alone.
+Only a :class:`Problem` knows what the states are.
 """
 
 from __future__ import annotations
@@ -26,45 +26,45 @@ LONGEST_STEP = 4.0
 SHORTEST_STEP = 1e-3
 
 SHORTER = 0.75
-"""Part of a step that failed which is tried next."""
+"""Length of the next step after one that failed, over that one."""
 
 REACH = 1.2
 """Largest step over the radius of convergence."""
 
 KNOT_PART = 0.75
-"""Part of the tolerance that a solved state must hold: the rest is for what lies between."""
+"""Part of the tolerance that a solved state must hold: the rest is for the interpolation."""
 
 APART = 1.0
 """Distance from both ends of an interval and error, in units of the scales, from which on a path ends there."""
 
 CHECKED = 0.85
-"""Part of the tolerance that an interval must hold where it is checked."""
+"""Part of the tolerance that an interval must hold at the places where it is checked."""
 
 REDUCIBLE = 0.25
-"""Part of the tolerance that interpolation must miss for a shorter interval to help."""
+"""Interpolation error over the tolerance above which a shorter interval helps."""
 
 READ_AT = 24
-"""Places of an interval at which what has no series is read, for a polynomial between them, and at which it is checked."""
+"""Places of an interval at which observables without a series are read, for a polynomial, and at which this is checked."""
 
 TAIL = 3.0
-"""What a polynomial is wrong by, over the largest of its last three coefficients."""
+"""Error of a polynomial over the largest of its last three coefficients."""
 
 LOST = 1e3
-"""Value over what its interpolation misses below which a share goes by its logarithm."""
+"""Value over its interpolation error below which a share is interpolated by its logarithm."""
 
 TINY = 1e-300
 
 INSIDE = np.array([0.25, 0.5, 0.75])
-"""Where the problem itself is asked, in parts of an interval: a law that is not quite smooth may be right at one by chance."""
+"""Where the equations are checked, in parts of an interval: several, as a law with kinks may agree at one by chance."""
 
 LONGEST_END = 0.05
 """Longest interval on which an observable may cease to exist."""
 
 SHORTEST_INTERVAL = 0.01
-"""Length below which an interval is left as it is, with the error that it has: where a film ruptures no series converges."""
+"""Length below which an interval keeps its error: where a film ruptures no series converges."""
 
 NOISY, PROGRESS = 0.2, 0.8
-"""Length below which halving an interval has to take its error to this part of what it was, or the error is rounding."""
+"""Length below which halving an interval must reduce its error to this part, or the error is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,11 +80,11 @@ class Expansion:
     series : ndarray, shape (K + 1, n)
         Coefficients of the observables.
     logs : ndarray, shape (K + 1, n)
-        Those of their logarithms; nan where there are none.
+        Coefficients of their logarithms; nan where there are none.
     errors : ndarray, shape (n,)
         Estimated errors at the state, in units of the scales of :class:`Problem`.
     radius : float
-        About the radius of convergence.
+        Estimate of the radius of convergence.
     """
 
     coordinate: float
@@ -101,7 +101,7 @@ class Expansion:
 
 
 class Problem(Protocol):
-    """What a path asks of the states that it follows."""
+    """The states that a path follows, as the path needs them."""
 
     @property
     def held(self) -> Flags:
@@ -109,26 +109,26 @@ class Problem(Protocol):
 
     @property
     def signed(self) -> Flags:
-        """Which observables may cross zero: absolute errors of the ends count between them, for others relative ones."""
+        """Which observables may cross zero: between states their absolute errors count, those of others relatively."""
 
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
-        """Return the expanded state at ``s``; ``near`` holds none, the last, or both that it lies between.
+        """Return the expanded state at ``s``; ``near`` holds no neighbour, the last one, or both.
 
         A failure is returned as its outcome.
         """
 
     def scales(self, values: Array, s: Array) -> Array:
-        """Return what errors of observables at coordinates s, shape (len(s), n), are relative to."""
+        """Return the scales of the errors of observables at coordinates s, shape (len(s), n)."""
 
     @property
     def negligible(self) -> float:
-        """What a polynomial of what has no series may be wrong by, in units of the scales, beside the errors of that."""
+        """Error in units of the scales that a polynomial for observables without a series may add to theirs."""
 
     def read_scales(self, values: Array) -> Array:
-        """Return the same for what has no series."""
+        """Return the same for observables without a series."""
 
     def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
-        """Return by how much the equations contradict ``values`` at parts of an interval, at most, in units of the scales.
+        """Return the largest difference between ``values`` and the equations at parts of an interval, in units of the scales.
 
         Zero where the coefficients are surely right.
         """
@@ -168,13 +168,13 @@ class Interval:
 
     @cached_property
     def missed(self) -> Array:
-        """What the interpolation of the observables changes with its highest order, at most, over ``(tau (1 - tau))**K``."""
+        """Largest change of the interpolated observables by the highest order, over ``(tau (1 - tau))**K``."""
         values = self.ends[:, : self.left.series.shape[1]]
         return np.asarray(np.abs(highest_order(self.order) @ values).max(axis=0)) if self.order else 0.0 * values[0]
 
     @cached_property
     def at_ends(self) -> Array:
-        """Errors at the ends, the larger: in units of the scales there, and absolute, for what crosses zero between."""
+        """The larger errors of both ends: in units of the scales there, and absolute for what crosses zero between."""
         relative = np.stack([self.left.errors, self.right.errors])
         values = np.stack([self.left.series[0], self.right.series[0]])
         scales = self.problem.scales(values, np.array([self.left.coordinate, self.right.coordinate]))
@@ -186,7 +186,7 @@ class Interval:
 
     @cached_property
     def inside(self) -> Array:
-        """What the problem itself finds wrong between the ends."""
+        """Error that the equations find between the ends."""
         where = np.zeros(len(INSIDE), dtype=int)
         values, _, basis = self._alone.smooth(where, INSIDE)
         self._alone.read(values, where, INSIDE, basis)
@@ -194,7 +194,7 @@ class Interval:
 
     @cached_property
     def read(self) -> tuple[Array, Array, Sequence[int], bool]:
-        """Polynomials of what has no series, their errors and columns, and whether they are good enough."""
+        """Polynomials for observables without a series, their errors and columns, and whether they are good enough."""
         values, errors, columns = self.problem.read(self.left, self.right, chebyshev_nodes(READ_AT))
         form = chebyshev_form(values)
         tails = TAIL * np.abs(form[-3:]).max(axis=0, initial=0.0)
@@ -224,9 +224,9 @@ class _Pieces:
         self.logs = np.nonzero(with_logs.any(axis=0))[0].tolist()
 
     def smooth(self, where: Array, parts: Array) -> tuple[Array, Array, Array]:
-        """Return the observables at parts of the intervals of these numbers, what their interpolation misses, and the basis.
+        """Return the observables at parts of the intervals of these numbers, their interpolation errors, and the basis.
 
-        A share that is lost in that goes by its logarithm, which keeps it positive and its digits.
+        A share below that error is interpolated by its logarithm, which keeps its sign and its digits.
         """
         basis = chebyshev_basis(parts, self.degree)
         both = np.empty((len(parts), 2 * self.count), dtype=parts.dtype)
@@ -246,7 +246,7 @@ class _Pieces:
 
     @cached_property
     def _errors(self) -> tuple[Array, Array]:
-        """Errors of the intervals whatever the place: relative ones, and absolute ones of what may cross zero."""
+        """Errors of the intervals at any place: relative ones, and absolute ones of what may cross zero."""
         ends, inside = np.stack([one.at_ends for one in self.intervals]), [one.inside for one in self.intervals]
         signed = self.problem.signed
         return np.where(signed, 0.0, ends[:, 0]) + np.stack(inside), np.where(signed, ends[:, 1], 0.0)
@@ -264,11 +264,11 @@ class _Pieces:
 
     @cached_property
     def _expected(self) -> Flags:
-        """Which observables both states of an interval have; where a film ruptures no series need lead to the other."""
+        """Which observables both states of an interval have; where a film ruptures a series may lead to no other state."""
         return np.stack([np.isfinite([one.left.series[0], one.right.series[0]]).all(axis=0) for one in self.intervals])
 
     def read(self, found: Array, where: Array, parts: Array, basis: Array) -> list[tuple[Indices, Sequence[int], Array]]:
-        """Write what has no series into ``found``; return the rows and columns of each interval, and the errors there."""
+        """Write observables without a series into ``found``; return rows and columns of each interval, and errors."""
         written = []
         for k in np.unique(where).tolist() if len(where) > 1 else where.tolist():
             one = self.intervals[k]
@@ -328,12 +328,12 @@ class SolvedPath:
         return np.clip(np.searchsorted(self.coordinates, s, side="right") - 1, 0, len(self.intervals) - 1)
 
     def _parts(self, s: Array) -> tuple[Array, Array]:
-        """Return the interval of each coordinate, and which part of it."""
+        """Return the interval of each coordinate, and its place in it."""
         where = self.interval_of(s.real)
         return where, (s - self._pieces.starts[where]) / np.fmax(self._pieces.lengths[where], TINY)
 
     def smooth(self, s: Array) -> Array:
-        """Return what :meth:`at` does, without errors and without what has no series, at complex coordinates too."""
+        """Return the values of :meth:`at` that have a series, without errors, at real or complex coordinates."""
         return self._pieces.smooth(*self._parts(s))[0]
 
     def at(self, s: Array) -> tuple[Array, Array]:
@@ -383,7 +383,7 @@ def follow(
         upwards = end > here.coordinate
         while (left := abs(here.coordinate - end)) > 0 and not (until is not None and until(here)):
             step = min(left, LONGEST_STEP, max(SHORTEST_INTERVAL, _step(here, rtol)))
-            if left < 2 * step:  # two like steps rather than a long and a short one
+            if left < 2 * step:  # two equal steps rather than a long and a short one
                 step = left if left <= step else 0.5 * left
             while isinstance(new := problem.solve(_beyond(here, end, step if upwards else -step), [here]), Outcome):
                 step *= SHORTER
@@ -413,7 +413,7 @@ def _is_lost(interval: Interval) -> bool:
 
 
 def _beyond(here: Expansion, end: float, step: float) -> float:
-    """Return the coordinate a step further, exactly the end where it is reached."""
+    """Return the coordinate one step further, or exactly the end."""
     return end if abs(step) == abs(here.coordinate - end) else here.coordinate + step
 
 
@@ -422,31 +422,31 @@ def _ascending(intervals: Sequence[Interval]) -> tuple[Interval, ...]:
 
 
 def _step(here: Expansion, rtol: float) -> float:
-    """Return the longest step that the coefficients promise to interpolate within the tolerance."""
+    """Return the longest step on which the coefficients should interpolate within the tolerance."""
     order = here.order
     return here.radius * min(REACH, 2.0 * float((0.1 * rtol) ** (0.5 / max(order, 1))))
 
 
 def _refined(interval: Interval, rtol: float, before: float = math.inf) -> list[Interval]:
-    """Return the intervals that an interval becomes where it does not interpolate within the tolerance, ascending."""
+    """Return an interval split until it interpolates within the tolerance, ascending."""
     if interval.length < SHORTEST_INTERVAL:
         return [interval]
     problem, left, right = interval.problem, interval.left, interval.right
     exists = [np.isfinite(one.series).all(axis=0) for one in (left, right)]
-    ends_between = bool((exists[0] != exists[1]).any()) and interval.length > LONGEST_END  # what exists on one side alone
+    ends_between = bool((exists[0] != exists[1]).any()) and interval.length > LONGEST_END  # something exists on one side alone
     checks = chebyshev_nodes(READ_AT)
     values, errors = interval.at(checks)
-    # What the ends are wrong by does not fall with the length.
+    # The errors of the ends do not fall with the length.
     scales = problem.scales(values, left.coordinate + checks * interval.length)
     of_ends = np.where(problem.signed, interval.at_ends[1] / scales, interval.at_ends[0])
     excess = errors - of_ends > REDUCIBLE * rtol
     if not ends_between and not ((errors > CHECKED * rtol) & excess)[:, problem.held].any():
         return [interval]
     worst = float(np.nanmax(errors[:, problem.held]))
-    if interval.length < NOISY and worst > PROGRESS * before:  # rounding, which halving does not take away
+    if interval.length < NOISY and worst > PROGRESS * before:  # rounding, which halving does not remove
         return [interval]
     at = 0.5 * (left.coordinate + right.coordinate)
-    for near in ([left, right], [max(left, right, key=lambda end: end.radius)]):  # a series may be good to one side alone
+    for near in ([left, right], [max(left, right, key=lambda end: end.radius)]):  # a series may be good on one side alone
         middle = problem.solve(at, near)
         if not isinstance(middle, Outcome):
             break

@@ -57,7 +57,7 @@ def plot_profile(
     solution : Solution or PointSolution
         The state.
     ax : matplotlib.axes.Axes, optional
-        Axes to draw the pressures into, in place of a new figure.
+        Axes to draw the pressures into, instead of a new figure.
     """
     if not isinstance(solution, Solution):
         from stribeck.solver.point.plot import plot_point_solution
@@ -109,7 +109,7 @@ def plot_profile(
 
 
 def mark_failure(solution: BaseSolution, *drawn: Axes | None) -> None:
-    """Write across what is drawn of a state that it is no result, where it is none."""
+    """Write across the drawing of a state that failed that it is not a result."""
     if solution.outcome.ok:
         return
     for axes in drawn:
@@ -119,7 +119,7 @@ def mark_failure(solution: BaseSolution, *drawn: Axes | None) -> None:
 
 
 def draw_gap(axes: Axes, solution: BaseSolution, x: Array, gap: Array, to_gap: tuple[float, str]) -> None:
-    """Draw the gap, and the roughness where it can be seen beside it."""
+    """Draw the gap, and the roughness if it is visible beside it."""
     axes.plot(x, gap * to_gap[0], color=INK, lw=1.8, label="gap")
     drawn = gap
     alpha = 1.0 if solution.contact is None else solution.contact.alpha
@@ -135,7 +135,7 @@ def draw_gap(axes: Axes, solution: BaseSolution, x: Array, gap: Array, to_gap: t
 
 
 def footer_of(solution: BaseSolution) -> list[tuple[str, str]]:
-    """Return what stands below the picture of a state: inputs, groups, law, error and notes."""
+    """Return the text below the picture of a state: inputs, groups, law, error and notes."""
     groups = [f"{name} group {float(getattr(solution.groups, name)):.4g}" for name in ("speed", "load", "roughness")]
     second = [
         law_text(solution),

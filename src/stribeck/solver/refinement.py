@@ -1,4 +1,4 @@
-"""Refining a state until its estimated error holds a tolerance, and saying how that ended."""
+"""Refining a state until its estimated error is within a tolerance, and reporting how that ended."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from stribeck.solver.at_rest import with_positive_gap
 MAX_REFINEMENTS = 12
 
 NODAL_ROUNDING = 16 * 2.0**-52
-"""Rounding of a nodal gap, the difference of terms of order one, as the polynomials between the nodes magnify it."""
+"""Rounding of a nodal gap, a difference of terms of order one, as magnified by the polynomials between the nodes."""
 
 MIN_GAP_TAIL = 0.02
-"""Part of the tolerance below which resolving the gap where it is read off alone does not help."""
+"""Error of the read-off gap over the tolerance below which refining there alone does not help."""
 
 CLEARLY_FINER = 1.1
-"""Ratio of mesh sizes from which the difference of two solutions measures the error of the coarser."""
+"""Ratio of mesh sizes above which the difference of two solutions measures the error of the coarser one."""
 
 
 def order_for(rtol: float) -> int:
-    """Return the nodes per panel that reach ``rtol`` with the fewest unknowns."""
+    """Return the number of nodes per panel that reaches ``rtol`` with the fewest unknowns."""
     return 12 if rtol >= 1e-7 else 16
 
 
@@ -60,7 +60,7 @@ class RefinedState:
 
     @property
     def effort(self) -> float:
-        """What :func:`continuation.march` steers by."""
+        """Measure by which :func:`continuation.march` chooses its steps."""
         return 4.0 if self.state is None else self.state.effort
 
 
@@ -75,8 +75,8 @@ def converge(
     """Refine a guess until the estimated error is at most ``rtol``, rounding stops it, or the mesh grows too large.
 
     ``tolerances`` are the Legendre tails to start with, see :func:`stribeck.equations.state.mesh_for`.
-    ``profile_tolerance`` is the tail of the gap between the nodes, which no observable needs small; ``spread`` is
-    how far from its minimum the gap is resolved as there.
+    ``profile_tolerance`` is the tail of the gap between the nodes, on which no observable depends; ``spread`` is the
+    distance from its minimum up to which the gap is resolved as well as there.
     """
     base, _ = with_positive_gap(groups)
     law = contact_law(base)
@@ -96,12 +96,12 @@ def converge(
         if not state.outcome.ok:
             outcome = state.outcome
             break
-        if isinstance(guess, State):  # what was predicted is the first state on the way to this one
+        if isinstance(guess, State):  # the prediction becomes the first state on the way to this one
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
         fine, values, in_article = FineOperators(mesh), values_of(state, groups), state.equations.operators.is_article
         [estimate] = error_estimates(state.stacked, [values], fine)
-        # Where a film ends, the rate falls to zero in a fluid without a plateau, or a flow factor jumps, meshes may share what
-        # makes their error.
+        # Where a film ends, the rate falls to zero in a fluid without a plateau, or a flow factor jumps, two meshes may
+        # share the cause of their error.
         film = state.equations.film
         shared = state.equations.operators.has_exit or fall_of(film, 1.0).broken
         shared |= jumps_between_nodes(film, state.gap, state.fluid_pressure) is not None
@@ -129,12 +129,12 @@ def converge(
 
 
 def _noise(point: RefinedState) -> float:
-    """Return about the relative error of the read-off gaps that uneven nodal gaps may cause on small panels."""
+    """Return an estimate of the relative error that uneven nodal gaps on small panels may cause in the read-off gaps."""
     return 0.0 if point.state is None else NODAL_ROUNDING / float(point.state.gap.min())
 
 
 def shrink(excess: float) -> float:
-    """Return the factor for a mesh tolerance whose error exceeds what is allowed by 1/``excess``."""
+    """Return the factor by which to reduce a mesh tolerance whose error exceeds the allowed one by 1/``excess``."""
     return 1.0 if excess > 2 else min(0.5, max(0.3, 0.5 * excess))
 
 
@@ -151,12 +151,12 @@ def verify(state: State, groups: Groups, fine: FineOperators, rtol: float) -> Re
 
 
 def reached(estimate: ErrorEstimate, rtol: float) -> Outcome:
-    """Return whether an estimate holds the tolerance."""
+    """Return whether an estimate is within the tolerance."""
     return Outcome.CONVERGED if estimate.total <= rtol else Outcome.REFINEMENT_LIMIT
 
 
 def newton_tolerance(rtol: float) -> float:
-    """Return the size of the last Newton step: what is left after it is far below ``rtol``."""
+    """Return the size of the last Newton step, after which the error of the iteration is far below ``rtol``."""
     return max(1e-11, 1e-2 * rtol)
 
 

@@ -1,4 +1,4 @@
-"""What a solve returns: fields and observables of one state, with outcome, error estimate and what to know about them."""
+"""The result of a solve: fields and observables of one state, with outcome, error estimate and notes."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Solution(BaseSolution):
         Estimated absolute error of :attr:`minimum_position` [a], not covered by :attr:`error_estimate`; 1 for the dry smooth
         contact, where the gap is zero on all of the contact.
     rounding_floor : float
-        The part of the error estimate that double precision causes and no mesh removes.
+        The part of the error estimate that comes from rounding, which no mesh removes.
     mesh : Mesh
         The final discretisation.
     nodal_gap : ndarray, shape (nodes,)
@@ -66,11 +66,11 @@ class Solution(BaseSolution):
     nodal_pressures : callable
         Returns contact and fluid pressure in the order of the mesh.
     gap_shift : float
-        What :attr:`gap` adds to ``nodal_gap``: at speed zero the load only shifts the gap [u_Hz].
+        Shift of :attr:`gap` against ``nodal_gap``: at speed zero the load only shifts the gap [u_Hz].
     newton_steps : int
         Steps of its Newton iteration.
     origin : tuple of float
-        What a coordinate of the mesh is in x: the first of the two, and the second times the coordinate.
+        Position x of a mesh coordinate: the first of the two, plus the second times the coordinate.
 
     Notes
     -----
@@ -109,7 +109,7 @@ class Solution(BaseSolution):
 
     @property
     def errors(self) -> dict[str, float]:
-        """Estimated relative error of each observable; absolute for the load shares, and only of those that the film has."""
+        """Estimated relative error of each observable; absolute for the load shares; only those that the film has."""
         found = dict(zip(ALL_NAMES, map(float, self.relative_errors), strict=False))
         return {name: error for name, error in found.items() if name in NAMES or not math.isnan(error)}
 
@@ -172,7 +172,7 @@ class Solution(BaseSolution):
 
     @property
     def area_fraction(self) -> Array | None:
-        """Real area of contact over the apparent one at :attr:`x` [-]; None where the law knows no spectrum of the surface."""
+        """Real area of contact over the apparent one at :attr:`x` [-]; None for a law without a spectrum of the surface."""
         if not isinstance(self.groups.law, WithArea) or self.groups.roughness == 0:
             return None
         return self.groups.law.area_fraction_at(self.contact_pressure * float(self.groups.pressure_scale))
@@ -197,7 +197,7 @@ class Solution(BaseSolution):
 
         Notes
         -----
-        Between the nodes the gap is good to a few ``rtol``, relatively, in what ``solve`` returns
+        Between the nodes the relative error of the gap is a few ``rtol`` in the result of ``solve``
         (``test_solve.py::test_the_profile_is_the_elastic_gap_of_its_pressure``), and to about 1e-4 on the points of a
         curve, whose meshes are made for the observables.
         """
@@ -214,7 +214,7 @@ class Solution(BaseSolution):
         return Profile(points, gap + self.gap_shift, contact, fluid)
 
     def _far_gap(self, xi: Array) -> Array:
-        """Return the gap at a coordinate of the mesh, but for what is smooth in its inverse."""
+        """Return the far part of the gap at a mesh coordinate; the rest is smooth in the inverse coordinate."""
         exit, dilation = self.origin
         return np.asarray(self.groups.model.solid.far_gap(dilation * xi) + exit * dilation * xi)
 

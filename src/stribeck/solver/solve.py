@@ -1,4 +1,4 @@
-"""From groups to a converged solution: start, refinement until the tolerance holds, and what to say where it does not."""
+"""From groups to a converged solution: start, refinement until the tolerance holds, and the message if it does not."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from stribeck.solver.point.solution import PointSolution
 
 RTOL_RANGE = (1e-11, 1e-2)
-"""Tolerances that may be asked for; below, double precision reaches no state."""
+"""Smallest and largest tolerance; double precision reaches none below."""
 
 PROFILE_TAIL = 10.0
 """Legendre tail left in the logarithm of the gap between the nodes of a single solution, in units of its tolerance."""
@@ -51,17 +51,17 @@ COARSER = (1e-2, 1e-3, 1e-4, 1e-5)
 """Tolerances on the way to one that cannot be reached at once."""
 
 MIN_ESTIMATE = 0.03
-"""Part of the tolerance below which no error is stated, as estimates so small are not sure."""
+"""Smallest stated error over the tolerance, as smaller estimates are not reliable."""
 
 MIN_ESTIMATE_OF_OTHERS = 0.2
-"""The same of films that end, other fluids, flow factors and solids, whose kinks finer nodes see in part only."""
+"""The same for films that end, other fluids, flow factors and solids, whose kinks finer nodes see only in part."""
 
 SURE_ESTIMATE = 1e-10
-"""Error from which estimates are sure also where the tolerance is smaller."""
+"""Error above which estimates are reliable at smaller tolerances too."""
 
 
 TESTED = {"speed": (1e-12, 1e6), "load": (1e-8, 10.0), "relative_roughness": (1e-6, 1e3)}
-"""Where every state is solved (``tests/test_solve_random.py``), besides speed zero and roughness zero; beyond, many are."""
+"""Range in which every state is solved (``tests/test_solve_random.py``), speed and roughness zero too; beyond, many are."""
 
 
 class SolveError(RuntimeError):
@@ -74,7 +74,7 @@ class SolveError(RuntimeError):
     solution : Solution, PointSolution or None
         What was reached, with its error estimate, if there is a state.
     message : str
-        The sentence shown: the state, the outcome, what was reached.
+        The message: the state, the outcome, the accuracy reached.
     """
 
     def __init__(self, outcome: Outcome, solution: BaseSolution | None, message: str) -> None:
@@ -140,12 +140,12 @@ def solve(
         and without its minimum film, which has an error of its own.
     law : str or AsperityLaw, optional
         Contact law: an object such as :class:`stribeck.GreenwoodWilliamson`, or the name of one that needs no parameters; that
-        of the problem if omitted, which is the exponential one unless it says otherwise.
+        of the problem if omitted, by default the exponential law.
     on_failure : {"raise", "return"}
-        What to do where the tolerance was not reached: raise :class:`SolveError` or return what there is, with its outcome.
+        What to do if the tolerance is not reached: raise :class:`SolveError`, or return the state with its outcome.
     **parts
         ``fluid``, ``cavitation``, ``cavity_pressure``, ``flow_factors``, ``solid`` and ``slide_to_roll`` as in
-        :class:`stribeck.LineContact`, in the place of those of the problem; with groups in Hertz units, see fluids.md.
+        :class:`stribeck.LineContact`, instead of those of the problem; with groups in Hertz units, see fluids.md.
 
     Returns
     -------
@@ -200,9 +200,9 @@ SOLVERS: dict[str, Callable[[Groups, Contact | None, float, str], Any]] = {"line
 
 
 def solved_point(groups: Groups, rtol: float) -> RefinedState:
-    """Return the refined state of ``groups`` from cold; raise where no path leads there."""
+    """Return the refined state of ``groups`` from cold; raise if no path leads there."""
     far = untested(groups)
-    # Where double precision ends, a guess may overflow: Newton's iteration refuses it, and that is the outcome.
+    # Near the limits of double precision a guess may overflow: Newton's iteration refuses it, which gives the outcome.
     with np.errstate(all="ignore") if far else nullcontext():
         try:
             base = groups if groups.speed > 0 else with_positive_gap(groups)[0]
@@ -214,7 +214,7 @@ def solved_point(groups: Groups, rtol: float) -> RefinedState:
 
 
 def _refined(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedState:
-    """Return the refined state of ``groups`` from the cold start of ``base``; raise where no path leads there."""
+    """Return the refined state of ``groups`` from the cold start of ``base``; raise if no path leads there."""
     path = first_path(base)
     if not path.outcome.ok:
         raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}{far}")
@@ -227,7 +227,7 @@ def _refined(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedStat
 
 
 def _reforming(groups: Groups, rtol: float) -> RefinedState:
-    """Return the state of a film that may form anew: the full film where its suction stays above that of the cavity.
+    """Return the state of a film that may form anew: the full film if its pressure stays above that of the cavity.
 
     A cavity at ambient pressure reaches to infinity.
     """
@@ -270,12 +270,10 @@ def as_groups(problem: Groups | Contact) -> tuple[Groups, Contact | None]:
 
 
 def check_rtol(rtol: float) -> None:
-    """Refuse a tolerance that is no number or out of range."""
+    """Refuse a tolerance that is not a number or out of range."""
     low, high = RTOL_RANGE
     if isinstance(rtol, bool) or not isinstance(rtol, int | float) or not low <= rtol <= high:
-        raise InputError(
-            f"rtol = {show(rtol)}; it must be a number from {low:g}, what double precision can give, to {high:g}."
-        )
+        raise InputError(f"rtol = {show(rtol)}; it must be a number from {low:g}, the limit of double precision, to {high:g}.")
 
 
 def describe(groups: Groups) -> str:
@@ -284,7 +282,7 @@ def describe(groups: Groups) -> str:
 
 
 def untested(groups: Groups) -> str:
-    """Return a sentence on groups outside of what was tested, to end a message of failure; empty for others."""
+    """Return a sentence on groups outside the tested range, to end a message of failure; empty for others."""
     outside = []
     for name, (low, high) in TESTED.items():
         value = float(getattr(groups, name))
@@ -294,7 +292,7 @@ def untested(groups: Groups) -> str:
 
 
 def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: float, on_failure: str = "raise") -> Solution:
-    """Return the solution that a refined state is, or raise what its outcome asks for."""
+    """Return a refined state as a solution, or raise the error of its outcome."""
     solution = solution_of(point, contact, rtol)
     if solution is not None and (point.outcome.ok or on_failure == "return"):
         return solution
@@ -303,13 +301,13 @@ def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: f
 
 
 def minimum_estimate(rtol: float, model: Model) -> float:
-    """Return the smallest error that is stated for a tolerance, with the model of the article or another."""
+    """Return the smallest stated error for a tolerance, with the model of the article or another."""
     least = MIN_ESTIMATE if model == ARTICLE else MIN_ESTIMATE_OF_OTHERS
     return max(least * rtol, min(SURE_ESTIMATE, 0.3 * rtol))
 
 
 def solution_of(point: RefinedState, contact: Contact | None, rtol: float) -> Solution | None:
-    """Return the solution that a refined state is, or None where there is no state."""
+    """Return a refined state as a solution, or None if there is no state."""
     state, values, estimate = point.state, point.values, point.estimate
     if state is None or values is None or estimate is None:
         return None
@@ -341,7 +339,7 @@ def state_notes(
     floor: float,
     rtol: float,
 ) -> tuple[str, ...]:
-    """Return what to know of a state; ``state()`` is asked for its pressures alone, ``floor`` is the error by rounding."""
+    """Return the notes on a state; ``state()`` is called for its pressures only, ``floor`` is the error by rounding."""
     notes = [*shape_notes(contact), *law_notes(groups, contact, values)]
     if groups.speed > 0 and (contact is not None or groups.model != ARTICLE):
         solved = state()

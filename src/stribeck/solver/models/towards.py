@@ -1,16 +1,16 @@
-r"""Cold start of models that are not the article's: from its state, one part of the model after the other.
+r"""Cold start of models other than the article's: from its state, one part of the model after the other.
 
-The solid is its own from the start, if the path of loads leads to the state with it.  First the film ends: where the pressure
-of the full film falls to zero, or as that of a rigid parabola does.  Then the fluid changes into its own, and the solid if it
-must, at once if Newton's iteration manages that, else along
+The path of loads has the solid of the model, if it reaches the state with it.  First the film ends: where the pressure of the
+full film falls to zero, or as under a rigid parabola.  Then the fluid of the model replaces the Newtonian one, and its solid
+the half-plane if need be, in one step if Newton's iteration converges, else along
 
 .. math::
 
     G = (1 - t) \, G_\mathrm{Newton} + t \, G_\mathrm{film}, \qquad
     D = (1 - t) \, D_\mathrm{half-plane} + t \, D_\mathrm{solid}
 
-Last a film that ends at ambient pressure begins anew behind a cavity of lower pressure.  That is the long way: the full film
-of the fluid itself mostly tells where it ruptures, see :func:`ruptured`.
+Last a film that ends at ambient pressure begins anew behind a cavity of lower pressure.  A shorter way works mostly: the
+full film of the fluid shows where it ruptures, see :func:`ruptured`.
 """
 
 from __future__ import annotations
@@ -45,34 +45,34 @@ ORDER = 10
 MESH_TOLERANCE = 1e-3
 NEWTON_TOLERANCE = 1e-5
 FINER = (12, 1e-5)
-"""Nodes a panel and tolerance of the mesh where coarse ones lead nowhere."""
+"""Nodes per panel and tolerance of the mesh if coarse ones fail."""
 MOST_STEPS = 100
 
 LOOKED_AT = 4001
-"""Points at which the end of the full film and its largest suction are looked for."""
+"""Points at which the end of the full film and its largest suction are searched."""
 
 NEAREST_EXIT = 0.4
-"""Part of the width of a contact from the middle within which no film ends."""
+"""No film ends within this part of the half-width from the middle."""
 
 RIGID_EXIT, RIGID_FLUX, RIGID_LOAD = 0.4751299, 1.2257484, 0.25968614
 """Of a rigid parabola: exit over (2 h_0)**(1/2), flux gap over h_0, and h_0 over lambda where the film carries all."""
 
 RIGID_SPEED = 300.0
-"""Speed from which that starts Newton's iteration."""
+"""Speed above which the rigid parabola starts Newton's iteration."""
 
 HEIGHTS = (-400.0, 400.0)
-"""Logarithms of its lowest and its largest height."""
+"""Logarithms of its smallest and largest height."""
 
 BLENDING = Steps(1.0, 1.0, 1e-3)
 CAVITIES = 4001
-"""Lengths of cavities that are looked at."""
+"""Lengths of cavities that are tried."""
 
 FIRST_SUCTIONS = (0.3, 0.03, 1e-3)
-"""Parts of the largest suction that a film could begin anew with, with which the cavity begins: the longer the likelier."""
+"""First suction of the cavity, over the largest with which a film could begin anew: the first that succeeds is taken."""
 
 CAVITY_PARTS = (0.52, 0.75, 1.0, 2.0)
-"""Lengths of a cavity over that of the stretch on which the suction of the full film is too large: half of it where the cavity
-is short, as the flow that is missing behind lowers the pressure too."""
+"""Lengths of a cavity over that of the stretch on which the suction of the full film is too large: half of it for a short
+cavity, as the missing flow lowers the pressure behind it too."""
 
 BEFORE_LOWEST = 0.03
 """Distance of the rupture from the place of the largest suction, over the length of the cavity."""
@@ -102,7 +102,7 @@ class RigidEnding:
 
     @classmethod
     def of(cls, groups: Groups) -> RigidEnding | None:
-        """Return the parabola whose film and asperities carry the load; None where double precision holds none."""
+        """Return the parabola whose film and asperities carry the load; None if it is outside double precision."""
         speed, law = float(groups.speed), contact_law(groups)
         x, dx = np.linspace(-6, 6, 241, retstep=True)
         x, dx = x * math.sqrt(law.decay_length), dx * math.sqrt(law.decay_length)
@@ -133,7 +133,7 @@ class RigidEnding:
 
     @property
     def minimum_position(self) -> float:
-        """The middle, from the exit."""
+        """The middle of the contact, seen from the exit."""
         return -self.exit
 
     def log_gap(self, mesh: Mesh) -> Array:
@@ -165,7 +165,7 @@ class BlendedFilm:
 
     @property
     def uses_pressure(self) -> bool:
-        """Whether the film does."""
+        """Whether the film's gradient depends on the pressure."""
         return self.film.uses_pressure
 
     def at(self, speed: Numbers) -> BlendedFilm:
@@ -178,7 +178,7 @@ class BlendedFilm:
         return np.asarray((1 - self.part) * self.plain.gradient(gap, None, flux_gap) + self.part * own)
 
     def slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
-        """Return that of their derivatives."""
+        """Return the weighted mean of their derivatives."""
         plain, own = self.plain.slopes(gap, None, flux_gap), self.film.slopes(gap, pressure, flux_gap)
         return Slopes(
             (1 - self.part) * plain.by_gap + self.part * own.by_gap,
@@ -187,7 +187,7 @@ class BlendedFilm:
         )
 
     def __getattr__(self, name: str) -> object:
-        """Return what else a film has: nobody asks a blend for more than its gradient."""
+        """Return other attributes of the film: a blend is used for its gradient only."""
         return getattr(self.film, name)
 
 
@@ -259,7 +259,7 @@ def path_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> P
 def ruptured(groups: Groups, full: State) -> State | None:
     """Return a coarse state of groups whose film ruptures and begins anew, from that of their full film, or None.
 
-    However short the cavity: it is the shorter the nearer the full film, and the guess the better.
+    The cavity may be very short: the shorter it is, the nearer the full film, and the better the guess.
     """
     pressure = groups.model.cavity_pressure
     x = np.sort(full.mesh.nodes)
@@ -281,7 +281,7 @@ def ruptured(groups: Groups, full: State) -> State | None:
 def _reforming(groups: Groups, ended: Path[State]) -> Path[State]:
     """Return the path on which the pressure of the cavity falls from near zero to that of the groups.
 
-    A film that ends at ambient pressure tells where it would begin anew: where the suction of a film from there on is that
+    A film that ends at ambient pressure shows where it would begin anew: where the suction of the film behind equals that
     of the cavity.
     """
     state, wanted = ended.states[-1], -groups.model.cavity_pressure
@@ -321,7 +321,7 @@ def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float =
 
 
 def _settled(groups: Groups, guess: Guess) -> State | None:
-    """Return a coarse state on a mesh that was made for it, or None."""
+    """Return a coarse state on a mesh made for it, or None."""
     state = _coarse(groups, guess)
     if state is None or not state.outcome.ok:
         return None
@@ -330,7 +330,7 @@ def _settled(groups: Groups, guess: Guess) -> State | None:
 
 
 def _ended(groups: Groups, full: Path[State]) -> State | None:
-    """Return the state whose film ends, from that of the full film; along the path of loads if that is too far."""
+    """Return the state whose film ends, from that of the full film; along the path of loads if that is too far away."""
     rigid = RigidEnding.of(groups) if groups.speed > RIGID_SPEED else None
     for guess in (rigid, _seen_from_exit(full.states[-1])):
         found = None if guess is None else _settled(groups, guess)
@@ -375,7 +375,7 @@ def _seen_from_exit(state: State) -> SeenFrom:
 
 
 def _blended(groups: Groups, path: Path[State], start: State) -> Path[State]:
-    """Return the path on which fluid and solid change into those of the groups, the quickest way that leads there."""
+    """Return the path on which fluid and solid change into those of the groups, the fastest that arrives."""
     own, plain = groups.model, start.groups.model
 
     def blend(part: float) -> Film:
