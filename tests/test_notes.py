@@ -10,7 +10,7 @@ from fit_data import TRUE, exact
 
 import stribeck as sb
 from stribeck.regimes.margins import RegimeMargins, physical_bounds, regime_margins
-from stribeck.solver.notes import HARD, HIGHEST_PRESSURE, LAW_RANGE
+from stribeck.solver.notes import HARD, HIGHEST_PRESSURE, LAW_RANGE, pressure_notes
 
 SEAL = sb.load_case(EXAMPLES / "rod_seal.toml").contact
 """A contact under Persson's law at load group 5.5."""
@@ -132,6 +132,12 @@ def test_a_hertz_pressure_that_makes_oil_stiff_is_noted_first(part, noted):
     solution = sb.solve(contact.replace(speed="20 mm/s"), rtol=1e-4)
     assert any(note.startswith(HARD) for note in solution.notes) == noted
     assert len(solution.notes) > 1 and solution.notes[0].startswith(HARD) == noted
+
+
+def test_a_fluid_that_stiffens_with_pressure_is_not_said_to_be_missing():
+    contact = TRUE.replace(modulus=4 * HIGHEST_PRESSURE**2 / TRUE.hertz.pressure**2 * TRUE.modulus)
+    assert pressure_notes(contact)
+    assert not pressure_notes(contact.replace(fluid=sb.fluids.Barus("10 1/GPa")))
 
 
 def test_steel_in_oil_reads_it_in_the_first_line_of_every_command(tmp_path, capsys, no_scans):

@@ -83,13 +83,13 @@ def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        The sentence; empty up to a Hertz pressure of 50 MPa.
+        The sentence; empty up to a Hertz pressure of 50 MPa, and for a fluid with a law of viscosity over pressure.
 
     Notes
     -----
     With the 10 to 25 1/GPa of oils, viscosity is 1.6 to 3.5 times as high at 50 MPa.  Source: when_not_to_use.md.
     """
-    if contact is None or not contact.hertz.pressure > HIGHEST_PRESSURE:
+    if contact is None or contact.fluid.viscosity is not None or not contact.hertz.pressure > HIGHEST_PRESSURE:
         return ()
     pressure = contact.hertz.pressure
     return (
