@@ -157,6 +157,8 @@ def _parsing(problem: CycloptsError) -> str:
         return f"{name} needs {wanted}, but {len(problem.tokens_so_far)} given."
     if isinstance(problem, UnknownOptionError) and "--mu0" in str(problem):
         return "Unknown option: --mu0; it is called --boundary-friction."
+    if str(problem) in ("Unknown option: -o.", "Unknown option: --output.") and list(problem.command_chain or ()) == ["new"]:
+        return f"{_line(problem)} The file is given without an option, as in stribeck new case.toml."
     return _line(problem)
 
 
