@@ -26,7 +26,7 @@ from stribeck.equations.drag import Nodal, viscous_friction
 from stribeck.equations.line import LOAD, Equations, Operators, gradient_in_film, slopes_in_film
 from stribeck.equations.observables import ROW, VISCOUS, Observables, friction_integrals, friction_scale, gradients
 from stribeck.equations.position_error import position_errors
-from stribeck.equations.state import StackedStates, is_thinning, jumps_between_nodes
+from stribeck.equations.state import StackedStates, is_thinning, jump_of
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
 from stribeck.numerics.running_integral import RunningIntegral, Volterra
 from stribeck.quantities.outputs import ABSOLUTE, ENDS, NAMES
@@ -272,7 +272,8 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         return slopes
 
     slopes = gradient(fluid)
-    jumps = jumps_between_nodes(film, gap, fluid)
+    jump = jump_of(film)
+    jumps = None if jump is None else jump(gap, fluid)
     if jumps is not None:
         slopes = slopes + 0.5 * jumps
     if fluid is None:

@@ -238,10 +238,9 @@ def is_thinning(film: Film) -> bool:
     return hasattr(film, "fall")
 
 
-def jumps_between_nodes(film: Film, gap: Array, pressure: Array | None) -> Array | None:
-    """Return by how much the pressure gradient of a film jumps between each node and the next one; None if it never does."""
-    told = None if getattr(film, "is_plain", False) else getattr(film, "jump", None)
-    return None if told is None else told(gap, pressure)
+def jump_of(film: Film) -> Callable[[Array, Array | None], Array | None] | None:
+    """Return what tells by how much the pressure gradient jumps between each node and the next one; None if it never does."""
+    return None if getattr(film, "is_plain", False) else getattr(film, "jump", None)
 
 
 def mesh_for(
@@ -287,7 +286,7 @@ def mesh_for(
     """
     cavitation = groups.model.cavitation
     plateau, broken = fall_of(groups.model.film, float(groups.speed))
-    thins = is_thinning(groups.model.film)
+    thins, jump = is_thinning(groups.model.film), jump_of(groups.model.film)
     ends, restart = cavitation is not Cavitation.NONE, math.inf
     if cavitation is Cavitation.REFORM:
         restart = _cavity_on_mesh(guess)
@@ -345,7 +344,7 @@ def mesh_for(
             wide = half_widths * np.where(half_widths > FINEST_OF_LAYER * thickness, wrong.reshape(x.shape).max(axis=1), 0.0)
             missed = wide > (tolerance / TAIL_OF_ERROR) ** 2
             fields.append(np.where(missed[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
-        jumps = jumps_between_nodes(groups.model.film, gap, fluid) if stretch[0, 0] == 1.0 else None
+        jumps = jump(gap, fluid) if jump is not None and stretch[0, 0] == 1.0 else None
         if jumps is not None:
             wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
             wrong /= np.fmax(np.abs(fluid).max(), 1e-300)

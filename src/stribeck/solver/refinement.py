@@ -14,7 +14,7 @@ from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, erro
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.state import END_GAIN, State, fall_of, jumps_between_nodes, mesh_for, solve_state
+from stribeck.equations.state import END_GAIN, State, fall_of, jump_of, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
@@ -104,7 +104,8 @@ def converge(
         # share the cause of their error.
         film = state.equations.film
         shared = state.equations.operators.has_exit or fall_of(film, 1.0).broken
-        shared |= jumps_between_nodes(film, state.gap, state.fluid_pressure) is not None
+        jump = jump_of(film)
+        shared |= jump is not None and jump(state.gap, state.fluid_pressure) is not None
         if last is not None and mesh.size >= CLEARLY_FINER * last[0] and not shared:
             estimate = estimate.at_most(np.abs(values.array(in_article) - last[1]))
         last = mesh.size, values.array(in_article)
