@@ -89,7 +89,7 @@ def pressure_notes(contact: Contact | None) -> tuple[str, ...]:
     -----
     With the 10 to 25 1/GPa of oils, viscosity is 1.6 to 3.5 times as high at 50 MPa.  Source: when_not_to_use.md.
     """
-    if contact is None or contact.fluid.viscosity is not None or not contact.hertz.pressure > HIGHEST_PRESSURE:
+    if contact is None or contact.groups.model.film.uses_pressure or not contact.hertz.pressure > HIGHEST_PRESSURE:
         return ()
     pressure = contact.hertz.pressure
     return (
