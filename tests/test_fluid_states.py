@@ -15,9 +15,9 @@ from stribeck.fluids.effective_medium import EffectiveMedium
 from stribeck.fluids.flow_factors import PatirCheng
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.rate_laws import Carreau, Eyring
+from stribeck.fluids.rheology.rate_laws import Carreau, Eyring
+from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, Roelands
 from stribeck.fluids.shear_thinning import ShearThinning
-from stribeck.fluids.viscosity import Barus, DowsonHigginson, Roelands
 from stribeck.solids.layer import Layer
 
 THINNING = [row for row in REFERENCE["c_shear_thinning"] if row["case"] in ("carreau n=.5", "eyring")]

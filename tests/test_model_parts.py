@@ -21,7 +21,7 @@ from stribeck.equations.prediction import SeenFrom
 from stribeck.equations.state import mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.viscosity import Barus, check_range
+from stribeck.fluids.rheology.viscosity import Barus, check_range
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import RunningIntegral, Volterra

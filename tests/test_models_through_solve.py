@@ -12,7 +12,7 @@ import stribeck as sb
 from stribeck.contacts.model import Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.viscosity import Barus
+from stribeck.fluids.rheology.viscosity import Barus
 from stribeck.solids.layer import Layer
 
 REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())

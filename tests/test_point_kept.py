@@ -14,7 +14,7 @@ from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.model import Model
 from stribeck.fits.friction_parts import kept_balls
 from stribeck.fits.model import FrictionModel, free_inputs
-from stribeck.fluids.rate_laws import Carreau
+from stribeck.fluids.rheology.rate_laws import Carreau
 from stribeck.fluids.shear_thinning import ShearThinning
 
 SPEEDS = BALL.speed * np.geomspace(0.5, 4.0, 4)

@@ -15,7 +15,7 @@ from stribeck.fluids.effective_medium import EffectiveMedium
 from stribeck.fluids.flow_factors import PatirCheng
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.viscosity import Barus, DowsonHigginson
+from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.solids.layer import Layer, transfer
 from stribeck.solids.layer_plane import layer_by_mode

@@ -17,9 +17,9 @@ from stribeck.equations.point.system import Equations, Linear, Operators, Unknow
 from stribeck.equations.thinning.column import column, flow_curve
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.local_flow import profile
-from stribeck.fluids.rate_laws import Carreau, Cross, Eyring, PowerLaw
+from stribeck.fluids.rheology.rate_laws import Carreau, Cross, Eyring, PowerLaw
+from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson
 from stribeck.fluids.shear_thinning import ShearThinning
-from stribeck.fluids.viscosity import Barus, DowsonHigginson
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.solver.point.solve import solve_cold
 

@@ -7,7 +7,7 @@ _HOMES = {
     "effective_medium": ("EffectiveMedium",),
     "flow_factors": ("PatirCheng",),
     "presets": ("PRESETS", "Liquid", "glycerol_water", "water"),
-    "rate_laws": ("Carreau", "Cross", "Eyring", "PowerLaw"),
-    "viscosity": ("Barus", "Constant", "DowsonHigginson", "Incompressible", "Roelands"),
+    "rheology.rate_laws": ("Carreau", "Cross", "Eyring", "PowerLaw"),
+    "rheology.viscosity": ("Barus", "Constant", "DowsonHigginson", "Incompressible", "Roelands"),
 }
 __all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES)

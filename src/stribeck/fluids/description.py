@@ -8,7 +8,7 @@ from typing import Any
 from stribeck.fluids.fluid import Film
 from stribeck.fluids.laws import DensityLaw, FilmUnits, FlowFactors, RateLaw, Smooth, ViscosityLaw
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.viscosity import Constant, Incompressible, check_range
+from stribeck.fluids.rheology.viscosity import Constant, Incompressible, check_range
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["Fluid", "as_fluid", "as_flow_factors"]

@@ -18,7 +18,7 @@ import numpy as np
 from stribeck._types import Array, Numbers
 from stribeck.fluids.fluid import MOST_KEPT, Key, Slopes, kept, same
 from stribeck.fluids.laws import DensityLaw, FlowFactors, Smooth, ViscosityLaw, joined_names, joined_parameters, notes_of
-from stribeck.fluids.viscosity import Constant, Incompressible
+from stribeck.fluids.rheology.viscosity import Constant, Incompressible
 
 ONE, ZERO = np.ones(()), np.zeros(())
 

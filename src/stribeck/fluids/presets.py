@@ -25,8 +25,8 @@ from types import MappingProxyType
 from typing import Any
 
 from stribeck.fluids.description import Fluid
-from stribeck.fluids.rate_laws import Carreau, Cross
-from stribeck.fluids.viscosity import Roelands
+from stribeck.fluids.rheology.rate_laws import Carreau, Cross
+from stribeck.fluids.rheology.viscosity import Roelands
 from stribeck.quantities.units import InputError, format_si, show, to_si
 
 __all__ = ["PRESETS", "Liquid", "Preset", "celsius", "glycerol_water", "water"]

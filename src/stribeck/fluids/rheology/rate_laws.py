@@ -28,7 +28,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.laws import FilmUnits, RateLaw
-from stribeck.fluids.rate_moments import Table
+from stribeck.fluids.rheology.rate_moments import Table
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Carreau", "Cross", "Eyring", "PowerLaw"]
