@@ -20,7 +20,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 from inspect import cleandoc
 from typing import Self, TypeVar
 
@@ -28,15 +27,20 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.fluids.laws import FilmUnits, RateLaw
-from stribeck.fluids.rheology.rate_moments import Table
+from stribeck.fluids.rheology.tabulated import (
+    SMALLEST_EXPONENT,
+    TabulatedLaw,
+    checked_exponent,
+    checked_time,
+    parameters_of,
+    set_numbers,
+    table_of,
+)
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["Carreau", "Cross", "Eyring", "PowerLaw"]
 
 Plateaus = TypeVar("Plateaus", bound="_BetweenPlateaus")
-
-SMALLEST_EXPONENT = 0.05
-"""Of fluids that thin: with less, the stress hardly depends on the rate, as that of a plastic solid."""
 
 LOWEST = 1e-8
 """Rate times relaxation time below which a power law has its plateau: without one, pressure and drag fall off so slowly far
@@ -49,36 +53,8 @@ TERMS = 9
 """Of the series for Eyring's second moment, up to his stress: the next is 1e-17 of the first."""
 
 
-class _Tabulated(RateLaw):
-    """A law whose moments and rate come from a table."""
-
-    def moments(self, rate: Array) -> tuple[Array, Array]:
-        """Return both moments."""
-        return _table(type(self), *self._shape).moments(rate, self.stress(rate)[0])
-
-    def rate(self, stress: Array) -> Array:
-        """Return the rate at a stress."""
-        return _table(type(self), *self._shape).rate(stress)
-
-    @property
-    def _shape(self) -> tuple[float, ...]:
-        """Its numbers but for the relaxation time."""
-        raise NotImplementedError
-
-    def _smallest(self) -> float:
-        """Return the logarithm of the rate below which the law is Newtonian to rounding."""
-        raise NotImplementedError
-
-
-@lru_cache(maxsize=64)
-def _table(law: Callable[..., _Tabulated], *shape: float) -> Table:
-    """Table of a law with the relaxation time one; fits and sweeps ask for many."""
-    of_law = law(1.0, *shape)
-    return Table(of_law.stress, of_law._smallest())
-
-
 @dataclass(frozen=True, init=False)
-class _BetweenPlateaus(_Tabulated):
+class _BetweenPlateaus(TabulatedLaw):
     r"""A law with a plateau of the viscosity at low and one at high rates.
 
     :math:`\eta_0` is the viscosity of the contact.
@@ -109,18 +85,18 @@ class _BetweenPlateaus(_Tabulated):
     infinite_viscosity: float
 
     def __init__(self, relaxation_time: str | float, exponent: float, infinite_viscosity: str | float = 0.0) -> None:
-        _set(self, relaxation_time=_time(relaxation_time), exponent=self._checked(exponent))
-        _set(self, infinite_viscosity=_infinite(infinite_viscosity))
+        set_numbers(self, relaxation_time=checked_time(relaxation_time), exponent=self._checked(exponent))
+        set_numbers(self, infinite_viscosity=_infinite(infinite_viscosity))
 
     @staticmethod
     def _checked(exponent: float) -> float:
         """Return the exponent, if it is one of the law."""
-        return _exponent(exponent)
+        return checked_exponent(exponent)
 
     @property
     def parameters(self) -> dict[str, float | str]:
         """All three."""
-        return _parameters(self, "relaxation_time", "exponent", "infinite_viscosity")
+        return parameters_of(self, "relaxation_time", "exponent", "infinite_viscosity")
 
     @property
     def time(self) -> float:
@@ -132,7 +108,7 @@ class _BetweenPlateaus(_Tabulated):
         return type(self)(self.relaxation_time / units.time, self.exponent, _ratio(self.infinite_viscosity, units))
 
     @property
-    def _shape(self) -> tuple[float, ...]:
+    def shape(self) -> tuple[float, ...]:
         return self.exponent, self.infinite_viscosity
 
 
@@ -166,7 +142,8 @@ class Carreau(_BetweenPlateaus):
         thinning = (1 - rest) * np.exp(0.5 * (n - 1) * np.log1p(square))
         return rate * (rest + thinning), rest + thinning * (1 + (n - 1) * (square / (1 + square)))
 
-    def _smallest(self) -> float:
+    def smallest(self) -> float:
+        """Return the logarithm of the rate below which the law is Newtonian to rounding."""
         return -21.0
 
 
@@ -201,7 +178,8 @@ class Cross(_BetweenPlateaus):
         thinning = (1 - rest) / (1 + power)
         return rate * (rest + thinning), rest + thinning * (1 - m * power / (1 + power))
 
-    def _smallest(self) -> float:
+    def smallest(self) -> float:
+        """Return the logarithm of the rate below which the law is Newtonian to rounding."""
         return -38.0 / self.exponent
 
 
@@ -234,7 +212,7 @@ class Eyring(RateLaw):
         value = to_si(stress, "pressure", "stress")
         if value <= 0:
             raise InputError(f"stress = {show(stress)} must be above zero; oils have about '5 MPa'.")
-        _set(self, eyring_stress=value)
+        set_numbers(self, eyring_stress=value)
 
     @property
     def name(self) -> str:
@@ -244,7 +222,7 @@ class Eyring(RateLaw):
     @property
     def parameters(self) -> dict[str, float | str]:
         """The stress."""
-        return _parameters(self, "eyring_stress")
+        return parameters_of(self, "eyring_stress")
 
     @property
     def time(self) -> float:
@@ -309,7 +287,7 @@ class PowerLaw(RateLaw):
     exponent: float
 
     def __init__(self, relaxation_time: str | float, exponent: float) -> None:
-        _set(self, relaxation_time=_time(relaxation_time), exponent=_exponent(exponent))
+        set_numbers(self, relaxation_time=checked_time(relaxation_time), exponent=checked_exponent(exponent))
 
     @property
     def name(self) -> str:
@@ -319,7 +297,7 @@ class PowerLaw(RateLaw):
     @property
     def parameters(self) -> dict[str, float | str]:
         """Both."""
-        return _parameters(self, "relaxation_time", "exponent")
+        return parameters_of(self, "relaxation_time", "exponent")
 
     @property
     def time(self) -> float:
@@ -348,39 +326,13 @@ class PowerLaw(RateLaw):
 
     def rate(self, stress: Array) -> Array:
         """Return the rate at a stress."""
-        return LOWEST * _table(Carreau, self.exponent).rate(stress / LOWEST**self.exponent)
+        return LOWEST * table_of(Carreau, self.exponent).rate(stress / LOWEST**self.exponent)
 
     def moments(self, rate: Array) -> tuple[Array, Array]:
         """Return both moments: those of Carreau's law in the units of its plateau."""
         n, unit = self.exponent, LOWEST**self.exponent
-        first, second = _table(Carreau, n).moments(rate / LOWEST, self.stress(rate)[0] / unit)
+        first, second = table_of(Carreau, n).moments(rate / LOWEST, self.stress(rate)[0] / unit)
         return LOWEST * unit * first, LOWEST * unit**2 * second
-
-
-def _set(law: RateLaw, **values: float) -> None:
-    for name, value in values.items():
-        object.__setattr__(law, name, value)
-
-
-def _parameters(law: RateLaw, *names: str) -> dict[str, float | str]:
-    return {name: getattr(law, name) for name in names}
-
-
-def _time(value: str | float) -> float:
-    time = to_si(value, "time", "relaxation_time")
-    if time <= 0:
-        raise InputError(f"relaxation_time = {show(value)} must be above zero; one over the rate at which thinning begins.")
-    return time
-
-
-def _exponent(value: float) -> float:
-    n = to_si(value, "number", "exponent")
-    if not SMALLEST_EXPONENT <= n <= 1:
-        raise InputError(
-            f"exponent = {show(value)} must lie between {SMALLEST_EXPONENT:g} and 1, which is Newtonian; the stress grows as "
-            "the rate to this power. Fluids that thicken are not modelled."
-        )
-    return n
 
 
 def _infinite(value: str | float) -> float:
