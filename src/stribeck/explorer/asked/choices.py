@@ -5,6 +5,7 @@ Each row is a table of a case and one of its keys; the keys of a choice come fro
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -29,10 +30,12 @@ RTOL = {"line": 1e-6, "point": 1e-4}
 """Tolerance of the states where the geometry is chosen on the page."""
 
 TYPICAL: dict[str, Any] = {
-    "relaxation_time": "1 ms",
-    "exponent": 0.5,
-    "stress": "5 MPa",
-    "pressure_viscosity": "15 1/GPa",
+    **{
+        key: tomllib.loads(f"value = {example}")["value"]
+        for laws in FLUID_LAWS.values()
+        for part in laws.values()
+        for key, example in part.needed.items()
+    },
     "slide_to_roll": 0.5,
     "layer_thickness": "2 mm",
     "hurst": 0.8,
