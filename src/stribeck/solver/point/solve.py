@@ -28,10 +28,10 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.plane import BODIES
 from stribeck.solver.at_rest import with_positive_gap
-from stribeck.solver.point.cavitated import follow_cavitated, holds_torn, refine_cavitated
+from stribeck.solver.cavities.cavitated import follow_cavitated, holds_torn, refine_cavitated
+from stribeck.solver.cavities.reforming import follow_reforming, full_model, holds_reforming, refine_reforming
 from stribeck.solver.point.level import Level
 from stribeck.solver.point.refinement import Pair, follow, holds_along_path, newton_tolerance, pair_of, refine
-from stribeck.solver.point.reforming import follow_reforming, full_model, holds_reforming, refine_reforming
 from stribeck.solver.point.start import first_state
 from stribeck.solver.point.state import OBSERVABLES, PointFields, PointState
 

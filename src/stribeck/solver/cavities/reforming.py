@@ -10,7 +10,7 @@ from stribeck.contacts.model import Model
 from stribeck.equations.cavities.torn import TornEquations
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
-from stribeck.solver.point.cavitated import follow_cavitated, holds_torn, is_torn, refine_cavitated
+from stribeck.solver.cavities.cavitated import follow_cavitated, holds_torn, is_torn, refine_cavitated
 from stribeck.solver.point.level import Level
 from stribeck.solver.point.refinement import Pair, follow, holds_along_path, refine
 
