@@ -184,7 +184,7 @@ class PatirCheng(FlowFactors):
     def jump(self, gap: Array) -> Array | None:
         """Return by how much sigma phi_s jumps between each node and the next one: the two fits do not meet.
 
-        Nor do their slopes: a kink k between nodes w apart makes a quadrature wrong by at most k w^2/12, a jump of k w/6 as much.
+        Nor do their slopes: a kink k between nodes w apart puts a quadrature wrong by k w^2/12 at most, as a jump k w/6 does.
         """
         v = 2 * self.substrate_share - 1
         if v == 0:
