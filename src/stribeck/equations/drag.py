@@ -8,7 +8,7 @@ With :math:`C = 2 \bar F_N^{1/2} \lambda / (3\pi)` and the tractions :math:`T` o
     \mu_f^\mathrm{published} = \mu_f^\mathrm{upper} - \frac{6 C}{\lambda} \int x \, p_f \, dx
 
 on the substrate, on the cylinder, and on the cylinder with the fluid pressure projected on its slope.  In the cavity the
-liquid is sheared without a pressure gradient.  The film of the article has closed forms of the first and the last in
+liquid is sheared without a pressure gradient.  For the film of the article the first and the last have closed forms in
 :mod:`stribeck.equations.observables`.
 """
 
@@ -31,7 +31,7 @@ __all__ = ["drag_gradients", "friction_scale", "viscous_friction"]
 class Nodal(NamedTuple):
     """A film on the nodes of a mesh, which may be finer than that of its equations: rows of states.
 
-    ``weights`` is the row that makes the load of nodal pressures.
+    ``weights`` is the row that integrates nodal pressures to the load.
     """
 
     integral: RunningIntegral
@@ -87,7 +87,7 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
             lower, upper = lower + torn, upper + torn
     scale = friction_scale(load, equations.speed)
     stretch = np.ones(1) if d is None else d
-    # Beyond the panels in x, by parts: there the gap is known better than the pressure.
+    # Beyond the panels in x, integrated by parts: there the gap is known better than the pressure.
     g = film.gradient(*_at(wet, h, p), h_star)
     leverage = 0.5 * (mesh.edges[-1] ** 2 - xi[wet] ** 2) * tail_weights[wet]
     inner = slice(0, -order)
@@ -103,7 +103,7 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
 
 
 def _at(nodes: Flags, gap: Array, pressure: Array | None) -> tuple[Array, Array | None]:
-    """Return gap and pressure at some nodes; where these are all, as they are."""
+    """Return gap and pressure at some nodes; unchanged if these are all."""
     if nodes.all():
         return gap, pressure
     return gap[..., nodes], None if pressure is None else pressure[..., nodes]

@@ -1,15 +1,14 @@
 r"""A-posteriori error of the observables: from the mesh, Newton's iteration and rounding.
 
-The state is put on the same panels with more nodes, where the pressures that its gap implies are evaluated anew.  The
-residual that they leave is the defect of the state, and one solve with the factors of Newton's last Jacobian turns it into the
-change of the unknowns that removing the defect would bring, to first order:
+The state is interpolated to more nodes on the same panels, where the pressures that its gap implies are evaluated anew.  Their
+residual is the defect of the state.  One solve with the factors of Newton's last Jacobian gives the change of the unknowns
+that would remove the defect, to first order:
 
 .. math:: \delta y = -J^{-1} R_\mathrm{fine}(y)
 
-Rounding is treated alike: the residual is known to a few units in the last place of its largest term, with signs that
-nobody knows, of which a few patterns are tried, constant on panels: what differs from node to node moves no film.  All changes
-become errors of the observables by their gradients.
-To them comes what the polynomials on the panels miss between the nodes.
+Rounding is treated alike: the residual is wrong by a few units in the last place of its largest term, with unknown signs.
+A few patterns of signs are tried, constant on panels, as errors that differ from node to node hardly move the film.  The
+gradients of the observables turn all changes into errors.  The interpolation error between the nodes is added.
 """
 
 from __future__ import annotations
@@ -49,17 +48,17 @@ SAFETY = 2.0
 """Factor from the estimated to the stated error."""
 
 DEFECT_SAFETY = 3.0
-"""The same of the defect, of which the finer nodes see a part only where the pressures need many more."""
+"""The same for the defect, of which finer nodes see only a part if the pressures need many more."""
 
 FLAT = 0.2
-"""Where the gap differs from the flux gap by less than this part of itself all over a panel, the pressure gradient is smoother
-than its formula in the gap, which there is the difference of nearly equal numbers; it is interpolated itself."""
+"""If the gap differs from the flux gap by less than this part of itself on a whole panel, the pressure gradient is
+interpolated itself: its formula is there the difference of nearly equal numbers."""
 
 ROUNDING_UNITS = 2.0
-"""Units in the last place by which the residual may be wrong all over a panel; checked against meshes that should agree."""
+"""Units in the last place by which the residual may be wrong on a whole panel; checked against meshes that should agree."""
 
 PATTERNS = 5
-"""Patterns of signs of these: the mean square of what they change is known from so many within a factor of two."""
+"""Number of patterns of signs: enough for the mean square of their changes within a factor of two."""
 
 DEVIATIONS = 2.0
 """Standard deviations of these changes that are stated as the error by rounding."""
@@ -77,11 +76,11 @@ DRAG = [ROW[name] for name in VISCOUS]
 POSITIONS = [ROW[row.name] for row in ENDS]
 
 PRESSURE_STEPS = 2
-"""Steps to the fluid pressure that a gap implies, from that at the nodes, with the derivative there."""
+"""Steps towards the fluid pressure that a gap implies, from that at the nodes, with the derivative there."""
 
 
 def _by_highest(s: Array, order: int) -> Array:
-    """Moments of the logarithm with the degrees that a panel of ``order`` nodes gains, at the near ones of targets s."""
+    """Moments of the logarithm with the degrees that a panel of ``order`` nodes gains, at those targets s that are near."""
     near = np.abs(s) < near_distance(order)
     found = np.zeros((len(s), EXTRA_NODES))
     found[near] = log_moments(s[near], order + EXTRA_NODES)[:, order:]
@@ -89,7 +88,7 @@ def _by_highest(s: Array, order: int) -> Array:
 
 
 def _seen_from_infinity(centre: Array, half_width: Array, nodes: Array) -> Array:
-    """Nodes of a panel in ``x``, in units of the edge of the panel through infinity, in the coordinate of that one."""
+    """Nodes of a panel in ``x``, in units of the edge of the panel through infinity, in the coordinate of the latter."""
     return np.asarray(1 / (centre + half_width * nodes))
 
 
@@ -102,8 +101,8 @@ _OF_INFINITY = Blocks(_seen_from_infinity, _by_highest)
 class FineOperators:
     """The panels of a mesh with more nodes, and the deflection that pressures there cause at the nodes of the mesh.
 
-    The degrees that the mesh itself holds deflect as on it.  Those above fall so fast with the distance from their panel that
-    only its neighbourhood feels them.
+    The deflection by degrees that the mesh holds is that on the mesh.  That by higher degrees falls so fast with the distance
+    from their panel that only its neighbourhood counts.
     """
 
     coarse: Mesh
@@ -147,7 +146,7 @@ class FineOperators:
         return np.asarray((density @ self._lowered.T).reshape(len(pressure), -1) / self.coarse.stretch)
 
     def weights(self, operators: Operators) -> Array:
-        """Return the row that makes the load of fine pressures, as the ``operators`` do of coarse ones."""
+        """Return the row that integrates fine pressures to the load, as the ``operators`` do for coarse ones."""
         mesh, tail = self.mesh, operators.tail
         if tail is None:
             return mesh.weights
@@ -179,9 +178,9 @@ class ErrorEstimate:
     Attributes
     ----------
     discretisation, interpolation, rounding : ndarray
-        Absolute errors left by mesh and iteration at the nodes, by the polynomials between them, and by rounding.
+        Absolute errors by mesh and iteration at the nodes, by the polynomials between them, and by rounding.
     scales : ndarray
-        What each is relative to: one for the load shares, the observable itself for the others.
+        Scale of each relative error: one for the load shares, the observable itself for the others.
     minimum_position : float
         Absolute error of the position of the minimum gap [a].
     """
@@ -195,7 +194,7 @@ class ErrorEstimate:
     def at_most(self, difference: Array) -> ErrorEstimate:
         """Return the estimate with no discretisation error above twice the ``difference`` from a clearly coarser mesh.
 
-        Where the film is thin the pressure between the nodes, not the state, makes the defect large.
+        In thin films the pressure between the nodes, not the state, makes the defect large.
         """
         return replace(self, discretisation=np.fmin(self.discretisation, SAFETY * difference))
 
@@ -203,7 +202,7 @@ class ErrorEstimate:
     def relative(self) -> Array:
         """Relative errors of the observables in the order of :data:`observables.NAMES`.
 
-        Where rounding makes the nodal gaps uneven the polynomials between them measure just that, so that the larger counts.
+        If rounding makes the nodal gaps uneven, the polynomials between them measure just that: the larger of both counts.
         """
         return np.asarray((self.discretisation + np.maximum(self.interpolation, self.rounding)) / self.scales)
 
@@ -214,12 +213,12 @@ class ErrorEstimate:
 
     @property
     def between_nodes(self) -> float:
-        """The part of it that the polynomials between the nodes cause."""
+        """The part of it by the polynomials between the nodes."""
         return float(np.nanmax(self.interpolation / self.scales))
 
     @property
     def at_nodes(self) -> float:
-        """The part of it that mesh and iteration cause at the nodes; that of the ends of a film is :attr:`of_ends`."""
+        """The part of it by mesh and iteration at the nodes; that of the ends of a film is :attr:`of_ends`."""
         relative = self.discretisation / self.scales
         relative[POSITIONS[0] :] = math.nan
         return float(np.nanmax(relative))
@@ -231,7 +230,7 @@ class ErrorEstimate:
 
     @property
     def floor(self) -> float:
-        """The part of it that rounding causes and no mesh removes."""
+        """The part of it by rounding, which no mesh removes."""
         return float(np.nanmax(self.rounding / self.scales))
 
 
@@ -249,7 +248,7 @@ class Perturbations:
 
 
 def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -> Perturbations:
-    """Return by how much defect, quadrature and rounding may change states; ``observed`` as in :func:`error_estimates`."""
+    """Return the changes of states by defect, quadrature and rounding; ``observed`` as in :func:`error_estimates`."""
     equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
     coarse, mesh, film, far_gap = fine.coarse, fine.mesh, states.equations.film, states.equations.far_gap(states.y)
     integral, d = fine.integral(op.restart), equations.dilation(y)
@@ -262,7 +261,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     known = equations.pressures(y)[1] if film.uses_pressure else None
     fluid = None if known is None else coarse.to_order(known * coarse.stretch, mesh.order) / mesh.stretch
     flat = (np.abs(h - h_star) < FLAT * h).reshape(len(y), coarse.panels, -1).all(axis=2)
-    flat &= not is_thinning(film)  # which turns sharply where the rate is zero
+    flat &= not is_thinning(film)  # it turns sharply where the rate is zero
 
     def gradient(p: Array | None) -> Array:
         slopes = gradient_in_film(film, integral, gap, p, h_star)
@@ -341,7 +340,7 @@ def _implied_pressure(equations: Equations, y: Array, integral: RunningIntegral,
 
 
 def _of_ends(states: StackedStates, residual: Array, integral: RunningIntegral, slopes: Array, size: float) -> None:
-    """Write the rows of the ends of the film: what finer nodes leave, what the polynomial misses at the exit, and rounding."""
+    """Write the rows of the ends of the film: the defect on finer nodes, the interpolation error at the exit, and rounding."""
     equations, op, at, y = states.equations, states.equations.operators, states.equations.layout, states.y
     coarse, mesh, scale = op.mesh, integral.mesh, np.ravel(equations.flux_scale)
     left = slice((op.integral.middle - 1) * coarse.order, op.integral.middle * coarse.order)
@@ -380,7 +379,7 @@ def interpolation_errors(states: StackedStates, minimum_positions: Array, centra
 def gap_is_resolved(mesh: Mesh, gap: Array, rtol: float, *, centre: float = 0.0, spread: float = 0.0) -> bool:
     """Return whether central and minimum gap are interpolated to ``rtol``, up to ``spread`` from the place of the minimum.
 
-    On a reused mesh they are the first to become unresolved.
+    On a reused mesh they are the first to lose resolution.
     """
     central = int(np.searchsorted(mesh.edges, 0.0)) if centre == 0.0 else int(mesh.locate(np.array([centre]))[0][0])
     lowest = mesh.nodes[int(np.argmin(gap))]
@@ -396,7 +395,7 @@ def _between_nodes(mesh: Mesh, gap: Array, panels: Indices | list[int]) -> Array
 
 @lru_cache(maxsize=64)
 def _signs(panels: int, order: int, numbers: int, fields: int) -> Array:
-    """Return fixed patterns of signs, each the same all over a panel, shape (PATTERNS, fields + numbers)."""
+    """Return fixed patterns of signs, each constant on a panel, shape (PATTERNS, fields + numbers)."""
     signs = np.random.default_rng(panels).choice(np.array([-1.0, 1.0]), (PATTERNS, panels + numbers))
     nodal = np.repeat(signs[:, numbers:], order, axis=1)
     return np.hstack([nodal, np.zeros((PATTERNS, fields - panels * order)), signs[:, :numbers]])

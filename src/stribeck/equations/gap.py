@@ -18,7 +18,7 @@ LARGEST_STEP = 0.2
 
 
 def far_gap(x: Array) -> Array:
-    """Return ``x**2/2 - ln|x|/2``, the gap far away on the half-plane but for a smooth function of ``1/x``."""
+    """Return ``x**2/2 - ln|x|/2``, the far gap on the half-plane up to a smooth function of ``1/x``."""
     return 0.5 * x**2 - 0.5 * np.log(np.abs(x))
 
 
@@ -26,7 +26,7 @@ def gap_at(mesh: Mesh, h: Array, x: Array, far_gap: Callable[[Array], Array] = f
     """Return the gap at the coordinates ``x`` of the mesh from the panels' polynomials.
 
     Those are of the logarithm of the gap over its growth, or of the gap over its growth where it touches zero; on the panel
-    through infinity they are of what the gap has beyond ``far_gap``.
+    through infinity they are of the gap less ``far_gap``.
     """
     far = mesh.scale**2 + x * x
     if h.min() > 0:
@@ -43,7 +43,7 @@ def gap_at(mesh: Mesh, h: Array, x: Array, far_gap: Callable[[Array], Array] = f
 
 
 def central_gap(mesh: Mesh, h: Array) -> Array:
-    """Return the gap at zero, where the panel right of it begins; that of every row of ``h``."""
+    """Return the gap at zero, at the left end of a panel, for every row of ``h``."""
     first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
     nodes = slice(first, first + mesh.order)
     return np.asarray(np.exp(np.log(h[..., nodes] / mesh.far[nodes]) @ reference(mesh.order).left_end) * mesh.scale**2)
@@ -94,7 +94,7 @@ def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Arr
     log_gap : ndarray, shape (rows, nodes)
         Logarithm of the gap at the nodes of panels side by side, the one through infinity not among them.
     first : int
-        Number of the first of these panels.
+        Index of the first of these panels.
 
     Returns
     -------
@@ -107,7 +107,7 @@ def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Arr
     k, about = np.divmod(np.argmin(log_gap, axis=1), order)
     start = rule.nodes[about]
     beside = np.clip(k - (about == 0) + (about == order - 1), 0, panels - 1)
-    if (beside != k).any():  # beside the panel of the lowest node the search begins where the two meet
+    if (beside != k).any():  # on the panel beside that of the lowest node the search begins at their common edge
         at_end = np.where(about == 0, 1.0, -1.0)
         start = np.append(start, at_end)
         k, about = np.append(k, beside), np.append(about, np.where(about == 0, order - 1, 0))

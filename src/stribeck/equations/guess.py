@@ -1,4 +1,4 @@
-"""What a guess of a state must provide, on the whole line."""
+"""The interface of a guess of a state, on the whole line."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ from stribeck.quantities.outcome import Outcome
 __all__ = ["LOAD", "Equations", "Operators", "gradient_in_film", "slopes_in_film"]
 
 COLUMNS = 32
-"""Columns of a Jacobian made at once: a product as large as the whole takes new memory, which costs more than the product."""
+"""Columns of a Jacobian computed at once: a product as large as the whole needs new memory, which costs more than itself."""
 
 
 def gradient_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | None, flux_gap: Numbers) -> Array:
@@ -89,7 +89,7 @@ class Equations:
     law : ContactLaw
         Contact pressure from the gap.
     flux_scale : float
-        What the rows of the gradient are multiplied by.
+        Factor of the rows of the gradient.
 
     Notes
     -----
@@ -138,7 +138,7 @@ class Equations:
         return np.asarray(y[..., self.layout.exit] + (nodes if d is None else d * nodes))
 
     def far_gap(self, y: Array) -> Callable[[Array], Array]:
-        """Return the function of the coordinate that the gap is far away but for one that is smooth in its inverse."""
+        """Return the far gap as a function of the coordinate, up to a smooth function of the inverse coordinate."""
         solid, d = self.operators.model.solid, self.dilation(y)
         if not self.operators.has_exit:
             return solid.far_gap
@@ -164,7 +164,7 @@ class Equations:
 
     @cached_property
     def is_sliding(self) -> bool:
-        """Whether the speed is positive; of stacked states, that of all."""
+        """Whether the speed is positive; for stacked states, whether all are."""
         return bool(np.all(self.speed > 0))
 
     def residual(self, y: Array) -> Array:
@@ -408,7 +408,7 @@ class _Eliminated:
 
     @property
     def failure(self) -> Outcome | None:
-        """That of the reduced system."""
+        """Failure of the reduced system."""
         return self.reduced.failure
 
     @property

@@ -32,10 +32,10 @@ from stribeck.quantities.outputs import ALL_NAMES, NAMES
 __all__ = ["ROW", "Observables", "friction_integrals", "friction_scale", "gradients", "observables"]
 
 ROW = {name: row for row, name in enumerate(ALL_NAMES)}
-"""Where each is in such an array."""
+"""Index of each in such an array."""
 
 PLACE_STEP = 1e-5
-"""Step of the difference that is the slope of the gap at the centre [a]."""
+"""Step of the finite difference for the slope of the gap at the centre [a]."""
 
 VISCOUS = ("viscous_published", "viscous_balanced", "viscous_upper")
 
@@ -69,7 +69,7 @@ class Observables:
 def friction_integrands(x: Array, h: Array, h_star: Numbers, slopes: Array | None = None) -> Array:
     """Return the integrands of the two definitions of friction, shape (2, ..., len(x)).
 
-    ``slopes`` is the pressure gradient ``(h - h*)/h**3`` over lambda where that is known better than from the gap.
+    ``slopes`` is the pressure gradient over lambda, ``(h - h*)/h**3``, if it is known better than from the gap.
     """
     u = 1 / h
     projected = 3 * x * x * (u * u * (1 - h_star * u) if slopes is None else slopes)
@@ -175,8 +175,8 @@ def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
 
     Those of the film of the article are the first alone.  The position of the minimum gap is held, to first order without
     effect.  The projected pressure enters as its moment, ``3 int x**2 g dx = -6 int x A g dx`` without the panel through
-    infinity: the two forms respond alike to true changes of the gap, but this one is insensitive to what the quadrature of g
-    leaves.
+    infinity: the two forms respond alike to true changes of the gap, but this one is insensitive to the quadrature error
+    of g.
     """
     op, mesh, speed, at = equations.operators, equations.operators.mesh, equations.speed, equations.layout
     of_gap, flux, offset = at.gap, at.flux_gap.start, at.offset.start
@@ -231,7 +231,7 @@ def _of_fluid_share(equations: Equations, y: Array, row: Array) -> None:
 
 
 def _of_frame(equations: Equations, y: Array, rows: dict[str, Array]) -> None:
-    """Write what the exit and the dilation of the frame change, and the derivatives of the central gap, into ``rows``."""
+    """Write the effects of the exit and the dilation of the frame, and the derivatives of the central gap, into ``rows``."""
     mesh, at, d = equations.operators.mesh, equations.layout, equations.dilation(y)
     rows["exit_position"][..., at.exit] = 1.0
     if d is not None:

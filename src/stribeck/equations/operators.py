@@ -40,7 +40,7 @@ class Dilated(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Operators:
-    """What the equations need of a mesh; made once and kept for all states that share it."""
+    """Operators of a mesh; computed once and kept for all states that share it."""
 
     mesh: Mesh
     model: Model = ARTICLE
@@ -83,12 +83,12 @@ class Operators:
 
     @cached_property
     def tail(self) -> HalfTail | None:
-        """Half the panel through infinity, where the film does not reach infinity on the other side."""
+        """Half of the panel through infinity, if the film does not reach infinity on the other side."""
         return HalfTail(self.mesh) if self.integral.one_sided else None
 
     @cached_property
     def deflection_by_tail(self) -> Array | None:
-        """Densities on that half -> deflection; None where the solid feels nothing so far away."""
+        """Densities on that half -> deflection; None if the solid is not deflected from so far away."""
         known = self.tail is not None and isinstance(self.model.solid, HalfPlane)
         return deflection_by_half_tail(self.tail) if known and self.tail is not None else None
 
@@ -159,7 +159,7 @@ class Operators:
         return self.integral.weights, self.at_exit, self.integral.weights_beyond
 
     def dilated(self, d: float | None, of_gradient: bool = True) -> Dilated:
-        """Return the operators in x; None stands for the frame that is not dilated."""
+        """Return the operators in x; None stands for a frame without dilation."""
         if d is None:
             of = self.deflection_of_gradient if of_gradient else None
             return Dilated(self.deflection, of, self.weights, self.load_of_gradient, self.ends)

@@ -4,9 +4,9 @@ At the minimum the slope of the gap vanishes, so that a wrong slope moves it by
 
 .. math:: \delta x = -\frac{\delta h'}{h''}
 
-The slope is wrong by what defect and rounding change at the nodes, by what the search for the minimum leaves, and by what
-the polynomial misses between its m nodes.  The last is taken for the first Legendre polynomial that is left out, whose slope
-is about :math:`\sqrt{2m/\pi}\,(1-s^2)^{-3/4}` inside a panel and :math:`m(m+1)/2` at its ends.  If the gap has a second
+The error of the slope comes from the changes of the nodal gaps by defect and rounding, from the search for the minimum, and
+from the interpolation between the m nodes of a panel.  The last is estimated by the first Legendre polynomial left out, whose
+slope is about :math:`\sqrt{2m/\pi}\,(1-s^2)^{-3/4}` inside a panel and :math:`m(m+1)/2` at its ends.  If the gap has a second
 minimum of nearly the same depth, the distance between the two is the error.
 """
 
@@ -21,7 +21,7 @@ SAFETY = 2.0
 """Factor from the estimated to the stated error; checked against finer meshes."""
 
 NODAL_ROUNDING = 16 * 2.0**-52
-"""Rounding of a nodal gap, the difference of terms of order one; it differs from node to node and so makes a slope."""
+"""Rounding of a nodal gap, a difference of terms of order one; it differs from node to node and so changes the slope."""
 
 
 def position_errors(mesh: Mesh, gap: Array, changes: Array, positions: Array, depth: Array) -> Array:
@@ -34,7 +34,7 @@ def position_errors(mesh: Mesh, gap: Array, changes: Array, positions: Array, de
     gap : ndarray, shape (rows, nodes)
         Nodal gaps [u_Hz].
     changes : ndarray, shape (n, rows, nodes)
-        What may be wrong with the nodal gaps [u_Hz], the defect first and patterns of rounding after it.
+        Possible errors of the nodal gaps [u_Hz], the defect first, then patterns of rounding.
     positions : ndarray, shape (rows,)
         Positions of the minimum gap [a].
     depth : ndarray, shape (rows,)

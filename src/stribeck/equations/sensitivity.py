@@ -28,7 +28,7 @@ STEP = 1e-5
 
 
 Change = tuple[Model, Model, float]
-"""Two models and the distance of what they are functions of."""
+"""Two models, and the distance of the values that give them."""
 
 
 def log_derivatives(state: State, changes: Sequence[Change] = ()) -> dict[str, Array]:
@@ -82,9 +82,9 @@ def log_derivatives(state: State, changes: Sequence[Change] = ()) -> dict[str, A
 
 
 def _of_any_film(state: State, changes: Sequence[Change] = ()) -> dict[str, Array]:
-    """Return the same for a film that is not that of the article.
+    """Return the same for a film other than the article's.
 
-    What the speed or the model changes by itself, at fixed unknowns, is a difference; the rest goes through the unknowns.
+    The direct effect of the speed or the model, at fixed unknowns, is a difference; the rest comes through the unknowns.
     """
     equations, y, load = state.equations, state.y, float(state.groups.load)
     inverse, units = equations.inverse(y), equations.units(y)

@@ -1,7 +1,7 @@
 """Discrete states: the mesh that resolves one, the unknowns on it, and Newton's iteration that finds them.
 
-A state knows its groups, its equations and the Newton iteration that made it.  Between meshes travel the logarithm of the
-gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and the fluid pressure.
+A state knows its groups, its equations and the Newton iteration that made it.  Between meshes the logarithm of the
+gap over ``scale**2 + x**2``, which is smooth and bounded on the whole line, and the fluid pressure are interpolated.
 """
 
 from __future__ import annotations
@@ -27,14 +27,13 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
 
 CHORD = 0.25
-"""Contraction above which a kept factorisation is given up."""
+"""Contraction of the steps above which a kept factorisation is given up."""
 
 ROUNDING = 1e-9
-"""Relative rounding of what tells where a panel lies."""
+"""Relative rounding in the position of a panel."""
 
 LONG_REACH_ORDER = 14
-"""Nodes a panel from which the panel through infinity begins twice as far out, to keep up with them: the logarithm in the
-gap limits its order."""
+"""Nodes per panel from which the panel through infinity begins twice as far out: the logarithm in the gap limits its order."""
 
 END_GAIN = 5.0
 """Factor by which the error of the end of a film falls when the panels beside it are halved, at least."""
@@ -43,14 +42,14 @@ END_TAIL = 3.5e-4
 """Tolerance of a mesh from which the error of that end, which falls with its square, asks for halved panels."""
 
 FINEST_OF_LAYER = 6.0
-"""Half-width of a panel in thicknesses of a layer above which what it does to pressures is that of springs alone."""
+"""Half-width of a panel in thicknesses of a layer above which the layer acts as springs alone."""
 
 REACH_OF_LAYER = 24.0
-"""Distance in thicknesses beyond which a layer is not felt."""
+"""Distance in thicknesses beyond which pressures on a layer have no effect."""
 
 DRAG_OF_LAYER = 0.02
-"""Error of the drag far away, over the central gap and the fourth power of the distance, where a layer is thicker than that:
-there the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses."""
+"""Error of the far drag over the central gap and the fourth power of the distance, for a layer thicker than that distance:
+beyond, the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses."""
 
 BROKEN = 30.0
 """Factor by which a pressure that falls off as a broken power is resolved better at infinity than one that is smooth there."""
@@ -62,13 +61,13 @@ WIDEST_FAR = 0.5
 """Half-width over the distance of panels on which a broken power is resolved."""
 
 COARSE = 1e-3
-"""Tolerance of a mesh from which it serves to find a state, not to read off drag."""
+"""Tolerance from which a mesh serves to find a state, not to read off drag."""
 
 FORGOTTEN = 30.0
-"""Memories of a solid after which nothing of a pressure is left."""
+"""Deborah numbers, as a distance, after which a viscoelastic solid has forgotten a pressure."""
 
 TAIL_OF_ERROR = 0.2
-"""Tolerance of a mesh that goes with an error of one."""
+"""Tolerance of a mesh for an error of one."""
 
 SAME_FRAME = 1.5
 """Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made."""
@@ -79,7 +78,7 @@ PREDICTION_GOAL = 0.5
 
 @dataclass(frozen=True, eq=False)
 class StackedStates:
-    """States that share a mesh, as observables and error estimates want them.
+    """States that share a mesh, as observables and error estimates take them.
 
     Attributes
     ----------
@@ -90,7 +89,7 @@ class StackedStates:
     load : float or ndarray
         Load group; a column of them where there are several states.
     correction : callable
-        What removes residuals, shape (..., rows, N + 2), to first order, -J^-1 of each.
+        Returns the changes that remove residuals, shape (..., rows, N + 2), to first order: -J^-1 of each.
     """
 
     equations: Equations
@@ -228,7 +227,7 @@ class State:
 
 
 def fall_of(film: Film, speed: float) -> Fall:
-    """Return how the pressure of a film falls off at a speed group: as an even power where the film does not tell."""
+    """Return how the pressure of a film falls off at a speed group: as an even power unless the film says otherwise."""
     told = getattr(film, "fall", None)
     return Fall() if told is None else told(speed)
 
@@ -275,7 +274,7 @@ def mesh_for(
     gap_tolerance : float
         That of the logarithm of the gap on the panels where the central and the minimum gap are read off.
     halvings : int
-        How often the panels beside the ends of a film are halved, beyond what the tolerance asks for.
+        How often the panels beside the ends of a film are halved, beyond the demand of the tolerance.
     spread : float
         Distance from the minimum of the gap up to which it may be read off.
 
@@ -407,7 +406,7 @@ def solve_state(
 ) -> State:
     """Return the state of the discrete equations on the mesh of ``operators`` nearest to ``guess``.
 
-    ``kept`` is the inverse of a neighbour on the same mesh, to be used for as long as it makes the steps contract.
+    ``kept`` is the inverse of a neighbour on the same mesh, used while the steps contract with it.
     """
     equations = Equations(operators, float(groups.speed), contact_law(groups), guess.flux_gap**2)
     start = unknowns_of(equations, guess)

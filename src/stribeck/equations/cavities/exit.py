@@ -2,8 +2,8 @@ r"""The film of a ball that ends at ambient pressure.
 
 The film ruptures along one line and does not form anew, so that :math:`\min(p_f, R/d) = 0` conserves mass.
 
-Far from the contact the pressure is :math:`g(\theta) \, r/h^2` and ruptures along :math:`x = |y|/3`; load and deflection of
-what lies beyond the rim are that of this law.
+Far from the contact the pressure is :math:`g(\theta) \, r/h^2` and ruptures along :math:`x = |y|/3`; load and deflection by
+the pressure beyond the rim follow from it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from stribeck.equations.point.system import Unknowns
 __all__ = ["CavitatedEquations"]
 
 STREAKS = 0.05
-"""Stated error of what the dry streaks take off the shear, over the spacing of the angles in half turns."""
+"""Stated error of the shear that is missing in dry streaks, over the spacing of the angles in half turns."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class CavitatedEquations(TornEquations):
 
     @property
     def load_row(self) -> Array:
-        """Weights of the load on the axisymmetric mode, with what lies beyond the rim, shape (rings,)."""
+        """Weights of the load on the axisymmetric mode, with the load beyond the rim, shape (rings,)."""
         row = self.operators.load_row.copy()
         row[-1] += 2.0 * math.pi * self.operators.mesh.rim**2
         return row
@@ -46,7 +46,7 @@ class CavitatedEquations(TornEquations):
         """Return the deflection by mode; beyond the rim all modes fall as r**-3."""
         found = self.operators.deflect(by_mode)
         beyond = self.operators.deflection_from_beyond * by_mode[:, -1:]
-        beyond[1] = 0.0  # that of mode one is in the operator
+        beyond[1] = 0.0  # the operator holds that of mode one
         return np.asarray(found + beyond)
 
     def rim_slope(self, p: Array, offset: float) -> Array:
@@ -60,10 +60,10 @@ class CavitatedEquations(TornEquations):
         return np.eye(mesh.modes) * float(slope[0] / first[0])
 
     def shear_missing(self, y: Unknowns) -> Array:
-        """Return by how much the shear over h on each ring is less for the dry streaks of the wake, shape (rings,)."""
+        """Return the shear over h that is missing on each ring in the dry streaks of the wake, shape (rings,)."""
         return shear_missing(self.operators.mesh, y.gap, y.fluid, partial(self.film.sheared, self.speed))
 
     def shear_doubt(self, y: Unknowns) -> float:
-        """Return about the error of the shear over h of all: streaks begin at a line that is known within a spacing."""
+        """Return an estimate of the error of the total shear over h: streaks begin at a line that is known to a spacing."""
         mesh = self.operators.mesh
         return STREAKS / mesh.modes * abs(float(mesh.ring_weights @ self.shear_missing(y)))

@@ -5,9 +5,9 @@ In the cavity :math:`p_f = p_\mathrm{cav}` and a part :math:`\phi` of the width 
 .. math:: R - \lambda \, U \, (\phi \, C) = 0, \qquad p_f \ge p_\mathrm{cav}, \quad \phi \ge 0, \quad
     \phi \, (p_f - p_\mathrm{cav}) = 0
 
-with the weak residual R of Reynolds' equation at a node, what a full gap carries, C, and what leaves the cells around nodes by
-their faces, U: upstream differences of first order, that let the film form anew where it must.  Far from the contact the film
-is full.
+with the weak residual R of Reynolds' equation at a node, the amount C that a full gap carries, and the outflow U from the
+cells around nodes: upstream differences of first order, with which the film forms anew where it must.  Far from the contact
+the film is full.
 
 Source: [Jakobsson and Floberg 1957], [Olsson 1965] for the conservation of mass; [Elrod 1981] J. Lubr. Technol. 103, 350, for
 the differences upstream.
@@ -31,11 +31,11 @@ __all__ = ["ReformingEquations", "outflow"]
 
 
 DOUBT = 0.15
-"""Stated error of the gas over what its cell releases."""
+"""Stated error of the gas over the outflow from its cell."""
 
 
 def outflow(mesh: PolarMesh) -> csc_matrix:
-    """Return what leaves the cells around the nodes, of a field that goes with the motion along x.
+    """Return the outflow from the cells around the nodes, of a field that moves along x.
 
     Parameters
     ----------
@@ -78,11 +78,11 @@ class ReformingEquations(TornEquations):
 
     @cached_property
     def spread(self) -> csc_matrix:
-        """What unit gas at each node adds to the residual at all, shape (nodes, nodes)."""
+        """Residual at all nodes by unit gas at each, shape (nodes, nodes)."""
         return outflow(self.operators.mesh)
 
     def gas(self, y: Unknowns) -> Array:
-        """Return the part of the width that is gas, at the nodes: the mean of what comes into their cells and what leaves."""
+        """Return the part of the width that is gas, at the nodes: the mean of inflow and outflow of their cells."""
         torn = y.fluid <= self.least
         passing, flow = self.passing(torn), self.flow(y.gap, y.fluid, y.offset)
         found = passing.gas(flow) - 0.5 * flow / passing.weights
@@ -90,14 +90,14 @@ class ReformingEquations(TornEquations):
         return np.where(torn, np.clip(found / full, 0.0, 1.0), 0.0)
 
     def shear_doubt(self, y: Unknowns) -> float:
-        """Return about the error of the shear over h of all: a part of what cells release, as gas within them is not known."""
+        """Return an estimate of the error of the total shear over h: a part of the outflow, as cells do not resolve it."""
         torn, mesh = y.fluid <= self.least, self.operators.mesh
         released = np.where(torn, self.flow(y.gap, y.fluid, y.offset) / self.passing(torn).weights, 0.0)
         lost = released / (self.speed * self.film.carried(y.gap, y.fluid) * y.gap)
         return DOUBT * abs(float((lost @ mesh.area_weights).sum()))
 
     def shear_missing(self, y: Unknowns) -> Array:
-        """Return by how much the shear over h on each ring is less for the gas of the cavity, shape (rings,)."""
+        """Return the shear over h that is missing on each ring because of gas in the cavity, shape (rings,)."""
         mesh = self.operators.mesh
         lost = self.gas(y) * self.film.shear(mesh, self.speed, y.gap, y.fluid) / y.gap
         return np.asarray(2.0 * np.pi / mesh.modes * mesh.radii * lost.sum(axis=0))

@@ -49,13 +49,13 @@ LINEAR = 1e-3
 """Relative error of a step that GMRES may leave; less near the solution."""
 
 LOOSE = 3e-2
-"""The same while other nodes break or heal."""
+"""The same while nodes still break or heal."""
 
 FEW = 0.15
 """Nodes that break or heal, over those that the factors of the capacitance matrix are for, up to which these serve."""
 
 ROOM = 1.2
-"""Columns that are kept room for, over those of the nodes that are known, as a few come with each step."""
+"""Room for columns over those of the known nodes, as a few more come with each step."""
 
 FLUID = 10.0
 """Part of the film pressure that GMRES may leave over that of the gap."""
@@ -65,12 +65,12 @@ WORN = 4.0
 
 
 class Passing:
-    """Where gas goes that torn nodes release: downstream from node to node, until one with a film takes it.
+    """The path of gas from torn nodes: downstream from node to node, until one with a film takes it.
 
     Parameters
     ----------
     spread : csc_matrix or None
-        What unit gas at each node adds to the residual at all; None where it stays at its node.
+        Residual at all nodes by unit gas at each; None if gas stays at its node.
     torn : ndarray of bool, shape (modes, rings)
         The torn nodes.
     """
@@ -104,14 +104,14 @@ class Passing:
 
 @dataclass(frozen=True, eq=False)
 class TornEquations(Equations):
-    """The discretised problem of a film that may break, at ambient pressure if nothing else is said."""
+    """The discretised problem of a film that may break, by default at ambient pressure."""
 
     least: float = 0.0
 
     order: ClassVar[float] = 2.0
     """Power of the number of angles with which errors fall."""
     slack: ClassVar[float] = 1.25
-    """Stated error over that which the difference between two meshes tells by this power."""
+    """Stated error over that from the difference between two meshes by this power."""
 
     @property
     def spread(self) -> csc_matrix | None:
@@ -119,7 +119,7 @@ class TornEquations(Equations):
         return None
 
     def shear_doubt(self, y: Unknowns) -> float:
-        """Return about the error of the integral of the shear over h for what fills the cavity."""
+        """Return an estimate of the error of the integral of the shear over h, by the content of the cavity."""
         raise NotImplementedError
 
     def linear(self, y: Unknowns) -> TornLinear:
@@ -178,7 +178,7 @@ class TornLinear(Linear):
 
 @dataclass(eq=False)
 class Capacitance:
-    """The preconditioner of the full film, and what unit residuals at nodes do by it, kept per node."""
+    """The preconditioner of the full film, and its response to unit residuals at nodes, kept per node."""
 
     banded: BandedModes
     mesh: PolarMesh
@@ -253,14 +253,14 @@ class _Factors:
     factors: tuple[Array, npt.NDArray[np.int32]] | None
 
     def solve(self, right: Array) -> Array:
-        """Return what unit residuals do away with film pressures at these nodes."""
+        """Return the unit residuals that remove film pressures at these nodes."""
         if self.factors is None:
             return right
         return np.asarray(lu_solve(self.factors, right.astype(np.float32), check_finite=False))
 
 
 class _Preconditioner:
-    """About the inverse of a Jacobian with torn nodes.
+    """An approximate inverse of a Jacobian with torn nodes.
 
     Nodes that are torn, or torn no more, since the factors were made border these: the first have residuals beside those of
     the factors, for the second these vanish.
@@ -282,7 +282,7 @@ class _Preconditioner:
             self.corner = lu_factor(corner, check_finite=False)
 
     def _bordered(self, old: Array) -> Array:
-        """Return what residuals at the nodes of the factors do to the conditions of those that border them."""
+        """Return the effect of residuals at the nodes of the factors on the conditions of the bordering nodes."""
         return np.concatenate([self.rows[:, : self.base.columns.size] @ old, old[self.place]])
 
     def __call__(self, right: Array) -> Array:
@@ -390,7 +390,7 @@ def iterate_cavitated(
                 size = max(size, 1.0)
                 continue
             left = 3.0 * size * size + solved.left * size
-            # Slow, the film pressure is small, and a step that is small for the gap may not be so for it.
+            # At slow speed the film pressure is small: a step may be small for the gap and not for the pressure.
             missed = solved.left * float(np.abs(step.fluid).max() / max(y.fluid.max(), np.finfo(float).tiny))
             if same and left <= tolerance and missed <= FLUID * tolerance:
                 return ended(Outcome.CONVERGED)

@@ -1,4 +1,4 @@
-r"""What fills the cavity behind a ball: streaks of liquid, from wall to wall, that keep the flow of the line of rupture.
+r"""The wake of a ball: streaks of liquid from wall to wall in the cavity, with the flow at the line of rupture.
 
 Where the film is torn the pressure is the same everywhere and the liquid goes with the walls, so that along x
 
@@ -47,7 +47,7 @@ class Rupture:
 
 
 def rupture_line(mesh: PolarMesh, gap: Array, fluid: Array) -> Rupture | None:
-    """Return where a film ruptures; None where it does not.
+    """Return the line at which a film ruptures; None if it does not.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def rupture_line(mesh: PolarMesh, gap: Array, fluid: Array) -> Rupture | None:
 
 
 def shear_missing(mesh: PolarMesh, gap: Array, fluid: Array, sheared: Callable[[Array], Array] = np.ones_like) -> Array:
-    r"""Return what the dry streaks of the wake take off the shear on each ring, :math:`r \oint (1 - \phi) \, \tau/h`.
+    r"""Return the shear that is missing on each ring in the dry streaks of the wake, :math:`r \oint (1 - \phi) \, \tau/h`.
 
     ``sheared`` gives the drag of sliding over that of a fluid that does not thin, by the gap.
     """

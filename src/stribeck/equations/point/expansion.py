@@ -1,7 +1,7 @@
-r"""Taylor series of a state of a ball in the logarithm of what varies, and of its observables.
+r"""Taylor series of a state of a ball, and of its observables, in the logarithm of the quantity that varies.
 
-Unknowns are the logarithm of the gap and the film pressure at the nodes, and the offset.  What is local, the contact pressure
-and the flow, is sampled along the path; the rest is linear.  For each order :math:`J w_k = -R_k|_{w_k = 0}` is solved by GMRES
+Unknowns are the logarithm of the gap and the film pressure at the nodes, and the offset.  The local parts, contact pressure
+and flow, are sampled along the path; the rest is linear.  For each order :math:`J w_k = -R_k|_{w_k = 0}` is solved by GMRES
 with the Jacobian and the preconditioner of the state, see :func:`stribeck.numerics.series.implicit_series`.
 """
 
@@ -40,8 +40,8 @@ SAMPLES = 20
 """Places at which the equations are evaluated."""
 
 WEIGHT, LOOSEST = 0.4, 1e-4
-"""How much less the next order counts between states, whose distance is of the order of the radius of convergence, and the
-largest residual that GMRES may leave of any."""
+"""Weight of one order between states over that of the order before, as the distance of states is near the radius of
+convergence; and the largest residual that GMRES may leave in any."""
 
 SHARE = SMOOTH.index("contact_load_share")
 
@@ -65,7 +65,7 @@ class Expanded(NamedTuple):
 
 
 def as_row(y: Unknowns) -> Array:
-    """Return unknowns as one row, of the gap its logarithm."""
+    """Return unknowns as one row, with the logarithm of the gap."""
     return np.concatenate([np.log(y.gap).ravel(), y.fluid.ravel(), [y.offset]])
 
 

@@ -8,8 +8,8 @@ With :math:`h = z_0 + r^2/2 + b/r` Reynolds' equation has, to first order in b, 
         + \sum_m C_m \cos m\theta \; r^{-3 - \sqrt{9 + m^2}}
 
 The first part is exact for b = 0, and 16 follows from :math:`h^3` and :math:`\partial_x h` to first order.  The
-sum is what decays of the film without a source in a gap :math:`r^2/2`; its coefficients come from within, and a rim that knows
-the rates alone lets it pass.
+sum holds the decaying solutions without a source in a gap :math:`r^2/2`; their coefficients come from the film inside, so that
+the condition at the rim needs their rates alone.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def particular(r: Array, offset: float, speed: float, far: FarFilm = FULL, bulge
 
 
 def rates(modes: int) -> Array:
-    """Return the exponents of the sum, one a mode."""
+    """Return the exponents of the sum, one per mode."""
     return np.asarray(-3.0 - np.sqrt(9.0 + np.arange(modes) ** 2))
 
 
@@ -54,7 +54,7 @@ def _rule() -> tuple[Array, Array]:
 def tails(
     rim: float, offset: float, speed: float, pressure: float, far: FarFilm = FULL, bulge: float = DEFLECTION
 ) -> tuple[float, float, float]:
-    """Return what lies beyond the rim of shear, pressure flow and moment, less the logarithms at infinity.
+    """Return the parts of shear, pressure flow and moment beyond the rim, without the logarithms at infinity.
 
     ``pressure`` is the factor of cos(theta) in the film pressure at the rim.
     """

@@ -1,11 +1,11 @@
-r"""What the equations of a ball ask of a film: the flow in the plane under a pressure gradient and the motion of the walls.
+r"""The film of a ball: its flow in the plane under a pressure gradient and the motion of the walls.
 
 .. math:: \nabla \cdot \big[ M \, \nabla p_f - \lambda \, C \, \mathbf e_x \big] = 0, \qquad
     M = \frac{\rho \, \phi \, h^3}{\eta}, \quad C = \rho \, (h + s S)
 
 in Hertz units, with viscosity, density and flow factors as functions of pressure and gap; M is the same in all directions.
-A fluid that thins has an M that depends on the gradient too (:mod:`stribeck.equations.thinning`): equations ask for
-what flows and for its derivatives, whatever the law.
+A fluid that thins has an M that depends on the gradient too (:mod:`stribeck.equations.thinning`): equations use
+the fluxes and their derivatives only, whatever the law.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from stribeck.numerics.fourier_panels import PolarMesh
 
 
 class Flow(NamedTuple):
-    """Mobility M and what is carried, C, with their derivatives; None by pressure stands for zero everywhere."""
+    """Mobility M and carried amount C, with their derivatives; None as the one by pressure stands for zero."""
 
     mobility: Array
     carried: Array
@@ -33,7 +33,7 @@ class Flow(NamedTuple):
 
 
 class Fluxes(NamedTuple):
-    """What flows, times the weights of the weak form, and mobility and what is carried at the rim.
+    """Fluxes times the weights of the weak form; mobility and carried amount at the rim.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Fluxes(NamedTuple):
     angular : ndarray, shape (modes, rings)
         Across the radius.
     rim : tuple of ndarray, shape (modes,)
-        Mobility and what is carried there.
+        Mobility and carried amount there.
     """
 
     radial: Array
@@ -64,7 +64,7 @@ class FluxSlopes(NamedTuple):
     crossed : ndarray, shape (modes, panels, degree + 1), or None
         Along the radius by the derivative in the angle, and across it by that in the radius; None for nothing.
     rim : tuple of ndarray, shape (modes,)
-        Mobility at the rim, and derivatives by the gap of mobility and of what is carried there.
+        Mobility at the rim, and the derivatives of mobility and carried amount by the gap there.
     """
 
     radial_of_pressure: Array
@@ -142,7 +142,7 @@ class LinearPlane:
         in_radius, in_angle = mesh.radial_derivative(pressure), (mesh.angular_derivative @ pressure) / mesh.radii
 
         def moves(mobility: Array, carried: Array) -> tuple[Array, Array]:
-            """Return what changes of mobility and of what is carried do to the flow along the radius and across it."""
+            """Return the changes of the flow along and across the radius by those of mobility and carried amount."""
             along = mesh.scattered(mobility) * in_radius - speed * cos[..., None] * mesh.scattered(carried)
             return weight * along, angle * (mobility * in_angle + speed * sin * carried)
 

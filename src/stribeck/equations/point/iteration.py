@@ -1,7 +1,7 @@
 """Newton's iteration for the point contact: damped steps by GMRES, with a preconditioner that is kept while it serves.
 
-Steps are not exact, so that :func:`stribeck.numerics.newton.root_find`, whose chord steps live on exact inverses, does not
-fit: how small a linear residual has to be is decided step by step, and the stopping test holds both errors, that of the
+Steps are not exact, so that :func:`stribeck.numerics.newton.root_find`, whose chord steps need exact inverses, does not
+fit.  Each step chooses how small its linear residual must be, and the stopping test counts both errors, that of the
 linearisation and that of GMRES.
 
 Source: [Deuflhard 2011] Newton Methods for Nonlinear Problems, section 2.1.5 (inexact steps); theory.md, the ball.
@@ -30,13 +30,13 @@ WORN, WORN_NEAR = 12, 16
 """Steps of GMRES from which the next Newton step makes its own preconditioner: far from the solution, and near it."""
 
 WIDEST = 16
-"""Band of a preconditioner that is made anew where one of a narrower band does not serve."""
+"""Band of a new preconditioner if one with a narrower band does not serve."""
 
 MOST_POOR = 4
 """Steps that such a one may leave poorly solved."""
 
 NEAR = 0.03
-"""Size of the steps from which the solution is near."""
+"""Size of a step below which the solution is near."""
 
 SMALLEST_PART = 1e-6
 """A step damped below this part of Newton's makes no progress."""
@@ -45,10 +45,10 @@ LINEAR = 3e-2
 """Relative error of a Newton step that GMRES may leave."""
 
 ACCEPTED = 0.1
-"""The same from which a kept preconditioner is given up."""
+"""Error above which a kept preconditioner is given up."""
 
 BENDING = 3.0
-"""Factor from the square of a step to the error that it leaves, where no two steps tell it."""
+"""Factor from the square of a step to the error after it, if no two steps are known to measure it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class Iterated:
     steps, krylov_steps, factorisations : int
         Its cost.
     left : float
-        Estimated relative error of the gap that the iteration leaves.
+        Estimated relative error of the gap after the iteration.
     preconditioner : BandedModes, Capacitance or None
         The last one, for neighbours.
     """
@@ -88,7 +88,7 @@ def step_size(law: ContactLaw, h: Array, dh: Array, load_scale: float = 1.0) -> 
 
 
 def distance(equations: Equations, y: Unknowns, preconditioner: BandedModes) -> float:
-    """Return about the size of the Newton step from unknowns: that by the preconditioner of a neighbour."""
+    """Return an estimate of the Newton step from unknowns, by the preconditioner of a neighbour."""
     with np.errstate(all="ignore"):
         residual, linear = equations.residual(y), Linear(equations, y)
         step = linear.changes(preconditioner(linear.right(residual)), residual[0])
@@ -185,7 +185,7 @@ def iterate(
 
 @dataclass(frozen=True, eq=False)
 class _Step:
-    """A Newton step, how many steps of GMRES it took, and the size of what they miss of it in the gap."""
+    """A Newton step, the number of GMRES steps it took, and the size of its error in the gap."""
 
     x: Array
     step: Unknowns
@@ -195,10 +195,10 @@ class _Step:
 
 
 def _solved(linear: Linear, preconditioner: BandedModes, right: Array, shape: Array, wanted: float, most: int) -> _Step:
-    """Return the Newton step, its error in the gap at most ``wanted`` times its size where ``most`` steps of GMRES allow.
+    """Return the Newton step with an error in the gap of at most ``wanted`` times its size, if ``most`` GMRES steps suffice.
 
     A small preconditioned residual in the pressure may still be a large one in the gap, where that is stiff against it: the
-    residual of the residual tells, and is a correction of its own.
+    residual of this solution shows it, and gives a further correction.
     """
     law, h = linear.equations.law, linear.y.gap
     x, rest, steps, tolerance = np.zeros_like(right), right, 0, wanted
@@ -212,7 +212,7 @@ def _solved(linear: Linear, preconditioner: BandedModes, right: Array, shape: Ar
         if not math.isfinite(missed + size):
             return _Step(x, step, steps, math.inf, False)
         if missed <= wanted * size or steps >= most:
-            # The correction is good to what GMRES contracts with, which is far below one.
+            # The correction is accurate to the contraction of GMRES, which is far below one.
             x = x + correction
             return _Step(x, linear.changes(x, shape), steps + 1, 0.1 * missed, missed <= max(wanted, ACCEPTED) * size)
         tolerance = max(1e-9, 0.1 * wanted * size / missed)

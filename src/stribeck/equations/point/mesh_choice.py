@@ -34,11 +34,11 @@ REACH = 50.0
 """Radius of the rim over the scale of the contact."""
 
 THINNED_BEYOND, MOST_FARTHER = 1e-7, 6
-"""Part of the viscosity that a fluid may lose to its rate at the rim, and the most panels beyond the usual one for it."""
+"""Part of the viscosity that a fluid may lose by thinning at the rim, and the most panels beyond the usual rim for this."""
 
 ROLLING, FILM_ROUNDS = 0.3, 20
-"""Rate in a film between walls that roll, over the mean speed and the film, as the pressure drives it; and rounds in which a
-film that is thinned by its own rate is found."""
+"""Shear rate between walls that roll, which the pressure drives, over mean speed and film thickness; and iterations for a film
+that is thinned by its own shear rate."""
 
 FAR_PANELS = 2
 """Panels in ln r beyond twice the scale."""
@@ -47,7 +47,7 @@ CAVITY_GROWTH = 1.5
 """Largest width of far panels over their radius where a film may form anew."""
 
 FAR_WIDTH, FAR_GROWTH = 4.0, 0.6
-"""Width of the far panels over the widest panel that a body allows near the contact, and over their radius: the larger one."""
+"""Width of the far panels over the widest panel that a body allows near the contact, or over their radius, if larger."""
 
 MOST_BYTES = 670_000_000
 """Memory that operators and preconditioner of a mesh may take."""
@@ -56,7 +56,7 @@ KEPT_BYTES = 120_000_000
 """Memory of the operators that are kept for later states."""
 
 EDGE_PRESSURE = 0.2
-"""Contact pressure at the edge, where its decay is taken from [p_Hz]."""
+"""Contact pressure at which the decay at the edge is read [p_Hz]."""
 
 
 SIDE_LOBES = 7.5
@@ -73,7 +73,7 @@ UNRESOLVED = 2.6
 root of an edge fall with 4.4**-n on the panels that lead to it."""
 
 NARROWEST, MOST_SPLITS = 1e-3, 16
-"""Width of panels that are split no more [a], and the number of splits after which none is added."""
+"""Width below which panels are not split [a], and the largest number of splits."""
 
 
 class MeshTooLargeError(Exception):
@@ -97,7 +97,7 @@ class Resolution:
     splits : tuple of float
         Radii at which panels are split besides [a].
     farther : int
-        Number of panels beyond the usual rim, where a fluid is thinned far out, or a cavity is long.
+        Number of panels beyond the usual rim, for a fluid that thins far out, or a long cavity.
     far_growth : float
         Largest width of panels beyond twice the scale over their radius.
     model : Model
@@ -148,18 +148,18 @@ class Resolution:
         return np.append(np.geomspace(2.0, REACH, FAR_PANELS + 1), REACH * ratio ** np.arange(1, self.farther + 1))
 
     def coarser(self) -> Resolution:
-        """Return the resolution whose results tell the error of this one's: coarser in radius and in angle."""
+        """Return a resolution coarser in radius and angle, whose results show the error of this one's."""
         return replace(self, degree=self.degree - 2, modes=max(4, round(self.modes / 1.4)))
 
 
 def film_scale(speed: float) -> float:
-    """Return about the central film of a smooth contact: only meshes and first guesses depend on it."""
+    """Return an estimate of the central film of a smooth contact: only meshes and first guesses depend on it."""
     thin = 0.42 * speed**0.6 / math.sqrt(1.0 + 0.57 * speed**0.2)
     return float(max(thin, 0.18 * speed**0.8))
 
 
 def film_speed(speed: float, model: Model) -> float:
-    """Return the speed at which a Newtonian fluid has about the film of a smooth contact with the fluid of a model."""
+    """Return the speed at which a Newtonian fluid has about the same film as the fluid of a model, in a smooth contact."""
     film = model.film
     if not isinstance(film, ShearThinning) or not speed > 0.0:
         return speed
@@ -171,7 +171,7 @@ def film_speed(speed: float, model: Model) -> float:
 
 
 def gaps_at(law: ContactLaw, log_pressures: Array) -> Array:
-    """Return the positive gaps at which a law has these contact pressures, by bisection; tiny where it has them at none."""
+    """Return the positive gaps at which a law has these contact pressures, by bisection; tiny if there is none."""
     decay = float(np.max(law.decay_length))
     low, high = np.full_like(log_pressures, 1e-12 * decay), np.full_like(log_pressures, 1e6 * decay)
     with np.errstate(all="ignore"):
@@ -183,7 +183,7 @@ def gaps_at(law: ContactLaw, log_pressures: Array) -> Array:
 
 
 RIGID_CAVITATED = 0.2249
-"""Height of a rigid ball over the square of the speed group, where its film ends at ambient pressure."""
+"""Height of a rigid ball over the square of the speed group, for a film that ends at ambient pressure."""
 
 RIGID_SUCTION = 0.1
 """Largest suction behind a rigid ball times its height to the power 3/2, over the speed group."""
@@ -207,13 +207,13 @@ def layout(speed: float, law: ContactLaw, model: Model = ARTICLE) -> tuple[float
 
 
 def is_too_thin(speed: float, law: ContactLaw) -> bool:
-    """Return whether the film is so thin, and asperities so low, that no mesh allowed has the angles for it."""
+    """Return whether film and roughness are so thin that no mesh within the limits has enough angles."""
     width = layout(speed, law)[0] / EDGE
     return COARSEST * SIDE_LOBES * width**-0.675 > MOST_MODES and film_scale(speed) > float(np.max(law.decay_length))
 
 
 def lift(speed: float, model: Model) -> float:
-    """Return about what a fast film is thicker by, as behind the ball its pressure is bounded."""
+    """Return an estimate of the factor by which a fast film is thicker because the pressure behind the ball is bounded."""
     if model.cavitation is Cavitation.NONE:
         return 0.0
     rigid = RIGID_CAVITATED * speed**2
@@ -233,7 +233,7 @@ def resolution(speed: float, law: ContactLaw, degree: int, modes: int, model: Mo
 def farther_panels(speed: float, model: Model) -> int:
     """Return the number of panels beyond the usual rim until the film is plain.
 
-    There the fluid is thinned no more, the rate being 2/r**2, and the suction, 0.8 speed/r**3, is far from that of a cavity.
+    There the shear rate, 2/r**2, thins the fluid no more, and the suction, 0.8 speed/r**3, is far from that of a cavity.
     """
     film, radius = model.film, REACH
     if not speed > 0.0:
@@ -260,7 +260,7 @@ def fits(found: Resolution, speed: float, law: ContactLaw) -> bool:
 def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: Array) -> Resolution:
     """Return a resolution with the panels halved on which nodal pressures, shape (..., rings), are far from resolved.
 
-    A law that saturates, or a contact nearly full in its middle, has an edge of its own within the contact.
+    A law that saturates, or nearly full contact in the middle, has an edge of its own within the contact.
     """
     fields = np.stack([fluid, fluid + contact]).reshape(-1, mesh.rings)
     tail = np.abs(mesh.legendre(fields)[..., -2:]).max(axis=(0, 2))
@@ -273,7 +273,7 @@ def split_where_poor(found: Resolution, mesh: PolarMesh, fluid: Array, contact: 
 
 
 def bytes_of(found: Resolution, band: int) -> int:
-    """Return about the memory that operators and preconditioner take."""
+    """Return an estimate of the memory of operators and preconditioner."""
     rings = found.mesh.rings
     band = min(band, found.modes - 1)
     return found.modes * rings * rings * (8 + 4 * (2 * band + 1)) + 5 * (band + 1) ** 2 * rings * rings

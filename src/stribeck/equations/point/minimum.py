@@ -14,10 +14,10 @@ STEPS = 12
 """Newton steps towards a minimum."""
 
 SETTLED = 1e-7
-"""Length of a step over the spacing of nodes from which the next would change the value by its square only: nothing."""
+"""Length of the last step over the spacing of nodes: the next would change the value by its square only."""
 
 CANDIDATES = 3
-"""Nodes from which it is sought: the lowest of those that are lower than their neighbours."""
+"""Number of nodes from which the search starts: the lowest of those below their neighbours."""
 
 
 @dataclass(frozen=True)

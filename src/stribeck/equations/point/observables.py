@@ -1,7 +1,7 @@
-r"""What a user reads off a state of the point contact: load shares, films, pressures, friction.
+r"""The observables of a state of the point contact: load shares, films, pressures, friction.
 
-With p_f ~ -(4/5) lambda cos(theta)/r**3 far away every friction integral diverges as the logarithm of the radius at which it
-ends, and its finite part is kept,
+With p_f ~ -(4/5) lambda cos(theta)/r**3 far away every friction integral diverges as the logarithm of its outer
+radius, and its finite part is kept,
 
 .. math::
 
@@ -99,7 +99,7 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
 
 
 def thinned_beyond(equations: Equations, y: Unknowns) -> float:
-    """Return about by how much the finite parts are too large, as the fluid is taken not to thin beyond the rim."""
+    """Return an estimate of the excess of the finite parts, as the fluid is assumed not to thin beyond the rim."""
     at_rim = equations.film.sheared(equations.speed, y.gap[:, -1])
     return FAR_ERROR * equations.speed * float(np.abs(1.0 - at_rim).max())
 

@@ -24,6 +24,6 @@ def plane_of(film: Film) -> PlaneFilm:
 
 
 def has_viscosity_at_rest(law: RateLaw) -> bool:
-    """Return whether the viscosity at low rates is that of the contact, as the far film of a ball asks."""
+    """Return whether the viscosity at low rates is that of the contact, as the far film of a ball requires."""
     slow = np.array([1e-60])
     return abs(float(law.stress(slow)[0][0] / slow[0]) - 1.0) < 1e-3

@@ -1,4 +1,4 @@
-r"""A preconditioner of the Jacobian of the point contact: that itself by angular modes, cut to a band, as block LU factors.
+r"""A preconditioner of the Jacobian of the point contact: the Jacobian by angular modes, cut to a band, as block LU factors.
 
 Products of fields with cosines couple modes whose difference is small, as fields vary slowly with the angle: blocks with
 :math:`|m - m'|` up to ``band`` are kept, in single precision.  The row of the load and the column of the offset border them.
@@ -22,7 +22,7 @@ Single = npt.NDArray[np.float32]
 
 
 class BandedModes:
-    """About the inverse of a Jacobian."""
+    """An approximate inverse of a Jacobian."""
 
     def __init__(self, linear: Linear, band: int) -> None:
         operators = linear.equations.operators
@@ -34,7 +34,7 @@ class BandedModes:
         self.pivot = float(self.row @ self.column[0])
 
     def __call__(self, right: Any) -> Any:
-        """Return about the change of total pressure, by mode, and of the offset that removes residuals, in their precision.
+        """Return approximate changes of total pressure, by mode, and offset that remove residuals, in the precision of these.
 
         ::
 
@@ -64,7 +64,7 @@ def _sums(waves: Array, values: Array, sign: float) -> Array:
 
 
 class Coupling:
-    """How the modes of the pressure act on those of the residual: sums over the angles of the local parts of a Jacobian."""
+    """Action of the modes of the pressure on those of the residual: sums over the angles of the local parts of a Jacobian."""
 
     def __init__(self, linear: Linear) -> None:
         self.mesh, self.deflection = linear.equations.operators.mesh, linear.equations.operators.deflection
@@ -95,7 +95,7 @@ class Coupling:
                 _sums(mesh.sines, np.stack([across * at_gap, back * at_gap], axis=1), 1.0),
             )
         self.rates = rates(mesh.modes) / mesh.rim
-        # The contact pressure at the rim is nil but for the softest laws; its mode is taken for the first.
+        # The contact pressure at the rim is zero but for the softest laws; its mode is taken for the first.
         rim_of_gap = linear.rim_of_gap - linear.rim_of_pressure * slope[:, -1] * self.rates[0]
         cosines, sines = mesh.cosines, mesh.sines
         self.radial_p, self.radial_h = _sums(cosines, of_pressure, -1.0), _sums(cosines, of_gap, -1.0)
@@ -104,14 +104,14 @@ class Coupling:
         self.rim_p, self.rim_h = _sums(cosines, linear.rim_of_pressure, -1.0), _sums(cosines, rim_of_gap, -1.0)
 
     def _of_gap(self, m: int, k: int) -> Array:
-        """Return what mode k of the gap does to mode m of the residual at each ring, but for radial derivatives."""
+        """Return the effect of mode k of the gap on mode m of the residual at each ring, without radial derivatives."""
         d, s = abs(m - k), m + k
         found = -0.5 * m * (self.ring_h[s] + np.sign(m - k) * self.ring_h[d]) - 0.5 * m * k * (self.ring_s[d] - self.ring_s[s])
         found[-1] += 0.5 * (self.rim_h[d] + self.rim_h[s])
         return np.asarray(found)
 
     def _crossed(self, which: int, m: Indices, k: int) -> Array | float:
-        """Return what mode k does to modes m through derivatives in the radius and in the angle, panel by panel."""
+        """Return the effect of mode k on modes m through derivatives in radius and angle, panel by panel."""
         if self.crossed is None:
             return 0.0
         sums = self.crossed[which]

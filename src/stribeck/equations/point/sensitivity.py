@@ -1,8 +1,8 @@
-r"""Derivatives of the observables of a ball with respect to what it depends on, by implicit differentiation of its equations.
+r"""Derivatives of the observables of a ball with respect to groups and inputs, by implicit differentiation of its equations.
 
 .. math:: \frac{dy}{d\ln G} = -J^{-1} \frac{\partial R}{\partial \ln G}
 
-for each group G, or an input of a contact that moves numbers of its fluid or solid, with the products of Newton's Jacobian at
+for each group G, or an input that changes numbers of fluid or solid, with the products of Newton's Jacobian at
 the state and GMRES.
 """
 
@@ -25,7 +25,7 @@ from stribeck.numerics.krylov import Apply, gmres
 __all__ = ["Direction", "beside", "log_derivatives", "solved"]
 
 Direction = Callable[[float], Groups]
-"""Groups, with their model, after a step of the logarithm of what moves them."""
+"""Groups, with their model, after a step of the logarithm of a group or an input."""
 
 STEP = 1e-4
 """Step of the logarithm of a group in the central differences of the residual, whose error is its square."""
@@ -35,7 +35,7 @@ CHANGE = 1e-4
 
 TOLERANCE, MOST, FINEST = 1e-6, 90, 1e-18
 """Preconditioned residual that GMRES leaves in a round, its products, and what all rounds leave: the preconditioner is in
-single precision, and what it hides of the first residual the next round takes away."""
+single precision, and the next round removes the error that it leaves."""
 
 
 def log_derivatives(

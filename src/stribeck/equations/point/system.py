@@ -42,7 +42,7 @@ OFFSET_STEP = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Operators:
-    """What the equations need of a mesh; made once and kept for all states that share it."""
+    """Operators of a mesh; computed once and kept for all states that share it."""
 
     mesh: PolarMesh
     solid: Solid = HalfPlane()

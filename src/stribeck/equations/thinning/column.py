@@ -50,10 +50,10 @@ NEWTONIAN, WITHOUT_PLATEAU, HIGHEST = 1e-9, 1e-60, 1e13
 and the highest rate of the table."""
 
 CLOSE = 1e-7
-"""Step over the largest stress after which the next would be below rounding."""
+"""Size of the last step over the largest stress: the next would be below rounding."""
 
 NEAR = 0.3
-"""Change of the stress over the largest one up to which first order is a good start."""
+"""Change of the stress over the largest stress up to which first order is a good start."""
 
 LONGEST = 1.0
 """Step over the largest stress at most."""
@@ -168,7 +168,7 @@ def column(law: RateLaw, slope: Array, slip: Array, start: Array | None = None) 
     Returns
     -------
     Column
-        nan where the iteration does not end, as for a stress that is not finite.
+        nan if the iteration does not end, as for a stress that is not finite.
     """
     return _solved(law, flow_curve(cast("Hashable", law)), slope, slip, start)
 

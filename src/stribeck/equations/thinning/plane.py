@@ -1,15 +1,15 @@
 r"""The flow in the plane of a film that thins.
 
 With :math:`\mathbf Q = 6 h t \nabla p_f`, :math:`\mathbf r_0 = -\lambda t \eta s \mathbf e_x/h`, the relaxation time t and
-what :mod:`stribeck.equations.thinning.column` makes of them, what flows is
+:math:`\mathbf r_1, \mathbf T` by :mod:`stribeck.equations.thinning.column`, the flux is
 
 .. math:: \mathbf F = \rho \left[\frac{2 h^2}{\eta t} \mathbf r_1 - \lambda h \, \mathbf e_x\right],
 
 :math:`\rho [h^3 \nabla p_f/\eta - \lambda h \mathbf e_x]` for a Newtonian fluid.  The walls feel the stresses
-:math:`-(\mathbf T \mp \mathbf Q/2)/6t`, whose difference is the pull of the pressure gradient, whatever the fluid: what
-thinning changes of the drag is T.  The pressure divides the rate at a given stress by :math:`\eta(p)`, as on the line.
+:math:`-(\mathbf T \mp \mathbf Q/2)/6t`, whose difference is the pull of the pressure gradient, whatever the fluid:
+thinning changes the drag through T alone.  The pressure divides the rate at a given stress by :math:`\eta(p)`, as on the line.
 
-At the rim, and beyond, the fluid is at rest but for rates far below those of thinning.
+At the rim and beyond, shear rates are far below those of thinning.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ class ThinningPlane:
         return self.film.law.stress(rate)[0] / rate if self.film.slide else np.ones_like(gap)
 
     def carried(self, gap: Array, pressure: Array) -> Array:
-        """Return what goes with the walls: they move it alike, whatever the law."""
+        """Return the amount that the walls carry, which is the same for all laws."""
         return np.asarray(self.film._of_pressure(gap, pressure)[2] * gap)
 
     def _unit(self, at: _Local) -> Array:
@@ -125,7 +125,7 @@ class ThinningPlane:
         return np.asarray(self._unit(at) * at.flow.carried - at.rho * speed * at.gap * at.along)
 
     def _local(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> _Local:
-        """Return the local solutions, those of the last call if it was for the same film."""
+        """Return the local solutions, kept from the last call if it was for the same film."""
         last = self._last[0] if self._last else None
         if last is not None and np.array_equal(last.key[0], gap) and np.array_equal(last.key[1], pressure):
             return last
@@ -164,7 +164,7 @@ def _symmetric(matrix: Array, vector: Array) -> Array:
 
 
 def _moved(last: _Local, slope: Array, slip: Array) -> Array | None:
-    """Return mean stresses to start from: those of the last film, to first order; None where one is far from it."""
+    """Return mean stresses to start from: those of the last film, to first order; None if one is far from it."""
     change = slope - last.slope
     step = _symmetric(last.flow.ease, slip - last.slip) - _by(last.flow.by_slip.swapaxes(0, 1), change)
     largest = np.maximum(*(np.hypot(*(last.flow.mean + side * last.slope)) for side in (-0.5, 0.5)))
