@@ -147,7 +147,7 @@ def test_at_rest_a_layer_bears_the_load_with_more_pressure():
 @pytest.mark.parametrize(
     ("parts", "sentence"),
     [
-        ({"flow_factors": PatirCheng(2.0, gamma=3)}, "flow_factors = patir-cheng: of a ball they must be those of isotropic"),
+        ({"flow_factors": PatirCheng(2.0, gamma=3)}, "flow_factors = patir-cheng: on a ball they must be those of isotropic"),
         ({"solid": Layer(0.01)}, "the layer is 0.01 times as thick as the Hertz radius"),
     ],
 )

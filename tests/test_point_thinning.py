@@ -190,7 +190,7 @@ def test_strongly_thinned_smooth_films_keep_their_error(fluid):
 
 @pytest.mark.quick
 def test_a_power_law_is_refused_by_name():
-    with pytest.raises(sb.InputError, match="fluid = power-law: far below a ball hardly anything moves"):
+    with pytest.raises(sb.InputError, match="fluid = power-law: far from the contact the fluid is hardly sheared"):
         sb.solve(MIXED, fluid=PowerLaw(1.0, 0.5))
 
 

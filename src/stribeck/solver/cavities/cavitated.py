@@ -34,10 +34,10 @@ from stribeck.solver.point.refinement import CENTRAL, Pair, centre_tails, scales
 from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
 
 LADDER = ((10, 20), (15, 30), (20, 45), (30, 65), (45, 95))
-"""Numbers of angles of the two meshes that tell the error."""
+"""Numbers of angles of the two meshes whose difference gives the error."""
 
 WASTE, WASTE_ANEW = 0.25, 0.4
-"""Stated error over the tolerance below which a state is followed on the pair of meshes before the neighbour's, and where it
+"""Stated error over the tolerance below which a state moves to the pair of meshes before the neighbour's; and the same if it
 needs other meshes anyway."""
 
 COMPANY, FRONT = 0.6, 0.04
@@ -45,7 +45,7 @@ COMPANY, FRONT = 0.6, 0.04
 angles: as the line of rupture walks from node to node, errors change sign by chance."""
 
 ALONE = 10.0
-"""Smallest error of the minimum film and its place over the largest of all, which the tolerance does not hold."""
+"""Smallest error of the minimum film and its place over the largest of all; the tolerance does not limit them."""
 
 DEGREE = 10
 """Degree of the panels of all but the finer of these, which has two more."""
@@ -65,7 +65,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     part, loose = slack / (finer**order - 1.0), slack / (finer - 1.0)
     values, rough = observables(fine.equations, fine.unknowns), observables(coarse.equations, coarse.unknowns)
     scales = scales_of(values, speed)
-    scales["offset"] = max(abs(values["offset"]), values["central_gap"])  # it passes zero
+    scales["offset"] = max(abs(values["offset"]), values["central_gap"])  # it crosses zero
     parts = (
         dict.fromkeys(values, part) | dict.fromkeys(LOOSE_WHERE_TORN, loose) | dict.fromkeys(WITHOUT_TOLERANCE, 2.0 * loose)
     )
@@ -93,7 +93,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
 
 
 def held(pair: Pair) -> float:
-    """Return the largest error of those that the tolerance holds."""
+    """Return the largest of the errors that the tolerance limits."""
     return max(
         pair.errors[name] / pair.scales[name] for name in pair.errors if name not in (*WITHOUT_TOLERANCE, *LOOSE_WHERE_TORN)
     )
@@ -143,7 +143,7 @@ def _base(speed: float, law: ContactLaw, guess: Level, model: Model) -> Resoluti
 
 
 def rigid(mesh: PolarMesh, speed: float) -> Unknowns:
-    """Return about the state of a rigid ball: half of the pressure of its full film."""
+    """Return a guess from a rigid ball: half of the pressure of its full film."""
     offset = RIGID_CAVITATED * speed**2
     gap = np.tile(offset + 0.5 * mesh.radii**2, (mesh.modes, 1))
     x = mesh.radii * np.cos(mesh.angles)[:, None]
@@ -158,7 +158,7 @@ def _rung(pair: Pair) -> int:
 def _pair(
     base: Resolution, angles: tuple[int, int], speed: float, law: ContactLaw, start: Unknowns, mesh: PolarMesh
 ) -> Pair | Outcome:
-    """Return a state on two meshes of a resolution, with few and with many angles, or why there is none."""
+    """Return a state on two meshes of a resolution, with few and with many angles, or the outcome of the failure."""
     few, many = angles
     coarse = solve_level(replace(base, modes=few, degree=DEGREE), speed, law, start, mesh, TOLERANCE)
     if not coarse.outcome.ok:
@@ -173,7 +173,7 @@ def follow_cavitated(
 ) -> Pair | None:
     """Return the state of a neighbour's meshes at other groups, or None where it does not come from there.
 
-    Where these meshes do not serve, or are finer than need be, the state is that of others.  ``line`` has neighbours, and the
+    If these meshes do not serve, or are finer than necessary, the state is found on others.  ``line`` has neighbours, and the
     weights with which they predict the state, its line of rupture too.
     """
     rtol = max(rtol, neighbour.fine.equations.finest)
@@ -207,7 +207,7 @@ def follow_cavitated(
 
 
 def _carried(coarse: Level, neighbour: Pair) -> Unknowns:
-    """Return a guess on the finer mesh: what that had beyond the coarser one, the neighbour tells."""
+    """Return a guess on the finer mesh: its difference from the coarser one is that of the neighbour."""
     old, mesh, least = neighbour.fine.unknowns, neighbour.fine.mesh, coarse.equations.least
     carried = moved(coarse.unknowns, coarse.mesh, mesh, least)
     known = moved(neighbour.coarse.unknowns, neighbour.coarse.mesh, mesh, least)

@@ -17,7 +17,7 @@ from stribeck.solver.point.refinement import Pair, follow, holds_along_path, ref
 __all__ = ["follow_reforming", "full_model", "holds_reforming", "refine_reforming"]
 
 NEARLY = 1.1
-"""Suction of a coarse full film over that of a cavity below which the full film is tried first."""
+"""Suction of a coarse full film over that of the cavity below which the full film is tried first."""
 
 
 def full_model(model: Model) -> Model:
@@ -53,7 +53,7 @@ def follow_reforming(
 ) -> Pair | None:
     """Return the state of a neighbour's meshes at other groups, or None where it does not come from there.
 
-    ``line`` has neighbours, and the weights with which they predict the state; of use are those that break as the first does.
+    ``line`` holds neighbours, and the weights with which they predict the state; only those that break like the first count.
     """
     model, breaks = neighbour.fine.resolution.model, isinstance(neighbour.fine.equations, TornEquations)
     if any(isinstance(each.fine.equations, TornEquations) is not breaks for _, each in line):

@@ -1,4 +1,4 @@
-"""States of a ball along a path: solved from a prediction, and expanded; see :mod:`stribeck.solver.path`."""
+"""States of a ball along a path: solved from a prediction and expanded, see :mod:`stribeck.solver.path`."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from stribeck.solver.point.state import PointState
 __all__ = ["CurveState", "PointProblem"]
 
 KNOT_PART = 0.5
-"""Part of the tolerance that a solved state must hold: states on two meshes differ by twice that, which must not count."""
+"""Part of the tolerance that a solved state must hold: states on two meshes differ by up to twice that."""
 
 ORDERS = ((1e-4, 6), (1e-7, 8), (0.0, 10))
 """Highest orders of the series of curves to a tolerance of this and above."""
@@ -43,19 +43,19 @@ REACH, NARROWEST, WIDEST = 0.45, 0.2, 0.6
 """Half of the interval on which the equations are evaluated for the series over the radius of convergence, and its limits."""
 
 ROUNDING = 1e-9
-"""Rounding of what is sampled, as solving for the coefficients magnifies it."""
+"""Rounding of the samples, as magnified in the coefficients."""
 
 SHORTEST_REACH, FIRST_REACH = 0.05, 0.6
 
 MOST_TRIALS = 3
-"""Expansions of a state after which the interval is left as it is."""
+"""Most expansions of a state with a new interval."""
 
 BETWEEN = 0.2
 """Part of the tolerance by which states between two others may be less resolved than these, for which the meshes were made,
 and what GMRES leaves of the coefficients."""
 
 UNSEEN = 2.0
-"""Error over the correction of a state between two others: what the correction leaves unseen."""
+"""Stated error over the correction of a state between two others, for what the correction does not see."""
 
 MINIMUM_BETWEEN = 2.0
 """Stated error of a minimum of the gap between two states over the larger one of these."""
@@ -107,7 +107,7 @@ class PointProblem:
         return np.isin(np.arange(len(SMOOTH)), [OFFSET, *FRICTION])
 
     def scales(self, values: Array, s: Array) -> Array:
-        """Return what errors of observables are relative to, as those of a state are."""
+        """Return the scales of the errors of observables, as for a state."""
         found = np.fmax(np.abs(values), 1e-300)
         found[:, UNIT] = 1.0
         found[:, OFFSET] = np.maximum(found[:, OFFSET], OFFSET_FLOOR)
@@ -122,7 +122,7 @@ class PointProblem:
         return np.empty(0)
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
-        """Return nothing: minima of the gap, to which the tolerance does not hold, are read where they are asked for."""
+        """Return nothing: minima of the gap, which the tolerance does not limit, are read on request."""
         return np.empty((len(parts), 0)), np.empty((len(parts), 0)), []
 
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
@@ -182,15 +182,15 @@ class PointProblem:
         return Expansion(s, PointPoint(without_factors(state), found.unknowns), series, logs, errors, known)
 
     def guess(self, of: Expansion, s: float) -> Unknowns:
-        """Return about the unknowns at a coordinate, on the mesh of a state."""
+        """Return a guess of the unknowns at a coordinate, on the mesh of a state."""
         row, _ = beyond(of.point.unknowns, s - of.coordinate)
         found = from_row(row, of.point.level.unknowns.gap.shape)
         return found if np.isfinite(row).all() and np.isfinite(found.gap).all() else of.point.level.unknowns
 
     def between(self, left: Expansion, right: Expansion, s: float) -> tuple[Unknowns, Level, float]:
-        """Return the unknowns between two states on the mesh of the nearer one, that one, and what the gap misses at most.
+        """Return the unknowns between two states on the mesh of the nearer one, that state, and the largest error of the gap.
 
-        That is relative to the gap, where it is thin.
+        The error is relative to the gap where this is thin.
         """
         own, other = sorted((left, right), key=lambda one: abs(one.coordinate - s))
         point: PointPoint = own.point
@@ -233,7 +233,7 @@ class PointProblem:
         return self._on_others[key]
 
     def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
-        """Return by how much states corrected at ``parts`` contradict ``values`` at most, where the law is not analytic."""
+        """Return the largest difference between ``values`` and states corrected at ``parts``, for a non-analytic law."""
         found = np.full(len(SMOOTH), BETWEEN * self.allowed)
         if self.exact or self._last is None:
             return found
@@ -248,7 +248,7 @@ class PointProblem:
         with np.errstate(all="ignore"):
             for place, known, scale in zip(places.tolist(), values, scales, strict=True):
                 if abs(place - end.coordinate) > 0.5 * (right.coordinate - left.coordinate):
-                    continue  # a prediction from so far tells about itself
+                    continue  # a prediction from so far away measures itself
                 equations = beside(level.equations, self.groups_at(place))
                 corrected = corrected_once(equations, self.guess(end, place), preconditioner)
                 wrong = np.inf if corrected is None else np.abs(corrected - known) / scale
@@ -261,7 +261,7 @@ class PointProblem:
         self._last = None
 
     def solved_at(self, path: SolvedPath, s: float) -> PointState:
-        """Return the state at a coordinate of a path, solved by the tolerance asked for."""
+        """Return the state at a coordinate of a path, solved to the given tolerance."""
         left, right = ends_of(path, s)
         nearest = min((left, right), key=lambda one: abs(one.coordinate - s))
         return next_state(nearest.point.state, self.groups_at(s), self.allowed, predicted=self.between(left, right, s)[0])

@@ -1,4 +1,4 @@
-"""A state of the point contact on one mesh, and how it comes to another."""
+"""A state of the point contact on one mesh, and its transfer to another."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Level:
 
     @property
     def effort(self) -> float:
-        """What :func:`stribeck.numerics.continuation.march` steers by."""
+        """Measure by which :func:`stribeck.numerics.continuation.march` chooses its steps."""
         return 0.6 * self.iterated.steps
 
     @property
@@ -87,7 +87,7 @@ def moved(y: Unknowns, old: PolarMesh, new: PolarMesh, least: float = -math.inf)
     shape, fluid = old.transfer(new, fields)
     fluid = fluid / beyond**3
     torn = y.fluid <= least
-    if torn.any():  # the series of the pressure waves about zero there
+    if torn.any():  # the series of the pressure oscillates about zero there
         ring = np.abs(np.log(new.radii[:, None] / old.radii)).argmin(axis=1)
         angle = np.abs(new.angles[:, None] - old.angles).argmin(axis=1)
         fluid = np.where(torn[angle][:, ring], least, np.maximum(fluid, just_above(least)))

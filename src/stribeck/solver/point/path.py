@@ -18,10 +18,10 @@ ORDER = 2
 """Degree of the polynomial that predicts a state from those around it."""
 
 LARGEST_WEIGHTS = 8.0
-"""Sum of the weights of a prediction beyond which it is not worth having."""
+"""Sum of the absolute weights of a prediction above which it is not used."""
 
 REACH = 3.5
-"""Distance of logarithms within which a neighbour is a start worth having."""
+"""Distance in logarithms within which a neighbour is a useful start."""
 
 
 def without_factors(state: PointState) -> PointState:
@@ -41,7 +41,7 @@ def next_state(
     line: Sequence[tuple[float, PointState]] = (),
     predicted: Unknowns | None = None,
 ) -> PointState:
-    """Return the state of ``groups`` from a neighbour, or from cold without one or where that is lost.
+    """Return the state of ``groups`` from a neighbour, or from cold if there is none or it fails.
 
     ``line`` has states, and the weights with which they predict this one; ``predicted`` is a prediction on the finer mesh of
     the neighbour.
@@ -72,7 +72,7 @@ class NeighbourSolver:
         self._last: tuple[float, PointState] | None = None
 
     def __call__(self, s: float) -> PointState:
-        """Return the state at ``s``, with its outcome where it failed."""
+        """Return the state at ``s``; a failure is in its outcome."""
         if s in self.states:
             return self.states[s]
         state = next_state(self._start(s), self.groups_at(s), self.rtol, self._line(s))

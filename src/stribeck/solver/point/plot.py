@@ -1,7 +1,7 @@
 r"""The picture of one state of a ball: film and pressure on the plane, and the cut along the middle line.
 
-Interference colours are those that white light in three bands leaves in an optical rig, each band reflected at both sides of
-the film with opposite phase where the film vanishes (a black contact):
+Interference colours are those of white light in three bands in an optical rig.  Each band is reflected at both sides of the
+film, with opposite phase where the film vanishes (a black contact):
 
 .. math:: I = \tfrac12 \left[1 - \cos\frac{4 \pi n h}{\lambda_0} \, e^{-(2 \pi n h \, \Delta\lambda/\lambda_0^2)^2/4}\right] .
 
@@ -98,9 +98,9 @@ def plot_point_solution(
     solution : PointSolution
         The state.
     ax : matplotlib.axes.Axes, optional
-        Axes to draw the film into, in place of a new figure.
+        Axes to draw the film into, instead of a new figure.
     colours : {"film", "interference"}
-        What colours the film: its thickness, or the light that it reflects in an optical rig, which needs a contact.
+        Colours by thickness, or those of the light reflected in an optical rig, which need a contact.
     """
     if not isinstance(colours, str) or colours not in ("film", "interference"):
         raise InputError(f"colours = {show(colours)}; it must be 'film' or 'interference'.")

@@ -1,7 +1,7 @@
 """Refining a state of the point contact until its estimated error holds a tolerance.
 
-Each state is solved on two meshes, the second finer in radius *and* angle: either alone misleads.  The state is that of the
-finer one, and by how much its observables differ from those of the coarser one tells their errors.
+Each state is solved on two meshes, the second finer in radius *and* angle: either alone misleads.  The state is that on the
+finer one; the difference of its observables from those on the coarser one gives their errors.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, band_for, extrapolated, moved, solve_level
 
 WASTE = 0.03
-"""Estimated error over the tolerance below which a neighbour's mesh is tested for being finer than it need be."""
+"""Estimated error over the tolerance below which a neighbour's mesh is tested for being finer than necessary."""
 
 SAVED = 0.4
-"""Memory of a leaner mesh over that of the neighbour below which it is worth its operators."""
+"""Memory of a coarser mesh over that of the neighbour's below which new operators pay off."""
 
 AHEAD = 0.2
 """Speed over that of the state for which panels are made along a path to slower ones."""
 
 PART = 0.35
-"""Stated error over the difference between the two meshes: the finer one is better by more than that."""
+"""Stated error over the difference between the two meshes: the finer one is better than this."""
 
 COMPANY, THINNED_COMPANY = 0.1, 0.6
 """Smallest error that is stated of one observable over the largest of all, each relative to its scale; where a fluid thins."""
@@ -53,8 +53,8 @@ CENTRAL = {"central_gap": 0.5, "central_pressure": 2.0}
 node lies at the centre and the equations for the pressure weigh it with the radius."""
 
 UNSEEN, UNSEEN_RADIAL, UNSEEN_SERIES = 5.0, 0.5, 0.4
-"""Stated error of the minimum film over the last coefficients of its series in the angle, and in the radius; and over what
-the angular one, going on as a geometric series, sums up to."""
+"""Stated error of the minimum film over the last coefficients of its series in the angle, and in the radius; and over
+the sum of the angular one, continued as a geometric series."""
 
 THINNED_MINIMUM, THINNED = 1.5, 1.5e-3
 """Where a fluid thins: stated error of the minimum film over that of other fluids, and the least error of all else over it, as
@@ -70,7 +70,7 @@ PANEL_RATE = 1.49
 """Logarithm by which one degree more reduces the error of a pressure that has a square root at one panel's distance."""
 
 FINER_DEGREE, FINER_MODES = 2, 1.4
-"""By how much the finer mesh of two has a higher degree, and how many times as many modes."""
+"""Additional degree of the finer of two meshes, and the ratio of their numbers of modes."""
 
 THICK = 0.05
 """Film above which the degree of a first mesh does not fall: the pressures of thick films are of order one."""
@@ -79,7 +79,7 @@ MOST_DEGREE = 18
 MOST_ROUNDS = 6
 
 ROUNDING = 0.03
-"""Rounding of the friction over the tolerance from which it may be what keeps the error above it."""
+"""Rounding of the friction over the tolerance above which it may keep the error above the tolerance."""
 
 LARGE = 200_000_000
 """Memory of the finer mesh from which the preconditioners of coarser ones are not kept for neighbours."""
@@ -120,7 +120,7 @@ class Pair:
 
 
 def modal_amplitudes(level: Level) -> Array:
-    """Return the largest part that each angular mode has in the gap, within twice the scale of the contact."""
+    """Return the largest amplitude of each angular mode of the gap, within twice the scale of the contact."""
     mesh, h = level.mesh, level.unknowns.gap
     near = mesh.radii < 2.0 * 2.0**level.resolution.doublings
     return np.asarray((np.abs(mesh.to_modes @ h) / h.mean(axis=0))[:, near].max(axis=1))
@@ -141,9 +141,9 @@ def modes_for(level: Level, amplitude: float) -> int:
 
 
 def unseen_in_angle(level: Level) -> float:
-    """Return about how much of the minimum film its series in the angle leaves out, relative to it.
+    """Return an estimate of the truncation error of the minimum film's series in the angle, relative to the film.
 
-    That is the last coefficients, or the geometric series that follows them; thin films have many that fall slowly.
+    It is the last coefficients, or the geometric series that continues them; in thin films these fall slowly.
     """
     mesh, h = level.mesh, level.unknowns.gap
     near = mesh.radii < 2.0 * 2.0**level.resolution.doublings
@@ -170,7 +170,7 @@ def centre_tails(level: Level) -> Array:
 
 
 def scales_of(values: dict[str, float], speed: float) -> dict[str, float]:
-    """Return what errors are relative to: one for shares, a radius or an angle, else about the observable itself."""
+    """Return the scales of errors: one for shares, a radius or an angle, else about the observable itself."""
     friction = max(abs(values["J_balanced"]), abs(values["J_published"]), speed) if speed > 0 else 1.0
     found = {}
     for name, value in values.items():
@@ -190,7 +190,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     values, rough = observables(fine.equations, fine.unknowns), observables(coarse.equations, coarse.unknowns)
     scales = scales_of(values, fine.equations.speed)
     errors = {name: PART * abs(value - rough[name]) + fine.iterated.left * scales[name] for name, value in values.items()}
-    # Interpolated minima of two meshes may agree by chance: what the series leave out bounds them from below.
+    # Interpolated minima of two meshes may agree by chance: the truncation of the series bounds their error from below.
     balance = 0.3 * abs(identity_error(values, fine.equations.speed))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
@@ -283,7 +283,7 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair
         return Outcome.REFINEMENT_LIMIT
     if best.total <= rtol:
         return best
-    # The moment of the contact pressure is the small difference of its two halves, each of order one.
+    # The moment of the contact pressure is a small difference of two halves, each of order one.
     lost = float(np.finfo(float).eps) / best.scales["J_pcx"]
     return replace(best, outcome=Outcome.ROUNDING if lost > ROUNDING * rtol else Outcome.REFINEMENT_LIMIT)
 
@@ -294,7 +294,7 @@ def bare(level: Level) -> Level:
 
 
 def split(guess: Level, speed: float, law: ContactLaw) -> Level:
-    """Return a state on panels that are halved where they resolve its pressures poorly."""
+    """Return a state on panels, halved where they resolve its pressures poorly."""
     for _ in range(MOST_ROUNDS):
         better = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
         if better == guess.resolution:
@@ -322,7 +322,7 @@ def newton_tolerance(rtol: float) -> float:
 
 
 def finer(pair: Pair, rtol: float, band: int, slack: float) -> Resolution:
-    """Return the next mesh: more modes where their amplitudes tell the error, else a higher degree."""
+    """Return the next mesh: more modes if their amplitudes explain the error, else a higher degree."""
     now, fine = pair.fine.resolution, pair.fine
     modes, degree = now.modes, now.degree
     if pair.total > rtol:
@@ -363,13 +363,13 @@ def follow(
     line: Sequence[tuple[float, Pair]] = (),
     predicted: Unknowns | None = None,
 ) -> Pair | None:
-    """Return the state of a neighbour's meshes at other groups, or None where it does not come from there.
+    """Return the state of a neighbour's meshes at other groups, or None if it is not reached from there.
 
-    ``line`` has the weights of neighbours whose sum predicts the state, ``predicted`` is a prediction on the finer mesh of the
-    neighbour; the meshes change where those of the neighbour do not fit.
+    ``line`` holds the neighbours and weights whose sum predicts the state, ``predicted`` is a prediction on the finer mesh of
+    the neighbour; the meshes change where those of the neighbour do not fit.
     """
     tolerance = newton_tolerance(rtol)
-    # By series a path goes on by steps of more than that factor.
+    # With series, a path takes steps of more than that factor.
     wanted, keeps = meshes_for(speed, law, neighbour, rtol, AHEAD if predicted is None else 1.0)
     kept_coarse, kept_fine = (
         (level.iterated.preconditioner if keeps else None) for level in (neighbour.coarse, neighbour.fine)
@@ -385,7 +385,7 @@ def follow(
     if not coarse.outcome.ok:
         return None
     guess, mesh = coarse.unknowns, coarse.mesh
-    if keeps:  # what the finer mesh had beyond the coarser one, the neighbour tells
+    if keeps:  # the difference of the finer mesh from the coarser one is that of the neighbour
         mesh = neighbour.fine.mesh
         carried, at_fine = moved(guess, coarse.mesh, mesh), neighbour.fine.unknowns
         before = moved(known.unknowns, known.mesh, mesh)
@@ -403,7 +403,7 @@ def follow(
 def meshes_for(speed: float, law: ContactLaw, neighbour: Pair, rtol: float, part: float = AHEAD) -> tuple[Resolution, bool]:
     """Return the finer mesh for a state beside a neighbour, and whether it is that of the neighbour.
 
-    On the way to slower speeds one that is made serves down to a ``part`` of the speed.
+    On the way to slower speeds a new mesh serves down to ``part`` of the speed.
     """
     now, fine = neighbour.fine.resolution, neighbour.fine
     band = band_for(speed, law, now.model)

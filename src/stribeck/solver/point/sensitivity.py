@@ -1,4 +1,4 @@
-"""How the observables of a solved ball answer to its groups, and to the numbers of its fluid and solid."""
+"""Derivatives of the observables of a solved ball with respect to its groups, and to numbers of its fluid and solid."""
 
 from __future__ import annotations
 

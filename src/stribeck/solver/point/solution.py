@@ -1,4 +1,4 @@
-"""What a solve of a ball returns: fields and observables of one state, with outcome, error estimate and notes."""
+"""The result of a solve of a ball: fields and observables of one state, with outcome, error estimate and notes."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ if TYPE_CHECKING:
 __all__ = ["Field", "PointSolution", "finish_point", "solution_of"]
 
 NEAR_EDGE = 5.0
-"""Radius of the disc of liquid over the Hertz radius below which a note says that friction is coarse."""
+"""Radius of the disc of liquid over the Hertz radius below which a note says that friction is inaccurate."""
 
 WAKE = (
     "The film ends at ambient pressure; streaks of liquid that touch both walls fill the part h_e/h of the wake. A dry wake "
     "takes 0.35 lambda ln(X/a) from the friction integral, a full one adds 0.48 lambda ln(X/a), X being where the liquid "
     "ends; without wetted_radius that is the X of a ball whose film does not break."
 )
-"""What a user has to know of the friction of a film that breaks."""
+"""Note on the friction of a film that breaks."""
 
 CAVITY = (
     "The film ruptures at the pressure of the cavity and forms anew behind it; there friction counts the liquid, as streaks "
     "that touch both walls, and no drag of the gas."
 )
-"""The same of a film that forms anew."""
+"""Note on the friction of a film that forms anew."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ class PointSolution(BaseSolution):
 
     @property
     def minimum_gap_error(self) -> float:
-        """Estimated relative error of the minimum film [-], which ``rtol`` does not hold: side lobes are sharp."""
+        """Estimated relative error of the minimum film [-], which ``rtol`` does not limit: side lobes are sharp."""
         return self.state.minimum_gap_error
 
     @property
@@ -153,7 +153,7 @@ class PointSolution(BaseSolution):
 
     @property
     def identity_error(self) -> float:
-        r"""What is left of the identity of the friction integrals, over the largest of them [-].
+        r"""Residual of the identity of the friction integrals, over the largest of them [-].
 
         .. math:: J^\mathrm{balanced} - J^\mathrm{published} - J^{p_c x} + c \lambda = 0, \quad
             c = \tfrac25 \pi, \text{ or } 0.63702 \text{ where the film breaks}
@@ -326,7 +326,7 @@ class PointSolution(BaseSolution):
 
 
 def solution_of(state: PointState, contact: Contact | None) -> PointSolution:
-    """Return the solution that a state of the solver is."""
+    """Return a state of the solver as a solution."""
     groups, values = state.groups, PointObservables.of(state, contact)
     return PointSolution(
         groups=groups,
@@ -341,7 +341,7 @@ def solution_of(state: PointState, contact: Contact | None) -> PointSolution:
 
 
 def finish_point(state: PointState, contact: Contact | None, on_failure: str = "raise") -> PointSolution:
-    """Return the solution that a state is, or raise what its outcome asks for.
+    """Return a state as a solution, or raise the error of its outcome.
 
     Parameters
     ----------

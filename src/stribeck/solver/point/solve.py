@@ -88,13 +88,13 @@ def solve_from(
     line: Sequence[tuple[float, PointState]] = (),
     predicted: Unknowns | None = None,
 ) -> PointState:
-    """Return the state of ``groups`` from that of a neighbour, on its mesh as long as this serves.
+    """Return the state of ``groups`` from that of a neighbour, on its mesh while this serves.
 
     Parameters
     ----------
     neighbour : PointState
-        A solved state; its operators and its preconditioner are used again.  Only the contact law must be the same; the nearer
-        it is the cheaper.
+        A solved state; its operators and its preconditioner are used again.  The contact law must be the same;
+        the nearer it is, the cheaper.
     groups : Groups
         One state of the point geometry.
     rtol : float
@@ -107,7 +107,7 @@ def solve_from(
     Returns
     -------
     PointState
-        A failure is returned in its outcome, not raised; a path from the neighbour that is lost is tried cold first.
+        A failure is returned in its outcome, not raised; if the path from the neighbour fails, a cold start is tried first.
 
     Raises
     ------
@@ -174,14 +174,14 @@ def is_alike(model: Model, other: Model) -> bool:
 
 
 def as_solved(model: Model) -> Model:
-    """Return the model whose equations are solved: a cavity at ambient pressure has no end."""
+    """Return the model to solve: a cavity at ambient pressure has no end, so that its film does not form anew."""
     if model.cavitation is Cavitation.REFORM and model.cavity_pressure == 0.0:
         return replace(model, cavitation=Cavitation.EXIT)
     return model
 
 
 def check(groups: Groups, rtol: float) -> None:
-    """Refuse what is not one state of a ball, and tolerances out of range."""
+    """Refuse anything but one state of a ball, and tolerances out of range."""
     if not isinstance(groups, Groups) or groups.geometry != "point" or groups.shape != ():
         raise InputError(f"groups = {show(groups)}; it must be one state, Groups(speed, load, roughness, geometry='point').")
     check_model(groups.model)
@@ -193,29 +193,29 @@ def check(groups: Groups, rtol: float) -> None:
 def check_model(model: Model) -> None:
     """Refuse by name what the equations of a ball do not have."""
     if type(model.film) not in PLANES:
-        raise InputError(f"fluid = {model.film.name}: its flow in the plane, below a ball, is not known.")
+        raise InputError(f"fluid = {model.film.name}: its flow in the plane under a ball is not implemented.")
     if isinstance(model.film, ShearThinning) and not has_viscosity_at_rest(model.film.law):
         raise InputError(
-            f"fluid = {model.film.name}: far below a ball hardly anything moves, and the viscosity of a power law grows there "
-            "without bound; give Carreau or Cross, whose viscosity at low rates is that of the contact."
+            f"fluid = {model.film.name}: far from the contact the fluid is hardly sheared, and the viscosity of a power law "
+            "grows there without bound; give Carreau or Cross, whose viscosity at low rates is that of the contact."
         )
     if isinstance(model.film, Newtonian) and not is_isotropic(model.film.flow):
         raise InputError(
-            f"flow_factors = {model.film.flow.name}: of a ball they must be those of isotropic roughness, gamma = 1, without "
+            f"flow_factors = {model.film.flow.name}: on a ball they must be those of isotropic roughness, gamma = 1, without "
             "friction factors."
         )
     if type(model.solid) not in BODIES:
-        raise InputError(f"solid = {model.solid.name}: of a ball the soft body is a half-space or a bonded layer.")
+        raise InputError(f"solid = {model.solid.name}: on a ball the soft body must be a half-space or a bonded layer.")
     thickness = getattr(model.solid, "thickness", math.inf)
     if thickness < THINNEST:
         raise InputError(
-            f"the layer is {thickness:.3g} times as thick as the Hertz radius of the half-space; of a ball the ratio must be "
+            f"the layer is {thickness:.3g} times as thick as the Hertz radius of the half-space; on a ball the ratio must be "
             f"{THINNEST:g} or more."
         )
 
 
 def _state(groups: Groups, rtol: float, pair: Pair | Outcome, shift: float = 0.0) -> PointState:
-    """Return the state that a refined pair is."""
+    """Return a refined pair as a state."""
     if isinstance(pair, Outcome):
         return _failed(groups, rtol, pair)
     fine, values = pair.fine, dict(pair.values)
@@ -284,7 +284,7 @@ def _at_rest(groups: Groups, rtol: float) -> PointState:
     for degree in AT_REST_DEGREES:
         fine = _dry_level(law, degree, newton_tolerance(rtol), model)
         if not fine.outcome.ok:
-            # A gap of kappa is the difference of terms of order one.
+            # A gap of order kappa is a difference of terms of order one.
             lost = float(np.finfo(float).eps / groups.relative_roughness)
             return _failed(groups, rtol, Outcome.ROUNDING if lost > SMALLEST_ESTIMATE * rtol else fine.outcome)
         if coarse is not None:

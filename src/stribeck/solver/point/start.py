@@ -1,8 +1,8 @@
 """Cold start of the point contact: a first, coarse state anywhere.
 
 A dry contact in which a cushion, as thick as the film, helps the asperities has about the shape of the lubricated one, and
-what the cushion carries is the first guess of the film pressure.  So the elastic shape and the load hold from the beginning.
-Where Newton's iteration does not end from there, the speed comes up from the dry contact, or down from a rigid ball.
+the pressure of the cushion is the first guess of the film pressure.  So elastic shape and load hold from the beginning.
+If Newton's iteration does not converge from there, the speed comes up from the dry contact, or down from a rigid ball.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ MOST_ROUNDS = 8
 """Times that the panels of a first guess are split."""
 
 MILDER = Steps(0.5, 0.5, 1e-3, order=2, aim=3.0)
-"""Steps along the part of what a fluid does."""
+"""Steps in the part of the fluid's own law."""
 
 LONGEST_PATH = 60
 """States on a path after which it is given up."""
@@ -67,7 +67,7 @@ def first_modes(speed: float, law: ContactLaw, model: Model) -> int:
 
 
 def _dry_gap(law: ContactLaw) -> float:
-    """Return about the gap of the dry contact in its middle."""
+    """Return an estimate of the central gap of the dry contact."""
     return float(gaps_at(law, np.zeros(1))[0]) if float(np.max(law.decay_length)) > 0 else 0.0
 
 
@@ -118,7 +118,7 @@ class WithCushion:
 def first_guess(found: Resolution, speed: float, law: ContactLaw, lift: float = 1.0) -> tuple[Resolution, Unknowns] | None:
     """Return the first guess, with a film ``lift`` times as thick as expected, and the panels that it needs besides.
 
-    None where the dry contact fails.
+    None if the dry contact fails.
     """
     cushioned = WithCushion(law, lift * film_scale(film_speed(speed, found.model)))
     for _ in range(MOST_ROUNDS):
@@ -136,7 +136,7 @@ def first_guess(found: Resolution, speed: float, law: ContactLaw, lift: float = 
 
 
 def first_state(speed: float, law: ContactLaw, model: Model = ARTICLE) -> Level | Outcome:
-    """Return a coarse state at a speed, or why there is none."""
+    """Return a coarse state at a speed, or the outcome of the failure."""
     if is_too_thin(speed, law):
         return Outcome.MESH_LIMIT
     last: Outcome = Outcome.STALLED

@@ -46,14 +46,14 @@ without the contact pressure along x, which is J_pcx.
 """
 
 WITHOUT_TOLERANCE = ("minimum_gap", "minimum_radius", "minimum_angle", "minimum_gap_on_axis")
-"""Observables that have their errors stated but do not count in :attr:`PointState.error_estimate`: rtol does not hold them."""
+"""Observables with stated errors that do not count in :attr:`PointState.error_estimate`: rtol does not limit them."""
 
 LOOSE_WHERE_TORN = ("J_couette", "J_balanced", "J_published", "central_pressure")
-"""Those that do not either where the film breaks: the streaks of the wake are known less well than the film is."""
+"""More of them where the film breaks: the streaks of the wake are less accurate than the film."""
 
 
 class PointFields(NamedTuple):
-    """Fields of a state where they were asked for, each of the broadcast shape of x and y.
+    """Fields of a state at given positions, each of the broadcast shape of x and y.
 
     Attributes
     ----------
@@ -85,11 +85,11 @@ class PointState:
     absolute_errors : mapping of str to float
         Their estimated absolute errors.
     scales : mapping of str to float
-        What each error is relative to: one for the shares, else about the observable itself.
+        Scale of each error: one for the shares, else about the observable itself.
     identity_error : float
-        ``J_balanced - J_published - J_pcx + 0.4 pi lambda``, zero but for what mesh and iteration leave.
+        ``J_balanced - J_published - J_pcx + 0.4 pi lambda``, zero but for the errors of mesh and iteration.
     load_error : float
-        By how much the pressures miss the load, relative to it.
+        Error of the load carried by the pressures, relative to the load.
     mesh : object
         Discretisation: ``mesh.radii`` (Nr,) [a] and ``mesh.angles`` (Nt,) [radian] of the nodes, ``mesh.size`` their number.
     nodal_gap, nodal_contact_pressure, nodal_fluid_pressure : ndarray, shape (Nt, Nr)
@@ -99,7 +99,7 @@ class PointState:
     newton_steps, krylov_steps : int
         Steps of Newton's iteration, and of GMRES in them.
     work : object
-        What neighbours start from (operators, preconditioner); None if it was dropped.
+        Operators and preconditioner from which neighbours start; None if dropped.
     """
 
     groups: Groups
@@ -143,7 +143,7 @@ class PointState:
 
     @property
     def effort(self) -> float:
-        """What :func:`stribeck.numerics.continuation.march` steers by."""
+        """Measure by which :func:`stribeck.numerics.continuation.march` chooses its steps."""
         return float(self.newton_steps)
 
 
