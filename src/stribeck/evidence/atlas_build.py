@@ -1,8 +1,8 @@
 """Making a table of the atlas from solved states: ``make atlas``, or ``python -m stribeck.evidence.atlas_build NAME``.
 
 First coarse curves over the speed find where the segments of :mod:`stribeck.atlas.grid` end, as polynomials in load and
-roughness.  Then a curve for each node in load and roughness is solved at the nodes of all segments.  Both are kept in a folder
-as they are finished, so that a build that was interrupted goes on.  The coefficients follow from the values at the nodes.
+roughness.  Then a curve for each node in load and roughness is solved at the nodes of all segments.  Finished parts
+are kept in a folder, so that an interrupted build can resume.  The coefficients follow from the values at the nodes.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from stribeck.atlas.tables import TABLES, TableRow
 from stribeck.evidence.atlas_states import PLANS, Plan, coarse_breaks, law_of, solved
 
 NEGLIGIBLE = 2e-8
-"""Coefficients up to which a polynomial is left out."""
+"""Size of coefficients below which a polynomial is left out."""
 
 ROWS = {row.name: row for row in TABLES}
 
@@ -125,7 +125,7 @@ def film_coefficients(name: str) -> Array:
 
 
 def kept(folder: Path, name: str, make: Callable[[], Array]) -> Array:
-    """Return what a folder keeps under a name; make and keep it if it is not there."""
+    """Return the array that a folder keeps under a name; make and keep it if it is missing."""
     path = folder / f"{name}.npy"
     if path.exists():
         return np.asarray(np.load(path))
@@ -137,7 +137,7 @@ def kept(folder: Path, name: str, make: Callable[[], Array]) -> Array:
 
 
 def key_of(name: str, region: int, *more: Any) -> str:
-    """Return a name for all that the ends of the segments of a region follow from, and for what there is besides."""
+    """Return a name made from all inputs on which the ends of the segments of a region depend, and from further ones."""
     grid, plan = ROWS[name].grid, PLANS[name]
     where = grid.regions[region]
     coordinates = grid.heaviest, grid.load_factor, grid.power, where.roughness, where.logs, where.closing, where.has_rest
@@ -186,8 +186,8 @@ def build(row: TableRow, target: Path, folder: Path, workers: int) -> None:
     target : Path
         The file.
     folder : Path
-        Where finished lines are kept, in a folder for each solver. A table of which regions or nodes in roughness are changed
-        is made from the lines that it had.
+        Where finished lines are kept, in a folder for each solver. A table with changed regions or nodes in roughness
+        reuses the lines that it had.
     workers : int
         Processes.
     """

@@ -1,4 +1,4 @@
-"""The errors of a table of the atlas, on states solved from cold that it was not made from.
+"""The errors of a table of the atlas, on states solved from cold that were not used to make it.
 
 ``make certificate`` (``python -m stribeck.evidence.atlas_certificate``) prints the tables of docs/atlas.md and draws its map.
 """
@@ -26,13 +26,13 @@ from stribeck.evidence.atlas_states import FROM, groups_of
 from stribeck.solver.solve import solve
 
 RTOL = {"line-exponential": 1e-7, "ball-exponential": 1e-5, "ball-persson": 1e-5}
-"""Tolerance of the states that judge, as far as double precision and time give it; 1e-6 for other tables."""
+"""Tolerance of the reference states, as far as double precision and time allow; 1e-6 for other tables."""
 
 MIN_SHARE = 1e-9
-"""Contact share from which its relative error counts; so small a part of the load is felt nowhere else."""
+"""Contact share above which its relative error counts; a smaller part of the load affects nothing else."""
 
 MIN_FLUID = 1e-3
-"""Fluid share from which the solver, which bounds its absolute error, can judge."""
+"""Fluid share above which the solver, which bounds its absolute error, is a reference."""
 
 OFFSET_FLOOR = 1.0
 """The offset crosses zero: below this its error is absolute."""

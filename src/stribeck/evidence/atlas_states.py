@@ -23,17 +23,17 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.solver.solve import SolveError, solve
 
 GAPS = (0.5, 2.0, 6.5)
-"""Central gaps over the relative roughness at which segments end that begin at the smallest speed: asperities may carry any
-share there already. The last ends with their share, like the others."""
+"""Central gaps over the relative roughness at the ends of segments that begin at the smallest speed, where asperities may
+carry any share already. The last ends with their share, like the others."""
 
 FAINT = 1e-6
 """Contact share below which films that end are solved from cold."""
 
 LOST = 1e-4
-"""Share of the fluid over the tolerance below which it is rounding, and taken by its law of slow speeds."""
+"""Share of the fluid over the tolerance below which it is rounding; its law for slow speeds is taken instead."""
 
 NOTHING = 1e-20
-"""Contact share that no segment reaches."""
+"""Contact share below all segments."""
 
 SEPARATIONS = np.geomspace(1e-4, 60.0, 600)
 """Separations at which the law of a table is kept."""
@@ -97,7 +97,7 @@ def solved(row: TableRow, log_speeds: Array, log_load: float, kappa: float, rtol
     curve = _at_least(partial(stribeck_curve, groups_of(row, 1.0, load, kappa), speed=np.exp(log_speeds)), rtol)
     states = dict(zip(np.log(curve.values).round(9).tolist(), curve.solutions, strict=True))
     for s in log_speeds.tolist():
-        if round(s, 9) not in states:  # lost from its neighbours: from cold, and finer
+        if round(s, 9) not in states:  # not reached from its neighbours: from cold, and finer
             states[round(s, 9)] = solve(groups_of(row, math.exp(s), load, kappa), rtol=0.1 * rtol)
     found = [states[round(s, 9)].observables for s in log_speeds.tolist()]
     if row.cavitation is not Cavitation.NONE:
@@ -106,7 +106,7 @@ def solved(row: TableRow, log_speeds: Array, log_load: float, kappa: float, rtol
 
 
 def _at_least(solving: Callable[..., Any], rtol: float) -> Any:
-    """Return what is solved to a tolerance, or to three times it where double precision gives no more."""
+    """Return a solution to a tolerance, or to three times that if double precision allows no more."""
     try:
         return solving(rtol=rtol)
     except SolveError:
@@ -114,7 +114,7 @@ def _at_least(solving: Callable[..., Any], rtol: float) -> Any:
 
 
 def _refine_faint(row: TableRow, found: list[Any], log_speeds: Array, load: float, kappa: float, rtol: float) -> None:
-    """Solve from cold, in place, where asperities carry hardly anything.
+    """Solve states whose asperities carry hardly any load from cold, in place.
 
     Along a curve of films that end the error of their share is bounded against the whole load, not against the share.
     """

@@ -1,4 +1,4 @@
-"""The solver of the ball as the judge of its formulas: states, rows of them over the speed, and their observables.
+"""The solver of the ball as the reference for its formulas: states, rows of them over the speed, and their observables.
 
 Source: none; the counterpart of :mod:`stribeck.evidence.formulas` for the point geometry.
 """
@@ -19,10 +19,10 @@ from stribeck.solver.point.solve import solve_cold, solve_from
 from stribeck.solver.point.state import PointObservables, PointState
 
 RTOL = 1e-5
-"""Relative tolerance of the states that judge."""
+"""Relative tolerance of the reference states."""
 
 SMALL_SHARE = 1e-5
-"""Share of the fluid below which it does not judge: the errors of shares are absolute."""
+"""Share of the fluid below which the solver is no reference: the errors of shares are absolute."""
 
 
 @lru_cache(maxsize=1024)

@@ -28,11 +28,11 @@ RATIOS = (1e-4, 1e-3, 1e-2, 0.1, 1.0, 3.0, 10.0)
 """beta/mu0 for which the errors are tabulated."""
 
 FILM_RATIOS = np.geomspace(0.5, 80.0, 300)
-"""Film ratios c lambda**(3/5)/kappa over which the minimum is looked for: it lies between 1.9 and 31 for all of RATIOS."""
+"""Film ratios c lambda**(3/5)/kappa over which the minimum is searched: it lies between 1.9 and 31 for all of RATIOS."""
 
 ZOOMS = 3
 ZOOM_POINTS = 21
-"""Times that the surroundings of a minimum are divided anew, and into how many points."""
+"""Number of refinements around a minimum, and of points in each."""
 
 
 def _axes(formula: Formula[Any], points: tuple[int, int]) -> tuple[Array, Array]:
@@ -105,7 +105,7 @@ JUDGED: dict[str, tuple[Formula[Any], dict[str, Any]]] = {
     "friction_at_minimum": (transitions.friction_at_minimum, {}),
     "separation_at_minimum": (transitions.separation_at_minimum, {}),
 }
-"""Formulas with both coefficients, with their options, by what they are called in the table."""
+"""Formulas with both coefficients, with their options, by their names in the table."""
 
 
 def largest_errors(

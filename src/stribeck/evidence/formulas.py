@@ -1,4 +1,4 @@
-"""Formulas judged by the solver: what each of them predicts, solved, and the relative error, at a state or over a grid.
+"""Formulas compared with the solver: the quantity that each predicts, and its relative error, at a state or over a grid.
 
 Source: none; this is the evidence for :data:`stribeck.asymptotics.FORMULAS`, shown in validity.md.
 """
@@ -43,14 +43,14 @@ POSITIONS = 201
 """Positions in its interval at which a field is judged."""
 
 RTOL = 1e-7
-"""Relative tolerance of the states that judge."""
+"""Relative tolerance of the reference states."""
 
 SMALL_SHARE = 1e-3
 """Share of the load that the fluid carries below which a state is not taken from a row: the errors of shares are absolute, and
 on a mesh that was made for faster states so small a share can be off by 1e-3 of itself."""
 
 CURVE_POINTS = 41
-"""Points of the curve on which a minimum or a load share is looked for, which is then located exactly."""
+"""Points of the curve on which a minimum or a load share is searched, which is then located exactly."""
 
 
 @lru_cache(maxsize=4096)
@@ -69,7 +69,7 @@ def _curve(groups: Groups, boundary_friction: float, beta: float, definition: De
 
 
 def _coefficients(options: dict[str, Any]) -> dict[str, Any]:
-    """Return the options of a formula for the solver; by default 1 and the definition of the paper."""
+    """Return the options of a formula for the solver; by default 1 and the definition of the article."""
     definition = options.get("definition", options.get("viscous"))
     known = definition if definition in DEFINITIONS else "published"
     return {"boundary_friction": options.get("boundary_friction", 1.0), "beta": options.get("beta", 1.0), "definition": known}
@@ -109,7 +109,7 @@ LOCATED: dict[str, Callable[[Groups, dict[str, Any]], float]] = {
     "speed_at_5_percent_fluid": lambda g, _: _of_landmark(_fluid_share(g, Transition.BOUNDARY_END), lambda mark: mark.value),
     "speed_at_half_fluid": lambda g, _: _of_landmark(_fluid_share(g, Transition.EQUAL_SHARES), lambda mark: mark.value),
 }
-"""Quantities located on a curve over the speed, which the speed of the groups does not touch."""
+"""Quantities located on a curve over the speed; the speed of the groups has no effect."""
 
 
 def _measured(name: str, groups: Groups, **options: Any) -> float:
@@ -121,8 +121,8 @@ def _measured(name: str, groups: Groups, **options: Any) -> float:
 MEASURED: dict[str, Callable[..., float]] = {
     name: partial(_measured, name) for name in dict.fromkeys((*OF_STATE, *LOCATED, *ball.OBSERVED))
 }
-"""What the solver gives for each quantity that a formula predicts, as a function of the groups, for friction also of mu0, beta
-(1 by default) and definition (that of the paper)."""
+"""The solver's value of each quantity that a formula predicts, as a function of the groups, for friction also of mu0, beta
+(1 by default) and definition (that of the article)."""
 
 AXES: dict[str, dict[str, tuple[float, ...]]] = {
     "smooth": {"speed": (-11, 8, 4)},
@@ -133,7 +133,7 @@ AXES: dict[str, dict[str, tuple[float, ...]]] = {
     "ball at rest": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-5, 2, 2)},
     "any ball": {"load": (1e-3, 0.1, 0.5), "relative_roughness": (-3, -1, 1), "speed": (-8, 1, 1)},
 }
-"""What the error depends on for each kind of formula, and where it is mapped: loads, or decades and points in each of them."""
+"""The groups on which the error depends for each kind of formula, and their grid: loads, or decades and points per decade."""
 
 LABELS = {"load": "load group", "relative_roughness": "relative roughness h_rms/F_N", "speed": "speed group"}
 
@@ -205,7 +205,7 @@ def _field_error(formula: Formula[Any], groups: Groups, state: Solution | PointS
 
 
 def kind_of(formula: Formula[Any]) -> str:
-    """Return the kind of a formula, by what its error depends on, as a key of :data:`AXES`.
+    """Return the kind of a formula, by the groups on which its error depends, as a key of :data:`AXES`.
 
     Parameters
     ----------
@@ -384,7 +384,7 @@ def _valid(formula: Formula[Any], groups: Groups, options: dict[str, Any]) -> Fl
 def _row(base: Groups, speeds: Array) -> list[tuple[int, Solution]]:
     """Return the states of one load and roughness over the speed that could be solved, with their places in ``speeds``."""
     moving = [k for k, speed in enumerate(speeds.tolist()) if speed > 0]
-    # Two speeds would be the ends of a curve.
+    # Two speeds would be taken as the ends of a curve.
     alone = list(range(len(speeds))) if len(moving) < 3 else [k for k in range(len(speeds)) if k not in moving]
     found = [(k, _state(replace(base, speed=float(speeds[k])))) for k in alone]
     if len(moving) > 2:

@@ -1,4 +1,4 @@
-"""Pictures of the errors of formulas: maps over speed and roughness, and lines where only one of them matters."""
+"""Pictures of the errors of formulas: maps over speed and roughness, and lines if only one of them matters."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ CONTOURS = {0.01: "white", 0.1: INK}
 """Errors of the contour lines, and their colours, each seen on the colours around it."""
 
 SMALLEST = 1e-7
-"""Error below which nothing is told apart: the tolerance of the solved states."""
+"""Smallest error with a colour of its own: the tolerance of the solved states."""
 
 LARGEST = 1e6
-"""Error from which on, likewise."""
+"""Largest error with a colour of its own."""
 
 NOTHING, HATCH = "#f4f4f4", "#b8bec5"
 
