@@ -1,4 +1,4 @@
-"""Asymptotic laws of the model, each with range and source; the solver, which is compared with them, imports none.
+"""Asymptotic laws of the model, each with range and source; the solver imports none, so that the two can be compared.
 
 :data:`FORMULAS` is the one list of them: tests, documentation and figures loop over it.
 """
@@ -111,5 +111,5 @@ FORMULAS: tuple[Formula[Any], ...] = (
     point.friction.viscous_friction,
     point.friction.friction,
 )
-"""All formulas, in the order in which a reader meets them: of the cylinder the smooth contact, the contact at rest, what lies
-between; then those of the ball likewise."""
+"""All formulas, in the order in which a reader meets them: for the cylinder the smooth contact, the contact at rest, mixed
+lubrication; then those of the ball likewise."""

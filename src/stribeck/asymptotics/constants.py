@@ -1,6 +1,6 @@
 """Universal constants of the limits, each computed by this package; ``tests/test_layers.py`` computes them again.
 
-All digits that stand here are right.  Source: the similarity problems of :mod:`stribeck.asymptotics.smooth.film_layers` and
+All digits are correct.  Source: the similarity problems of :mod:`stribeck.asymptotics.smooth.film_layers` and
 :mod:`stribeck.asymptotics.smooth.edge_layer`.
 """
 
@@ -19,7 +19,7 @@ MINIMUM_CONSTANT = 0.33794396
 """Minimum film over u_Hz lambda**(3/5) as lambda -> 0, in the outlet: 0.75801004 of the central film."""
 
 MINIMUM_POSITION = 0.40117
-"""Where that is: (x - 1)/lambda**(2/5)."""
+"""Its position: (x - 1)/lambda**(2/5)."""
 
 EDGE_GAP = -0.00219080859
 """H(0) of a rough contact at rest as kappa -> 0: h = kappa (-ln(F)/2 - ln(kappa)/3 + H(0)) at the edge, x = 1 - kappa."""

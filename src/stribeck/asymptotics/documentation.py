@@ -1,7 +1,7 @@
 """Text that the docstrings of formulas share: the descriptions of their arguments and values, written once.
 
-A formula says what it returns, by which equation, and how well.  Arguments, value and errors that many have are filled in
-from the tables here; a section or an argument that a formula describes itself is left as it is.
+The docstring of a formula states its value, equation and error.  Arguments, value and exceptions that many share are filled
+in from the tables here; a section or an argument that a formula describes itself is left as it is.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """What a formula is: a function of the groups that knows its range, the order of its error, and its source.
 
-Nothing here is physics.  Outside its range a formula still returns a value, with an :class:`OutOfRangeWarning`;
+There is no physics here.  Outside its range a formula still returns a value, with an :class:`OutOfRangeWarning`;
 where it has no value it returns nan, with a warning.
 """
 
@@ -32,7 +32,7 @@ GROUPS = ("speed", "load", "roughness")
 
 
 def coefficient(name: str, value: Any) -> float:
-    """Return a coefficient of the friction; refuse anything but a finite number, zero or positive."""
+    """Return a coefficient of the friction; refuse anything but a finite number that is zero or positive."""
     found = real_array(name, value)
     if found.ndim != 0 or not 0 <= found < math.inf:
         raise InputError(f"{name} = {show(value)}; it must be one finite number, zero or positive.")
@@ -61,7 +61,7 @@ def _film_ratio(groups: Groups) -> Value:
 
 
 def _slow_share(groups: Groups) -> Value:
-    """Return roughly the part of the load on slow fluid under a ball, infinite from load 1 on."""
+    """Return an estimate of the load share of the fluid under a slow ball, infinite from load 1 on."""
     with np.errstate(over="ignore", invalid="ignore"):
         number = _ratio(groups.speed, np.square(groups.relative_roughness))
         A = np.maximum(-np.log(groups.load), 0) / 3
@@ -69,7 +69,7 @@ def _slow_share(groups: Groups) -> Value:
 
 
 def _paper_fluid_share(groups: Groups) -> Value:
-    """Return the part of the load on the fluid as [BP] estimate it, infinite from load 1 on."""
+    """Return the load share of the fluid as estimated in [BP], infinite from load 1 on."""
     with np.errstate(over="ignore", invalid="ignore"):
         number = _ratio(groups.speed, np.square(groups.relative_roughness))
         return _ratio(0.5 * np.square(number), np.maximum(-np.log(groups.load), 0) ** 5)
@@ -133,7 +133,7 @@ class Formula(Generic[Arguments]):
     function : callable
         The formula without any check of its range.
     predicts : str
-        What it is compared with in a solved state: a key of :data:`stribeck.evidence.formulas.MEASURED`.
+        The quantity of a solved state that it predicts: a key of :data:`stribeck.evidence.formulas.MEASURED`.
     plane : {"smooth", "rest", "mixed"}
         Whether it is about the smooth contact (roughness 0, whatever the groups say), the contact at rest (speed 0), or both.
     limits : tuple of Limit
@@ -141,17 +141,17 @@ class Formula(Generic[Arguments]):
     worst : float
         Largest relative error in this range, measured.
     small : str
-        The parameter in which its error vanishes, key of :data:`PARAMETERS`; empty for a formula that fits everywhere.
+        The parameter with which its error vanishes, key of :data:`PARAMETERS`; empty for a fit over the whole range.
     error_order : float
         The relative error goes as ``small**error_order``.
     approach : callable or None
         ``approach(small)`` returns the groups along which the tests follow the error.
     steps : tuple of float
-        Values of ``small`` at which they do.
+        Values of ``small`` at which the tests do so.
     interval : callable or None
         For a field, ``interval(groups)`` returns the positions [a] between which it is compared with the solver.
     source : str
-        Where it comes from.
+        Its source.
     geometry : {"line", "point"}
         Whether it is about the cylinder or about the ball.
     uses : tuple of str

@@ -198,7 +198,7 @@ def viscous_friction(
     Parameters
     ----------
     definition : {"balanced", "published"}
-        The force on the flat; or with the moment in brackets, which the definition of the paper has.
+        The force on the flat; or with the moment in brackets, by the definition of the article.
     wetted_radius : float, optional
         Where the liquid ends [a]; by default that of a whole sphere, :mod:`stribeck.contacts.cut_off`.
 

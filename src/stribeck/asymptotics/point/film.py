@@ -1,4 +1,4 @@
-r"""The slow smooth ball: the film that the inlet of the line lets in, what leaks to the sides, and where it is thinnest.
+r"""The slow smooth ball: the film by the inlet of the line, the leakage to the sides, and the minimum film.
 
 *Inlet.*  On the scale of its width the edge of the contact is straight.  At the angle :math:`\psi` from the inlet's middle
 it is the inlet of a line at the speed :math:`\lambda \cos\psi`, over a half-space whose kernel is :math:`4/\pi` times
@@ -15,8 +15,8 @@ sides.  With
 .. math:: q(x) = c \lambda^{3/5} \left[1 + 2 c^2 \lambda^{1/5} \left(\arcsin x + \tfrac\pi2\right)\right]^{-1/2}, \qquad
     h = q - \frac{q^3}{\lambda} \frac{x}{(1 - x^2)^{1/2}} .
 
-*Outlet.*  The outlet of the line has a solution for any film that comes; that film is q(1), thinner than its inlet's,
-and the minimum over it grows as that film falls (:func:`stribeck.asymptotics.smooth.film_layers.outlet`).
+*Outlet.*  The outlet of the line has a solution for any incoming film; here this is q(1), thinner than that of the inlet,
+and the ratio of the minimum to it grows as it falls (:func:`stribeck.asymptotics.smooth.film_layers.outlet`).
 
 *Sides.*  At the angle :math:`\phi` from the sides the edge layer is :math:`(\lambda\phi)^{2/5}` wide and the contact only
 :math:`\phi^2/2` deep.  Both are equal for :math:`\phi \sim \lambda^{1/4}`: there inlet, outlet and leakage are one
@@ -46,8 +46,8 @@ LEAKAGE = math.pi * BALL_FILM_CONSTANT**2
 """Flux lost up to the middle of the contact over the flux that enters, as a multiple of lambda**(1/5)."""
 
 OUTLET_POWER = (0.8283, -0.078)
-"""Logarithm of the minimum of the outlet, over that at the line's film, as a polynomial in the logarithm of the film that
-comes; from the outlet solved for films of 0.8 to 1.05 times that of the line, within 2e-4."""
+"""Logarithm of the minimum of the outlet, over that at the line's film, as a polynomial in the logarithm of the
+incoming film; from the outlet solved for films of 0.8 to 1.05 times that of the line, within 2e-4."""
 
 SIDE = (0.6817, 0.9625, 1.0682)
 """Fitted: limit of the minimum film over lambda**(3/4), and coefficients of what divides it."""

@@ -8,10 +8,10 @@ r"""Friction of a ball at any speed, load and roughness in closed form, with the
 .. math:: J_\mathrm{fp} \to \frac{\lambda^{2/5}}{3c} \int_{-1}^1 (1-y^2)^{1/5} dy = 1.4054 \, \lambda^{2/5}, \qquad
     J_\mathrm{fp} \to -\pi\lambda \left[\tfrac{8}{15} \ln(2 h_0) + \tfrac25\right] .
 
-*Rough.*  Where asperities keep the gap open at a speed below that of the film as thick, the shear is less.
+*Rough.*  Where asperities keep the gap open, at speeds below that of a film of this thickness, the shear is smaller.
 
-*Published.*  The definition of the paper has the moment of the contact pressure besides, :math:`J_m = \int p_c \, x`: that of
-the boundary regime, at the gap that is there and by a power of the share that is left to the asperities.
+*Published.*  The definition of the article also has the moment of the contact pressure, :math:`J_m = \int p_c \, x`: that of
+the boundary regime at the actual gap, times a power of the asperities' share.
 
 Source: ours; theory.md, section 11.
 """

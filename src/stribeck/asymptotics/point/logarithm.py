@@ -38,7 +38,7 @@ def far_integral(slope: Value, wetted_radius: Value | None = None) -> Array:
     Raises
     ------
     InputError
-        If a wetted radius lies in the contact, at 1 or below.
+        If a wetted radius lies inside the contact, at 1 or below.
     """
     if wetted_radius is None:
         by_shear, by_pressure = log_cut_offs(1.0)
