@@ -205,7 +205,9 @@ def check_model(model: Model) -> None:
             "friction factors."
         )
     if type(model.solid) not in BODIES:
-        raise InputError(f"solid = {model.solid.name}: on a ball the soft body must be a half-space or a bonded layer.")
+        raise InputError(
+            f"solid = {model.solid.name}: in the contact of a ball the soft body must be a half-space or a bonded layer."
+        )
     thickness = getattr(model.solid, "thickness", math.inf)
     if thickness < THINNEST:
         raise InputError(
