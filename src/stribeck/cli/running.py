@@ -157,8 +157,9 @@ def _parsing(problem: CycloptsError) -> str:
         return f"{name} needs {wanted}, but {len(problem.tokens_so_far)} given."
     if isinstance(problem, UnknownOptionError) and "--mu0" in str(problem):
         return "Unknown option: --mu0; it is called --boundary-friction."
-    if str(problem) in ("Unknown option: -o.", "Unknown option: --output.") and list(problem.command_chain or ()) == ["new"]:
-        return f"{_line(problem)} The file is given without an option, as in stribeck new case.toml."
+    option = str(problem).removeprefix("Unknown option: ").strip('".')  # the quotes come and go with its versions
+    if option in ("-o", "--output") and list(problem.command_chain or ()) == ["new"]:
+        return f"Unknown option: {option}. The file is given without an option, as in stribeck new case.toml."
     return _line(problem)
 
 
