@@ -32,7 +32,7 @@ from stribeck._types import Array, Flags, Indices
 from stribeck.equations.damping import longest_step
 from stribeck.equations.point.iteration import SMALLEST_PART, Iterated, step_size
 from stribeck.equations.point.preconditioner import BandedModes
-from stribeck.equations.point.system import Equations, Linear, Unknowns
+from stribeck.equations.point.system import LOAD, Equations, Linear, Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh, lobatto, radau
 from stribeck.numerics.krylov import gmres
 from stribeck.quantities.outcome import Outcome
@@ -56,6 +56,9 @@ FEW = 0.15
 
 ROOM = 1.2
 """Room for columns over those of the known nodes, as a few more come with each step."""
+
+BALANCED = 5e-9
+"""Part of the load by which what both pressures carry may miss it."""
 
 FLUID = 10.0
 """Part of the film pressure that GMRES may leave over that of the gap."""
@@ -348,19 +351,24 @@ def iterate_cavitated(
         return np.asarray(gas * passing.weights / stiff > y.fluid - least)
 
     krylov = factorisations = steps = 0
-    left, size, same = math.inf, math.inf, False
+    left, size, same, near = math.inf, math.inf, False, False
     if kept is not None:  # a neighbour's start is good enough to ask which nodes are torn
         torn = now_torn(stiffness(Linear(equations, y)), equations.passing(torn))
 
+    def complementary() -> Unknowns:
+        return Unknowns(y.gap, np.where(torn, least, np.maximum(y.fluid, just_above(least))), y.offset)
+
     def ended(outcome: Outcome) -> Iterated:
-        fluid = np.where(torn, least, np.maximum(y.fluid, just_above(least)))
-        there = Unknowns(y.gap, fluid, y.offset)
-        return Iterated(there, outcome, steps, krylov, factorisations, left, kept)
+        return Iterated(complementary(), outcome, steps, krylov, factorisations, left, kept)
 
     with np.errstate(all="ignore"):
         while steps < max_steps:
-            linear = TornLinear(equations, y, torn)
+            if near:
+                y = complementary()
             residual = equations.residual(y)
+            if near and abs(residual[2]) <= BALANCED * LOAD:
+                break
+            linear = TornLinear(equations, y, torn)
             right = linear.right(residual)
             if not np.isfinite(right).all():
                 return ended(Outcome.NOT_FINITE)
@@ -387,11 +395,10 @@ def iterate_cavitated(
             same = bool((now == torn).all())
             torn = now
             if part < 1.0:
-                size = max(size, 1.0)
+                size, near = max(size, 1.0), False
                 continue
             left = 3.0 * size * size + solved.left * size
             # At slow speed the film pressure is small: a step may be small for the gap and not for the pressure.
             missed = solved.left * float(np.abs(step.fluid).max() / max(y.fluid.max(), np.finfo(float).tiny))
-            if same and left <= tolerance and missed <= FLUID * tolerance:
-                return ended(Outcome.CONVERGED)
-        return ended(Outcome.STEP_LIMIT)
+            near = same and left <= tolerance and missed <= FLUID * tolerance
+        return ended(Outcome.CONVERGED if near else Outcome.STEP_LIMIT)
