@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stribeck.numerics.cells import Cells
-from stribeck.numerics.hermite import chebyshev_basis, hermite_form, hermite_weights
+from stribeck.numerics.hermite import chebyshev_basis, hermite_form, hermite_weights, missed_by
 from stribeck.numerics.series import (
     along,
     beyond,
@@ -110,6 +110,23 @@ def test_both_ends_keep_their_coefficients():
     of_left, of_right = hermite_weights(5, np.array([0.0, 1.0]))
     np.testing.assert_array_equal(of_left, [[1, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]])
     np.testing.assert_array_equal(np.abs(of_right), [[0, 0, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0]])
+
+
+def test_an_error_is_not_taken_for_small_where_the_highest_order_changes_nothing_by_chance():
+    order, orders = 8, np.arange(9)
+    poles = np.array([0.4 + 0.7j, 0.1 + 0.8j, 0.7 + 0.6j])
+    values = [(-1.0) ** orders[:, None] / (end - poles) ** (orders[:, None] + 1) for end in (0.0, 1.0)]
+    each = np.vstack([value.real for value in values])
+    lower = np.delete(each, (order, 2 * order + 1), axis=0)
+    at = np.array([0.3, 0.7])
+    changes = np.hstack(hermite_weights(order, at)) @ each - np.hstack(hermite_weights(order - 1, at)) @ lower
+    factors = np.linalg.svd(changes)[2][-1]  # of a sum of which the highest order changes nothing
+    ends = each @ factors[:, None]
+    tau = np.linspace(0, 1, 41)
+    true = (1 / (tau[:, None] - poles)).real @ factors
+    error = np.abs(np.hstack(hermite_weights(order, tau)) @ ends[:, 0] - true).max()
+    stated = [missed_by(order, ends, rate)[0] / 4**order for rate in (0.0, 1 / np.abs(poles * (poles - 1)).min())]
+    assert stated[0] < 1e-3 * error < error < stated[1]
 
 
 def test_twelve_orders_interpolate_to_rounding():

@@ -25,7 +25,7 @@ __all__ = [
     "chebyshev_nodes",
     "hermite_form",
     "hermite_weights",
-    "highest_order",
+    "missed_by",
 ]
 
 
@@ -67,7 +67,7 @@ def hermite_form(order: int) -> Array:
 
 
 @lru_cache(maxsize=64)
-def highest_order(order: int) -> Array:
+def _highest_order(order: int) -> Array:
     r"""Return the rows that give what the highest order changes, at both ends over :math:`(\tau (1 - \tau))^K`.
 
     The change over that is linear: it is followed from inside to the ends.
@@ -77,6 +77,37 @@ def highest_order(order: int) -> Array:
     without = [np.pad(part, ((0, 0), (0, 1))) for part in hermite_weights(order - 1, at)]
     inside = np.hstack([left - without[0], right - without[1]]) / (3 / 16) ** order
     return np.asarray(np.array([[1.5, -0.5], [-0.5, 1.5]]) @ inside)
+
+
+@lru_cache(maxsize=64)
+def _highest_orders(order: int) -> Array:
+    """Return these rows, and below them those of the order before, which one order alone may hide by chance."""
+    left, right = np.hsplit(_highest_order(order - 1), 2)
+    return np.vstack([_highest_order(order), np.hstack([np.pad(part, ((0, 0), (0, 1))) for part in (left, right)])])
+
+
+def missed_by(order: int, ends: Array, rate: float) -> Array:
+    r"""Return by how much a polynomial is wrong, over :math:`(\tau (1 - \tau))^K`: its change by the highest order.
+
+    Parameters
+    ----------
+    order : int
+        K.
+    ends : ndarray, shape (2 K + 2, n)
+        Coefficients at both ends, one under the other, on an interval of length one.
+    rate : float
+        Change by an order over that by the order before, both divided so, as far as is known: where the last one vanishes by
+        chance, the one before counts so much.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        For each column.
+    """
+    if order < 2:
+        return np.abs(_highest_order(order) @ ends).max(axis=0) if order else np.zeros(ends.shape[1])
+    found = np.abs(_highest_orders(order) @ ends)
+    return np.asarray(np.maximum(found[:2].max(axis=0), rate * found[2:].max(axis=0)))
 
 
 @lru_cache(maxsize=64)

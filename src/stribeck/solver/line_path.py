@@ -17,7 +17,7 @@ from stribeck.equations.gap import minimum_gaps
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import ROW, observables
 from stribeck.equations.state import State, is_thinning, solve_state
-from stribeck.numerics.hermite import hermite_weights
+from stribeck.numerics.hermite import hermite_weights, missed_by
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.numerics.panels import Mesh, interpolation_error
 from stribeck.numerics.series import beyond, interval, radius
@@ -26,7 +26,7 @@ from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
 from stribeck.solver.at_rest import shift_along, with_positive_gap
 from stribeck.solver.corrector import Corrector, from_cold, keeps_cavity
 from stribeck.solver.expansion import Direction, Expanded, corrected, expand_any_film, expand_article, from_logs
-from stribeck.solver.path import KNOT_PART, Expansion
+from stribeck.solver.path import KNOT_PART, Expansion, rate
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
 
 EXACT_ORDER, ORDER, ORDER_OF_ANY_FILM = (16, 18), (10, 12), 6
@@ -286,7 +286,6 @@ class LineProblem:
         """Return the largest difference between ``values`` and states corrected at ``parts``, for non-analytic laws."""
         same = left.point.state.mesh is right.point.state.mesh
         found = np.full(POSITION + 1, 0.0 if same else BETWEEN_MESHES * self.tolerance)
-        found[READ] = 0.0
         if self.exact or not self.moves or not _alike(left, right):
             return found
         places = left.coordinate + parts * (right.coordinate - left.coordinate)
@@ -335,7 +334,6 @@ def _minimum_on(left: Expansion, right: Expansion, of: LinePoint, parts: Array) 
     """
     order, mesh, at, ends = min(left.order, right.order), of.state.mesh, of.state.equations.layout, (left, right)
     weights = hermite_weights(order, parts)
-    lower = [np.pad(each, ((0, 0), (0, 1))) for each in hermite_weights(order - 1, parts)]
     scaled, everywhere = _scaled(left, right, order), range(mesh.panels - 1)
     places = [end.point.state.minimum_position / _stretch(end.point, of) for end in ends]
     low, high = np.searchsorted(mesh.edges, [min(places), max(places)])
@@ -344,9 +342,8 @@ def _minimum_on(left: Expansion, right: Expansion, of: LinePoint, parts: Array) 
         place, lowest, error, panel = minimum_gaps(mesh, weights[0] @ a + weights[1] @ b, panels.start)
         if panels == everywhere or (panel.min() > panels.start and panel.max() < panels.stop - 1):
             break
-    nodes = ((panel - panels.start) * mesh.order)[:, None] + np.arange(mesh.order)
-    change = (weights[0] - lower[0]) @ a + (weights[1] - lower[1]) @ b
-    error = error + np.abs(np.take_along_axis(change, nodes, axis=1)).max(axis=1)
+    on_panels = missed_by(order, np.vstack([a, b]), rate(left, right)).reshape(-1, mesh.order).max(axis=1)
+    error = error + on_panels[panel - panels.start] * (parts * (1 - parts)) ** order
     for end, each, w in zip(ends, scaled, weights, strict=True):
         if end.point.state.mesh is not mesh:  # values from another mesh were interpolated
             error = error + 2 * _unresolved(end.point, each, w, place * _stretch(end.point, of))

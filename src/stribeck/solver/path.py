@@ -19,7 +19,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from stribeck._types import Array, Flags, Indices
-from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, highest_order
+from stribeck.numerics.hermite import chebyshev_basis, chebyshev_form, chebyshev_nodes, hermite_form, missed_by
 from stribeck.quantities.outcome import Outcome
 
 LONGEST_STEP = 4.0
@@ -100,6 +100,11 @@ class Expansion:
         return len(self.series) - 1
 
 
+def rate(left: Expansion, right: Expansion) -> float:
+    """Return by how much the change by an order exceeds that by the one before, as :func:`missed_by` takes it."""
+    return (right.coordinate - left.coordinate) ** 2 / (left.radius * right.radius)
+
+
 class Problem(Protocol):
     """The states that a path follows, as the path needs them."""
 
@@ -168,9 +173,8 @@ class Interval:
 
     @cached_property
     def missed(self) -> Array:
-        """Largest change of the interpolated observables by the highest order, over ``(tau (1 - tau))**K``."""
-        values = self.ends[:, : self.left.series.shape[1]]
-        return np.asarray(np.abs(highest_order(self.order) @ values).max(axis=0)) if self.order else 0.0 * values[0]
+        """Error of the interpolated observables by their highest orders, over ``(tau (1 - tau))**K``."""
+        return missed_by(self.order, self.ends[:, : self.left.series.shape[1]], rate(self.left, self.right))
 
     @cached_property
     def at_ends(self) -> Array:
