@@ -7,6 +7,9 @@ import numpy as np
 import pytest
 
 import stribeck as sb
+from stribeck.curves import landmarks
+from stribeck.curves.function import solved_at
+from stribeck.curves.regime import Transition
 from stribeck.equations.observables import ROW
 from stribeck.quantities.outputs import NAMES
 from stribeck.solver.line_path import LineProblem
@@ -105,6 +108,22 @@ def test_the_function_does_not_depend_on_the_points():
     curves = [sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-3, 1), points=n) for n in (2, 31)]
     assert [len(curve._function.expansions) for curve in curves] == [len(curves[0]._function.expansions)] * 2
     assert curves[0].at(0.05).friction == pytest.approx(curves[1].at(0.05).friction, rel=1e-7)
+
+
+def test_marks_are_read_off_a_coarse_curve_within_their_errors_and_polished_on_states_by_default(curve, monkeypatch):
+    coarse, solved = sb.stribeck_curve(CONTACT, points=200, rtol=1e-4), []
+
+    def counted(*arguments):
+        solved.append(arguments)
+        return solved_at(*arguments)
+
+    monkeypatch.setattr(landmarks, "solved_at", counted)
+    for name in Transition:
+        exact, read = curve.landmark(name), coarse.landmark(name, coarse.rtol)
+        assert abs(np.log(read.value / exact.value)) <= read.error + exact.error < 1e-2
+    assert not solved
+    assert coarse.landmark(Transition.BOUNDARY_END).error < 0.2 * coarse.landmark(Transition.BOUNDARY_END, coarse.rtol).error
+    assert len(solved) in (1, 2)
 
 
 def test_fields_are_solved_where_they_are_asked_for(curve):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,24 +14,28 @@ from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import CurvePoint, solved_at, within
 from stribeck.numerics.newton import root_between
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.solver.line_path import POSITION
 from stribeck.solver.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, describe, solution_of
 
-__all__ = ["Landmark", "Landmarks", "places_of"]
+__all__ = ["STATES_RTOL", "Landmark", "Landmarks", "Place", "places_of"]
 
 LOCATION_TOLERANCE = 1e-9
-"""Relative tolerance to which a minimum or a transition is located; its own error is that of the curve there."""
+"""Relative tolerance to which a minimum or a transition is located on states; their errors are added to it."""
 
 STATES_RTOL = 1e-6
-"""Largest tolerance of these states: a coarse curve has a few of them, and they are its headline."""
+"""Largest tolerance of these states unless another is asked for: a coarse curve has few of them, and they are its headline."""
 
 PARTS = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 9)
 """Where a function is evaluated between two solved states, as fractions of the interval."""
 
 STEP = 1e-20
 """Step into the complex plane for a derivative."""
+
+WIDTH = 1e-3
+"""Step along the coordinate for other derivatives."""
 
 MOST_POLISHES = 4
 """Most states solved for one landmark: each squares the error."""
@@ -50,12 +55,23 @@ class Landmark:
         Total friction coefficient there [-].
     solution : Solution
         The state.
+    error : float
+        Estimated relative error of ``value``, by the errors of the observables [-]; nan for a ball.
     """
 
     name: str
     value: float
     friction: float
     solution: Solution = field(repr=False)
+    error: float = math.nan
+
+
+class Place(NamedTuple):
+    """Where a landmark is: coordinate, its estimated error, and the state."""
+
+    coordinate: float
+    error: float
+    solution: Solution
 
 
 def places_of(path: SolvedPath) -> Array:
@@ -74,32 +90,44 @@ class Landmarks:
         self.rows = path.smooth(self.places)
 
     def lowest(
-        self, function: Callable[[Array], Array], slope_of: Callable[[RefinedState], float]
-    ) -> tuple[float, Solution] | None:
-        """Return the coordinate and the state of the minimum of a function of the observables inside the path, or None."""
+        self, function: Callable[[Array], Array], slope_of: Callable[[RefinedState], float], accepted: float
+    ) -> Place | None:
+        """Return the minimum of a function of the observables inside the path, or None.
+
+        It is read off the path where the errors of that are at most ``accepted``, else off a state.
+        """
         places, values = self._known(function)
         i = int(np.argmin(values))
         if not 0 < i < len(places) - 1:
             return None
 
-        def slope(s: Array) -> Array:
-            return np.asarray(function(self.path.smooth(np.asarray(s + STEP * 1j))).imag / STEP)
+        def slope(s: float) -> float:
+            return float(function(self.path.smooth(np.array([s + STEP * 1j]))).imag[0] / STEP)
 
-        low, high = places[i - 1], places[i + 1]
-        return self._polished(slope, float(low), float(high), slope_of)
+        def doubt(s: float, row: Array, errors: Array) -> float:
+            """Of the slope: errors change along an interval as the polynomials do."""
+            length = max(self.path.intervals[int(self.path.interval_of(np.array([s]))[0])].length, WIDTH)
+            near = np.array([s - WIDTH, s + WIDTH])
+            before, after = (self._doubt(function, *each) for each in zip(near.tolist(), *self.path.at(near), strict=True))
+            return 2 * self._doubt(function, s, row, errors) / length + abs(after - before) / (2 * WIDTH)
 
-    def first(self, function: Callable[[Array], Array], of: Callable[[RefinedState], float]) -> tuple[float, Solution] | None:
-        """Return the coordinate and the state of the first zero of a function of the observables, ascending, or None."""
+        return self._polished(slope, float(places[i - 1]), float(places[i + 1]), slope_of, doubt, accepted)
+
+    def first(self, function: Callable[[Array], Array], of: Callable[[RefinedState], float], accepted: float) -> Place | None:
+        """Return the first zero of a function of the observables, ascending, or None; ``accepted`` as for :meth:`lowest`."""
         places, values = self._known(function)
         crossings = np.nonzero(np.diff(np.sign(values)))[0]
         if not len(crossings):
             return None
         i = int(crossings[0])
 
-        def value(s: Array) -> Array:
-            return function(self.path.smooth(s))
+        def value(s: float) -> float:
+            return float(function(self.path.smooth(np.array([s])))[0])
 
-        return self._polished(value, float(places[i]), float(places[i + 1]), of)
+        def doubt(s: float, row: Array, errors: Array) -> float:
+            return self._doubt(function, s, row, errors)
+
+        return self._polished(value, float(places[i]), float(places[i + 1]), of, doubt, accepted)
 
     def _known(self, function: Callable[[Array], Array]) -> tuple[Array, Array]:
         """Return the coordinates at which a function of the observables is known, and its values.
@@ -110,29 +138,42 @@ class Landmarks:
         known = np.isfinite(values)
         return self.places[known], values[known]
 
+    def _doubt(self, function: Callable[[Array], Array], s: float, row: Array, errors: Array) -> float:
+        """Return the error of a function of the observables from theirs, in units of the scales of the path."""
+        slopes = function(row + STEP * 1j * np.eye(len(row))).imag / STEP
+        sizes = errors * self.path.problem.scales(row[None], np.array([s]))[0]
+        used = slopes != 0
+        return float(np.abs(slopes[used]) @ sizes[used])
+
     @one_blas_thread
     def _polished(
-        self, function: Callable[[Array], Array], low: float, high: float, of: Callable[[RefinedState], float]
-    ) -> tuple[float, Solution] | None:
-        def at(s: float) -> float:
-            return float(function(np.array([s]))[0])
-
+        self,
+        at: Callable[[float], float],
+        low: float,
+        high: float,
+        of: Callable[[RefinedState], float],
+        doubt: Callable[[float, Array, Array], float],
+        accepted: float,
+    ) -> Place | None:
         s = root_between(at, low, high, LOCATION_TOLERANCE)
         if s is None:
             return None
-        rows, errors = self.path.at(np.array([s]))
-        if within(self.path, rows, errors, min(self.rtol, STATES_RTOL))[0]:
-            return math.exp(s), CurvePoint(self.coordinate, self.path, s, rows[0], errors[0], self.rtol)
-        width = min(1e-3, 0.1 * (high - low))
+        width = min(WIDTH, 0.1 * (high - low))
         slope = (at(s + width) - at(s - width)) / (2 * width)
-        for _ in range(MOST_POLISHES):
-            point = solved_at(self.path, s, min(self.rtol, STATES_RTOL))
-            if point.state is None or point.values is None:
-                raise SolveError(point.outcome, None, f"{describe(self.coordinate.groups_at(s))}: {point.outcome.value}")
-            step = -of(point) / slope
-            if abs(step) <= LOCATION_TOLERANCE or not abs(step) < high - low:
-                break
-            s = s + step
-        solution = solution_of(point, self.coordinate.contact_at(s), self.rtol)
+        (row,), (errors,) = self.path.at(np.array([s]))
+        if within(self.path, row[None], errors[None], accepted)[0]:
+            solution: Solution | None = CurvePoint(self.coordinate, self.path, s, row, errors, self.rtol)
+        else:
+            for _ in range(MOST_POLISHES):
+                point = solved_at(self.path, s, min(self.rtol, accepted))
+                if point.state is None or point.values is None:
+                    raise SolveError(point.outcome, None, f"{describe(self.coordinate.groups_at(s))}: {point.outcome.value}")
+                step = -of(point) / slope
+                if abs(step) <= LOCATION_TOLERANCE or not abs(step) < high - low:
+                    break
+                s = s + step
+            solution = solution_of(point, self.coordinate.contact_at(s), self.rtol)
         assert solution is not None
-        return math.exp(s), solution
+        row[:POSITION], known = solution.observables.array(in_article=False), solution.relative_errors
+        errors[: len(known)] = known
+        return Place(s, LOCATION_TOLERANCE + doubt(s, row, errors) / abs(slope), solution)

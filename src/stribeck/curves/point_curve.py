@@ -188,8 +188,8 @@ class PointCurve(StribeckCurve):
         except SolveError:
             return None
 
-    def landmark(self, name: Transition) -> Landmark | None:
-        """Return one transition, or None where the curve does not hold it."""
+    def landmark(self, name: Transition, rtol: float | None = None) -> Landmark | None:
+        """Return one transition, or None where the curve does not hold it; all are read off the curve."""
         return next((mark for mark in self.transitions if mark.name == name), None)
 
     @cached_property

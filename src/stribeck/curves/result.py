@@ -19,7 +19,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE
 from stribeck.curves.coordinate import Coordinate, Over, given_values
 from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at
-from stribeck.curves.landmarks import Landmark, Landmarks
+from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
 from stribeck.equations.observables import ROW, Observables
 from stribeck.equations.sensitivity import friction_slopes
@@ -361,20 +361,48 @@ class StribeckCurve(Exported, Shown, ByValue):
     def _landmarks(self) -> Landmarks:
         return Landmarks(self._solved_path, self._path, self.rtol)
 
-    def _landmark(self, name: Transition, found: tuple[float, Solution] | None) -> Landmark | None:
-        if found is None:
-            return None
-        value, solution = found
-        return Landmark(name, value, solution.friction(self.boundary_friction, self.beta, self.definition).total, solution)
-
     def _parts(self, rows: Array) -> tuple[Array, Array]:
         """Return the two parts of the friction for rows of observables."""
         rubbing = self._sliding * self.boundary_friction
         return rubbing * rows[:, ROW["contact_load_share"]], self.beta * rows[:, ROW[f"viscous_{self.definition}"]]
 
-    @cached_property
+    @property
     def minimum(self) -> Landmark | None:
         """The friction minimum, on a state where the slope vanishes; None where the curve has none inside."""
+        return self.landmark(Transition.MINIMUM)
+
+    def landmark(self, name: Transition, rtol: float | None = None) -> Landmark | None:
+        """Return one transition, or the minimum.
+
+        Parameters
+        ----------
+        name : Transition
+            Which.
+        rtol : float, optional
+            Error of the observables up to which it is read off the curve: the tolerance of the curve costs no further
+            state.  Beyond, a state is solved there.  1e-6 if omitted, or the tolerance of the curve if that is smaller.
+
+        Returns
+        -------
+        Landmark or None
+            None where the curve does not hold it.
+        """
+        accepted = min(self.rtol, STATES_RTOL) if rtol is None else rtol
+        if (name, accepted) not in self._found:
+            find = self._lowest if name is Transition.MINIMUM else self._crossing_of
+            place = find(name, accepted)
+            self._found[name, accepted] = None if place is None else self._landmark(name, place)
+        return self._found[name, accepted]
+
+    @cached_property
+    def _found(self) -> dict[tuple[Transition, float], Landmark | None]:
+        return {}
+
+    def _landmark(self, name: Transition, place: Place) -> Landmark:
+        friction = place.solution.friction(self.boundary_friction, self.beta, self.definition).total
+        return Landmark(name, math.exp(place.coordinate), friction, place.solution, place.error)
+
+    def _lowest(self, _: Transition, accepted: float) -> Place | None:
         if not self._landmarks.moves:  # at rest the friction is that of the dry contact along the whole curve
             return None
 
@@ -384,30 +412,9 @@ class StribeckCurve(Exported, Shown, ByValue):
             slopes = friction_slopes(point.state, rubbing, self.beta, self.definition)
             return float(slopes @ self._path.direction)
 
-        return self._landmark(Transition.MINIMUM, self._landmarks.lowest(lambda rows: np.add(*self._parts(rows)), slope))
+        return self._landmarks.lowest(lambda rows: np.add(*self._parts(rows)), slope, accepted)
 
-    def landmark(self, name: Transition) -> Landmark | None:
-        """Return one transition.
-
-        Parameters
-        ----------
-        name : Transition
-            Which.
-
-        Returns
-        -------
-        Landmark or None
-            None where the curve does not hold it.
-        """
-        if name not in self._found:
-            self._found[name] = self.minimum if name is Transition.MINIMUM else self._crossing_of(name)
-        return self._found[name]
-
-    @cached_property
-    def _found(self) -> dict[Transition, Landmark | None]:
-        return {}
-
-    def _crossing_of(self, name: Transition) -> Landmark | None:
+    def _crossing_of(self, name: Transition, accepted: float) -> Place | None:
         if name is Transition.HYDRODYNAMIC_START:
 
             def excess(rows: Array) -> Array:
@@ -420,8 +427,7 @@ class StribeckCurve(Exported, Shown, ByValue):
             def excess(rows: Array) -> Array:
                 return np.asarray(rows[:, ROW["fluid_load_share"]] - share)
 
-        found = self._landmarks.first(excess, lambda point: float(excess(_values(point).array()[None])[0]))
-        return self._landmark(name, found)
+        return self._landmarks.first(excess, lambda point: float(excess(_values(point).array()[None])[0]), accepted)
 
     @cached_property
     def transitions(self) -> tuple[Landmark, ...]:

@@ -19,7 +19,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import DEFINITIONS, Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE
+from stribeck.curves import regime
 from stribeck.curves.stribeck_curve import StribeckCurve, stribeck_curve
 from stribeck.quantities.units import InputError
 from stribeck.regimes.phase_from_atlas import transition_speeds
@@ -261,20 +261,19 @@ def _between(speed: Array, values: Array, at: Array) -> Array:
     return np.exp(PchipInterpolator(np.log(speed), np.log(np.maximum(values, tiny)))(np.log(at)))
 
 
+MARKS = {
+    "boundary": regime.Transition.BOUNDARY_END,
+    "minimum": regime.Transition.MINIMUM,
+    "hydrodynamic": regime.Transition.HYDRODYNAMIC_START,
+}
+"""Transitions of a curve that are shown."""
+
+
 def _marks_of(found: StribeckCurve) -> tuple[Transition, ...]:
-    """Return where the regimes of a solved curve end."""
-    names = {
-        f"{BOUNDARY_FLUID_SHARE:.0%} of the load": "boundary",
-        f"{HYDRODYNAMIC_CONTACT_SHARE:.0%} of the friction": "hydrodynamic",
-    }
-    minimum = found.minimum
-    marks = []
-    for mark in found.transitions:
-        known = next((name for end, name in names.items() if mark.name.endswith(end)), "")
-        name = "minimum" if mark is minimum else known
-        if name and (name != "boundary" or " 5%" in mark.name):
-            marks.append(Transition(name, mark.value, math.nan))
-    return tuple(marks)
+    """Return where the regimes of a solved curve end, within what its own tolerance leaves open."""
+    marks = [(name, found.landmark(mark, found.rtol)) for name, mark in MARKS.items()]
+    known = [Transition(name, mark.value, mark.error) for name, mark in marks if mark is not None]
+    return tuple(sorted(known, key=lambda mark: mark.speed))
 
 
 def solved_diagram(
