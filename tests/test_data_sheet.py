@@ -12,7 +12,7 @@ import stribeck as sb
 from stribeck.quantities.conversions import CONVERSIONS, GIVEN, read_given
 from stribeck.quantities.inputs import INPUT_TABLES, QUANTITIES
 from stribeck.quantities.uncertain import split_error
-from stribeck.uncertainty.states import _by_quadratics, states_of
+from stribeck.uncertainty.states import _by_quadratics, _values, states_of
 
 SHEET = {
     "modulus": None,
@@ -239,3 +239,13 @@ def test_errors_of_a_contact_on_a_layer_move_the_layer_in_hertz_units_too():
         ends = sorted(function(contact.replace(modulus=contact.modulus * factor)) for factor in (1 / reach, reach))
         assert found[name].interval_95 == pytest.approx(ends, rel=0.03)
     assert found.contributions == {"modulus": 1.0}
+
+
+def test_the_drag_behind_a_ball_whose_film_breaks_is_that_of_its_own_far_film():
+    ball = {"radius": "5 mm", "modulus": "2 MPa", "load": "2 mN", "viscosity": "20 mPa s", "speed": "10 mm/s"}
+    surface = {"roughness": "0.2 um", "alpha": 2.0, "beta": 0.05, "boundary_friction": 0.7}
+    contact = sb.PointContact(**ball, **surface, cavitation="exit")
+    state = sb.solve(contact, rtol=1e-3)
+    for definition in ("balanced", "published"):
+        viscous = _values(state, definition, contact)[1]
+        assert math.exp(viscous) * contact.beta == pytest.approx(state.friction(definition=definition).viscous, rel=1e-12)

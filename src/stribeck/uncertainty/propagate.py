@@ -10,6 +10,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.model import ARTICLE
@@ -216,7 +217,7 @@ def _exponents(solution: Any, inputs: Mapping[str, float], definition: Definitio
     found = {}
     for name, value in inputs.items():
         if 0 < value < math.inf and groups.speed > 0:
-            moved = {**inputs, name: value * (1 + 1j * IMAGINARY)}
+            moved = {**inputs, name: value * (1 + 1j * IMAGINARY), "far": far_film(groups.model)}
             here = rule.viscous(parts, groups.speed, groups.load, moved, definition)
             found[name] = float(np.imag(here) / IMAGINARY / np.real(here))
     return found

@@ -20,6 +20,7 @@ import numpy as np
 from stribeck import atlas
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Geometry
@@ -176,7 +177,8 @@ def _values(state: Any, definition: Definition, of: Contact | None) -> Array:
     rule = RULES[state.groups.geometry]
     inputs = rule.of_contact(of)
     parts = {name: float(getattr(state, name)) for name in rule.parts(definition)}
-    viscous = float(rule.viscous(parts, state.groups.speed, state.groups.load, inputs, definition)) / inputs["beta"]
+    given = {**inputs, "far": far_film(state.groups.model)}
+    viscous = float(rule.viscous(parts, state.groups.speed, state.groups.load, given, definition)) / inputs["beta"]
     films = [float(getattr(state, name)) for name in films_of(state.groups.geometry)]
     values = [max(value, TINY) for value in (viscous, *films)]
     return np.array([np.log(contact / fluid), *np.log(values)])
