@@ -210,6 +210,14 @@ def test_the_series_of_a_state_is_that_of_the_states_beside_it(law, direction):
             assert found[ROW[name]] == pytest.approx(getattr(beside, name), rel=1e-7, abs=1e-8)
 
 
+def test_a_curve_under_the_law_of_persson_takes_few_states_to_a_small_tolerance():
+    law = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8))
+    groups = sb.Groups(1.0, 0.01, 1e-4, law=law)
+    curve = sb.stribeck_curve(groups, speed=(4e-3, 1e-2), points=2, rtol=1e-9)
+    assert curve.states <= 6  # 42 with the law continued by polynomials on wider intervals
+    assert worst(curve, 6e-3, replace(groups, speed=6e-3), 1e-10) < 2
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "load", "kappa", "rtol"),
