@@ -282,17 +282,18 @@ class LineProblem:
         equations = Equations(operators, float(groups.speed), contact_law(groups), scale)
         return State(groups, equations, y, Root(y, Outcome.CONVERGED, 0, 0, 0.0, 0.0, 0.0, None), 0.0)
 
-    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
-        """Return the largest difference between ``values`` and states corrected at ``parts``, for non-analytic laws."""
+    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
+        """Return the largest difference between ``values()`` and states corrected at ``parts``, for non-analytic laws."""
         same = left.point.state.mesh is right.point.state.mesh
         found = np.full(POSITION + 1, 0.0 if same else BETWEEN_MESHES * self.tolerance)
         if self.exact or not self.moves or not _alike(left, right):
             return found
         places = left.coordinate + parts * (right.coordinate - left.coordinate)
         corrected = np.stack([self._corrected_once(s, left, right) for s in places.tolist()])
-        known = values[:, :POSITION]
+        everything = values()
+        known, scales = everything[:, :POSITION], self.scales(everything, places)[:, :POSITION]
         with np.errstate(all="ignore"):  # values that are not finite count as wrong
-            wrong = np.abs(corrected - known) / self.scales(np.hstack([known, values[:, POSITION:]]), places)[:, :POSITION]
+            wrong = np.abs(corrected - known) / scales
         wrong = np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf, posinf=np.inf), 0.0).max(axis=0)
         beyond = wrong - np.maximum(left.errors, right.errors)[:POSITION]
         found[:POSITION] += UNSEEN * np.where(beyond > 0, beyond, 0.0)

@@ -132,8 +132,8 @@ class Problem(Protocol):
     def read_scales(self, values: Array) -> Array:
         """Return the same for observables without a series."""
 
-    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
-        """Return the largest difference between ``values`` and the equations at parts of an interval, in units of the scales.
+    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
+        """Return the largest difference of ``values()`` from the equations at parts of an interval, in units of the scales.
 
         Zero where the coefficients are surely right.
         """
@@ -191,9 +191,13 @@ class Interval:
     @cached_property
     def inside(self) -> Array:
         """Error that the equations find between the ends."""
-        where = np.zeros(len(INSIDE), dtype=int)
-        values, _, basis = self._alone.smooth(where, INSIDE)
-        self._alone.read(values, where, INSIDE, basis)
+
+        def values() -> Array:
+            where = np.zeros(len(INSIDE), dtype=int)
+            found, _, basis = self._alone.smooth(where, INSIDE)
+            self._alone.read(found, where, INSIDE, basis)
+            return found
+
         return self.problem.missed(self.left, self.right, INSIDE, values)
 
     @cached_property
@@ -206,6 +210,11 @@ class Interval:
         scales = self.problem.read_scales(values)
         missed = np.divide(tails, scales, out=np.full_like(tails, math.inf), where=scales > 0)
         return form, largest + missed, columns, bool((missed <= np.maximum(0.5 * largest, self.problem.negligible)).all())
+
+    @cached_property
+    def checked(self) -> tuple[Array, Array]:
+        """The observables and their errors at the places where the interval is checked."""
+        return self.at(chebyshev_nodes(READ_AT))
 
     def at(self, parts: Array) -> tuple[Array, Array]:
         """Return the observables at parts of the interval, and their errors in units of the scales, shape (len(parts), n)."""
@@ -411,7 +420,7 @@ def _is_lost(interval: Interval) -> bool:
     """Return whether what is read between two states is far from both: they are of two branches."""
     ends = np.stack([interval.left.series[0], interval.right.series[0]])
     scales = interval.problem.scales(ends, np.array([interval.left.coordinate, interval.right.coordinate])).max(axis=0)
-    values, errors = interval.at(chebyshev_nodes(READ_AT))
+    values, errors = interval.checked
     far = np.maximum(values - ends.max(axis=0), ends.min(axis=0) - values) > APART * scales
     return bool((far & (errors > APART))[:, interval.problem.held].any())
 
@@ -438,10 +447,9 @@ def _refined(interval: Interval, rtol: float, before: float = math.inf) -> list[
     problem, left, right = interval.problem, interval.left, interval.right
     exists = [np.isfinite(one.series).all(axis=0) for one in (left, right)]
     ends_between = bool((exists[0] != exists[1]).any()) and interval.length > LONGEST_END  # something exists on one side alone
-    checks = chebyshev_nodes(READ_AT)
-    values, errors = interval.at(checks)
+    values, errors = interval.checked
     # The errors of the ends do not fall with the length.
-    scales = problem.scales(values, left.coordinate + checks * interval.length)
+    scales = problem.scales(values, left.coordinate + chebyshev_nodes(READ_AT) * interval.length)
     of_ends = np.where(problem.signed, interval.at_ends[1] / scales, interval.at_ends[0])
     excess = errors - of_ends > REDUCIBLE * rtol
     if not ends_between and not ((errors > CHECKED * rtol) & excess)[:, problem.held].any():

@@ -232,8 +232,8 @@ class PointProblem:
             self._on_others[key] = np.hstack([*flat, rows[:, -1:]])
         return self._on_others[key]
 
-    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
-        """Return the largest difference between ``values`` and states corrected at ``parts``, for a non-analytic law."""
+    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
+        """Return the largest difference between ``values()`` and states corrected at ``parts``, for a non-analytic law."""
         found = np.full(len(SMOOTH), BETWEEN * self.allowed)
         if self.exact or self._last is None:
             return found
@@ -244,9 +244,10 @@ class PointProblem:
         level: Level = state.work.fine
         preconditioner = level.iterated.preconditioner
         places = left.coordinate + parts * (right.coordinate - left.coordinate)
-        scales = self.scales(values, places)
+        there = values()
+        scales = self.scales(there, places)
         with np.errstate(all="ignore"):
-            for place, known, scale in zip(places.tolist(), values, scales, strict=True):
+            for place, known, scale in zip(places.tolist(), there, scales, strict=True):
                 if abs(place - end.coordinate) > 0.5 * (right.coordinate - left.coordinate):
                     continue  # a prediction from so far away measures itself
                 equations = beside(level.equations, self.groups_at(place))
