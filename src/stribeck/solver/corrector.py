@@ -117,7 +117,8 @@ class Corrector:
         except MeshTooLargeError:
             return
         if mesh.size < WORTH_COARSENING * state.mesh.size:
-            self.operators, self.fine, self.inverse = Operators(mesh, state.groups.model), FineOperators(mesh), None
+            self._change_to(Operators(mesh, state.groups.model), FineOperators(mesh))
+            self.inverse = None
 
     @property
     def _widest(self) -> tuple[float, float]:
@@ -130,9 +131,15 @@ class Corrector:
         tail, gap_tail = self._widest
         self.tolerances = min(tail, RELAX * self.tolerances[0]), min(gap_tail, RELAX * self.tolerances[1])
 
+    def _change_to(self, operators: Operators, fine: FineOperators | None) -> None:
+        """Take another mesh; the states on the last one keep of its operators what is not for Jacobians alone."""
+        if self.operators is not None:
+            vars(self.operators).pop("deflection_of_gradient", None)
+        self.operators, self.fine = operators, fine
+
     def _adopt(self, point: RefinedState) -> RefinedState:
         if point.state is not None and point.outcome.ok:
-            self.operators, self.fine = point.state.equations.operators, point.fine
+            self._change_to(point.state.equations.operators, point.fine)
             self.tolerances = point.tolerances or self.tolerances
             self._relax()
             self.since_check = 0

@@ -64,6 +64,9 @@ UNSEEN = 2.0
 BY_CHANCE = 0.25
 """Smallest error of an observable near a state, over the largest error of that state: a single one may pass through zero."""
 
+KEPT = 3
+"""Inverses kept at a time: of both ends of an interval and of a state between."""
+
 RESOLVED = 0.3
 """Error of the minimum gap on the finer of two meshes, over the tolerance, above which the other is read too."""
 
@@ -94,7 +97,6 @@ class LinePoint(NamedTuple):
     refined: RefinedState
     state: State
     unknowns: Array
-    inverse: Inverse
     fine: FineOperators
 
 
@@ -112,6 +114,7 @@ class LineProblem:
         self.order = orders[rtol < 1e-7] if self.analytic else ORDER_OF_ANY_FILM
         self.corrector = Corrector(groups_at, self.rtol, GAP_PART)
         self.failure: RefinedState | None = None
+        self._inverses: list[tuple[State, Inverse]] = []
 
     @property
     def held(self) -> Flags:
@@ -194,8 +197,21 @@ class LineProblem:
         errors[POSITION] = estimate.minimum_position
         if state.equations.operators.is_article:
             errors[ROW["viscous_upper"]] = errors[ROW["viscous_balanced"]]
-        point = LinePoint(replace(refined, state=state), state, unknowns, inverse, refined.fine)
+        self._keep(state, inverse)
+        point = LinePoint(replace(refined, state=state), state, unknowns, refined.fine)
         return Expansion(s, point, series, logs, errors, known)
+
+    def _keep(self, state: State, inverse: Inverse) -> None:
+        """Keep the inverse of a state for those beside it, and of the last ones before: each is as large as an operator."""
+        self._inverses = [*self._inverses[1 - KEPT :], (state, inverse)]
+
+    def _inverse_of(self, state: State) -> Inverse:
+        """Return the inverse of the Jacobian at a state, made anew if it is not kept."""
+        known = next((inverse for each, inverse in self._inverses if each is state), None)
+        if known is None:
+            known = state.equations.inverse(state.y)
+            self._keep(state, known)
+        return known
 
     def _radius(self, s: float, state: State, found: Expanded, reach: float) -> float:
         """Return an estimate of the radius of convergence of gap and observables."""
@@ -252,11 +268,9 @@ class LineProblem:
         return self._guess(s, self.groups_at(s), [left, right])[0]
 
     def state_at(self, left: Expansion, right: Expansion, s: float) -> State:
-        """Return the state between two expansions, corrected with the Jacobian of the nearer one."""
+        """Return the state between two expansions, on the mesh of the nearer one."""
         guess = self.guess_at(left, right, s)
-        kept = on(guess.mesh, (left, right))
-        tolerance = newton_tolerance(self.rtol)
-        return solve_state(guess.groups, guess.equations.operators, guess, tolerance, kept=kept.inverse if kept else None)
+        return solve_state(guess.groups, guess.equations.operators, guess, newton_tolerance(self.rtol))
 
     def point_at(self, left: Expansion, right: Expansion, s: float, rtol: float | None = None) -> RefinedState:
         """Return the same, verified, and refined if its mesh is too coarse for the tolerance."""
@@ -306,7 +320,7 @@ class LineProblem:
         assert end is not None
         equations, y = guess.equations, guess.y
         with np.errstate(all="ignore"):
-            y = y + equations.units(y) * end.inverse(equations.residual(y))
+            y = y + equations.units(y) * self._inverse_of(end.state)(equations.residual(y))
             return observables(equations, y, float(guess.groups.load)).array(in_article=False)
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
