@@ -45,8 +45,8 @@ class Lookup(NamedTuple):
 
 
 @one_blas_thread
-def look_up(groups: Groups, names: tuple[str, ...], slopes: bool = False) -> Lookup:
-    """Return functions of the table of states inside its box."""
+def look_up(groups: Groups, names: tuple[str, ...], slopes: int = 0) -> Lookup:
+    """Return functions of the table of states inside its box, and 0, 1 or 3 of their derivatives, see :class:`Values`."""
     held = table_for(groups)
     box, grid = held.box, held.grid
     if missing := [name for name in names if name not in held.functions]:
@@ -87,7 +87,7 @@ def look_up(groups: Groups, names: tuple[str, ...], slopes: bool = False) -> Loo
 
 
 class FrictionReading(NamedTuple):
-    """What the friction of states is made of, flat arrays; derivatives by ln(speed), ln(load), ln(roughness) where wanted."""
+    """What the friction of states is made of, flat arrays; derivatives by ln(speed), ln(load), ln(roughness) as wanted."""
 
     speed: Array
     load: Array
@@ -98,13 +98,15 @@ class FrictionReading(NamedTuple):
     part_slopes: dict[str, Array]
 
 
-def read_friction(groups: Groups, definition: Definition, slopes: bool = False) -> FrictionReading:
-    """Return contact share and parts of the viscous friction of states, and their derivatives if wanted."""
+def read_friction(groups: Groups, definition: Definition, slopes: int = 0) -> FrictionReading:
+    """Return contact share and parts of the viscous friction of states, and the first 0, 1 or 3 of their derivatives."""
     drag = DRAG[groups.geometry]
     names = (ODDS, *drag.names(definition))
     held, speed, load, found = look_up(groups, names, slopes)
     by: list[Array | None] = [None] * len(names)
-    if found.slopes is not None:
+    if found.slopes is not None and slopes == 1:
+        by = list(found.slopes[0][:, None])
+    elif found.slopes is not None:
         # By ln(speed), L and ln(kappa), with L = -factor ln(load) and kappa = roughness/load^exponent.
         by_speed, by_log_load, by_kappa = found.slopes
         by_load = -held.grid.load_factor * by_log_load - groups.scaling.roughness_exponent * by_kappa
@@ -112,24 +114,24 @@ def read_friction(groups: Groups, definition: Definition, slopes: bool = False) 
     logs = {name: (found.values[row], by[row]) for row, name in enumerate(names) if row > 0}
     parts = drag.parts(logs, speed, load)
     contact = contact_share(found.values[0])
-    contact_slopes = np.empty((3, 0)) if by[0] is None else -contact * (1 - contact) * by[0]
+    contact_slopes = np.empty((0, 0)) if by[0] is None else -contact * (1 - contact) * by[0]
     part_slopes = {name: slope for name, (_, slope) in parts.items() if slope is not None}
     values = {name: value for name, (value, _) in parts.items()}
     return FrictionReading(speed, load, found.values[0], contact, contact_slopes, values, part_slopes)
 
 
 def slopes_of(
-    groups: Groups, reading: FrictionReading, inputs: Mapping[str, Any], definition: Definition, directions: int = 3
+    groups: Groups, reading: FrictionReading, inputs: Mapping[str, Any], definition: Definition
 ) -> tuple[Array, Array]:
-    """Return the derivatives of contact share and viscous friction by the logarithms of the groups, zero at rest."""
+    """Return the derivatives of contact share and viscous friction that were read, zero at rest."""
     rule, step = RULES[groups.geometry], 1j * IMAGINARY
     inputs = {name: flat(groups, value) for name, value in inputs.items()}
-    viscous = np.empty((directions, reading.speed.size))
-    for d in range(directions):
+    viscous = np.empty_like(reading.contact_slopes)
+    for d in range(len(viscous)):
         moved = {name: value + step * reading.part_slopes[name][d] for name, value in reading.parts.items()}
         speed, load = (group * (1 + step) if d == axis else group for axis, group in enumerate((reading.speed, reading.load)))
         viscous[d] = np.imag(rule.viscous(moved, speed, load, inputs, definition)) / IMAGINARY
-    contact = reading.contact_slopes[:directions].copy()
+    contact = reading.contact_slopes.copy()
     for found in (contact, viscous):
         found[:, reading.speed == 0] = 0.0
     return contact, viscous

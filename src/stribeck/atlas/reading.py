@@ -180,7 +180,7 @@ def friction_derivatives(
     """
     boundary_friction = quantity("boundary_friction", boundary_friction)
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
-    reading = read_friction(groups, check_definition(definition), slopes=True)
+    reading = read_friction(groups, check_definition(definition), slopes=3)
     contact, viscous = slopes_of(groups, reading, inputs, definition)
     return (boundary_friction * _rubbing(groups, inputs) * contact + viscous).reshape(3, *groups.shape)
 
@@ -212,7 +212,7 @@ def friction_parts(groups: Groups, definition: Definition = "balanced") -> tuple
     -----
     One reading of the table gives all, for fits in which boundary_friction and beta differ from state to state.
     """
-    reading = read_friction(groups, check_definition(definition), slopes=True)
+    reading = read_friction(groups, check_definition(definition), slopes=3)
     names = RULES[groups.geometry].parts(definition)
     values = np.stack([reading.contact, *(reading.parts[name] for name in names)])
     slopes = np.stack([reading.contact_slopes, *(reading.part_slopes[name] for name in names)])
@@ -283,10 +283,10 @@ def shares_and_friction(
     """
     boundary_friction = quantity("boundary_friction", boundary_friction)
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
-    reading = read_friction(groups, check_definition(definition), slopes=True)
+    reading = read_friction(groups, check_definition(definition), slopes=1)
     arrays = {name: flat(groups, value) for name, value in inputs.items()}
     viscous = RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
-    by_contact, by_viscous = slopes_of(groups, reading, inputs, definition, directions=1)
+    by_contact, by_viscous = slopes_of(groups, reading, inputs, definition)
     by_speed = boundary_friction * _rubbing(groups, inputs) * by_contact[0] + by_viscous[0]
     return np.stack([contact_share(-reading.odds), reading.contact, viscous, by_speed]).reshape(4, *groups.shape)
 

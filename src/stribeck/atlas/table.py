@@ -68,8 +68,8 @@ class Values:
     ----------
     values : ndarray, shape (functions, states)
         The wanted of :data:`TABULATED`.
-    slopes : ndarray or None, shape (3, functions, states)
-        Their derivatives by ln(speed), -ln(load) and ln(relative roughness), if wanted.
+    slopes : ndarray or None, shape (1 or 3, functions, states)
+        Their derivatives by ln(speed), and by -ln(load) and ln(relative roughness), if wanted.
     film : ndarray of bool, shape (states,)
         Where no asperities are left: there the first function, if wanted, is infinite.
     """
@@ -101,17 +101,18 @@ class Block:
             self._chosen[functions] = np.ascontiguousarray(part.reshape(-1, part.shape[-1]))
         return self._chosen[functions]
 
-    def sum(self, functions: tuple[int, ...], t: Array, k: Array, y: Array, slopes: bool) -> Array:
-        """Return values and, if wanted, derivatives by the three local coordinates, shape (1 or 4, functions, states)."""
+    def sum(self, functions: tuple[int, ...], t: Array, k: Array, y: Array, slopes: int) -> Array:
+        """Return values and derivatives by the first local coordinates, shape (1 + slopes, functions, states)."""
         terms, matrix = self.coefficients.shape[0], self.chosen(functions)
         T = chebyshev(t, terms)
         K, Y = chebyshev(k, int(self.first.max()) + 1), chebyshev(y, int(self.second.max()) + 1)
         shape = terms, len(functions), t.size
         partial = (matrix @ (K[self.first] * Y[self.second])).reshape(shape)
-        found = np.empty((4 if slopes else 1, len(functions), t.size))
+        found = np.empty((1 + slopes, len(functions), t.size))
         np.einsum("tn,tfn->fn", T, partial, out=found[0])
         if slopes:
             np.einsum("tn,tfn->fn", chebyshev_slopes(t, terms), partial, out=found[1])
+        if slopes == 3:
             by_k = matrix @ (chebyshev_slopes(k, K.shape[0])[self.first] * Y[self.second])
             by_y = matrix @ (K[self.first] * chebyshev_slopes(y, Y.shape[0])[self.second])
             np.einsum("tn,tfn->fn", T, by_k.reshape(shape), out=found[2])
@@ -159,11 +160,14 @@ class Table:
         found = (breaks_from(matrix @ products.reshape(BREAK_TERMS**2, -1)) for products in (by_k, by_y))
         return next(found), next(found)
 
-    def read(self, functions: tuple[int, ...], log_speed: Array, log_load: Array, kappa: Array, slopes: bool) -> Values:
-        """Return functions at states inside the box, flat arrays; -inf as ``log_speed`` is rest, ``kappa`` 0 smooth."""
+    def read(self, functions: tuple[int, ...], log_speed: Array, log_load: Array, kappa: Array, slopes: int) -> Values:
+        """Return functions at states inside the box, flat arrays; -inf as ``log_speed`` is rest, ``kappa`` 0 smooth.
+
+        ``slopes`` is 0, 1 for derivatives by the speed alone, or 3.
+        """
         states, last = log_speed.size, self.grid.pieces * SEGMENTS
         block = np.full(states, last)
-        coordinates, chain = np.empty((3, states)), np.zeros((6, states if slopes else 0))
+        coordinates, chain = np.empty((3, states)), np.zeros(((0, 1, 1, 6)[slopes], states))
         regions = np.where(kappa > 0, self.grid.region_at(log_load, kappa), -1)
         for number, region in enumerate(self.grid.regions):
             inside = np.nonzero(regions == number)[0]
@@ -180,23 +184,25 @@ class Table:
             found[..., film] = self._film(functions, log_speed[film], slopes)
         by_state = None
         if slopes:
-            t_s, t_L, y_L, t_kappa, y_kappa, k_kappa = chain
-            by_state = np.empty((3, len(functions), states))
-            by_state[0] = t_s * found[1]
+            by_state = np.empty((slopes, len(functions), states))
+            by_state[0] = chain[0] * found[1]
+        if by_state is not None and slopes == 3:
+            _, t_L, y_L, t_kappa, y_kappa, k_kappa = chain
             by_state[1] = t_L * found[1] + y_L * found[3]
             by_state[2] = t_kappa * found[1] + y_kappa * found[3] + k_kappa * found[2]
+        if by_state is not None:
             by_state[:, :, film] = 0.0
             by_state[0][:, film] = found[1][:, film]
         self._add_power_of_speed(functions, found[0], by_state, log_speed, (block % SEGMENTS == 0) & ~film)
         return Values(found[0], by_state, film)
 
-    def _sums(self, functions: tuple[int, ...], block: Indices, coordinates: Array, slopes: bool) -> Array:
+    def _sums(self, functions: tuple[int, ...], block: Indices, coordinates: Array, slopes: int) -> Array:
         """Return the sums of :meth:`Block.sum` for states in any order; those on no block are left open."""
         order = np.argsort(block.astype(np.uint16), kind="stable")
         counts = np.bincount(block, minlength=self.grid.pieces * SEGMENTS + 1)
         ends = np.cumsum(counts).tolist()
         coordinates = coordinates[:, order]
-        found = np.empty((4 if slopes else 1, len(functions), block.size))
+        found = np.empty((1 + slopes, len(functions), block.size))
         for number in np.nonzero(counts[:-1])[0].tolist():
             here = self.blocks[number]
             assert here is not None
@@ -209,11 +215,11 @@ class Table:
         return result
 
     def _place(
-        self, number: int, region: Region, s: Array, log_load: Array, kappa: Array, slopes: bool
+        self, number: int, region: Region, s: Array, log_load: Array, kappa: Array, slopes: int
     ) -> tuple[Indices, Array, Array | None]:
         """Return the block and the local coordinates of states of a region, and what the chain rule needs.
 
-        That is dt/ds, dt/dL, dy/dL, dt/dln(kappa), dy/dln(kappa) and dk/dln(kappa), all local.
+        That is dt/ds, and with three slopes dt/dL, dy/dL, dt/dln(kappa), dy/dln(kappa) and dk/dln(kappa), all local.
         """
         k, y = region.roughness_coordinate(np.log(kappa)), region.load_coordinate(log_load, kappa)
         ends = self.ends(number, k, y)
@@ -232,8 +238,10 @@ class Table:
         coordinates = np.stack([t, k_local, y_local])
         if not slopes:
             return block, coordinates, None
-        by_k, by_y = self.end_slopes(number, k, y)
         t_s = np.where(squared, 2 * power * ratio, 2 / length)
+        if slopes == 1:
+            return block, coordinates, t_s[None]
+        by_k, by_y = self.end_slopes(number, k, y)
         choose = np.minimum(segment, SEGMENTS - 1), np.clip(segment - 1, 0, SEGMENTS - 1)
         # Below b_1 the coordinate moves with b_1; on the others low and high move it in proportion.
         t_high = np.where(squared, -2 * power * ratio, -(t + 1) / length)
@@ -246,12 +254,12 @@ class Table:
         slope_k = np.full_like(t_s, region.roughness_slope)
         return block, coordinates, np.stack([t_s, t_y * y_L, scale * y_L, moved, scale * y_kappa, slope_k])
 
-    def _film(self, functions: tuple[int, ...], log_speed: Array, slopes: bool) -> Array:
+    def _film(self, functions: tuple[int, ...], log_speed: Array, slopes: int) -> Array:
         """Return functions of smooth films and, if wanted, their derivative by ln(speed), as :meth:`Block.sum`."""
         pieces, terms, _ = self.film.shape
         low, high = (math.log(end) for end in self.grid.films)
         piece, x = local((2 * np.maximum(log_speed, low) - low - high) / (high - low), pieces)
-        found = np.zeros((4 if slopes else 1, len(functions), log_speed.size))
+        found = np.zeros((1 + slopes, len(functions), log_speed.size))
         for number in np.unique(piece):
             here = np.nonzero(piece == number)[0]
             T = chebyshev(x[here], terms)
