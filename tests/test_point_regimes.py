@@ -9,7 +9,7 @@ import pytest
 import stribeck as sb
 from stribeck.checks.subject import TRACES, Subject, speed_of_film
 from stribeck.checks.table import checks_of
-from stribeck.regimes.margins import SEARCHES, _limits, physical_bounds, regime_margins
+from stribeck.regimes.margins import SEARCHES, _limits, physical_bounds, regime_margins, scanned_rtol
 
 BALL = ball_data.BALL.replace(slide_to_roll=2.0)
 LAW = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=3e4, q1=3e6, hurst=0.8))
@@ -104,3 +104,14 @@ def test_errors_of_the_inputs_of_a_ball_become_those_of_friction_and_regime():
     assert slopes["boundary_friction"] ** 2 * 0.05**2 / wanted**2 == pytest.approx(
         found.contributions["boundary_friction"], rel=0.02
     )
+
+
+def test_marks_at_the_tolerance_of_scans_are_those_of_a_fine_curve():
+    coarse = scanned_rtol(BALL, 1e-6)
+    assert scanned_rtol(BALL, 0.01) == 0.01 and coarse > 1e-3
+    near = tuple(BALL.speed * factor for factor in (0.3, 300.0))
+    found, fine = (sb.stribeck_curve(BALL, speed=near, points=5, rtol=rtol).transitions for rtol in (coarse, 1e-5))
+    assert len(found) >= 2 and [mark.name for mark in found] == [mark.name for mark in fine]
+    for mark, exact in zip(found, fine, strict=True):
+        assert mark.value == pytest.approx(exact.value, rel=2 * coarse)
+        assert mark.friction == pytest.approx(exact.friction, rel=coarse)

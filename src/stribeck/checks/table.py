@@ -97,7 +97,7 @@ def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any
     Notes
     -----
     It solves the state, and its curve over the speed twice, once with the tail of a finite surface: about two seconds, and
-    10 to 60 of a ball.
+    2 to 15 of a ball.
     What cannot be solved is named among :attr:`Checks.unchecked`.
     Source of the limits: docs/checks.md.
     """

@@ -23,7 +23,7 @@ from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.quantities.units import format_percent, format_share, format_si
 from stribeck.regimes.margin_intervals import with_intervals
-from stribeck.regimes.margins import regime_margins
+from stribeck.regimes.margins import regime_margins, scanned_rtol
 from stribeck.regimes.sentences import ways_to
 from stribeck.solver.solution import Solution
 from stribeck.solver.solve import SolveError, solve
@@ -151,7 +151,7 @@ def content_of(
     measured = read_measurements(data, case.fit) if isinstance(data, str | Path) else data
     contact, definition = case.contact, case.definition
     solution, slopes, _ = sensitivities_if_known(contact, rtol=case.rtol, definition=definition)
-    curve = stribeck_curve(contact, points=POINTS, rtol=case.rtol, definition=definition)
+    curve = stribeck_curve(contact, points=POINTS, rtol=scanned_rtol(contact, case.rtol), definition=definition)
     step(1, 5)
     checks = checks_of(Subject(contact, case.facts, definition, solution, curve))
     step(2, 5)

@@ -21,7 +21,7 @@ from stribeck.curves.sensitivities import sensitivities_if_known
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.units import InputError, show
 from stribeck.regimes.margin_intervals import with_intervals
-from stribeck.regimes.margins import RegimeMargins, regime_margins
+from stribeck.regimes.margins import RegimeMargins, regime_margins, scanned_rtol
 from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:
@@ -97,7 +97,8 @@ def regimes_of(case: sb.Case, on_point: Callable[[int, int], object] | None = No
     """
     contact, rtol, definition = case.contact, case.rtol, case.definition
     solution, sensitivities, reason = sensitivities_if_known(contact, rtol=rtol, definition=definition)
-    curve = sb.stribeck_curve(contact, points=POINTS, rtol=rtol, definition=definition, on_point=on_point)
+    coarse = scanned_rtol(contact, rtol)
+    curve = sb.stribeck_curve(contact, points=POINTS, rtol=coarse, definition=definition, on_point=on_point)
     _ = curve.transitions
     if curve.outcome is sb.Outcome.INTERRUPTED:
         raise KeyboardInterrupt

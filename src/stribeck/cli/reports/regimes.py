@@ -8,8 +8,8 @@ from stribeck.checks.check import Checks
 from stribeck.cli.reports.words import (
     Sensitivities,
     contact_part,
+    mark_texts,
     part_error,
-    place,
     print_head,
     print_outcome,
     print_table,
@@ -78,7 +78,8 @@ def print_regimes(
     if curve.transitions:
         table = table_of("transition", "speed", "change", "friction", right=(1, 3))
         for mark in curve.transitions:
-            table.add_row(mark.name, place(curve, mark.value, 4), _way(mark, contact.speed), f"{mark.friction:.4g}")
+            where, friction_there = mark_texts(curve, mark)
+            table.add_row(mark.name, where, _way(mark, contact.speed), friction_there)
         print_table(console, table)
     else:
         say(

@@ -13,6 +13,7 @@ from stribeck.cli.reports.words import (
     error_text,
     hersey_of,
     length,
+    mark_texts,
     part,
     place,
     print_head,
@@ -141,7 +142,7 @@ def print_curve(
     if curve.transitions:
         table = table_of("transition", curve.over, "friction", right=(1, 2))
         for mark in curve.transitions:
-            table.add_row(mark.name, place(curve, mark.value, 4), f"{mark.friction:.4g}")
+            table.add_row(mark.name, *mark_texts(curve, mark))
         print_table(console, table)
     if curve.minimum is None:
         say(console, "Friction has no minimum inside this range.")

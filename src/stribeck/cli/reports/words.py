@@ -24,6 +24,7 @@ from stribeck.solver.base_solution import BaseSolution
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from stribeck.curves.landmarks import Landmark
     from stribeck.curves.result import StribeckCurve
 
 HANDS_ON = tuple(row.name for row in ROWS if not row.derived and not row.follows_surface)
@@ -70,21 +71,26 @@ def place(curve: StribeckCurve, value: float, digits: int = 3) -> str:
     return format_si(value, curve.contact.INPUTS.quantities[curve.over].dimension, digits)
 
 
+def mark_texts(curve: StribeckCurve, mark: Landmark) -> tuple[str, str]:
+    """Return where a landmark of a curve lies, and the friction there, with the digits that the curve's error allows."""
+    return place(curve, mark.value, figures(curve.error_estimate)), digits(mark.friction, curve.error_estimate)
+
+
 def digits(value: float, error: float) -> str:
     """Return a number with the digits that its relative error allows."""
     if not math.isfinite(value):
         return "none" if math.isnan(value) else "infinite"
-    return f"{value:.{_count(error)}g}"
+    return f"{value:.{figures(error)}g}"
 
 
 def length(value: float, error: float) -> str:
     """Return a length with the digits that its relative error allows."""
     if not math.isfinite(value):
         return ""
-    return format_si(value, "length", _count(error))
+    return format_si(value, "length", figures(error))
 
 
-def _count(error: float) -> int:
+def figures(error: float) -> int:
     """Return how many digits a relative error allows, 3 to 4: files and JSON have all of them."""
     return 4 if error <= 0 else min(4, max(3, math.ceil(-math.log10(error))))
 
