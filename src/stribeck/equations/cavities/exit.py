@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import ClassVar
 
 import numpy as np
@@ -34,6 +34,17 @@ class CavitatedEquations(TornEquations):
 
     far: ClassVar[FarFilm] = CAVITATED
     finest: ClassVar[float] = 1e-4
+
+    @cached_property
+    def beyond(self) -> None:
+        """Nothing: a film that is torn and thins beyond the rim is taken for one that does not thin."""
+        return
+
+    def doubt_beyond(self, y: Unknowns) -> float:
+        """Return an estimate of the friction that is lost there."""
+        del y
+        lost = self.film.beyond(self.speed, self.operators.mesh.rim)
+        return 0.0 if lost is None else lost.whole
 
     @property
     def load_row(self) -> Array:

@@ -76,8 +76,36 @@ class FluxSlopes(NamedTuple):
     rim: tuple[Array, Array, Array]
 
 
+class Beyond(Protocol):
+    """What a film beyond the rim has more than one of constant viscosity."""
+
+    @property
+    def whole(self) -> float:
+        """An estimate of its friction integrals."""
+
+    def doubt(self, offset: float) -> float:
+        """Return an estimate of the error of these with an offset."""
+
+    @property
+    def first(self) -> float:
+        """The factor of cos(theta) in the pressure at the rim."""
+
+    @property
+    def tails(self) -> tuple[float, float, float]:
+        """The parts of shear, pressure flow and moment."""
+
+    def beyond(self, radius: float) -> Beyond:
+        """Return the same beyond another radius."""
+
+    def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array, Array]:
+        """Return pressure, its radial derivative, and flux that is lost along the radius, at angles of the rim."""
+
+
 class PlaneFilm(Protocol):
     """A film between surfaces that move along x, in the plane."""
+
+    def beyond(self, speed: float, rim: float) -> Beyond | None:
+        """Return what the film beyond a rim has more than one of constant viscosity."""
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
         """Return the fluxes."""
@@ -103,6 +131,9 @@ def weights_of(mesh: PolarMesh) -> tuple[Array, Array]:
 
 class LinearPlane:
     """A film whose flow is linear in the pressure gradient."""
+
+    def beyond(self, speed: float, rim: float) -> None:
+        """Return nothing: the film is that at ambient pressure."""
 
     def flow(self, gap: Array, pressure: Array) -> Flow:
         """Return the flow at nodes."""

@@ -18,6 +18,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.system import Operators
+from stribeck.equations.thinning.far import ROLLING, far_rate, lost
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
@@ -33,12 +34,12 @@ GROWTH = 2.5
 REACH = 50.0
 """Radius of the rim over the scale of the contact."""
 
-THINNED_BEYOND, MOST_FARTHER = 1e-7, 6
-"""Part of the viscosity that a fluid may lose by thinning at the rim, and the most panels beyond the usual rim for this."""
+THINNED_BEYOND, TORN_BEYOND, MOST_FARTHER = 1e-3, 1e-7, 6
+"""Part of the viscosity that a fluid may lose by thinning at the usual rim, farther out times the square of the distance, as
+the far film is that in a gap of r**2/2; the same of a film that ends; and the most panels beyond the usual rim."""
 
-ROLLING, FILM_ROUNDS = 0.3, 20
-"""Shear rate between walls that roll, which the pressure drives, over mean speed and film thickness; and iterations for a film
-that is thinned by its own shear rate."""
+FILM_ROUNDS = 20
+"""Iterations for a film that is thinned by its own shear rate."""
 
 FAR_PANELS = 2
 """Panels in ln r beyond twice the scale."""
@@ -233,19 +234,24 @@ def resolution(speed: float, law: ContactLaw, degree: int, modes: int, model: Mo
 def farther_panels(speed: float, model: Model) -> int:
     """Return the number of panels beyond the usual rim until the film is plain.
 
-    There the shear rate, 2/r**2, thins the fluid no more, and the suction, 0.8 speed/r**3, is far from that of a cavity.
+    There the shear rate, 2/r**2, hardly thins the fluid, and the suction, 0.8 speed/r**3, is far from that of a cavity.
     """
-    film, radius = model.film, REACH
+    film, needed = model.film, 0.0
     if not speed > 0.0:
         return 0
+    ratio = REACH / 2.0
     if isinstance(film, ShearThinning):
-        rates = np.logspace(-60.0, 0.0, 241)
-        plain = np.abs(film.law.stress(rates)[0] / rates - 1.0) < THINNED_BEYOND
-        rate = float(rates[plain][-1]) if plain.any() else float(rates[0])
-        radius = max(radius, math.sqrt(2.0 * film.law.time * speed / rate))
+        # A film that ends has no far film that thins.
+        per_panel = 1.0 if model.cavitation is Cavitation.EXIT else ratio ** (2.0 / FAR_PANELS)
+        most = TORN_BEYOND if model.cavitation is Cavitation.EXIT else THINNED_BEYOND
+        for needed in range(MOST_FARTHER):
+            part = lost(film.law, far_rate(film.law, film.slide, speed, REACH * ratio ** (needed / FAR_PANELS)))
+            if part <= most * per_panel**needed:
+                break
     if model.cavity_pressure < 0.0:
-        radius = max(radius, (0.8 * speed / (QUIET * -model.cavity_pressure)) ** (1 / 3))
-    return int(np.clip(math.ceil(FAR_PANELS * math.log(radius / REACH) / math.log(REACH / 2.0)), 0, MOST_FARTHER))
+        radius = (0.8 * speed / (QUIET * -model.cavity_pressure)) ** (1 / 3)
+        needed = max(needed, FAR_PANELS * math.log(radius / REACH) / math.log(ratio))
+    return int(np.clip(math.ceil(needed), 0, MOST_FARTHER))
 
 
 def fits(found: Resolution, speed: float, law: ContactLaw) -> bool:

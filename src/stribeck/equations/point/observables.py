@@ -24,13 +24,10 @@ from numpy.polynomial import legendre
 from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL, FarFilm
 from stribeck.equations.point.far_field import tails
+from stribeck.equations.point.films import Beyond
 from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_axis
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh, radau
-
-FAR_ERROR = 10.0
-"""Error of a finite part over the speed and the part of the viscosity that is lost at the rim: 2 pi/3 times one over twice the
-power with which that part falls with the rate, 0.1 at least."""
 
 
 def at_centre(mesh: PolarMesh, field: Array) -> float:
@@ -87,7 +84,11 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
     poiseuille = 0.5 * float(radial.sum() - tangential.sum())
     of_fluid, of_contact = float((moment * p).sum()), float((moment * contact).sum())
     at_rim = float(mesh.to_modes[1] @ p[:, -1])
-    beyond = tails(mesh.rim, y.offset, speed, at_rim, equations.far, equations.operators.bulge)
+    more, first = equations.beyond, 0.0
+    if more is not None:
+        first = more.first
+        couette, poiseuille, of_fluid = np.add((couette, poiseuille, of_fluid), more.tails).tolist()
+    beyond = tails(mesh.rim, y.offset, speed, at_rim - first, equations.far, equations.operators.bulge)
     couette, poiseuille, of_fluid = couette + beyond[0], poiseuille + beyond[1], of_fluid + beyond[2]
     return {
         "J_couette": couette,
@@ -96,12 +97,6 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
         "J_published": couette - poiseuille - of_fluid,
         "J_pcx": -of_contact,
     }
-
-
-def thinned_beyond(equations: Equations, y: Unknowns) -> float:
-    """Return an estimate of the excess of the finite parts, as the fluid is assumed not to thin beyond the rim."""
-    at_rim = equations.film.sheared(equations.speed, y.gap[:, -1])
-    return FAR_ERROR * equations.speed * float(np.abs(1.0 - at_rim).max())
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,10 +110,13 @@ class FrictionWithin:
     excess : ndarray, shape (3, panels, degree + 1)
         At the nodes: both parts up to there less their finite parts and logarithms, and ``-oint h p_f cos(theta) r`` less the
         same of the far film.
+    beyond : Beyond or None
+        What the film beyond the rim has more than that.
     """
 
     mesh: PolarMesh
     excess: Array
+    beyond: Beyond | None
 
     @classmethod
     def of(cls, equations: Equations, y: Unknowns, values: Mapping[str, float]) -> FrictionWithin:
@@ -135,13 +133,16 @@ class FrictionWithin:
         up_to[0] -= values["J_couette"] + far.couette * speed * log
         up_to[1] -= values["J_poiseuille"] + far.poiseuille * speed * log
         edge = -turn * mesh.scattered((h * p * cos).sum(axis=0)) * mesh.local_radii - far.poiseuille * speed
-        return cls(mesh, np.concatenate([up_to, edge[None]]))
+        return cls(mesh, np.concatenate([up_to, edge[None]]), equations.beyond)
 
     def __call__(self, which: int, log_radius: float) -> float:
-        """Return one of the three at a radius; nothing beyond the rim."""
+        """Return one of the three at a radius."""
         radius = math.exp(log_radius)
         if radius >= self.mesh.rim:
-            return 0.0
+            if self.beyond is None:
+                return 0.0
+            more = self.beyond.beyond(radius)
+            return -0.5 * math.pi * radius**3 * more.first if which == 2 else -more.tails[which]
         panel, row = self.mesh.radial_interpolation(np.array([radius]))
         return float(row[0] @ self.excess[which, panel[0]])
 

@@ -26,7 +26,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.cut_off import FULL, FarFilm
 from stribeck.equations.point.far_field import DEFLECTION, particular, rates
-from stribeck.equations.point.films import PLAIN, PlaneFilm
+from stribeck.equations.point.films import PLAIN, Beyond, PlaneFilm
 from stribeck.numerics.fourier_panels import PolarMesh
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.half_space import deflections_from_beyond, tilt_from_beyond
@@ -123,6 +123,24 @@ class Equations:
         """Weights of the load on the axisymmetric mode, shape (rings,)."""
         return self.operators.load_row
 
+    @cached_property
+    def beyond(self) -> Beyond | None:
+        """What the film beyond the rim has more than one of constant viscosity."""
+        return self.film.beyond(self.speed, self.operators.mesh.rim) if self.speed > 0 else None
+
+    def doubt_beyond(self, y: Unknowns) -> float:
+        """Return an estimate of the error of the friction integrals by a film that still thins beyond the rim."""
+        return 0.0 if self.beyond is None else self.beyond.doubt(y.offset)
+
+    @cached_property
+    def _more_at_rim(self) -> tuple[Array, Array, Array]:
+        """Pressure, radial derivative and lost flux of that at the angles of the rim."""
+        mesh = self.operators.mesh
+        if self.beyond is None:
+            nothing = np.zeros(mesh.modes)
+            return nothing, nothing, nothing
+        return self.beyond.at_rim(mesh.angles, mesh.modes)
+
     def deflect(self, by_mode: Array) -> Array:
         """Return the deflection by mode under a pressure by mode, shape (modes, rings)."""
         return self.operators.deflect(by_mode)
@@ -154,7 +172,8 @@ class Equations:
         radial, angular, (wide, carried) = self.film.fluxes(mesh, self.speed, h, p)
         found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ angular
         cos, x, part = np.cos(mesh.angles), mesh.rim, np.pi / mesh.modes
-        found[:, -1] += part * x * (self.speed * cos * carried - wide * self.rim_slope(p[:, -1], offset))
+        own = wide * self.rim_slope(p[:, -1], offset) + self._more_at_rim[2]
+        found[:, -1] += part * x * (self.speed * cos * carried - own)
         return found
 
     def rim_slope(self, p: Array, offset: float) -> Array:
@@ -162,7 +181,8 @@ class Equations:
         mesh = self.operators.mesh
         first, slope = particular(np.array([mesh.rim]), offset, self.speed, bulge=self.operators.bulge)
         cos = np.cos(mesh.angles)
-        return np.asarray(self.operators.rim_rates @ (p - first * cos) + slope * cos)
+        more, more_slope, _ = self._more_at_rim
+        return np.asarray(self.operators.rim_rates @ (p - first * cos - more) + slope * cos + more_slope)
 
     def rim_rates(self, offset: float) -> Array:
         """Return the derivative of :meth:`rim_slope` by the pressure, shape (angles, angles)."""

@@ -9,7 +9,7 @@ With :math:`\mathbf Q = 6 h t \nabla p_f`, :math:`\mathbf r_0 = -\lambda t \eta 
 :math:`-(\mathbf T \mp \mathbf Q/2)/6t`, whose difference is the pull of the pressure gradient, whatever the fluid:
 thinning changes the drag through T alone.  The pressure divides the rate at a given stress by :math:`\eta(p)`, as on the line.
 
-At the rim and beyond, shear rates are far below those of thinning.
+At the rim and beyond it thins to first order (:mod:`stribeck.equations.thinning.far`).
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.point.films import Fluxes, FluxSlopes, weights_of
+from stribeck.equations.point.films import Beyond, Fluxes, FluxSlopes, weights_of
 from stribeck.equations.thinning.column import NEAR, Column, column
+from stribeck.equations.thinning.far import LEAST, FarThinned
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
 
@@ -54,6 +55,11 @@ class ThinningPlane:
 
     film: ShearThinning
     _last: list[_Local] = field(init=False, repr=False, compare=False, default_factory=list)
+
+    def beyond(self, speed: float, rim: float) -> Beyond | None:
+        """Return what the film beyond a rim has more than one of constant viscosity; None where it thins no more."""
+        found = FarThinned(self.film.law, self.film.slide, speed, rim)
+        return found if found.lost > LEAST else None
 
     def fluxes(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Fluxes:
         """Return the fluxes."""

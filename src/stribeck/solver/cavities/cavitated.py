@@ -24,7 +24,7 @@ from stribeck.equations.point.mesh_choice import (
     resolution,
     split_where_poor,
 )
-from stribeck.equations.point.observables import identity_error, observables, thinned_beyond
+from stribeck.equations.point.observables import identity_error, observables
 from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
@@ -73,7 +73,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     balance = 0.3 * abs(identity_error(values, speed, fine.equations.far))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
-    beyond, doubt = thinned_beyond(fine.equations, fine.unknowns), speed / 6.0 * fine.equations.shear_doubt(fine.unknowns)
+    beyond, doubt = fine.equations.doubt_beyond(fine.unknowns), speed / 6.0 * fine.equations.shear_doubt(fine.unknowns)
     errors["J_poiseuille"] += beyond
     for name in ("J_couette", "J_balanced", "J_published"):
         errors[name] += beyond + doubt

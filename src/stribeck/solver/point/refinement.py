@@ -28,7 +28,7 @@ from stribeck.equations.point.mesh_choice import (
     resolution,
     split_where_poor,
 )
-from stribeck.equations.point.observables import identity_error, observables, thinned_beyond
+from stribeck.equations.point.observables import identity_error, observables
 from stribeck.equations.point.system import Unknowns
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, band_for, extrapolated, moved, solve_level
@@ -194,7 +194,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     balance = 0.3 * abs(identity_error(values, fine.equations.speed))
     for name in ("J_balanced", "J_published", "J_pcx"):
         errors[name] = max(errors[name], balance)
-    beyond = thinned_beyond(fine.equations, fine.unknowns)
+    beyond = fine.equations.doubt_beyond(fine.unknowns)
     for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
         errors[name] += beyond
     for (name, factor), tail in zip(CENTRAL.items(), centre_tails(fine), strict=True):
@@ -332,6 +332,8 @@ def finer(pair: Pair, rtol: float, band: int, slack: float) -> Resolution:
             modes = max(math.ceil(1.2 * modes), modes_for(fine, 0.3 * rtol**0.5))
         if amplitude**2 < 0.3 * pair.total:
             degree += max(1, min(4, math.ceil(more / PANEL_RATE)))
+        if now.model.film.uses_speed:  # the angles at which hardly anything is sheared show in the viscosity, not in the gap
+            modes, degree = max(modes, math.ceil(FINER_MODES * now.modes)), min(degree, now.degree + FINER_DEGREE)
     allowed = slack * rtol
     if pair.minimum > allowed:
         if UNSEEN_RADIAL * legendre_tail(fine) > 0.3 * allowed:

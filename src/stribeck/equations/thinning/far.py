@@ -1,0 +1,190 @@
+r"""The film far from a ball of a fluid that still thins there.
+
+In a gap :math:`r^2/2` all rates fall as :math:`r^{-2}`, and so does, to the power :math:`\mu` of the rate, the part of its
+viscosity that the fluid has lost.  With :math:`v = (r_\mathrm{rim}/r)^{2\mu}` the flux differs from that of a fluid that does
+not thin by :math:`\mathbf F_\delta = r^2 \mathbf f(v, \theta)`, the pressure by :math:`r^{-3} \sum_k c_k(v) \cos k\theta`, and
+
+.. math:: \tfrac18 (D^2 - 9 - k^2) \, c_k = -\big[(3 + D) f_r + \partial_\theta f_\theta\big]_k, \qquad
+    D = \frac{d}{d\ln r} = -2 \mu v \frac{d}{dv}
+
+with f from columns under the whole pressure gradient.  Both are v times what is smooth in v: a polynomial through Radau's
+nodes from infinity to the rim, found in rounds of which each gains the lost part.  What is left is of the order of the lost
+part times the offset over the gap at the rim.
+
+Source: ours, from the generalised Reynolds equation.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.equations.thinning.column import column
+from stribeck.fluids.laws import RateLaw
+from stribeck.numerics.fourier_panels import radau
+
+ANGLES, MOST_DEGREE, ROUNDS, ALIKE = 20, 5, 40, 1e-9
+"""Angles of the columns in half a turn, degree of the polynomial at most, most rounds, and the change after which they end."""
+
+RESONANT = 20.0
+"""Factor of the sources that a power of v needs, over the lost part, below which it is left out: near a power with which the
+pressure falls without sources, rounds go astray."""
+
+LEAST = 1e-9
+"""Lost part of the viscosity at the rim below which nothing is corrected: columns are good to 1e-8 of themselves."""
+
+FIRST_ORDER = 1e-6
+"""Lost part at which its power is read."""
+
+
+OFFSET = 12.0
+"""Stated error of the friction over the speed, the lost part at the rim and the offset over the square of the rim; it is up to
+5 for Cross's law with powers from 0.1 to 0.8."""
+
+ROLLING = 0.3
+"""Shear rate between walls that roll, which the pressure drives, over mean speed and film thickness."""
+
+
+def lost(law: RateLaw, rate: float) -> float:
+    """Return the part of the viscosity that is lost at a rate over that of the relaxation time."""
+    return abs(1.0 - float(law.stress(np.array([rate]))[0][0]) / rate)
+
+
+def far_rate(law: RateLaw, slide: float, speed: float, radius: float) -> float:
+    """Return the rate at a radius far from the contact, over that of the relaxation time."""
+    return 2.0 * law.time * speed * max(abs(slide), ROLLING) / radius**2
+
+
+class _Film(NamedTuple):
+    """What the film has more than one that does not thin, at the nodes in v.
+
+    Attributes
+    ----------
+    pressure, flux : ndarray, shape (nodes, angles)
+        Coefficients of the cosines of the pressure and of the flux along the radius, over r**-3 and r**2.
+    steepness : ndarray, shape (angles,)
+        Derivative of the pressure's at the rim by ln r, over r**-3.
+    drag : ndarray, shape (nodes,)
+        Of the shear, around the ring.
+    """
+
+    pressure: Array
+    flux: Array
+    steepness: Array
+    drag: Array
+
+
+class FarThinned:
+    """The film of a ball beyond a rim, less that of a fluid that does not thin.
+
+    Parameters
+    ----------
+    law : RateLaw
+        The law, its time in Hertz units at this speed.
+    slide : float
+        Half the slide-to-roll ratio.
+    speed, rim : float
+        Speed group, and radius of the rim [a].
+    """
+
+    def __init__(self, law: RateLaw, slide: float, speed: float, rim: float) -> None:
+        self.law, self.slide, self.speed, self.rim = law, slide, speed, rim
+        rate = far_rate(law, slide, speed, rim)
+        self.lost = lost(law, rate)
+        while lost(law, rate) > FIRST_ORDER:
+            rate *= 0.1
+        self.power = math.log2(lost(law, 2.0 * rate) / lost(law, rate)) if self.lost > LEAST else 2.0
+
+    @cached_property
+    def degree(self) -> int:
+        """The degree of the polynomial."""
+        powers = (2.0 * self.power * np.arange(1, MOST_DEGREE + 2)[:, None]) ** 2
+        resonance = np.abs(powers - 9.0 - np.arange(1, ANGLES, 2) ** 2).min(axis=1)
+        poor = np.flatnonzero(resonance < RESONANT * self.lost)
+        return max(0, int(poor[0]) - 1) if poor.size else MOST_DEGREE
+
+    @property
+    def whole(self) -> float:
+        """An estimate of the drag that is lost beyond the rim."""
+        return math.pi / 3.0 * self.speed * self.lost / self.power
+
+    def doubt(self, offset: float) -> float:
+        """Return an estimate of the error of the friction, as the gap is more than r**2/2 by the offset."""
+        return OFFSET * self.speed * self.lost * max(1.0, abs(offset)) / self.rim**2
+
+    def beyond(self, radius: float) -> FarThinned:
+        """Return the film beyond another radius."""
+        return FarThinned(self.law, self.slide, self.speed, radius)
+
+    @property
+    def first(self) -> float:
+        """The factor of cos(theta) in the pressure at the rim."""
+        return float(self._film.pressure[-1, 1]) / self.rim**3
+
+    def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array, Array]:
+        """Return pressure, its radial derivative, and the flux along the radius that is lost, at angles of the rim."""
+        film, rim = self._film, self.rim
+        cosines = np.cos(np.multiply.outer(angles, np.arange(min(modes, ANGLES))))
+        pressure, slope, flux = (
+            cosines @ each[: cosines.shape[1]]
+            for each in (film.pressure[-1], film.steepness - 3.0 * film.pressure[-1], film.flux[-1])
+        )
+        return pressure / rim**3, slope / rim**4, flux * rim**2
+
+    @cached_property
+    def tails(self) -> tuple[float, float, float]:
+        """The parts of shear, pressure flow and moment beyond the rim."""
+        film = self._film
+        v, weights = _grid(self.degree)[:2]
+        weights = weights / (2.0 * self.power * v)  # of dr/r
+        first = film.pressure[:, 1]
+        couette = self.speed / 3.0 * float(weights @ film.drag)
+        moment = math.pi * float(weights @ first)
+        # (r h/2)(f' + f/r), by parts.
+        return couette, -0.25 * math.pi * float(first[-1]) - 0.5 * moment, moment
+
+    @cached_property
+    def _film(self) -> _Film:
+        law, speed, rim = self.law, self.speed, self.rim
+        theta, modes = (np.arange(ANGLES) + 0.5) * math.pi / ANGLES, np.arange(ANGLES)
+        cosines, sines = (each(np.multiply.outer(theta, modes)) for each in (np.cos, np.sin))
+        to_cosines, to_sines = cosines * (2.0 / ANGLES), sines * (2.0 / ANGLES)
+        to_cosines[:, 0] *= 0.5
+        v, _, derivative = _grid(self.degree)
+        along_r = -2.0 * self.power * (np.eye(v.size) + v[:, None] ** 2 * derivative / v)
+        odd = modes[1::2]  # as the pressure is
+        inverse = np.linalg.inv(along_r @ along_r - (9.0 + odd[:, None, None] ** 2) * np.eye(v.size))
+        scale = (rim * v ** (-0.5 / self.power))[:, None] ** 2  # Of r**2: all else is the same at all radii.
+        along = np.stack([np.tile(np.cos(theta), (v.size, 1)), np.tile(-np.sin(theta), (v.size, 1))])
+        plain = 0.8 * speed * np.stack([3.0 * along[0], -along[1]])
+        slip = -(2.0 * speed * law.time * self.slide) / scale * along
+        found = np.zeros((v.size, ANGLES))
+        for _ in range(ROUNDS):
+            before = found
+            gradient = plain + np.stack([(along_r @ found - 3.0 * found) @ cosines.T, -(found * modes) @ sines.T])
+            flow = column(law, (3.0 * law.time / scale * gradient).reshape(2, -1), slip.reshape(2, -1))
+            flux = 0.5 * scale / law.time * flow.carried.reshape(gradient.shape) - 0.125 * gradient
+            radial, angular = flux[0] @ to_cosines, flux[1] @ to_sines
+            leaving = 3.0 * radial + along_r @ radial + modes * angular
+            found = np.zeros_like(before)
+            found[:, odd] = -8.0 * np.matmul(inverse, leaving.T[odd, :, None])[:, :, 0].T
+            if np.abs(found - before).max() <= ALIKE * speed:
+                break
+        if self.slide:
+            mean = flow.mean.reshape(gradient.shape)
+            shear = -(mean * along).sum(axis=0) * 0.5 * scale / (law.time * speed * self.slide)
+        else:
+            ease = flow.ease.reshape(3, *gradient.shape[1:])
+            shear = ease[0] * along[0] ** 2 + 2.0 * ease[1] * along[0] * along[1] + ease[2] * along[1] ** 2
+        drag = (shear - 1.0).sum(axis=1) * (2.0 * math.pi / ANGLES)
+        return _Film(found, radial, (along_r @ found)[-1], drag)
+
+
+def _grid(degree: int) -> tuple[Array, Array, Array]:
+    """Return Radau's nodes in v from 0 to 1, the last at 1, their weights, and the derivative of the polynomial."""
+    rule = radau(degree)
+    return 0.5 * (rule.nodes + 1.0), 0.5 * rule.weights, 2.0 * rule.derivative
