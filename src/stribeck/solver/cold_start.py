@@ -35,6 +35,9 @@ RIGID_SPEED = 30.0
 RIGID_ROUGHNESS = 30.0
 """Relative roughness above which the rigid contact starts it safely."""
 
+RIGID_REACH = 0.7
+"""Logarithm of the factor of the load within which it may start it too."""
+
 SATURATED_LOAD = 0.5
 """Load group above which the contact pressure nears its largest value: the path then comes down in speed, as loading
 at low speed would cross the sudden hand-over from asperities to film."""
@@ -155,7 +158,7 @@ def cold_start(groups: Groups) -> Path[State]:
             here = along(groups, log_factor)
         except InputError:  # lifted out of the range of groups
             return None
-        rigid = top - log_factor < 0.7 and len(history) < 3
+        rigid = top - log_factor < RIGID_REACH and len(history) < 3
         guess: Guess | None = rigid_guess(here) if rigid else extrapolate(history, log_factor)
         if guess is None:
             return None
@@ -167,6 +170,10 @@ def cold_start(groups: Groups) -> Path[State]:
         steps += state.root.steps
         return state
 
+    if 0.0 < top < RIGID_REACH:
+        direct = correct(0.0, ())
+        if direct is not None and direct.outcome.ok:
+            return Path((0.0,), (direct,), Outcome.CONVERGED, 0, None)
     first = correct(top, ())
     known = [] if first is None or not first.outcome.ok else [(top, first)]
     return march(correct, top, 0.0, Steps(0.6, 2.5, 1e-3), history=known)
