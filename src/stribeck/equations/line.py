@@ -253,7 +253,8 @@ class Equations:
         d = None if dilation is None else float(dilation[0])
         speed = self.speed if d is None else self.speed * d
         scaled = op.dilated(d, self.is_sliding and by_p is None)
-        matrix = np.zeros((n + numbers, n + numbers), order="F")
+        matrix = np.empty((n + numbers, n + numbers), order="F")
+        matrix[n:], matrix[:, n:] = 0.0, 0.0
         block, offset, flux = matrix[:n, :n], n, n + 1
         np.multiply(scaled.deflection, -p_slope, out=block)
         matrix[offset, :n] = scaled.weights * p_slope
@@ -271,7 +272,7 @@ class Equations:
             matrix[:n, flux] = deflection @ (-speed * g_flux)
             matrix[offset, :n] += load * (speed * g_h)
             matrix[offset, flux] = speed * (load @ g_flux)
-        block[np.diag_indices(n)] += u
+        np.einsum("ii->i", block)[...] += u
         matrix[:n, offset] = -v[0]
         rows_of_ends = [
             end if of_pressure is None else end + speed * of_pressure[n + 1 + k] for k, end in enumerate(scaled.ends)
