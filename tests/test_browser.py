@@ -189,7 +189,15 @@ def test_a_ball_is_chosen_and_shows_its_film_on_the_plane(open_page):
     friction = solution.friction(definition=now.definition).total
     assert abs(float(shown[f"friction_{now.definition}"][0]) / friction - 1) < 3 * now.rtol
     film = np.array(page.evaluate(CHART, "plane")["series"][0]["data"])
-    assert film.shape == (49 * 49, 3) and film[:, 2].max() - film[:, 2].min() > 1
+    assert film.shape == (49 * 49,) and film.max() - film.min() > 1
+    page.locator(".chart-plane").scroll_into_view_if_needed()
+    box = page.locator(".chart-plane").bounding_box()
+    for step in (0, 1):
+        page.mouse.move(box["x"] + 50 + 147 + step, box["y"] + 8 + 147)
+    page.wait_for_function("document.querySelector('.chart-plane').innerText.includes('film')")
+    under = page.locator(".chart-plane").inner_text().split()
+    micrometres = float(under[1]) * {"nm": 1e-3, "µm": 1.0}[under[2]]
+    assert micrometres == pytest.approx(1e6 * solution.central_gap * now.contact.hertz.indentation, rel=0.02)
     assert page.locator("[data-row=load] select").input_value() == "mN"
     back = at_rest(page, lambda: pick(page, "geometry", "line"))
     assert back.contact.load == pytest.approx(server.example().contact.load) and not page.locator(".chart-plane").is_visible()

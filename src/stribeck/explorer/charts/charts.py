@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Sequence
 
@@ -189,33 +190,27 @@ def pressure_chart(answer: Answer, palette: Palette) -> Options:
 
 def plane_chart(answer: Answer, palette: Palette) -> Options:
     """Return the film of a ball on its plane as colours, on a logarithmic scale; nothing for a cylinder."""
-    plane = answer.plane
-    a = answer.inputs.contact.hertz.half_width
-    side = np.zeros(1) if plane is None else np.asarray(plane.x[0]) * a
-    unit, name = _unit(max(abs(float(side[0])), 1e-9), "length")
-    places = [f"{value / unit:.3g}" for value in side]
-    gap = np.ones((1, 1)) if plane is None else np.maximum(plane.gap, 1e-300) * answer.inputs.contact.hertz.indentation
+    plane, hertz = answer.plane, answer.inputs.contact.hertz
+    side = np.ones(1) if plane is None else np.asarray(plane.x[0])
+    end = float(np.abs(side).max()) * hertz.half_width
+    unit, name = _unit(end, "length")
+    gap = np.ones((1, 1)) if plane is None else np.maximum(plane.gap, 1e-300) * hertz.indentation
     low, high = float(gap.min()), 20 * float(gap[len(gap) // 2, len(gap) // 2])
-    film, film_name = _unit(low, "length")
-    values = np.round(np.log10(np.clip(gap, low, high) / film), 3)
-    data = [] if plane is None else [[i, j, float(value)] for (j, i), value in np.ndenumerate(values)]
-    axis = {
-        "type": "category",
-        "data": places,
-        "axisLabel": {"color": palette.grey, "fontSize": 11, "interval": 11},
-        "axisTick": {"show": False},
-        "splitLine": {"show": False},
-        "nameLocation": "middle",
-        "nameTextStyle": {"color": palette.grey, "fontSize": 12},
-    }
+    values = np.round(np.log10(np.clip(gap, low, high)), 3)
+    drawn = {"id": "film", "name": "film", "type": "custom", "data": [] if plane is None else values.ravel().tolist()}
+    x, y = (linear_axis(f"position {axis} ({name})", -end / unit, end / unit, palette) for axis in ("x", "y"))
+    x, y = ({**axis, "splitLine": {"show": False}} for axis in (x, y))
+    for axis in (x, y):
+        axis["axisLabel"] = axis["axisLabel"] | {"showMinLabel": False, "showMaxLabel": False}
     options = chart(
         palette,
-        axis | {"name": f"position x ({name}); fluid enters left", "nameGap": 26},
-        axis | {"name": f"position y ({name})", "nameGap": 36},
-        [{"id": "film", "name": "film", "type": "heatmap", "data": data, "progressive": 0, "emphasis": {"disabled": True}}],
+        x | {"name": f"position x ({name}); fluid enters left", "nameGap": 26},
+        y | {"nameGap": 36},
+        [drawn | {"progressive": 0, "clip": True, ":renderItem": FILM.replace("STOPS", json.dumps(FILM_COLOURS))}],
     )
     scale = {
         "type": "continuous",
+        "seriesIndex": [],
         "min": float(values.min()),
         "max": float(values.max()) + 1e-3,
         "calculable": False,
@@ -226,15 +221,24 @@ def plane_chart(answer: Answer, palette: Palette) -> Options:
         "itemWidth": 11,
         "text": [format_si(high, "length", 3), format_si(low, "length", 3)],
         "textStyle": {"color": palette.grey, "fontSize": 11},
-        "inRange": {"color": ["#fde725", "#5ec962", "#21918c", "#3b528b", "#440154"]},
+        "inRange": {"color": FILM_COLOURS},
     }
-    # Whole pixels for each place, or seams show between them.
-    grid = {"left": 50, "top": 8, "width": 6 * len(side), "height": 6 * len(side)}
-    tip = {"trigger": "item", ":formatter": FILM_TIP.replace("UNIT", film_name), "confine": True}
+    grid = {"left": 50, "top": 8, "width": FILM_WIDTH, "height": FILM_WIDTH}
+    tip = {"trigger": "item", ":formatter": "() => explorerFilmAt()", "confine": True}
     return options | {"visualMap": scale, "grid": grid, "tooltip": options["tooltip"] | tip}
 
 
-FILM_TIP = "p => 'film ' + Number(Math.pow(10, p.data[2]).toPrecision(3)) + ' UNIT'"
+FILM_COLOURS = ["#fde725", "#5ec962", "#21918c", "#3b528b", "#440154"]
+"""Of the film of a ball, from thin to thick."""
+
+FILM_WIDTH = 294
+"""Of its picture, in pixels of the screen."""
+
+FILM = """(params, api) => params.dataIndex === 0 ? {
+  type: 'image',
+  style: explorerFilm(Array.from({length: params.dataInsideLength}, (_, i) => api.value(0, i)), STOPS, params.coordSys),
+} : undefined"""
+"""One image for the whole film: a rectangle for each place takes the browser longer than all other charts."""
 
 
 def diagram_chart(answer: Answer, palette: Palette) -> Options:
