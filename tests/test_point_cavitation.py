@@ -110,6 +110,10 @@ def test_streaks_in_the_wake_carry_the_flow_of_the_line_of_rupture():
 
 
 @pytest.mark.quick
+def test_a_heavy_ball_whose_torn_nodes_settle_slowly_is_solved_from_cold():
+    assert solve_cold(ball(1.29283e-4, 8.91201e-3, 0.360854), 1e-4).outcome.ok
+
+
 def test_neighbours_lead_to_the_state_that_a_cold_start_finds():
     near = solve_cold(ball(0.1, 0.1), 1e-3)
     warm, cold = solve_from(near, ball(0.12, 0.1), 1e-3), solve_cold(ball(0.12, 0.1), 1e-3)

@@ -53,6 +53,9 @@ DEGREE = 10
 RIGID = 2.0
 """Speed from which a rigid ball is nearer to the state than that of the full film."""
 
+FROM_FAR = 80
+"""Steps for a state on other meshes than its neighbour's, or from cold; heavy loads took up to 43."""
+
 TOLERANCE = 1e-6
 """Relative error of the gap that an iteration may leave: a hundredth of the smallest tolerance."""
 
@@ -160,11 +163,11 @@ def _pair(
 ) -> Pair | Outcome:
     """Return a state on two meshes of a resolution, with few and with many angles, or the outcome of the failure."""
     few, many = angles
-    coarse = solve_level(replace(base, modes=few, degree=DEGREE), speed, law, start, mesh, TOLERANCE)
+    coarse = solve_level(replace(base, modes=few, degree=DEGREE), speed, law, start, mesh, TOLERANCE, max_steps=FROM_FAR)
     if not coarse.outcome.ok:
         return coarse.outcome
     finer = replace(base, modes=many, degree=DEGREE + 2)
-    fine = solve_level(finer, speed, law, coarse.unknowns, coarse.mesh, TOLERANCE)
+    fine = solve_level(finer, speed, law, coarse.unknowns, coarse.mesh, TOLERANCE, max_steps=FROM_FAR)
     return pair_of(coarse, fine) if fine.outcome.ok else fine.outcome
 
 
