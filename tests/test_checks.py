@@ -65,6 +65,7 @@ def test_a_soft_contact_is_fine_and_steel_is_outside():
         ("layer a/thickness", "layer_thickness", (1 / 0.29, 1 / 0.31, 1 / 1.1)),
         ("loss tangent", "loss_tangent", (0.09, 0.11, 0.31)),
         ("viscous heating", "thermal_thinning", (0.09, 0.11, 1.1)),
+        ("rms slope of the roughness", "rms_slope", (0.29, 0.31, 1.1)),
     ],
 )
 def test_a_verdict_turns_at_its_limits(name, fact, values):
@@ -72,12 +73,29 @@ def test_a_verdict_turns_at_its_limits(name, fact, values):
         "pressure_viscosity": 1 / TRUE.hertz.pressure,
         "layer_thickness": TRUE.hertz.half_width,
         "loss_tangent": 1.0,
+        "rms_slope": 1.0,
         "thermal_thinning": 8 * 0.15 / (TRUE.viscosity * TRUE.speed**2),
     }[fact]
     for value, verdict in zip(values, ORDER, strict=True):
         found = checks_of(Subject(TRUE, {fact: value * scale}), "contact")[name]
         assert found.verdict == verdict, value
         assert (found.value <= found.limit * (1 + 1e-12)) == (verdict == "fine") or name == "film against molecules"
+
+
+@pytest.mark.quick
+def test_the_rms_slope_is_that_of_the_spectrum_behind_the_law():
+    spectrum = SelfAffine(h_rms=1e-6, q0=1e5, q1=1e7, hurst=0.8)
+    law = persson_law(spectrum)
+    exponential = sb.contact_laws.exponential.SpectralExponential(law.area_slope)
+    for shape in (law, exponential):
+        contact = TRUE.replace(law=shape, **law.coefficients)
+        found = checks_of(Subject(contact), "contact")["rms slope of the roughness"]
+        assert found.value == pytest.approx(law.rms_slope, rel=1e-12) and found.verdict == "doubtful"
+        pressure = contact.modulus * 1e-4
+        area = law.area_fraction_at(pressure / (law.beta * contact.modulus))
+        assert pressure / area == pytest.approx(contact.modulus * math.sqrt(math.pi / 8) * law.rms_slope, rel=1e-3)
+    assert verdicts(TRUE.replace(roughness=0.0))["rms slope of the roughness"] == "fine"
+    assert "rms slope of the roughness" not in verdicts(TRUE)
 
 
 def test_the_film_is_checked_against_supply_molecules_and_thinning():

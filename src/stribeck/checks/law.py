@@ -19,6 +19,43 @@ WORTH_SAYING = 0.005
 FINE_TAIL = 0.05
 """Change of minimum and transitions by the tail of the law that counts as fine: about what experiments resolve."""
 
+FINE_SLOPE, STEEP = 0.3, 1.0
+"""Rms slope of the roughness up to which elasticity and Reynolds' equation are linear and thin within a tenth or two, and from
+which they are not: see :func:`roughness_slope`."""
+
+
+def roughness_slope(subject: Subject) -> Check | None:
+    r"""Return the check of the rms slope of the roughness; None where it is not known.
+
+    .. math:: \frac{\bar p}{E^*} = \frac{\sqrt\pi}{2\sqrt2} \, h'_\mathrm{rms} = 0.63 \, h'_\mathrm{rms}, \qquad
+        \frac{dp/dx}{(dp/dx)_\mathrm{Reynolds}} = \frac{\tan^3 x \cos x}{3 (\sin x - x \cos x)} = 1 + 0.6 \, \tan^2 x + \dots
+
+    The first is the mean pressure where asperities touch, at small loads, as :math:`A/A_0 = \mathrm{erf}(\sqrt2 \, p/(E^*
+    h'_\mathrm{rms}))` in Persson's theory; the second the flow in a wedge of slope tan x between flat walls, on one of them.
+    At 0.3 the pressure is 0.19 E* and the gradient 5 % larger than Reynolds'; at 1 they are 0.63 E*, which no solid bears
+    linearly, and 55 %.  Source: Hamel's flow without inertia, derived for docs/checks.md; [YP08] for the area.
+    """
+    contact = subject.contact
+    name = "rms slope of the roughness"
+    if contact.roughness == 0:
+        return Check(name, 0.0, FINE_SLOPE, "fine", "Smooth surfaces have no slope.")
+    slope = subject.fact("rms_slope")
+    if slope is None:
+        area_slope = getattr(contact.law, "area_slope", None)
+        if not area_slope:
+            return None
+        slope = contact.beta * math.sqrt(2) / area_slope
+    verdict = verdict_of(slope, FINE_SLOPE, STEEP)
+    pressure = f"asperities touch at {0.5 * math.sqrt(math.pi / 2) * slope:.2g} of E*"
+    meaning = {
+        "fine": f"{pressure}, and the film is thin everywhere.",
+        "doubtful": f"{pressure}, where rubber stiffens and plastics yield, and the pressure of the film between them is a "
+        "few per cent to a half wrong.",
+        "outside": f"{pressure}, which no solid bears elastically, and the film between does not follow Reynolds' equation. "
+        "Most of it may come from the shortest wavelengths: check where the spectrum ends.",
+    }[verdict]
+    return Check(name, slope, FINE_SLOPE, verdict, f"The rms slope of the roughness is {slope:.2g}: {meaning}")
+
 
 def range_at_centre(subject: Subject) -> Check | None:
     """Return the check of the central gap against the range of the contact law; None for smooth surfaces."""

@@ -56,6 +56,7 @@ ROWS = (
     Row("contact width", body.width, "contact"),
     Row("layer", body.layer, "contact", "layer_thickness"),
     Row("loss tangent", body.loss, "contact", "loss_tangent"),
+    Row("rms slope", law.roughness_slope, "contact", "rms_slope"),
     Row("viscous heating", film.heating, "contact"),
     Row("contact law at the centre", law.range_at_centre, "state"),
     Row("suction", film.suction, "state"),
@@ -81,8 +82,8 @@ def check(contact: Contact, *, definition: Definition = "balanced", **facts: Any
         Definition of the viscous friction, on which the minimum depends.
     **facts : str or float
         Further facts about the contact: ``pressure_viscosity``, ``layer_thickness``, ``loss_tangent``, ``supply_film``,
-        ``thinning_rate``, ``molecular_size``, ``thermal_conductivity``, ``thermal_thinning``, ``density``; text with units, or
-        numbers in SI units.
+        ``thinning_rate``, ``molecular_size``, ``thermal_conductivity``, ``thermal_thinning``, ``density``, ``rms_slope``;
+        text with units, or numbers in SI units.
 
     Returns
     -------

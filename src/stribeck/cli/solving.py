@@ -269,7 +269,7 @@ def check_command(case: CaseFile = None, /, *, json: Flag = False) -> int:
     Example: stribeck check examples/rod_seal.toml
 
     Facts that only checks use go into the table [check] of the case: pressure_viscosity, layer_thickness, loss_tangent,
-    supply_film, thinning_rate, molecular_size, thermal_conductivity, thermal_thinning, density.
+    supply_film, thinning_rate, molecular_size, thermal_conductivity, thermal_thinning, density, rms_slope.
 
     The exit code is 0 whatever the verdict.
 

@@ -59,6 +59,7 @@ ROWS = (
     Fact("thermal_conductivity", "thermal conductivity of the fluid", "conductivity", "0.15 W/m/K", "oil; water 0.6"),
     Fact("thermal_thinning", "relative change of viscosity per kelvin", "per kelvin", "0.04 1/K", "oil; water 0.02"),
     Fact("density", "density of the fluid", "density", "870 kg/m^3", "oil; water 1000"),
+    Fact("rms_slope", "rms slope of the roughness", "number", "0.1", "polished 0.01 to 0.1, ground or blasted 0.1 to 0.5"),
 )
 """The facts. A new one is a row here, and is used by a row of :data:`stribeck.checks.table.ROWS`."""
 
