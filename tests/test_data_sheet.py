@@ -58,6 +58,11 @@ def test_a_data_sheet_becomes_a_contact(sheet):
 
 
 @pytest.mark.quick
+def test_a_value_that_is_given_is_not_called_assumed():
+    assert read_given({"shore_a": 70}).said[0].endswith("poisson_ratio = 0.5 assumed.")
+    assert "assumed" not in read_given({"shore_a": 70, "poisson_ratio": 0.5}).said[0]
+
+
 def test_shore_d_is_that_of_its_source():
     given = read_given({"shore_d": 40})
     assert math.log10(given.values["youngs_modulus"] / 1e6) == pytest.approx(0.0235 * 90 - 0.6403)

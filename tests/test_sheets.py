@@ -19,8 +19,9 @@ def test_a_new_case_has_every_key_and_is_read_as_it_stands(tmp_path, capsys, geo
     path = tmp_path / "new.toml"
     answer = call(capsys, "new", path, "--geometry", geometry)
     assert answer.code == 0 and f"stribeck check {path}" in " ".join(answer.out.split())
-    contact = sb.load_case(path).contact
-    table = INPUT_TABLES[geometry]
+    case = sb.load_case(path)
+    contact, table = case.contact, INPUT_TABLES[geometry]
+    assert case.rtol == {"line": 1e-6, "point": 1e-4}[geometry]
     assert contact.INPUTS is table
     text = path.read_text()
     given = {each.name for row in CONVERSIONS for each in row.inputs if row.geometry in ("", geometry)}

@@ -267,11 +267,10 @@ def _convert(
     if error:
         errors[row.of] = error
     values[row.of] = result
-    for name, value in row.besides.items():
-        if values.get(name) is None:
-            values[name] = value
+    assumed = {name: value for name, value in row.besides.items() if values.get(name) is None}
+    values |= assumed
     about = f", known to about {100 * row.error:.0f} %" if row.error else ""
-    besides = "".join(f", {name} = {value:g} assumed" for name, value in row.besides.items() if values[name] == value)
+    besides = "".join(f", {name} = {value:g} assumed" for name, value in assumed.items())
     made = f"{row.of} = {format_si(result, table.quantities[row.of].dimension, 4)} from {shown}"
     return f"{made}: {row.formula} ({row.source}{about}){besides}."
 
