@@ -26,7 +26,7 @@ from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.line_path import LineProblem
+from stribeck.solver.cavities.reforming_line import problem_of
 from stribeck.solver.path import follow
 from stribeck.solver.solve import SolveError, check_rtol, describe, finish, with_law
 
@@ -172,7 +172,7 @@ def stribeck_curve(
     places = np.log(values)
     progress = Progress(places, on_point)
     direction: tuple[float, float, float] = tuple(coordinate.direction.tolist())
-    line = LineProblem(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
+    line = problem_of(coordinate.groups_at, direction, rtol, coordinate.is_uniform(values))
     if grows:
         contact_part = part_of_contact(boundary_friction, beta, definition)
         path, lowest = grown(line, float(places[-1]), float(places[0]), contact_part, progress)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -74,8 +75,10 @@ class Corrector:
         """Return the state of ``groups`` from a guess; ``spread`` as for :func:`stribeck.equations.state.mesh_for`."""
         if not _cavity_may_vanish(groups):
             return self._solve(guess, groups, spread)
-        if isinstance(guess, State):  # one with as many unknowns as the state before
-            point = self._solve(guess, replace(groups, model=guess.groups.model), spread)
+        forms_anew = guess.restart < math.inf
+        if isinstance(guess, State) or forms_anew:  # one with as many unknowns as the state before
+            model = guess.groups.model if isinstance(guess, State) and not forms_anew else groups.model
+            point = self._solve(guess, replace(groups, model=model), spread)
             if point.outcome.ok and keeps_cavity(point, groups):
                 return replace(point, groups=groups)
         return from_cold(groups, self.rtol)

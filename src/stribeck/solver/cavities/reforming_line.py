@@ -1,0 +1,244 @@
+"""States of the line along a path on which a cavity behind the contact opens, grows and closes.
+
+Nodes of such a film move with both ends of its cavity, so that the inlet passes through them: series of nodal gaps converge on
+a small part of the interval on which those of the observables do.  Only the observables are expanded here, to few orders.  The
+next state is solved from the gap of the last one at the same places, and each interval is compared with a state in its middle.
+
+Where the cavity closes, observables have a kink.  Between a full film and one with a cavity they are the series of the full
+film and a linear share of what it misses at the other end, all of which is stated as their error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stribeck._types import Array
+from stribeck.contacts.groups import Groups
+from stribeck.equations.observables import ROW
+from stribeck.equations.prediction import SeenFrom
+from stribeck.equations.state import State
+from stribeck.fluids.cavitation import Cavitation
+from stribeck.numerics.newton import Inverse
+from stribeck.numerics.series import interval, radius
+from stribeck.quantities.outcome import Outcome
+from stribeck.solver.at_rest import shift_along
+from stribeck.solver.expansion import Direction, Expanded, expand_any_film
+from stribeck.solver.line_path import (
+    FARTHEST,
+    MOST_TRIALS,
+    ORDER_OF_ANY_FILM,
+    POSITION,
+    REACH,
+    READ,
+    SMOOTH,
+    UNSEEN,
+    LineProblem,
+    as_in,
+)
+from stribeck.solver.path import Expansion
+from stribeck.solver.refinement import RefinedState, converge
+
+__all__ = ["problem_of"]
+
+ORDERS = ((2e-3, 3), (0.0, 2))
+"""Distances of the samples, and highest orders of the series of a film with a cavity at which rounding is not felt."""
+
+SHORTEST_REACH, FALL = 5e-5, 0.2
+"""Shortest such distance, and by how much it falls at most from one trial to the next."""
+
+LONGEST = 0.6
+"""Largest change of the logarithm of a cavity's length that is predicted."""
+
+SLOPE_STEP = 1e-5
+"""Step of the difference for the slope of the gap along x."""
+
+
+def problem_of(groups_at: Callable[[float], Groups], direction: Direction, rtol: float, uniform: bool = True) -> LineProblem:
+    """Return the states of the line along a path, see :class:`stribeck.solver.line_path.LineProblem`."""
+    groups = groups_at(0.0)
+    opens = groups.model.cavitation is Cavitation.REFORM and groups.model.cavity_pressure < 0 and groups.speed > 0
+    return (ReformingLine if opens else LineProblem)(groups_at, direction, rtol, uniform)
+
+
+class ReformingLine(LineProblem):
+    """The states of a film that may have a cavity."""
+
+    def __init__(self, groups_at: Callable[[float], Groups], direction: Direction, rtol: float, uniform: bool) -> None:
+        super().__init__(groups_at, direction, rtol, uniform)
+        self.reach = ORDERS[0][0]
+        self.known: dict[float, RefinedState | None] = {}
+
+    def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
+        """Return the expanded state at ``s``."""
+        refined = self._solved(s, near)
+        if refined is None:
+            return Outcome.PATH_LOST
+        if refined.state is None or refined.estimate is None or not refined.estimate.total <= self.tolerance:
+            self.failure = refined
+            return refined.outcome
+        self.order = ORDERS[0][1] if has_cavity(refined.state) else ORDER_OF_ANY_FILM
+        found = replace(refined, outcome=Outcome.CONVERGED)
+        return self._expanded(s, found, min((one.radius for one in near), default=2.0))
+
+    def _solved(self, s: float, near: Sequence[Expansion]) -> RefinedState | None:
+        """Return the state at ``s``, from the nearest of others if that has a cavity."""
+        if s not in self.known:
+            last = min(near, key=lambda one: abs(one.coordinate - s), default=None)
+            guess = None if last is None else _moved(last, s)
+            found = None if guess is None else self.corrector.solve(guess, self.groups_at(s))
+            if found is None or not found.outcome.ok:
+                found = self.corrector.cold(self.groups_at(s))
+            self.known[s] = found
+        return self.known[s]
+
+    def _sampled(self, s: float, state: State, inverse: Inverse, near: float) -> tuple[Expanded, float]:
+        """Return the series, and the radius of those of the observables, nodal gaps aside."""
+        if not has_cavity(state):
+            return super()._sampled(s, state, inverse, near)
+        reach = self.reach
+        for _ in range(MOST_TRIALS):
+            self.order = next(order for least, order in ORDERS if reach >= least)
+            samples = interval(reach)
+            direction = shift_along(self.groups_at(s), state.groups, self.direction, len(samples.weights) - 1)
+            models = [] if self.uniform else [as_in(state, self.groups_at(s + t).model) for t in samples.places.tolist()]
+            found = expand_any_film(state.equations, state.y, inverse, state.groups, *direction, samples, models, self.order)
+            own = radius(found.unknowns[:, : state.mesh.size], reach)
+            if np.isfinite(own) and np.isfinite(found.unknowns).all() and reach < FARTHEST * own:
+                break
+            reach = max(SHORTEST_REACH, FALL * reach, REACH * own if np.isfinite(own) else 0.0)
+        self.reach = max(SHORTEST_REACH, REACH * own)
+        columns = [*SMOOTH, ROW["minimum_gap"], ROW["exit_position"], ROW["reformation_position"]]
+        of_values = found.observables[:, columns] / self.scales(found.observables[:1], np.array([s]))[:, columns]
+        return found, radius(of_values, reach)
+
+    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
+        """Return the difference from a state in the middle; between films with and without a cavity, zero."""
+        if not has_cavity(left.point.state) and not has_cavity(right.point.state):
+            return super().missed(left, right, parts, values)
+        found = np.zeros(POSITION + 1)
+        if has_cavity(left.point.state) != has_cavity(right.point.state):
+            return found
+        middle = self._middle(left, right)
+        if middle is None:
+            return np.full(POSITION + 1, np.inf)
+        place = 0.5 * (left.coordinate + right.coordinate)
+        known = values[int(np.argmin(np.abs(parts - 0.5)))]
+        scales = self.scales(known[None], np.array([place]))[0]
+        wrong = np.abs(middle - known) / scales
+        found[:POSITION] = UNSEEN * np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf), 0.0)[:POSITION]
+        return found
+
+    def _middle(self, left: Expansion, right: Expansion) -> Array | None:
+        """Return observables and the place of the minimum gap midway between two states."""
+        point = self._solved(0.5 * (left.coordinate + right.coordinate), [left, right])
+        if point is None or point.values is None or not point.outcome.ok:
+            return None
+        return np.array([*point.values.array(in_article=False), point.values.minimum_position])
+
+    def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
+        """Return the place of the minimum gap, by the parabola through three states; all, where a cavity opens or closes."""
+        torn = [has_cavity(end.point.state) for end in (left, right)]
+        if not any(torn):
+            return super().read(left, right, parts)
+        if torn[0] is not torn[1]:
+            return self._opening(left, right, parts)
+        ends = [end.series[0, POSITION] for end in (left, right)]
+        middle = self._middle(left, right)
+        straight = ends[0] + parts * (ends[1] - ends[0])
+        bend = 0.0 if middle is None else float(middle[POSITION]) - 0.5 * (ends[0] + ends[1])
+        values = straight + 4 * bend * parts * (1 - parts)
+        errors = np.full(len(parts), max(left.errors[POSITION], right.errors[POSITION]) + abs(bend))
+        return values[:, None], errors[:, None], [POSITION]
+
+    def _opening(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
+        """Return all observables between a full film and one with a cavity."""
+        full, other, way = (right, left, 1 - parts) if has_cavity(left.point.state) else (left, right, parts)
+        distance = other.coordinate - full.coordinate
+        series = full.series.copy()
+        series[1:, READ] = 0.0
+        powers = (way * distance)[:, None] ** np.arange(len(series))
+        missing = other.series[0] - distance ** np.arange(len(series)) @ series
+        values = powers @ series + way[:, None] * missing
+        ends = np.stack([left.series[0], right.series[0]])
+        scales = self.scales(ends, np.array([left.coordinate, right.coordinate])).max(axis=0)
+        scales[POSITION] = 1.0
+        columns = np.flatnonzero(np.isfinite(missing)).tolist()
+        errors = np.maximum(left.errors, right.errors) + np.abs(missing) / scales
+        return values[:, columns], np.tile(errors[columns], (len(parts), 1)), columns
+
+    def read_scales(self, values: Array) -> Array:
+        """Return scales, of which only the sizes count."""
+        return np.maximum(np.abs(values).min(axis=0), 1e-3) if values.size else np.empty(0)
+
+    def guess_at(self, left: Expansion, right: Expansion, s: float) -> State:
+        """Return a state between two expansions."""
+        if not has_cavity(left.point.state) and not has_cavity(right.point.state):
+            return super().guess_at(left, right, s)
+        point = self._solved(s, [left, right])
+        if point is None or point.state is None:
+            nearest: State = min(left, right, key=lambda one: abs(one.coordinate - s)).point.state
+            return nearest
+        return point.state
+
+    def point_at(self, left: Expansion, right: Expansion, s: float, rtol: float | None = None) -> RefinedState:
+        """Return the same, verified, and refined if its mesh is too coarse for the tolerance."""
+        if not has_cavity(left.point.state) and not has_cavity(right.point.state):
+            return super().point_at(left, right, s, rtol)
+        rtol = self.tolerance if rtol is None else rtol
+        point, groups = self._solved(s, [left, right]), self.groups_at(s)
+        if point is None or point.state is None:
+            return RefinedState(groups, None, None, None, Outcome.PATH_LOST)
+        if point.estimate is not None and point.estimate.total <= rtol:
+            return replace(point, outcome=Outcome.CONVERGED)
+        return replace(converge(point.state, replace(groups, model=point.state.groups.model), rtol), groups=groups)
+
+
+def has_cavity(state: State) -> bool:
+    """Return whether a state has a cavity behind which its film forms anew."""
+    return state.equations.operators.has_reformation
+
+
+@dataclass(frozen=True, eq=False)
+class _Moved(SeenFrom):
+    """The guess of a film with a cavity from another: the gap at the same places, and its change to first order."""
+
+    flux: float = 0.0
+    change: Array | None = None
+
+    @property
+    def flux_gap(self) -> float:
+        """The predicted one."""
+        return self.flux
+
+    def fields(self, x: Array) -> Array:
+        """Return the logarithm of the gap and the fluid pressure at ``x``."""
+        found = super().fields(x)
+        if self.change is not None:
+            found[0] += self.state.mesh.interpolate(
+                self.change[None], (x + self.exit - self.state.exit) / self.state.dilation
+            )[0]
+        return found
+
+
+def _moved(last: Expansion, s: float) -> _Moved | None:
+    """Return the guess of the state at ``s`` from another with a cavity; None if that has none, or is too far."""
+    state: State = last.point.state
+    if not has_cavity(state):
+        return None
+    at, mesh, distance = state.equations.layout, state.mesh, s - last.coordinate
+    slope = last.point.unknowns[1]
+    exit_slope, dilation_slope = slope[at.exit][0], slope[at.dilation][0]
+    length = distance * dilation_slope / state.dilation
+    if abs(length) > LONGEST:
+        return None
+    ahead, behind = (state.fields(mesh.nodes + step)[0] for step in (SLOPE_STEP, -SLOPE_STEP))
+    along = (ahead - behind) / (2 * SLOPE_STEP)
+    moved = along * (exit_slope + dilation_slope * mesh.nodes) / state.dilation
+    change = distance * (slope[at.gap] - moved)
+    flux = state.flux_gap * float(np.exp(distance * slope[at.flux_gap][0] / state.flux_gap))
+    pressure = state.groups.model.cavity_pressure
+    restart = state.restart * state.dilation * float(np.exp(length))
+    return _Moved(state, state.exit + distance * exit_slope, restart, pressure, flux=flux, change=change)
