@@ -1,1 +1,1 @@
-"""States of a ball whose film breaks: at ambient pressure, or at that of a cavity behind which it forms anew."""
+"""Films that break: of a ball at ambient pressure or at that of a cavity, and cavities of the line that open and close."""
