@@ -27,7 +27,7 @@ from stribeck.explorer.charts import charts, picture
 from stribeck.explorer.charts.drawing import drawing
 from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
-from stribeck.explorer.measured import fit_measured, read_measured
+from stribeck.explorer.measured import fit_measured, read_measured, speeds_of
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import read_scan, with_scan
 
@@ -467,6 +467,9 @@ def test_the_axis_of_speeds_holds_all_that_was_measured(answer):
     measured = read_measured("two.csv", text.encode(), START.contact)
     ends = charts.axis_of(answer, measured)
     assert ends[0] <= low / 5 and ends[1] >= 3 * high and charts.axis_of(answer, []) == (low, high)
+    wider = Answerer(answer)(START, speeds_of(measured))
+    assert wider.solution is answer.solution  # what is known is not solved again
+    assert wider.speeds == ends == (wider.curve.speed[0], wider.curve.speed[-1])
 
 
 # --- addresses ---
@@ -553,6 +556,10 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
     assert friction == pytest.approx(sb.solve(heavy.contact).friction(definition=heavy.definition).total, rel=0.02)
     heavier = model(inputs.slid(heavy, "load", inputs.position(heavy, "load") + 0.1))
     assert heavier.curve.stale and heavier.curve.transitions == ()
+    light = model(START)
+    layered = model(choices.choose(START, "solid", "layer"))  # no table: what was read before stays too
+    assert layered.curve.stale and layered.diagram.stale and not light.curve.stale
+    assert np.array_equal(layered.curve.speed, light.curve.speed)
     assert charts.friction_chart(heavier, [], [], LIGHT)["series"][0]["lineStyle"]["opacity"] < 1
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -133,22 +133,29 @@ class Answer:
 
 
 class Answerer:
-    """Answers to the inputs of one tab, one after another."""
+    """Answers to the inputs of one tab, one after another; ``known`` is one that need not be found again."""
 
-    def __init__(self) -> None:
+    def __init__(self, known: Answer | None = None) -> None:
         self._solve = WarmStartSolver(RTOL)
         self._last: tuple[Contact, Solution | PointSolution] | None = None
         self._kept: dict[Any, Any] = {}
-        self._last_solved: Curve | None = None
+        self._last_curves: dict[str, Curve] = {}
         self._last_diagrams: dict[str, Diagram] = {}
+        if known is not None:
+            self._last = known.inputs.contact, known.solution
+            self._kept["checks", known.inputs.contact, known.inputs.rest] = known.outside
+            if known.curve is not None:
+                self._last_curves[known.inputs.table.geometry] = known.curve
 
-    def __call__(self, inputs: Inputs) -> Answer:
+    def __call__(self, inputs: Inputs, measured: Sequence[float] = ()) -> Answer:
         """Return the answer at once; outside the atlas with the last curve, marked stale, until :meth:`settle` solved its own.
 
         Parameters
         ----------
         inputs : Inputs
             What is asked.
+        measured : sequence of float
+            Speeds that a curve read off the atlas shall hold too, where the table does [m/s].
 
         Returns
         -------
@@ -164,7 +171,7 @@ class Answerer:
         solution = self._state(inputs)
         friction = solution.friction(definition=definition)
         part = friction.contact / friction.total if friction.total > 0 else 0.0
-        curve, speeds = self._curve_now(contact, definition)
+        curve, speeds = self._curve_now(contact, definition, measured)
         reach = profile_reach(solution)
         x = np.linspace(-reach, reach, 241)
         nodes = solution.x[np.abs(solution.x) < reach]
@@ -207,7 +214,7 @@ class Answerer:
         if in_atlas(contact) or key in self._kept:
             return False
         try:
-            self._last_solved = self._keep(key, lambda: solved_curve(contact, definition, report))
+            self._keep(key, lambda: solved_curve(contact, definition, report))
         except (InputError, SolveError) as problem:
             self._kept[key] = None
             self._kept["why", _key(contact), definition] = str(problem)
@@ -285,14 +292,20 @@ class Answerer:
     def _marks(self, contact: Contact, definition: Definition) -> tuple[Transition, ...]:
         return self._keep(("marks", _key(contact), definition), lambda: transition_marks(contact, definition))
 
-    def _curve_now(self, contact: Contact, definition: Definition) -> tuple[Curve | None, tuple[float, float]]:
+    def _curve_now(
+        self, contact: Contact, definition: Definition, measured: Sequence[float] = ()
+    ) -> tuple[Curve | None, tuple[float, float]]:
         """Return the curve and the ends of its axis."""
+        geometry = contact.INPUTS.geometry
+        speeds = axis_speeds(contact, self._marks(contact, definition), measured) if in_atlas(contact) else (0.0, 0.0)
+        curve = self.curve(contact, definition, speeds)
+        last = self._last_curves.get(geometry)
+        if curve is not None:
+            self._last_curves[geometry] = curve
+        elif last is not None:
+            curve = replace(last, stale=True, transitions=())
         if in_atlas(contact):
-            speeds = axis_speeds(contact, self._marks(contact, definition))
-            return self.curve(contact, definition, speeds), speeds
-        curve = self.curve(contact, definition, (0.0, 0.0))
-        if curve is None and self._last_solved is not None:
-            curve = replace(self._last_solved, stale=True, transitions=())
+            return curve, speeds
         if curve is None:
             speed = contact.speed or 1e-3
             return None, (1e-4 * speed, 1e4 * speed)
@@ -302,11 +315,14 @@ class Answerer:
     def _diagram_now(self, contact: Contact, definition: Definition, speeds: tuple[float, float]) -> Diagram | None:
         """Return the diagram; outside the atlas what is solved of it, or the last one, marked stale."""
         key = _diagram_key(contact, definition, speeds)
+        geometry = contact.INPUTS.geometry
         if in_atlas(contact):
             decade = decade_of_roughness(contact)
-            return self._keep(key, lambda: diagram_from_atlas(contact, definition, speeds, decade))
+            read = self._keep(key, lambda: diagram_from_atlas(contact, definition, speeds, decade))
+            self._last_diagrams[geometry] = read
+            return read
         found: Diagram | None = self._kept.get(key)
-        last = self._last_diagrams.get(contact.INPUTS.geometry)
+        last = self._last_diagrams.get(geometry)
         return replace(last, stale=True) if found is None and last is not None else found
 
     def _keep(self, key: Any, make: Callable[[], T]) -> T:

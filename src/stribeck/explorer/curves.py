@@ -183,12 +183,18 @@ def transition_marks(contact: Contact, definition: Definition) -> tuple[Transiti
     return tuple(sorted((mark for mark in marks if 0 < mark.speed < math.inf), key=lambda mark: mark.speed))
 
 
-def axis_speeds(contact: Contact, marks: Sequence[Transition]) -> tuple[float, float]:
-    """Return whole decades of speed that hold the contact and its transitions, with room on both sides [m/s]."""
+def axis_speeds(contact: Contact, marks: Sequence[Transition], measured: Sequence[float] = ()) -> tuple[float, float]:
+    """Return whole decades of speed that hold the contact and its transitions, with room on both sides, and what was measured.
+
+    As far as the table holds them [m/s].
+    """
     unit = _speed_group(contact)
     places = [mark.speed for mark in marks] or [1e-8 / unit, 1.0 / unit]
     places += [contact.speed] if contact.speed > 0 else []
     low, high = 10.0 ** math.floor(math.log10(min(places)) - 0.7), 10.0 ** math.ceil(math.log10(max(places)) + 0.7)
+    if len(measured):
+        low = min(low, 10.0 ** math.floor(math.log10(min(measured)) + 1e-9))
+        high = max(high, 10.0 ** math.ceil(math.log10(max(measured)) - 1e-9))
     row = atlas.for_groups(contact.groups)
     if row is None:
         return low, high

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -92,8 +92,14 @@ def fit_measured(now: Inputs, measured: Measured, on_step: Callable[..., object]
         f"{now.fields[name].label.lower()} {si_text(value, name, 3, now.table)}" for name, value in values.items()
     )
     curves = len(measured.source.curves)
-    target = measured.name if curves == 1 else f"all {curves} curves of {measured.file}"
+    number = "both" if curves == 2 else f"all {curves}"
+    target = measured.name if curves == 1 else f"{number} curves of {measured.file}"
     return Fitted(after, f"Fitted to {target}: {words}. Undo brings back the values before; intervals: stribeck fit.")
+
+
+def speeds_of(measured: Sequence[Measured]) -> list[float]:
+    """Return the speeds of measured points that have a place on a logarithmic axis [m/s]."""
+    return [speed for found in measured for speed in found.speed.tolist() if speed > 0]
 
 
 def read_measured(name: str, content: bytes, contact: Contact) -> list[Measured]:

@@ -386,7 +386,7 @@ def _rows_words(answer: Answer) -> str:
     """Return how much of the diagram is solved."""
     diagram = answer.diagram
     if diagram is None or diagram.stale:
-        return "" if answer.inputs.table.geometry == "point" else f": {UPDATING}"
+        return f": {UPDATING}"
     return "" if diagram.part == 1 else f": {100 * diagram.part:.0f} % solved"
 
 

@@ -30,7 +30,7 @@ from stribeck.explorer.asked.url import Pin
 from stribeck.explorer.charts.palette import LIGHT
 from stribeck.explorer.curves import Curve, hersey_scale
 from stribeck.explorer.downloads import View
-from stribeck.explorer.measured import Measured, fit_measured
+from stribeck.explorer.measured import Measured, fit_measured, speeds_of
 from stribeck.explorer.page import UPDATING, Page
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import ENDINGS, Scan, with_scan
@@ -147,7 +147,7 @@ class Tab:
         self.inputs, self.pins = opened.inputs, list(opened.pins)
         self.start = start
         self.measured: list[Measured] = []
-        self.model = Answerer()
+        self.model = Answerer(shown.answer)
         self.states: list[Any] = list(shown.states)
         self.said = ""
         self.asked = False
@@ -401,15 +401,15 @@ class Tab:
 
     async def answered(self, now: Inputs) -> None:
         """Compute the answer; where that takes longer than a moment, mark what is shown."""
-        work = asyncio.ensure_future(self.run(LIVE, self.compute, now, tuple(self.pins)))
+        work = asyncio.ensure_future(self.run(LIVE, self.compute, now, tuple(self.pins), speeds_of(self.measured)))
         done, _ = await asyncio.wait({work}, timeout=MOMENT)
         if not done:
             self.page.show_working()
         self.answer, self.pinned, self.states = await work
 
-    def compute(self, now: Inputs, pins: Sequence[Pin]) -> tuple[Answer, list[Any], list[Any]]:
+    def compute(self, now: Inputs, pins: Sequence[Pin], measured: Sequence[float] = ()) -> tuple[Answer, list[Any], list[Any]]:
         """Return the answer, the pinned curves as far as they are known over the speeds of its axis, and their states."""
-        answer = self.model(now)
+        answer = self.model(now, measured)
         states = [(pin.name, self.model.state_of_pin(pin.contact), pin.definition) for pin in pins]
         return answer, curves_of(self.model, pins, answer), states
 
@@ -420,7 +420,9 @@ class Tab:
     async def refresh(self, now: Inputs) -> None:
         """Show what has been solved since for the inputs that are shown."""
         if self.inputs is now and not self.working and not self.closed:
-            self.answer, self.pinned, self.states = await self.run(LIVE, self.compute, now, tuple(self.pins))
+            self.answer, self.pinned, self.states = await self.run(
+                LIVE, self.compute, now, tuple(self.pins), speeds_of(self.measured)
+            )
             if self.inputs is now:
                 await self.page.draw(now, self.seen())
 

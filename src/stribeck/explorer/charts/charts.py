@@ -14,7 +14,7 @@ from stribeck.explorer.answer import Answer, round_down, round_up
 from stribeck.explorer.charts.echarts import Options, chart, legend, line, linear_axis, log_axis, marker, pairs, with_unit
 from stribeck.explorer.charts.palette import PIN_DASHES, Palette
 from stribeck.explorer.curves import Curve, decade_of_roughness, hersey_scale
-from stribeck.explorer.measured import Measured
+from stribeck.explorer.measured import Measured, speeds_of
 from stribeck.quantities.units import DIMENSIONS, format_si
 
 __all__ = ["CHARTS", "all_charts"]
@@ -62,7 +62,7 @@ def all_charts(
 def axis_of(answer: Answer, measured: Sequence[Measured]) -> tuple[float, float]:
     """Return the ends of the axis of speeds, in whole decades farther where something was measured beyond [m/s]."""
     low, high = answer.speeds
-    speeds = [speed for found in measured for speed in found.speed.tolist() if speed > 0]
+    speeds = speeds_of(measured)
     if speeds:
         low = min(low, 10.0 ** math.floor(math.log10(min(speeds)) + 1e-9))
         high = max(high, 10.0 ** math.ceil(math.log10(max(speeds)) - 1e-9))
@@ -311,7 +311,7 @@ def _region_name(name: str, one: Array, two: Array, rows: Array, palette: Palett
     width = np.log10(two / one)
     place = np.arange(len(rows)) / len(rows)
     i = int(np.argmax(np.where((place < 0.1) | (place > 0.8), -1.0, width)))
-    wide = width[i] > 0.15 * math.log10(two.max() / one.min())
+    wide = width[i] > 0.33 * math.log10(two.max() / one.min())
     return {
         "id": f"name-{name}",
         "name": f"{name} region",

@@ -45,6 +45,9 @@ POWER = """value => {
 }"""
 """Labels of logarithmic axes: powers of ten, all in one style."""
 
+MOST_DECADES = 9
+"""Decades up to which an axis has a label at each."""
+
 PRECISION = "value => typeof value === 'number' ? Number(value.toPrecision(4)).toString() : value"
 
 
@@ -132,6 +135,11 @@ def log_axis(name: str, low: float, high: float, palette: Palette) -> Options:
     """Return a logarithmic axis with a name, between two ends."""
     axis = _axis(name, low, high, palette) | {"type": "log", "minorTick": {"show": True, "splitNumber": 9}}
     axis["axisLabel"] = axis["axisLabel"] | {":formatter": POWER}
+    decades = math.log10(high / low)
+    # ECharts itself labels every tenth power on an axis of ten decades or more, and a tenth of it as minor ticks.
+    wide = decades > MOST_DECADES and math.log10(low).is_integer()
+    axis["interval"] = 2 if wide else None
+    axis["minorTick"]["show"] = not wide
     return axis
 
 
