@@ -83,6 +83,16 @@ def test_a_verdict_turns_at_its_limits(name, fact, values):
 
 
 @pytest.mark.quick
+def test_an_input_far_from_all_contacts_is_named_with_its_usual_range():
+    found = checks_of(Subject(TRUE.replace(roughness="10 mm", boundary_friction=5.9)), "contact")["inputs"]
+    assert found.verdict == "doubtful" and found.value == pytest.approx(100)
+    assert "roughness 10 mm, usually 1 nm to 100 µm" in found.sentence and "dry friction" not in found.sentence
+    assert verdicts(TRUE.replace(speed=0.0, roughness=0.0))["inputs"] == "fine"
+    for name in ("wiper_blade", "contact_lens", "lip_seal"):
+        assert verdicts(sb.load_case(EXAMPLES / f"{name}.toml").contact)["inputs"] == "fine", name
+
+
+@pytest.mark.quick
 def test_the_rms_slope_is_that_of_the_spectrum_behind_the_law():
     spectrum = SelfAffine(h_rms=1e-6, q0=1e5, q1=1e7, hurst=0.8)
     law = persson_law(spectrum)

@@ -6,6 +6,7 @@ import math
 
 from stribeck.checks.check import Check, verdict_of
 from stribeck.checks.subject import Subject
+from stribeck.quantities.units import format_si
 from stribeck.solver.notes import HARD, OIL, pressure_notes, width_notes
 
 FINE_STIFFENING, STIFFENING = 0.1, 1.0
@@ -23,6 +24,27 @@ FINE_LAYER, THIN_LAYER = 0.3, 1.0
 
 FINE_LOSS, LOSS = 0.1, 0.3
 """Loss tangents up to which hysteresis is small, and beyond which the contact is no longer symmetric."""
+
+
+FINE_FACTOR = 3.0
+"""Factor beyond its usual range that an input may have; a slip of a unit is ten or more."""
+
+
+def usual(subject: Subject) -> Check:
+    """Return the check of the inputs against what contacts usually have, which finds slips of a unit."""
+    contact, worst, odd = subject.contact, 1.0, []
+    for name, value in contact.inputs():
+        row = contact.INPUTS.quantities[name]
+        low, high = row.usual
+        if not 0 < value < math.inf:
+            continue
+        factor = max(low / value, value / high)
+        worst = max(worst, factor)
+        if factor > FINE_FACTOR:
+            ends = (format_si(end, row.dimension) for end in (low, high))
+            odd.append(f"{row.label} {format_si(value, row.dimension)}, usually {' to '.join(ends)}")
+    sentence = f"Unusual: {'; '.join(odd)}. Check the units." if odd else "All inputs are of usual size."
+    return Check("inputs", worst, FINE_FACTOR, "doubtful" if odd else "fine", sentence)
 
 
 def pressure(subject: Subject) -> Check:

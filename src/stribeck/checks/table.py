@@ -51,6 +51,7 @@ class Row:
 
 
 ROWS = (
+    Row("inputs", body.usual, "contact"),
     Row("Hertz pressure", body.pressure, "contact"),
     Row("stiffness", body.stiffness, "contact"),
     Row("contact width", body.width, "contact"),
