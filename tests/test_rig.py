@@ -129,6 +129,9 @@ def test_a_first_run_that_differs_is_marked_as_run_in(read):
     kept = read(text, run_in="keep")
     assert kept.friction == pytest.approx([1.04 * mu for mu in FRICTIONS], rel=0.01)
     assert kept.run_in == found.run_in
+    steps = read("\n".join(["Step;speed [m/s];COF", *(f"{k};{row.partition(';')[2]}" for k, row in enumerate(rows))]))
+    assert steps.run_in == found.run_in  # each row has a number of its own
+    assert steps.friction == pytest.approx(found.friction)
 
 
 @pytest.mark.quick

@@ -233,7 +233,7 @@ def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool)
     Averaged or None
         None where fewer than three rows share a speed throughout.
     """
-    marked, sentences = _run_in(rows, runs)
+    marked, sentences = _run_in(rows, _counted(rows, runs))
     kept = [row for row in rows if keep_run_in or row[1] not in marked]
     groups: dict[Any, list[Row]] = {}
     for row in sorted(kept, key=lambda row: (row[0], sorted(row[5].items()), row[2])):
@@ -267,6 +267,19 @@ def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool)
         "became the error of each mean; repeats = false in [fit] keeps all rows."
     )
     return Averaged(made, tuple(sentences), tuple(sorted(marked)))
+
+
+def _counted(rows: Sequence[Row], runs: Sequence[str]) -> Sequence[str]:
+    """Return the runs; where each row has a label of its own, as steps have, the k-th row at a speed is of run k."""
+    if len(set(runs)) < len(runs):
+        return runs
+    seen: list[Row] = []
+    found = []
+    for row in rows:
+        alike = [each for each in seen if each[0] == row[0] and each[5] == row[5] and abs(each[2] / row[2] - 1) <= SAME_SPEED]
+        seen.append(row)
+        found.append(str(len(alike) + 1))
+    return found
 
 
 def _run_in(rows: Sequence[Row], runs: Sequence[str]) -> tuple[set[int], list[str]]:
