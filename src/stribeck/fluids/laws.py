@@ -148,8 +148,8 @@ class RateLaw(Law, Protocol):
     def rate(self, stress: Array) -> Array:
         """Return x(g)."""
 
-    def moments(self, rate: Array) -> tuple[Array, Array]:
-        r"""Return :math:`\int x \, dg` and :math:`\int g x \, dg` from zero to x."""
+    def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
+        r"""Return :math:`\int x \, dg` and :math:`\int g x \, dg` from zero to x, where the stress is g."""
 
 
 def joined_names(base: str, *laws: Law) -> str:

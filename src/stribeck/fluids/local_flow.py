@@ -187,7 +187,7 @@ def _integrals(law: RateLaw, x: Array, g: Array) -> tuple[Array, Array]:
 
 def _by_moments(law: RateLaw, x: Array, g: Array) -> tuple[Array, ...]:
     """Return integrals and derivatives from the moments of the law at the walls."""
-    first, second = law.moments(np.abs(x))
+    first, second = law.moments(np.abs(x), np.abs(g))
     second = np.copysign(second, x)
     area, moment = first[1] - first[0], second[1] - second[0]
     Q, T = g[1] - g[0], 0.5 * (g[0] + g[1])

@@ -119,13 +119,27 @@ class Newtonian:
 
     def tractions(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Array]:
         r"""Return :math:`(\phi_f \pm \phi_{fs}) \eta s/h \pm 3 \phi_{fp} h G`, at the substrate and at the cylinder."""
-        shear, pull, _, _ = self._drag(gap, pressure, flux_gap)
-        return shear[0] + pull, shear[1] - pull
+        rate, pull = self.slide * self._of_pressure(pressure)[0] / gap, 3 * gap * self.gradient(gap, pressure, flux_gap)
+        (f, _), (fs, _), (fp, _) = self.flow.friction(gap)
+        return (f + fs) * rate + fp * pull, (f - fs) * rate - fp * pull
 
     def traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Slopes, Slopes]:
         """Return the derivatives of both tractions."""
-        _, _, shear, pull = self._drag(gap, pressure, flux_gap)
-        return _sum(shear[0], pull, 1.0), _sum(shear[1], pull, -1.0)
+        h, s = gap, self.slide
+        eta, eta_slope, _, _ = self._of_pressure(pressure)
+        g, of_g, rate = self.gradient(h, pressure, flux_gap), self.slopes(h, pressure, flux_gap), s * eta / h
+        (f, f_slope), (fs, fs_slope), (fp, fp_slope) = self.flow.friction(h)
+        by_gap = 3 * (fp * (g + h * of_g.by_gap) + fp_slope * h * g)
+        by_flux = 3 * fp * h * of_g.by_flux
+        walls = []
+        for sign in (1.0, -1.0):
+            shear = (f + sign * fs) * rate
+            by_pressure = None
+            if of_g.by_pressure is not None:
+                by_pressure = eta_slope * shear + sign * 3 * fp * h * of_g.by_pressure
+            of_shear = (f_slope + sign * fs_slope) * rate - shear / h
+            walls.append(Slopes(of_shear + sign * by_gap, by_pressure, sign * by_flux))
+        return walls[0], walls[1]
 
     def cavity_traction(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
         r"""Return :math:`\eta s/h` in the part of the width that is wet, :math:`\min(1, m/(\rho h))`."""
@@ -187,36 +201,6 @@ class Newtonian:
         by_gap = resistance * (1 + s * carried_slope) - g * (phi_slope / phi + 3 / h)
         by_pressure = eta_slope * g + resistance * m * rho_slope / rho**2 if self.uses_pressure else None
         return np.asarray(g), Slopes(by_gap, by_pressure, -resistance / rho)
-
-    def _drag(
-        self, gap: Array, pressure: Array | None, flux_gap: Numbers
-    ) -> tuple[tuple[Array, Array], Array, tuple[Slopes, Slopes], Slopes]:
-        """Return the drag of sliding on both walls and the pull of the pressure gradient, and their derivatives."""
-        h, s = gap, self.slide
-        eta, eta_slope, _, _ = self._of_pressure(pressure)
-        (f, f_slope), (fs, fs_slope), (fp, fp_slope) = self.flow.friction(h)
-        rate = eta * s / h
-        none = np.zeros_like(h)
-        shears, slopes = [], []
-        for factor, factor_slope in ((f + fs, f_slope + fs_slope), (f - fs, f_slope - fs_slope)):
-            shear = factor * rate
-            shears.append(np.asarray(shear))
-            slopes.append(Slopes(factor_slope * rate - shear / h, eta_slope * shear if self.uses_pressure else None, none))
-        g, of_g = self.gradient(h, pressure, flux_gap), self.slopes(h, pressure, flux_gap)
-        pull = Slopes(
-            3 * (fp * (g + h * of_g.by_gap) + fp_slope * h * g),
-            None if of_g.by_pressure is None else 3 * fp * h * of_g.by_pressure,
-            3 * fp * h * of_g.by_flux,
-        )
-        return (shears[0], shears[1]), 3 * fp * h * g, (slopes[0], slopes[1]), pull
-
-
-def _sum(shear: Slopes, pull: Slopes, sign: float) -> Slopes:
-    """Return the derivatives of the drag of sliding and ``sign`` times the pull."""
-    by_pressure = None
-    if shear.by_pressure is not None and pull.by_pressure is not None:
-        by_pressure = shear.by_pressure + sign * pull.by_pressure
-    return Slopes(shear.by_gap + sign * pull.by_gap, by_pressure, shear.by_flux + sign * pull.by_flux)
 
 
 def flux_gap(gap: Array, weights: Array) -> float:

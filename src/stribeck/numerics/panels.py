@@ -225,13 +225,19 @@ class HalfTail:
 
     def interpolation(self, order: int) -> Array:
         """Return the matrix from values on the whole panel to the nodes of the half, for what vanishes at infinity."""
-        own, nodes = reference(self.mesh.order).nodes / 2 - 0.5, reference(order).nodes
-        left = np.append(nodes[nodes < 0], 0.0)
-        found = np.zeros((len(own), order))
-        for j in range(len(left) - 1):
-            others = np.delete(left, j)
-            found[:, j] = np.prod((own[:, None] - others) / (left[j] - others), axis=1)
-        return found
+        return _to_half(self.mesh.order, order)
+
+
+@lru_cache(maxsize=32)
+def _to_half(half: int, order: int) -> Array:
+    """Return the matrix from a panel to the nodes of its left half, ``half`` of them, for what vanishes in its middle."""
+    own, nodes = reference(half).nodes / 2 - 0.5, reference(order).nodes
+    left = np.append(nodes[nodes < 0], 0.0)
+    found = np.zeros((len(own), order))
+    for j in range(len(left) - 1):
+        others = np.delete(left, j)
+        found[:, j] = np.prod((own[:, None] - others) / (left[j] - others), axis=1)
+    return found
 
 
 def legendre_tail(values: Array, order: int) -> Array:

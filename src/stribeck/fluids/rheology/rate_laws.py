@@ -49,8 +49,8 @@ away that for n <= 1/2 the drag has no bound."""
 MILDEST = 1e-3
 """What plateaus and stresses change by on the way from nearly Newtonian fluids."""
 
-TERMS = 9
-"""Of the series for Eyring's second moment, up to his stress: the next is 1e-17 of the first."""
+SERIES = [2 * k / math.factorial(2 * k + 1) for k in range(9, 0, -1)]
+"""Of Eyring's second moment over the third power of the stress, up to his: the next term is 1e-17 of the first."""
 
 
 @dataclass(frozen=True, init=False)
@@ -245,12 +245,15 @@ class Eyring(RateLaw):
         """Return the rate at a stress."""
         return np.sinh(np.minimum(stress, 700.0))
 
-    def moments(self, rate: Array) -> tuple[Array, Array]:
+    def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         """Return ``cosh(g) - 1`` and ``g cosh(g) - sinh(g)``, without loss of digits at small g."""
-        g, cosh = np.arcsinh(rate), np.hypot(1.0, rate)
-        small = np.minimum(g, 1.0)
-        series = sum(small ** (2 * k + 1) * (2 * k / math.factorial(2 * k + 1)) for k in range(1, TERMS + 1))
-        return rate * (rate / (1 + cosh)), np.where(g < 1, series, g * cosh - rate)
+        g, cosh = stress, np.hypot(1.0, rate)
+        square = np.minimum(g, 1.0) ** 2
+        series = np.zeros_like(g)
+        for term in SERIES:
+            series *= square
+            series += term
+        return rate * (rate / (1 + cosh)), np.where(g < 1, g * square * series, g * cosh - rate)
 
 
 @dataclass(frozen=True, init=False)
@@ -328,10 +331,10 @@ class PowerLaw(RateLaw):
         """Return the rate at a stress."""
         return LOWEST * table_of(Carreau, self.exponent).rate(stress / LOWEST**self.exponent)
 
-    def moments(self, rate: Array) -> tuple[Array, Array]:
+    def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         """Return both moments: those of Carreau's law in the units of its plateau."""
         n, unit = self.exponent, LOWEST**self.exponent
-        first, second = table_of(Carreau, n).moments(rate / LOWEST, self.stress(rate)[0] / unit)
+        first, second = table_of(Carreau, n).moments(rate / LOWEST, stress / unit)
         return LOWEST * unit * first, LOWEST * unit**2 * second
 
 

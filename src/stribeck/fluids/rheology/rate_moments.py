@@ -84,7 +84,7 @@ class Table:
 
     def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         """Return both integrals from zero to rates >= 0, with the stresses there."""
-        one, two = self._ratios(np.log(np.maximum(np.nan_to_num(rate), 1e-300)))  # a rate that is nan has a stress that is
+        one, two = self._ratios(np.log(np.fmax(rate, 1e-300)))  # a rate that is nan has a stress that is
         area = stress * rate
         return one * area, two * area * stress
 

@@ -22,9 +22,9 @@ class TabulatedLaw(RateLaw):
     Its arguments are the relaxation time, then the numbers of the shape in their order.
     """
 
-    def moments(self, rate: Array) -> tuple[Array, Array]:
+    def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         """Return both moments."""
-        return table_of(type(self), *self.shape).moments(rate, self.stress(rate)[0])
+        return table_of(type(self), *self.shape).moments(rate, stress)
 
     def rate(self, stress: Array) -> Array:
         """Return the rate at a stress."""
