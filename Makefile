@@ -40,7 +40,7 @@ help:
 	@echo "make notebooks  the notebooks with results, build/notebooks"
 	@echo "make validity   docs/validity.md: the maps of the errors of all formulas"
 	@echo "make atlas      the table of solved states, 6 minutes on two cores      make certificate  its errors"
-	@echo "make atlas-point  those of balls, 50 minutes of one core               make certificate TABLE=ball-exponential"
+	@echo "make atlas-point  those of balls, 70 minutes of one core               make certificate TABLE=ball-exponential"
 	@echo "make clean      remove what make made"
 
 $(READY): pyproject.toml requirements.lock
@@ -139,7 +139,7 @@ atlas: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_build $(TABLE)
 
 atlas-point: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_build ball-exponential ball-persson
+	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_build ball-exponential ball-persson ball-exit
 
 certificate: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m stribeck.evidence.atlas_certificate $(TABLE)

@@ -22,7 +22,8 @@ from stribeck.fluids.cavitation import Cavitation
 from stribeck.regimes.phase_from_atlas import transition_speeds
 from stribeck.uncertainty.states import states_of
 
-BALL, PERSSON = (next(row for row in TABLES if row.name == name) for name in ("ball-exponential", "ball-persson"))
+ROWS = {row.name: row for row in TABLES}
+BALL, PERSSON, EXIT = (ROWS[name] for name in ("ball-exponential", "ball-persson", "ball-exit"))
 
 
 def ball(speed=2e-2, load=0.05, kappa=2e-2, beta=0.05, **changes):
@@ -61,10 +62,10 @@ def test_other_models_of_balls_are_refused_and_so_are_thin_smooth_films():
     groups = of_ball(1e-3, 0.1, 0.01)
     assert sb.atlas.for_groups(groups).name == "ball-exponential"
     assert sb.atlas.covers(groups)
-    cavitated = replace(groups, model=Model(cavitation=Cavitation.EXIT))
-    assert not sb.atlas.covers(cavitated)
+    reforming = replace(groups, model=Model(cavitation=Cavitation.REFORM, cavity_pressure=-0.1))
+    assert not sb.atlas.covers(reforming)
     with pytest.raises(sb.InputError, match="Newtonian fluid"):
-        sb.atlas.friction(cavitated)
+        sb.atlas.friction(reforming)
     low, high = BALL.grid.films
     smooth = replace(groups, roughness=0.0)
     assert sb.atlas.covers(replace(smooth, speed=np.array([0.0, 0.9 * low, 1.1 * low]))).tolist() == [True, False, True]
@@ -96,12 +97,13 @@ def test_at_rest_asperities_carry_all_and_the_film_is_the_solved_one():
 # --- against the solver ---
 
 
-def test_it_is_within_its_stated_error_of_states_it_was_not_made_from():
-    speed, load, kappa = random_states(BALL, 3, 20, mixed=True)
-    observed = np.array([solved(BALL.name, state) for state in zip(speed, load, kappa, strict=True)])
-    found = compare(speed, load, kappa, observed, BALL)
-    assert found.errors.shape == (3, len(quantities(BALL)))
-    assert found.friction.max() < BALL.error
+@pytest.mark.parametrize("row", [BALL, EXIT], ids=lambda row: row.name)
+def test_it_is_within_its_stated_error_of_states_it_was_not_made_from(row):
+    speed, load, kappa = random_states(row, 3, 20, mixed=True)
+    observed = np.array([solved(row.name, state) for state in zip(speed, load, kappa, strict=True)])
+    found = compare(speed, load, kappa, observed, row)
+    assert found.errors.shape == (3, len(quantities(row)))
+    assert found.friction.max() < row.error
 
 
 def test_nearly_smooth_balls_are_as_good():
@@ -157,6 +159,31 @@ def test_sensitivities_read_off_it_are_the_solved_ones():
     _, right = friction_sensitivities(contact, rtol=1e-5)
     _, found = friction_sensitivities(contact, method="atlas")
     assert found == pytest.approx(right, abs=5e-3)
+
+
+# --- films that break ---
+
+
+def test_balls_whose_film_breaks_are_read_off_a_table_of_their_own():
+    contact, speeds = ball(wetted_radius=3e-3, cavitation="exit"), [ball(s).speed for s in (5e-3, 6e-3, 7e-3)]
+    read, exact = (sb.stribeck_curve(contact, speed=speeds, rtol=1e-4, method=method) for method in ("atlas", "solver"))
+    assert read.table is EXIT
+    assert in_atlas(contact)
+    assert (np.abs(read.friction - exact.friction) < read.friction_error + exact.friction_error).all()
+    assert np.allclose(read.friction_viscous, exact.friction_viscous, rtol=3e-3)
+    assert np.allclose(read.observable("central_gap"), exact.observable("central_gap"), rtol=3e-3)
+    assert read.regimes == exact.regimes
+
+
+@pytest.mark.quick
+def test_slow_balls_whose_film_breaks_have_a_share_of_first_order_in_the_speed():
+    groups = replace(of_ball(np.array([0.0, 1e-8, 1e-7]), 1e-3, 0.1), model=EXIT.model)
+    rest, slow, faster = sb.atlas.fluid_load_share(groups)
+    assert rest == 0
+    assert slow == pytest.approx(1.664e-8, rel=3e-3)  # theory.md, section 11
+    assert faster / slow == pytest.approx(10, rel=1e-3)
+    at_rest = sb.solve(of_ball(0.0, 1e-3, 0.1), rtol=1e-5)
+    assert sb.atlas.central_gap(groups)[0] == pytest.approx(at_rest.central_gap, rel=EXIT.error)
 
 
 # --- under the law of Persson ---

@@ -10,7 +10,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.atlas.table import FAR
-from stribeck.contacts.cut_off import COUETTE, POISEUILLE
+from stribeck.contacts.cut_off import FarFilm
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Geometry
 from stribeck.solids import hertz
@@ -29,13 +29,14 @@ class Drag(NamedTuple):
     names : callable
         ``names(definition)`` are the tabulated functions that a definition of the viscous friction takes.
     parts : callable
-        ``parts(logs, speed, load)`` are the observables that follow from those, by name, each a :data:`Part`.
+        ``parts(logs, speed, load, film)`` are the observables that follow from those and from how the film ends far
+        away, by name, each a :data:`Part`.
     dry_offset : float
         Offset of the dry smooth contact [u_Hz].
     """
 
     names: Callable[[Definition], tuple[str, ...]]
-    parts: Callable[[dict[str, Part], Array, Array], dict[str, Part]]
+    parts: Callable[[dict[str, Part], Array, Array, FarFilm], dict[str, Part]]
     dry_offset: float
 
 
@@ -56,7 +57,7 @@ def _line_names(definition: Definition) -> tuple[str, ...]:
     return (f"viscous_{definition}",)
 
 
-def _line_parts(logs: dict[str, Part], speed: Array, load: Array) -> dict[str, Part]:
+def _line_parts(logs: dict[str, Part], speed: Array, load: Array, film: FarFilm) -> dict[str, Part]:
     return {name: _times(np.sqrt(load) * speed, log, (1.0, 0.5, 0.0)) for name, log in logs.items()}
 
 
@@ -64,11 +65,11 @@ def _ball_names(definition: Definition) -> tuple[str, ...]:
     return "couette", "poiseuille", "published"
 
 
-def _ball_parts(logs: dict[str, Part], speed: Array, load: Array) -> dict[str, Part]:
+def _ball_parts(logs: dict[str, Part], speed: Array, load: Array, film: FarFilm) -> dict[str, Part]:
     integrals = {name: _times(speed, log, (1.0, 0.0, 0.0)) for name, log in logs.items()}
     couette, poiseuille = integrals["couette"], integrals["poiseuille"]
     found = {}
-    for name, part, constant in (("J_couette", couette, COUETTE), ("J_poiseuille", poiseuille, POISEUILLE)):
+    for name, part, constant in (("J_couette", couette, film.couette), ("J_poiseuille", poiseuille, film.poiseuille)):
         far = speed * (constant * math.log(FAR))
         found[name] = _sum((part, (far, np.stack([far, 0 * far, 0 * far]))), (1.0, -1.0))
     found["J_pcx"] = _sum((couette, poiseuille, integrals["published"]), (1.0, 1.0, -1.0))

@@ -231,6 +231,14 @@ BALL_EXPONENTIAL = Grid(
 )
 """Ball, exponential law, full film: L = -2/3 ln(load), as the pressure goes with the cube root of the load."""
 
+BALL_EXIT = Grid(
+    (Region((5e-3, 1.0), (2 / 3 * math.log(2), 2 / 3 * math.log(1e4)), (1, 1), (15, 6), (5, 6, 6, 6, 7, 8), nested=True),),
+    load_factor=2 / 3,
+    power=1,
+    films=(1e-4, 10.0),
+)
+"""Ball, exponential law, a film that ends at ambient pressure."""
+
 BALL_PERSSON = Grid(
     (
         Region((5e-4, 0.05), (0.0, math.log(1e4 / 300)), (1, 1), (8, 5), (0, 8, 8, 6, 7, 8), 6.0),

@@ -13,6 +13,7 @@ from stribeck.atlas.drag import DRAG
 from stribeck.atlas.grid import HEAVY, NEARLY_SMOOTH
 from stribeck.atlas.table import Values
 from stribeck.atlas.tables import SLACK, TableRow, table_for
+from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups
@@ -27,6 +28,7 @@ __all__ = [
     "ODDS",
     "contact_share",
     "flat",
+    "inputs_for",
     "look_up",
     "read_friction",
     "slopes_of",
@@ -112,7 +114,7 @@ def read_friction(groups: Groups, definition: Definition, slopes: int = 0) -> Fr
         by_load = -held.grid.load_factor * by_log_load - groups.scaling.roughness_exponent * by_kappa
         by = list(np.stack([by_speed, by_load, by_kappa], axis=1))
     logs = {name: (found.values[row], by[row]) for row, name in enumerate(names) if row > 0}
-    parts = drag.parts(logs, speed, load)
+    parts = drag.parts(logs, speed, load, far_film(groups.model))
     contact = contact_share(found.values[0])
     contact_slopes = np.empty((0, 0)) if by[0] is None else -contact * (1 - contact) * by[0]
     part_slopes = {name: slope for name, (_, slope) in parts.items() if slope is not None}
@@ -125,7 +127,7 @@ def slopes_of(
 ) -> tuple[Array, Array]:
     """Return the derivatives of contact share and viscous friction that were read, zero at rest."""
     rule, step = RULES[groups.geometry], 1j * IMAGINARY
-    inputs = {name: flat(groups, value) for name, value in inputs.items()}
+    inputs = inputs_for(groups, inputs)
     viscous = np.empty_like(reading.contact_slopes)
     for d in range(len(viscous)):
         moved = {name: value + step * reading.part_slopes[name][d] for name, value in reading.parts.items()}
@@ -135,6 +137,11 @@ def slopes_of(
     for found in (contact, viscous):
         found[:, reading.speed == 0] = 0.0
     return contact, viscous
+
+
+def inputs_for(groups: Groups, inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the friction rule takes beside states as flat arrays over them, and how their film ends far away."""
+    return {name: flat(groups, value) for name, value in inputs.items()} | {"far": far_film(groups.model)}
 
 
 def flat(groups: Groups, value: Any) -> Array:

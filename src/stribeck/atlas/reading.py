@@ -21,7 +21,7 @@ from stribeck.atlas.lookup import (
     MINIMUM,
     ODDS,
     contact_share,
-    flat,
+    inputs_for,
     look_up,
     read_friction,
     slopes_of,
@@ -243,7 +243,7 @@ def friction_terms(groups: Groups, inputs: Mapping[str, Any], definition: Defini
         If a state is outside the box of its table.
     """
     reading = read_friction(groups, definition)
-    arrays = {name: flat(groups, value) for name, value in inputs.items()}
+    arrays = inputs_for(groups, inputs)
     return reading.contact, RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
 
 
@@ -284,7 +284,7 @@ def shares_and_friction(
     boundary_friction = quantity("boundary_friction", boundary_friction)
     inputs = _inputs(groups, beta, slide_to_roll, wetted_radius)
     reading = read_friction(groups, check_definition(definition), slopes=1)
-    arrays = {name: flat(groups, value) for name, value in inputs.items()}
+    arrays = inputs_for(groups, inputs)
     viscous = RULES[groups.geometry].viscous(reading.parts, reading.speed, reading.load, arrays, definition)
     by_contact, by_viscous = slopes_of(groups, reading, inputs, definition)
     by_speed = boundary_friction * _rubbing(groups, inputs) * by_contact[0] + by_viscous[0]

@@ -9,6 +9,7 @@ import numpy as np
 
 from stribeck._types import Flags
 from stribeck.atlas.grid import (
+    BALL_EXIT,
     BALL_EXPONENTIAL,
     BALL_PERSSON,
     LINE_EXIT,
@@ -170,6 +171,16 @@ TABLES = (
         "ball_persson.npz",
         BALL_PERSSON,
     ),
+    TableRow(
+        "ball-exit",
+        "point",
+        "exponential",
+        Cavitation.EXIT,
+        {"speed": (1e-8, 10.0), "load": (1e-4, 0.5), "relative_roughness": (5e-3, 1.0)},
+        3e-3,
+        "ball_exit.npz",
+        BALL_EXIT,
+    ),
 )
 """The tables; the first that holds answers."""
 
@@ -223,8 +234,8 @@ def table_for(groups: Groups) -> TableRow:
     of_model = [row for row in TABLES if row.is_of_model(groups)]
     if not of_model:
         raise InputError(
-            "the atlas covers a Newtonian fluid in a full film, for cylinders also in one that ends at ambient pressure "
-            "(cavitation 'exit'), on a half-space, and these states have another model; use the solver."
+            "the atlas covers a Newtonian fluid in a full film or in one that ends at ambient pressure (cavitation 'exit'), "
+            "on a half-space, and these states have another model; use the solver."
         )
     laws = " and ".join(row.law for row in of_model)
     assert groups.law is not None

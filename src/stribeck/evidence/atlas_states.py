@@ -16,7 +16,7 @@ from stribeck.atlas.tables import REFERENCE_SPECTRUM, TableRow
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contact_laws.persson import persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
-from stribeck.contacts.cut_off import COUETTE, POISEUILLE
+from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.groups import Groups
 from stribeck.curves.stribeck_curve import stribeck_curve
 from stribeck.fluids.cavitation import Cavitation
@@ -69,6 +69,7 @@ PLANS = {
     "line-exit": Plan(1e-6, 1e-5, 1e-6, (5, 4), 0.5, (6, 16)),
     "ball-exponential": Plan(1e-4, 1e-3, 1e-5, (5, 4), 0.9, (2, 16)),
     "ball-persson": Plan(1e-4, 1e-3, 1e-5, (5, 4), 0.9, (1, 18)),
+    "ball-exit": Plan(1e-4, 1e-3, 1e-4, (5, 4), 0.7, (5, 10)),
 }
 """The tables by their names."""
 
@@ -100,7 +101,7 @@ def solved(row: TableRow, log_speeds: Array, log_load: float, kappa: float, rtol
         if round(s, 9) not in states:  # not reached from its neighbours: from cold, and finer
             states[round(s, 9)] = solve(groups_of(row, math.exp(s), load, kappa), rtol=0.1 * rtol)
     found = [states[round(s, 9)].observables for s in log_speeds.tolist()]
-    if row.cavitation is not Cavitation.NONE:
+    if row.geometry == "line" and row.cavitation is not Cavitation.NONE:
         _refine_faint(row, found, log_speeds, load, kappa, rtol)
     return tabulated(row, found, log_speeds, load)
 
@@ -143,7 +144,9 @@ def tabulated(row: TableRow, observed: list[Any], log_speeds: Array, load: float
         published, balanced = (np.log(values[f"viscous_{name}"]) - scale for name in ("published", "balanced"))
         return np.stack([odds, published, balanced, central, minimum, np.log(values["flux_gap"]), deflection], axis=1)
     speed, far = np.exp(log_speeds), math.log(row.radius)
-    couette, poiseuille = values["J_couette"] / speed + COUETTE * far, values["J_poiseuille"] / speed + POISEUILLE * far
+    ends = far_film(row.model)
+    couette = values["J_couette"] / speed + ends.couette * far
+    poiseuille = values["J_poiseuille"] / speed + ends.poiseuille * far
     published = couette + poiseuille - values["J_pcx"] / speed
     drag = [np.log(couette), np.log(poiseuille), np.log(published)]
     return np.stack([odds, *drag, central, minimum, deflection], axis=1)
@@ -171,11 +174,22 @@ def speed_range(row: TableRow, log_load: float, kappa: float, has_rest: bool = T
         rest = float(solve(groups_of(row, 0.0, row.grid.load_at(log_load), kappa), rtol=1e-3).central_gap) / kappa
         gap = rest
     wedge = 2 * math.log(kappa) + math.log(5) + 2.55 * math.log(gap)
-    film, last = (math.log((kappa * s / 0.446) ** (5 / 3) + (2.88 * kappa * s) ** 1.5) for s in (gap, max(gap, 1.0)))
+    if row.geometry == "point" and row.cavitation is not Cavitation.NONE:
+        film, last = (_slow_for_torn_film(kappa * s) for s in (gap, gap + SHARES[-1]))
+    else:
+        film, last = (math.log((kappa * s / 0.446) ** (5 / 3) + (2.88 * kappa * s) ** 1.5) for s in (gap, max(gap, 1.0)))
     half = -float(np.logaddexp(-wedge, -film))
     yielding = 2.5 * max(0.0, -math.log(rest * 2 + 2 * kappa / (1 + kappa))) if row.law == "exponential" else 0.0
     slower = 2 / row.grid.power
     return half - slower * math.log(60) - yielding, last + math.log(300)
+
+
+def _slow_for_torn_film(gap: float) -> float:
+    """Return the logarithm of a hundredth of the speed at which a film that breaks has a central gap.
+
+    A rigid ball has 0.2249 speed**2, so that speeds differ less than in full films, and so do the margins of a curve.
+    """
+    return math.log(0.01 / ((gap / 0.446) ** (-5 / 3) + (gap / 0.2249) ** -0.5))
 
 
 def breaks_on(row: TableRow, log_speeds: Array, found: Array, kappa: float, has_rest: bool) -> Array:
