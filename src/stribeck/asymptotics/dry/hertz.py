@@ -1,4 +1,4 @@
-"""The dry contact of a smooth cylinder as the limit of all others: small speed and small relative roughness.
+"""The dry contact of a smooth cylinder to which all others tend at small speed and small relative roughness.
 
 Source: [BP] Eqs. (Hertz), (vertical_position_Hz).
 """

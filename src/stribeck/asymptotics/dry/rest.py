@@ -179,7 +179,7 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
 
     Notes
     -----
-    The second term is the mean, over the Gaussian pressure, of its own deflection against that at the centre.
+    The second term is the deflection under the Gaussian pressure, averaged over it, less that at the centre.
 
     Source: [BP] Eq. (separation_small_indentation); the second term is ours.
     """

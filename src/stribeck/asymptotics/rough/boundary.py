@@ -1,6 +1,6 @@
-r"""Boundary lubrication: what slow speed takes from the asperities of a contact of small relative roughness.
+r"""Boundary lubrication: how much of the load and friction a slow fluid takes over at small relative roughness.
 
-The contact at rest is that of :mod:`stribeck.asymptotics.dry.rest`, whose formulas are at hand here too.
+The contact at rest is that of :mod:`stribeck.asymptotics.dry.rest`, whose formulas this module imports.
 
 Source: [BP] Section "Boundary-to-mixed lubrication transition", Appendix C; theory.md, section 6.
 """
@@ -44,7 +44,7 @@ Viscous = Literal["published", "balanced", "neglected"]
 
 SLOW = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-3), Limit("paper_fluid_share", 0, 0.1))
 SLOWER = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-4), Limit("paper_fluid_share", 0, 0.01))
-"""Ranges of what fluid and asperities do together, and of the small part of it that the fluid does."""
+"""Ranges of the formulas for load and friction of both together, and for the small share of the fluid."""
 
 
 def _smoother(relative_roughness: float) -> Groups:
@@ -85,8 +85,8 @@ def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool
 
     Notes
     -----
-    With ``printed=True, form="printed"`` it is all that [BP] print.  The error, of order kappa**(2/3) with logarithms, comes
-    from the edge of the contact, which is a layer of that width.
+    With ``printed=True, form="printed"`` it is the formula of [BP] as printed.  The error, of order kappa**(2/3) with
+    logarithms, comes from the edge of the contact, which is a layer of that width.
 
     Source: [BP] Eqs. (fluid-normal), (fluid-normal-dl).
     """
@@ -212,7 +212,7 @@ def friction(
 
     Notes
     -----
-    Of the error, 1.4 % at most, the asperities' part rules up to beta/mu0 = 3; at 10 the viscous part makes it 4.2 %.
+    The error, 1.4 % at most, is that of the asperities' part up to beta/mu0 = 3; at 10 the viscous part makes it 4.2 %.
     [BP] Eq. (friction_contact) is ``viscous="neglected"``.  In the paper's own definition the neglected part is of first order
     in the speed, and the load share of second.
 

@@ -6,12 +6,12 @@ contact pressure that carries the share S in the shape of Hertz's, the central g
 gap so far, each at its own speed:
 
 *Wedge.* As :math:`\kappa \to 0` at a fixed fluid number :math:`n = \lambda/\kappa^2` elasticity holds the total pressure at
-Hertz's, and Reynolds's equation alone shares it out (:mod:`stribeck.asymptotics.smooth.wedge`). Its solutions obey
+Hertz's, and Reynolds' equation alone decides how it is shared (:mod:`stribeck.asymptotics.smooth.wedge`). Its solutions obey
 :math:`n = [X (1 + X)]^{1/2} g(G)` with one function g for all loads, except where :math:`X \ll 1` and :math:`g = \phi^{-1/2}`.
 
 *Film.* The smooth film of the speed :math:`\lambda_f` is as thick as H.
 
-Whichever comes first opens the gap: the two speeds are combined as a root of a sum of inverse powers. The limits are
+The one at the lower speed opens the gap: the two speeds are combined as a root of a sum of inverse powers. The limits are
 exact; what lies between is fitted to solved states, 21 600 over the box and 1 700 of the wedge.
 
 Source: ours, with phi of [BP] Appendix D; theory.md, section 10.

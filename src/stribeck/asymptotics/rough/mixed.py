@@ -1,6 +1,6 @@
 r"""Mixed lubrication from the side of the smooth film: asperities that reach through it, and the friction with them.
 
-[BP] put the uniform film of the smooth contact into the contact law.  Beyond that, ours knows that the outlet is thinner than
+[BP] put the uniform film of the smooth contact into the contact law.  Ours adds that the outlet is thinner than
 the film, and that asperities which carry load thicken the film: where their pressure is of the order of the pressure of the
 inlet, :math:`\lambda^{1/5}`, the inlet takes in more fluid.  That makes the load share S on which it depends its own argument,
 

@@ -41,7 +41,7 @@ CLOSED = (6.055, 4.462, 4.861, 1.498)
 
 
 def phi_of(load: Value, form: PhiForm = "quadrature") -> Value:
-    """Return :func:`phi` without a word about loads from 1 on, for formulas, which have their own."""
+    """Return :func:`phi` without its warning for loads of 1 or more, for formulas that warn themselves."""
     if form == "quadrature":
         # By parts, -(2/pi) int x P_f2' dx.
         return of_load(load, lambda c: -4 / math.pi * c.integral(c.x * c.second()))
@@ -106,7 +106,7 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
 
 
 def pressure_moment(load: Value) -> Value:
-    r"""Return the moment of the fluid pressure of first order, which the contact pressure lacks.
+    r"""Return the moment of the fluid pressure of first order, equal and opposite to that of the contact pressure.
 
     .. math:: M = -\int_{-1}^1 x \, P_{f,1} \, dx = \int_0^1 x^2 \, \frac{H_0 - H_0^*}{H_0^3} \, dx
 

@@ -96,7 +96,7 @@ def half_logarithm(load: Value) -> Array:
 
 
 def of_load(load: Value, function: Callable[[Outward], Array]) -> Value:
-    """Return a number for each load from its contact; equal loads once."""
+    """Return a number for each load from its contact; equal loads are computed once."""
     A = half_logarithm(load)
     different, where = np.unique(A, return_inverse=True)
     parts = [different[i : i + LOADS_AT_ONCE] for i in range(0, different.size, LOADS_AT_ONCE)]

@@ -2,8 +2,8 @@ r"""Friction at any speed, load and roughness in closed form, from the law of lo
 
 .. math:: \mu = \mu_0 S + \mu_f
 
-The viscous part joins the shear of the smooth film, less where roughness keeps the gap open at a lower speed, to the
-moment of the contact pressure that the paper's definition of the friction contains (theory.md, section 6).
+The viscous part is the sum of the shear of the smooth film, reduced where roughness keeps the gap open at a lower speed, and
+of the moment of the contact pressure that the paper's definition of the friction contains (theory.md, section 6).
 
 Source: ours; theory.md, section 10.
 """

@@ -2,7 +2,7 @@ r"""Whether friction falls with speed: the weakening number, and the roughness b
 
 The friction of [BP] near its minimum has one on either side of k = 0.4968 or none, see :func:`weakening_number`; ours is
 :func:`stribeck.asymptotics.rough.mixed.friction`, whose minimum is found numerically.
-:mod:`stribeck.asymptotics.rough.transitions` makes predictions of both.
+:mod:`stribeck.asymptotics.rough.transitions` predicts the minimum by both.
 
 Source: [BP] Section "Hydrodynamic-to-mixed lubrication transition" and Conclusion.
 """
@@ -170,7 +170,7 @@ def roughness_without_minimum(
     ===============================================  =====  =====  =====  =====
 
     The solver's are :func:`stribeck.regimes.weakening.roughness_without_minimum`.
-    The limit behind the last three, small relative roughness, excludes what they are asked for.
+    The last three assume small relative roughness and are asked where it is not small.
 
     Source: [BP] Conclusion, in words; formulas ours.
     """

@@ -35,7 +35,7 @@ from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.threads import one_blas_thread
 
 LOAD = 0.5 * np.pi
-"""Load of the layer beside that of Hertz."""
+"""Integral of P - P_H over the layer."""
 
 RANGE = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 1e-6, 1e-2))
 WIDTHS = 5.0

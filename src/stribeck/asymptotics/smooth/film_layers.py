@@ -9,7 +9,7 @@ With :math:`\xi` from the edge outwards in units of :math:`\lambda^{2/5}` a, in 
 
 (minus in the inlet, where the flow goes to decreasing :math:`\xi`), and :math:`P - P_H` vanishes at both ends, carries no load
 and has no part in :math:`|\xi|^{-1/2}`, which would be a shift of the edge.  Inside, the film departs from c as
-:math:`H - c \to \pm c^3 (-2\xi)^{-1/2}`, which :math:`P - P_H` answers by :math:`|\xi|^{-3/2} \ln|\xi|`.
+:math:`H - c \to \pm c^3 (-2\xi)^{-1/2}`, so that :math:`P - P_H` goes as :math:`|\xi|^{-3/2} \ln|\xi|`.
 
 In the contact both equations are linear for small disturbances, :math:`\delta H = \mp c^3 \, \delta P'` and a deflection under
 :math:`\delta P`, with the symbol :math:`1/|k| \pm i c^3 k`.  Its phase turns by half a turn along k, in one sense in the inlet

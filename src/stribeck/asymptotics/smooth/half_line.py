@@ -18,7 +18,7 @@ known: continued harmonically to the heights a = 1, 2, 3 above the line,
 
 The weights make the moments 0, 1, 2 of a equal to 1, 0, 0, so that :math:`P_B - P_H` carries no load and falls as
 :math:`|\xi|^{-7/2}` inside and :math:`\xi^{-5/2}` outside.  What is left, :math:`P - P_B`, is smooth; its panels double in
-width with the distance.  Nothing here knows what presses: see :mod:`.edge_layer` and :mod:`.film_layers`.
+width with the distance.  What presses, asperities or a fluid, is in :mod:`.edge_layer` and :mod:`.film_layers`.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ Roots = tuple[Array, Array, Array]
 
 
 def _roots(xi: Array, a: float) -> Roots:
-    r"""Return :math:`m = |\xi + i a|`, :math:`(m - \xi)^{1/2}` and :math:`(m + \xi)^{1/2}`, none by a difference."""
+    r"""Return :math:`m = |\xi + i a|`, :math:`(m - \xi)^{1/2}` and :math:`(m + \xi)^{1/2}`, without cancellation."""
     m = np.hypot(xi, a)
     large = np.sqrt(m + np.abs(xi))
     inside = xi < 0
@@ -48,7 +48,7 @@ def _roots(xi: Array, a: float) -> Roots:
 
 
 def _differences(one: Roots, two: Roots, three: Roots) -> tuple[Array, Array]:
-    """Return the differences of (m - xi)**(1/2) from a = 1 to 2 and from 2 to 3, none by a difference."""
+    """Return the differences of (m - xi)**(1/2) from a = 1 to 2 and from 2 to 3, without cancellation."""
     return 3 / ((one[0] + two[0]) * (one[1] + two[1])), 5 / ((two[0] + three[0]) * (two[1] + three[1]))
 
 
@@ -163,7 +163,7 @@ class Layer:
     line : HalfLine
         Its panels.
     constant : float
-        C, what the gap has beside the deflection.
+        C, the constant of the gap beside the deflection.
     load : float
         Integral of P - P_H.
     excess : ndarray, shape (n,)

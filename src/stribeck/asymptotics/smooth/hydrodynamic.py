@@ -1,4 +1,4 @@
-r"""Film and friction of the smooth contact at every speed, ours and the paper's; its limits are reachable here too.
+r"""Film and friction of the smooth contact at every speed, by our formulas and the paper's.
 
 Films depend on the speed group alone, the friction also on :math:`\beta \bar F_N^{1/2}`.  Each law of ours is the law of
 small speed times a root of a function that is 1 + s u at small and A u at large :math:`u = \lambda^{2/5}`; the root is chosen
@@ -169,7 +169,7 @@ def friction_uniform(groups: Groups, beta: float = 1.0) -> Value:
 
 
 def _bridge(u: Value, far: float, fit: tuple[float, float, float, float]) -> Value:
-    """Return the sixth root of a rational function that is 1 + 6 s u at small and far u + 0 at large u."""
+    """Return the sixth root of a rational function that tends to 1 + 6 s u at small u and to ``far`` u at large u."""
     d1, d2, d3, b2 = fit
     below = 1 + u * (d1 + u * (d2 + u * d3))
     above = 1 + u * (6 * GAP_SLOPE + d1 + u * (b2 + far * u * (d2 + u * d3)))

@@ -1,6 +1,6 @@
 r"""Mixed lubrication in the limit of small relative roughness at a fixed fluid number, without elasticity.
 
-As :math:`\kappa \to 0` gaps of the order of the roughness change the elastic surface by nothing, so that the total pressure
+As :math:`\kappa \to 0` gaps of the order of the roughness do not change the elastic deformation, so that the total pressure
 stays Hertz's while :math:`n = \lambda/\kappa^2` decides how asperities and fluid share it. With gaps H in
 :math:`\kappa u_\mathrm{Hz}`
 
@@ -42,7 +42,7 @@ STEP = math.log(3.0)
 """Steps from there in ln n."""
 
 LARGEST_NUMBER = 1e3
-"""Fluid number up to which :func:`contact_load_share` answers; beyond, the film of the inlet is long the thicker one."""
+"""Fluid number up to which :func:`contact_load_share` answers; beyond, the film of the inlet is the thicker one by far."""
 
 
 @dataclass(frozen=True)
