@@ -50,4 +50,4 @@ def with_nearest(problem: TypeError, function: Callable[..., Any]) -> TypeError:
     names = [each.name for each in parameters if each.kind is not each.VAR_KEYWORD and each.name != "self"]
     near = difflib.get_close_matches(said[2], names, n=1)
     hint = f"did you mean {near[0]}?" if near else f"it takes {', '.join(names)}."
-    return TypeError(f"{problem}; {hint}")
+    return TypeError(f"{'' if said[1] else f'{function.__name__}() '}{problem}; {hint}")
