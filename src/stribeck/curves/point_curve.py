@@ -189,12 +189,17 @@ class PointCurve(StribeckCurve):
             return None
 
     def landmark(self, name: Transition, rtol: float | None = None) -> Landmark | None:
-        """Return one transition, or None where the curve does not hold it; all are read off the curve."""
-        return next((mark for mark in self.transitions if mark.name == name), None)
+        """Return one transition, or None where the curve does not hold it; the others are not looked for.  All are read off the curve."""
+        if name == Transition.MINIMUM:
+            return self.minimum
+        places, fluid, by_asperities = self._shares
+        if name == Transition.HYDRODYNAMIC_START:
+            return self._crossing(name, places, by_asperities - HYDRODYNAMIC_CONTACT_SHARE)
+        return self._crossing(name, places, fluid - (BOUNDARY_FLUID_SHARE if name == Transition.BOUNDARY_END else 0.5))
 
     @cached_property
-    def transitions(self) -> tuple[Landmark, ...]:
-        """The boundaries between regimes, where the load is shared in halves, and the friction minimum, ascending."""
+    def _shares(self) -> tuple[Array, Array, Array]:
+        """Coordinates, and there the share of the fluid in the load and that of asperities in the friction."""
         if self._function is None:
             fluid, contact, total = self.observable("fluid_load_share"), self.friction_contact, np.asarray(self.friction)
             places = np.log(self.values)
@@ -202,13 +207,12 @@ class PointCurve(StribeckCurve):
             places = places_of(self._solved_path)
             fluid, contact, viscous = self._parts_at(places)
             total = contact + viscous
-        by_asperities = contact / np.maximum(total, 1e-300)
-        found = [
-            self.minimum,
-            self._crossing(Transition.BOUNDARY_END, places, fluid - BOUNDARY_FLUID_SHARE),
-            self._crossing(Transition.EQUAL_SHARES, places, fluid - 0.5),
-            self._crossing(Transition.HYDRODYNAMIC_START, places, by_asperities - HYDRODYNAMIC_CONTACT_SHARE),
-        ]
+        return places, fluid, contact / np.maximum(total, 1e-300)
+
+    @cached_property
+    def transitions(self) -> tuple[Landmark, ...]:
+        """The boundaries between regimes, where the load is shared in halves, and the friction minimum, ascending."""
+        found = [self.landmark(name) for name in Transition]
         return tuple(sorted((mark for mark in found if mark is not None), key=lambda mark: mark.value))
 
     def _excess(self, name: Transition, s: float) -> float:

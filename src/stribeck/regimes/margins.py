@@ -70,10 +70,10 @@ SEARCHES: dict[Geometry, Search] = {
 DECADE = math.log(10.0)
 """Length of one step outwards in the logarithm of an input."""
 
-POINTS: dict[Geometry, int] = {"line": 41, "point": 6}
+POINTS: dict[Geometry, int] = {"line": 41, "point": 3}
 """States looked at on a decade, by geometry: read off a function, or solved."""
 
-FINER = 9
+FINER = 5
 """States solved anew between the two between which the regime changes, where the curve is no function."""
 
 THRESHOLD = 5e-3
