@@ -189,7 +189,7 @@ class PointCurve(StribeckCurve):
             return None
 
     def landmark(self, name: Transition, rtol: float | None = None) -> Landmark | None:
-        """Return one transition, or None where the curve does not hold it; the others are not looked for.  All are read off the curve."""
+        """Return one transition, or None where the curve does not hold it; it is read off the curve, without the others."""
         if name == Transition.MINIMUM:
             return self.minimum
         places, fluid, by_asperities = self._shares

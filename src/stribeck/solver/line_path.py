@@ -16,7 +16,7 @@ from stribeck.equations.error_estimate import GAP_FLOOR, GAPS, FineOperators
 from stribeck.equations.gap import minimum_gaps
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import ROW, observables
-from stribeck.equations.state import State, is_thinning, solve_state
+from stribeck.equations.state import State, fall_of, is_thinning, solve_state
 from stribeck.numerics.hermite import hermite_weights, missed_by
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.numerics.panels import Mesh, interpolation_error
@@ -40,8 +40,9 @@ INTERVAL = 1.0
 """Half of the interval on which films are sampled, over that distance.  Where the shear rate passes through zero at a node of
 a fluid that thins, that node turns sharply with the speed: on twice the interval series were wrong from order two on."""
 
-THINNING_PART = 0.3
-"""Part of the tolerance that states of fluids that thin must hold: their errors differ from mesh to mesh."""
+THINNING_PART, CUSP_PART = 0.3, 0.1
+"""Part of the tolerance that states of fluids that thin must hold, as their errors differ from mesh to mesh; and of those
+without a plateau at low rates: the cusp where the rate is zero moves through the nodes."""
 
 SHORTEST_REACH = 0.02
 """Shortest such distance: the shorter it is, the more rounding counts."""
@@ -106,7 +107,9 @@ class LineProblem:
     def __init__(self, groups_at: Callable[[float], Groups], direction: Direction, rtol: float, uniform: bool = True) -> None:
         self.groups_at, self.direction, self.uniform = groups_at, direction, uniform
         start = groups_at(0.0)
-        self.tolerance, self.rtol = rtol, (THINNING_PART if is_thinning(start.model.film) else KNOT_PART) * rtol
+        film = start.model.film
+        part = CUSP_PART if fall_of(film, 1.0).broken else THINNING_PART if is_thinning(film) else KNOT_PART
+        self.tolerance, self.rtol = rtol, part * rtol
         self.moves = bool(start.speed > 0)
         self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
         self.exact = self.analytic and is_exponential(start.law)
