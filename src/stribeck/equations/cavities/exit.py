@@ -44,7 +44,7 @@ class CavitatedEquations(TornEquations):
         """Return an estimate of the friction that is lost there."""
         del y
         lost = self.film.beyond(self.speed, self.operators.mesh.rim)
-        return 0.0 if lost is None else lost.whole
+        return 0.0 if lost is None else lost.drag
 
     @property
     def load_row(self) -> Array:

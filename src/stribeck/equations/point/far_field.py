@@ -51,6 +51,12 @@ def _rule() -> tuple[Array, Array]:
     return 0.5 * (t + 1.0), 0.5 * w
 
 
+def logarithms(rim: float, speed: float, far: FarFilm = FULL) -> tuple[float, float, float]:
+    """Return what shear, pressure flow and moment lack of their logarithms at the rim."""
+    log = speed * math.log(rim)
+    return -far.couette * log, -far.poiseuille * log, 2.0 * far.poiseuille * log
+
+
 def tails(
     rim: float, offset: float, speed: float, pressure: float, far: FarFilm = FULL, bulge: float = DEFLECTION
 ) -> tuple[float, float, float]:

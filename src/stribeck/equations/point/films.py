@@ -79,26 +79,30 @@ class FluxSlopes(NamedTuple):
 class Beyond(Protocol):
     """What a film beyond the rim has more than one of constant viscosity."""
 
+    is_all: bool
+    """Whether it is the whole film, but for the logarithms of friction."""
+
     @property
-    def whole(self) -> float:
-        """An estimate of its friction integrals."""
+    def drag(self) -> float:
+        """An estimate of its drag."""
 
     def doubt(self, offset: float) -> float:
-        """Return an estimate of the error of these with an offset."""
+        """Return an estimate of the error of its friction integrals, with an offset."""
 
-    @property
-    def first(self) -> float:
-        """The factor of cos(theta) in the pressure at the rim."""
+    def first(self, offset: float) -> float:
+        """Return the factor of cos(theta) in the pressure at the rim."""
 
-    @property
-    def tails(self) -> tuple[float, float, float]:
-        """The parts of shear, pressure flow and moment."""
+    def tails(self, offset: float) -> tuple[float, float, float]:
+        """Return the parts of shear, pressure flow and moment."""
 
     def beyond(self, radius: float) -> Beyond:
         """Return the same beyond another radius."""
 
-    def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array, Array]:
-        """Return pressure, its radial derivative, and flux that is lost along the radius, at angles of the rim."""
+    def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array]:
+        """Return pressure, its radial derivative, and the flux that is lost along the radius, at angles of the rim.
+
+        Of shape (3, angles), without an offset; and their derivatives by the offset.
+        """
 
 
 class PlaneFilm(Protocol):

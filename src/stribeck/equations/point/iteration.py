@@ -47,6 +47,10 @@ LINEAR = 3e-2
 ACCEPTED = 0.1
 """Error above which a kept preconditioner is given up."""
 
+FAR = 100.0
+"""Change of the pressure at the rim by the last step, over the tolerance, where the film beyond thins; steps leave a few
+hundredths of it."""
+
 BENDING = 3.0
 """Factor from the square of a step to the error after it, if no two steps are known to measure it."""
 
@@ -85,6 +89,11 @@ def step_size(law: ContactLaw, h: Array, dh: Array, load_scale: float = 1.0) -> 
         weight = np.minimum(1.0, law.pressure(h) / load_scale)
         size = np.maximum(size, weight * np.abs(dh) / law.local_decay_length(h))
     return float(size.max())
+
+
+def rim_change(y: Unknowns, step: Unknowns) -> float:
+    """Return the change of the film pressure at the rim by a step, over that pressure: no gap feels it, but friction does."""
+    return float(np.abs(step.fluid[:, -1]).max() / max(np.abs(y.fluid[:, -1]).max(), np.finfo(float).tiny))
 
 
 def distance(equations: Equations, y: Unknowns, preconditioner: BandedModes) -> float:
@@ -176,7 +185,7 @@ def iterate(
                 continue
             bending = max(BENDING, min(100.0, size / before**2)) if math.isfinite(before) else BENDING
             left = bending * size * size + solved.missed
-            if left <= tolerance:
+            if left <= tolerance and (equations.beyond is None or rim_change(y, step) <= FAR * tolerance):
                 return ended(Outcome.CONVERGED)
             if solved.steps > (WORN_NEAR if size < NEAR else WORN):
                 preconditioner = None

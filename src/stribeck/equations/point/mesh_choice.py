@@ -18,6 +18,7 @@ from stribeck._types import Array
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.point.system import Operators
+from stribeck.equations.thinning.column import has_viscosity_at_rest
 from stribeck.equations.thinning.far import ROLLING, far_rate, lost
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.shear_thinning import ShearThinning
@@ -37,6 +38,9 @@ REACH = 50.0
 THINNED_BEYOND, TORN_BEYOND, MOST_FARTHER = 1e-3, 1e-7, 6
 """Part of the viscosity that a fluid may lose by thinning at the usual rim, farther out times the square of the distance, as
 the far film is that in a gap of r**2/2; the same of a film that ends; and the most panels beyond the usual rim."""
+
+POWER_FARTHER = 1
+"""Panels beyond the usual rim for a power law."""
 
 FILM_ROUNDS = 20
 """Iterations for a film that is thinned by its own shear rate."""
@@ -244,7 +248,7 @@ def farther_panels(speed: float, model: Model) -> int:
         # A film that ends has no far film that thins.
         per_panel = 1.0 if model.cavitation is Cavitation.EXIT else ratio ** (2.0 / FAR_PANELS)
         most = TORN_BEYOND if model.cavitation is Cavitation.EXIT else THINNED_BEYOND
-        for needed in range(MOST_FARTHER):
+        for needed in range(MOST_FARTHER if has_viscosity_at_rest(film.law) else POWER_FARTHER + 1):
             part = lost(film.law, far_rate(film.law, film.slide, speed, REACH * ratio ** (needed / FAR_PANELS)))
             if part <= most * per_panel**needed:
                 break

@@ -23,7 +23,7 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array
 from stribeck.contacts.cut_off import FULL, FarFilm
-from stribeck.equations.point.far_field import tails
+from stribeck.equations.point.far_field import logarithms, tails
 from stribeck.equations.point.films import Beyond
 from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_axis
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
@@ -84,12 +84,13 @@ def friction(equations: Equations, y: Unknowns, contact: Array) -> dict[str, flo
     poiseuille = 0.5 * float(radial.sum() - tangential.sum())
     of_fluid, of_contact = float((moment * p).sum()), float((moment * contact).sum())
     at_rim = float(mesh.to_modes[1] @ p[:, -1])
-    more, first = equations.beyond, 0.0
+    more, first, plain = equations.beyond, 0.0, speed
     if more is not None:
-        first = more.first
-        couette, poiseuille, of_fluid = np.add((couette, poiseuille, of_fluid), more.tails).tolist()
-    beyond = tails(mesh.rim, y.offset, speed, at_rim - first, equations.far, equations.operators.bulge)
-    couette, poiseuille, of_fluid = couette + beyond[0], poiseuille + beyond[1], of_fluid + beyond[2]
+        first, plain = more.first(y.offset), 0.0 if more.is_all else speed
+        couette, poiseuille, of_fluid = np.add((couette, poiseuille, of_fluid), more.tails(y.offset)).tolist()
+    far = logarithms(mesh.rim, speed - plain, equations.far)
+    rest = tails(mesh.rim, y.offset, plain, at_rim - first, equations.far, equations.operators.bulge)
+    couette, poiseuille, of_fluid = np.add((couette, poiseuille, of_fluid), np.add(far, rest)).tolist()
     return {
         "J_couette": couette,
         "J_poiseuille": poiseuille,
@@ -112,11 +113,18 @@ class FrictionWithin:
         same of the far film.
     beyond : Beyond or None
         What the film beyond the rim has more than that.
+    offset, speed : float
+        Offset, and speed group.
+    far : FarFilm
+        The logarithms.
     """
 
     mesh: PolarMesh
     excess: Array
     beyond: Beyond | None
+    offset: float
+    speed: float
+    far: FarFilm
 
     @classmethod
     def of(cls, equations: Equations, y: Unknowns, values: Mapping[str, float]) -> FrictionWithin:
@@ -133,7 +141,7 @@ class FrictionWithin:
         up_to[0] -= values["J_couette"] + far.couette * speed * log
         up_to[1] -= values["J_poiseuille"] + far.poiseuille * speed * log
         edge = -turn * mesh.scattered((h * p * cos).sum(axis=0)) * mesh.local_radii - far.poiseuille * speed
-        return cls(mesh, np.concatenate([up_to, edge[None]]), equations.beyond)
+        return cls(mesh, np.concatenate([up_to, edge[None]]), equations.beyond, y.offset, speed, far)
 
     def __call__(self, which: int, log_radius: float) -> float:
         """Return one of the three at a radius."""
@@ -142,7 +150,10 @@ class FrictionWithin:
             if self.beyond is None:
                 return 0.0
             more = self.beyond.beyond(radius)
-            return -0.5 * math.pi * radius**3 * more.first if which == 2 else -more.tails[which]
+            if which < 2:
+                return -more.tails(self.offset)[which]
+            edge = -0.5 * math.pi * radius * (radius**2 + 2.0 * self.offset) * more.first(self.offset)
+            return edge - self.far.poiseuille * self.speed if more.is_all else edge
         panel, row = self.mesh.radial_interpolation(np.array([radius]))
         return float(row[0] @ self.excess[which, panel[0]])
 

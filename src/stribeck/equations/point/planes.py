@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
+from stribeck.contacts.model import Model
 from stribeck.equations.point.films import PLAIN, NewtonianPlane, PlaneFilm
+from stribeck.equations.thinning.column import has_viscosity_at_rest
 from stribeck.equations.thinning.plane import ThinningPlane
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film
-from stribeck.fluids.laws import RateLaw
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.shear_thinning import ShearThinning
 
@@ -23,7 +23,8 @@ def plane_of(film: Film) -> PlaneFilm:
     return PLAIN if isinstance(film, Newtonian) and film.is_plain else PLANES[type(film)](film)
 
 
-def has_viscosity_at_rest(law: RateLaw) -> bool:
-    """Return whether the viscosity at low rates is that of the contact, as the far film of a ball requires."""
-    slow = np.array([1e-60])
-    return abs(float(law.stress(slow)[0][0] / slow[0]) - 1.0) < 1e-3
+def has_far_film(model: Model) -> bool:
+    """Return whether the film of a model is known beyond the rim."""
+    film = model.film
+    is_power = isinstance(film, ShearThinning) and not has_viscosity_at_rest(film.law)
+    return not (is_power and model.cavitation is Cavitation.EXIT)

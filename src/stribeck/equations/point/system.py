@@ -36,6 +36,9 @@ from stribeck.solids.solid import Solid
 LOAD = 2.0 * np.pi / 3.0
 """Load in Hertz units: the integral of the pressure."""
 
+USUAL_LIQUID = 25.0
+"""Radius up to which a ball is wetted, about, for a contact of a fifth of its radius [a]."""
+
 OFFSET_STEP = 1e-4
 """Step of the offset over the square of the rim, in a central difference whose error is its square."""
 
@@ -132,14 +135,27 @@ class Equations:
         """Return an estimate of the error of the friction integrals by a film that still thins beyond the rim."""
         return 0.0 if self.beyond is None else self.beyond.doubt(y.offset)
 
+    @property
+    def drag_beyond(self) -> float:
+        """An estimate of what the finite parts of friction leave out, if it is no logarithm."""
+        return self.beyond.beyond(USUAL_LIQUID).drag if self.beyond is not None and self.beyond.is_all else 0.0
+
     @cached_property
-    def _more_at_rim(self) -> tuple[Array, Array, Array]:
-        """Pressure, radial derivative and lost flux of that at the angles of the rim."""
+    def _more_at_rim(self) -> tuple[Array, Array]:
+        """Pressure, radial derivative and lost flux of that at the angles of the rim, and their derivatives by the offset."""
         mesh = self.operators.mesh
-        if self.beyond is None:
-            nothing = np.zeros(mesh.modes)
-            return nothing, nothing, nothing
-        return self.beyond.at_rim(mesh.angles, mesh.modes)
+        nothing = np.zeros((3, mesh.modes))
+        return (nothing, nothing) if self.beyond is None else self.beyond.at_rim(mesh.angles, mesh.modes)
+
+    @cached_property
+    def _plain(self) -> float:
+        """Speed of the far film that does not thin."""
+        return 0.0 if self.beyond is not None and self.beyond.is_all else self.speed
+
+    def more_at_rim(self, offset: float) -> Array:
+        """Return pressure, radial derivative and flux that the rim has more than a film of constant viscosity."""
+        base, change = self._more_at_rim
+        return np.asarray(base + offset * change)
 
     def deflect(self, by_mode: Array) -> Array:
         """Return the deflection by mode under a pressure by mode, shape (modes, rings)."""
@@ -172,16 +188,16 @@ class Equations:
         radial, angular, (wide, carried) = self.film.fluxes(mesh, self.speed, h, p)
         found = mesh.radial_transpose(radial) + mesh.angular_derivative.T @ angular
         cos, x, part = np.cos(mesh.angles), mesh.rim, np.pi / mesh.modes
-        own = wide * self.rim_slope(p[:, -1], offset) + self._more_at_rim[2]
+        own = wide * self.rim_slope(p[:, -1], offset) + self.more_at_rim(offset)[2]
         found[:, -1] += part * x * (self.speed * cos * carried - own)
         return found
 
     def rim_slope(self, p: Array, offset: float) -> Array:
         """Return the radial derivative of the film pressure at the rim, p being that pressure."""
         mesh = self.operators.mesh
-        first, slope = particular(np.array([mesh.rim]), offset, self.speed, bulge=self.operators.bulge)
+        first, slope = particular(np.array([mesh.rim]), offset, self._plain, bulge=self.operators.bulge)
         cos = np.cos(mesh.angles)
-        more, more_slope, _ = self._more_at_rim
+        more, more_slope, _ = self.more_at_rim(offset)
         return np.asarray(self.operators.rim_rates @ (p - first * cos - more) + slope * cos + more_slope)
 
     def rim_rates(self, offset: float) -> Array:
@@ -192,6 +208,11 @@ class Equations:
         """Return the derivative of :meth:`rim_slope` by the offset."""
         step = OFFSET_STEP * self.operators.mesh.rim**2
         return (self.rim_slope(p, offset + step) - self.rim_slope(p, offset - step)) / (2 * step)
+
+    @property
+    def rim_flux_by_offset(self) -> Array:
+        """The derivative by the offset of the flux that is lost."""
+        return np.asarray(self._more_at_rim[1][2])
 
 
 class Linear:
@@ -209,6 +230,7 @@ class Linear:
         self.rim_of_pressure = -part * x * mobility
         self.rim_of_gap = part * x * (speed * np.cos(mesh.angles) * carried_by_gap - by_gap * slope)
         self.rim_of_offset = self.rim_of_pressure * equations.rim_slope_by_offset(y.fluid[:, -1], y.offset)
+        self.rim_of_offset -= part * x * equations.rim_flux_by_offset
 
     def flow(self, dp: Array, dh: Array) -> Array:
         """Return the change of R_2 under changes of fluid pressure and gap at the nodes."""

@@ -49,6 +49,9 @@ NEWTONIAN, WITHOUT_PLATEAU, HIGHEST = 1e-9, 1e-60, 1e13
 """Rate over that at which thinning begins below which the viscosity is constant; the same for laws that have no such rate;
 and the highest rate of the table."""
 
+POWER = 1e-2
+"""Lowest rate of the table of a power law, below which it goes on as it is: without the plateau that it has far below."""
+
 CLOSE = 1e-7
 """Size of the last step over the largest stress: the next would be below rounding."""
 
@@ -109,10 +112,17 @@ class FlowCurve:
         return np.exp(log), slope
 
 
+def has_viscosity_at_rest(law: RateLaw) -> bool:
+    """Return whether the viscosity at low rates is that of the contact, not that of a power law."""
+    slow = np.array([1e-60])
+    return abs(float(law.stress(slow)[0][0] / slow[0]) - 1.0) < 1e-3
+
+
 @lru_cache(maxsize=32)
 def flow_curve(law: Any) -> FlowCurve:
     """Return the flow curve of a :class:`RateLaw`; fits and sweeps ask for many."""
-    ends = np.array([law.plateau * NEWTONIAN if law.plateau > 0 else WITHOUT_PLATEAU, HIGHEST])
+    slowest = law.plateau * NEWTONIAN if law.plateau > 0 else WITHOUT_PLATEAU
+    ends = np.array([slowest if has_viscosity_at_rest(law) else POWER, HIGHEST])
     lowest, highest = np.log(law.stress(ends)[0])
     stress = np.exp(lowest + SPACING * np.arange(int((highest - lowest) / SPACING) + 2))
     rate = law.rate(stress)

@@ -91,6 +91,8 @@ class FarThinned:
         Speed group, and radius of the rim [a].
     """
 
+    is_all = False
+
     def __init__(self, law: RateLaw, slide: float, speed: float, rim: float) -> None:
         self.law, self.slide, self.speed, self.rim = law, slide, speed, rim
         rate = far_rate(law, slide, speed, rim)
@@ -108,7 +110,7 @@ class FarThinned:
         return max(0, int(poor[0]) - 1) if poor.size else MOST_DEGREE
 
     @property
-    def whole(self) -> float:
+    def drag(self) -> float:
         """An estimate of the drag that is lost beyond the rim."""
         return math.pi / 3.0 * self.speed * self.lost / self.power
 
@@ -120,24 +122,25 @@ class FarThinned:
         """Return the film beyond another radius."""
         return FarThinned(self.law, self.slide, self.speed, radius)
 
-    @property
-    def first(self) -> float:
-        """The factor of cos(theta) in the pressure at the rim."""
+    def first(self, offset: float) -> float:
+        """Return the factor of cos(theta) in the pressure at the rim."""
+        del offset
         return float(self._film.pressure[-1, 1]) / self.rim**3
 
-    def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array, Array]:
-        """Return pressure, its radial derivative, and the flux along the radius that is lost, at angles of the rim."""
+    def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array]:
+        """Return pressure, its radial derivative, and the flux along the radius that is lost, and by the offset."""
         film, rim = self._film, self.rim
         cosines = np.cos(np.multiply.outer(angles, np.arange(min(modes, ANGLES))))
         pressure, slope, flux = (
             cosines @ each[: cosines.shape[1]]
             for each in (film.pressure[-1], film.steepness - 3.0 * film.pressure[-1], film.flux[-1])
         )
-        return pressure / rim**3, slope / rim**4, flux * rim**2
+        found = np.stack([pressure / rim**3, slope / rim**4, flux * rim**2])
+        return found, np.zeros_like(found)
 
-    @cached_property
-    def tails(self) -> tuple[float, float, float]:
-        """The parts of shear, pressure flow and moment beyond the rim."""
+    def tails(self, offset: float) -> tuple[float, float, float]:
+        """Return the parts of shear, pressure flow and moment beyond the rim."""
+        del offset
         film = self._film
         v, weights = _grid(self.degree)[:2]
         weights = weights / (2.0 * self.power * v)  # of dr/r

@@ -21,8 +21,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.equations.point.films import Beyond, Fluxes, FluxSlopes, weights_of
-from stribeck.equations.thinning.column import NEAR, Column, column
+from stribeck.equations.thinning.column import NEAR, Column, column, has_viscosity_at_rest
 from stribeck.equations.thinning.far import LEAST, FarThinned
+from stribeck.equations.thinning.far_power import FarPower
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh
 
@@ -58,6 +59,8 @@ class ThinningPlane:
 
     def beyond(self, speed: float, rim: float) -> Beyond | None:
         """Return what the film beyond a rim has more than one of constant viscosity; None where it thins no more."""
+        if not has_viscosity_at_rest(self.film.law):
+            return FarPower(self.film.law, self.film.slide, speed, rim)
         found = FarThinned(self.film.law, self.film.slide, speed, rim)
         return found if found.lost > LEAST else None
 

@@ -30,6 +30,7 @@ from stribeck.equations.point.mesh_choice import (
 )
 from stribeck.equations.point.observables import identity_error, observables
 from stribeck.equations.point.system import Unknowns
+from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.level import Level, band_for, extrapolated, moved, solve_level
 
@@ -45,7 +46,7 @@ AHEAD = 0.2
 PART = 0.35
 """Stated error over the difference between the two meshes: the finer one is better than this."""
 
-COMPANY, THINNED_COMPANY = 0.1, 0.6
+COMPANY, THINNED_COMPANY = 0.1, 1.0
 """Smallest error that is stated of one observable over the largest of all, each relative to its scale; where a fluid thins."""
 
 CENTRAL = {"central_gap": 0.5, "central_pressure": 2.0}
@@ -56,9 +57,13 @@ UNSEEN, UNSEEN_RADIAL, UNSEEN_SERIES = 5.0, 0.5, 0.4
 """Stated error of the minimum film over the last coefficients of its series in the angle, and in the radius; and over
 the sum of the angular one, continued as a geometric series."""
 
-THINNED_MINIMUM, THINNED = 1.5, 1.5e-3
-"""Where a fluid thins: stated error of the minimum film over that of other fluids, and the least error of all else over it, as
-the viscosity has peaks where hardly anything is sheared."""
+THINNED_MINIMUM, THINNED, THINNED_DRAG = 1.5, 1.5e-3, 1e-2
+"""Where a fluid thins: stated error of the minimum film over that of other fluids, and the least error of all else over it,
+and of friction, as the viscosity has peaks where hardly anything is sheared."""
+
+CUSP = 4e-3
+"""Least stated error of the minimum film, times the number of angles, where the viscosity has a cusp, or no bound, at places
+that are not sheared."""
 
 SLOWEST_DECAY = 0.02
 """Smallest rate at which the coefficients are taken to fall."""
@@ -169,9 +174,12 @@ def centre_tails(level: Level) -> Array:
     return np.asarray(np.abs(mesh.legendre(fields)[:, 0, -2:]).max(axis=1))
 
 
-def scales_of(values: dict[str, float], speed: float) -> dict[str, float]:
-    """Return the scales of errors: one for shares, a radius or an angle, else about the observable itself."""
-    friction = max(abs(values["J_balanced"]), abs(values["J_published"]), speed) if speed > 0 else 1.0
+def scales_of(values: dict[str, float], speed: float, drag: float = 0.0) -> dict[str, float]:
+    """Return the scales of errors: one for shares, a radius or an angle, else about the observable itself.
+
+    That of friction is ``drag`` at least.
+    """
+    friction = max(abs(values["J_balanced"]), abs(values["J_published"]), speed, drag) if speed > 0 else 1.0
     found = {}
     for name, value in values.items():
         if name.endswith("share") or name in ("minimum_radius", "minimum_angle"):
@@ -188,7 +196,7 @@ def scales_of(values: dict[str, float], speed: float) -> dict[str, float]:
 def pair_of(coarse: Level, fine: Level) -> Pair:
     """Return the pair of two levels of one state."""
     values, rough = observables(fine.equations, fine.unknowns), observables(coarse.equations, coarse.unknowns)
-    scales = scales_of(values, fine.equations.speed)
+    scales = scales_of(values, fine.equations.speed, fine.equations.drag_beyond)
     errors = {name: PART * abs(value - rough[name]) + fine.iterated.left * scales[name] for name, value in values.items()}
     # Interpolated minima of two meshes may agree by chance: the truncation of the series bounds their error from below.
     balance = 0.3 * abs(identity_error(values, fine.equations.speed))
@@ -210,11 +218,18 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         least = max(THINNED_COMPANY * widest, THINNED * unseen)
         widest = max(widest, THINNED * unseen / COMPANY)
     errors = {name: max(error, least * scales[name]) for name, error in errors.items()}
+    if fine.resolution.model.film.uses_speed:
+        for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
+            errors[name] = max(errors[name], THINNED_DRAG * unseen * scales[name])
     # The series of the side lobes falls from one mesh to the other as the error of the minimum does.
     last, before = (float(modal_amplitudes(level)[-2:].max()) for level in (fine, coarse))
     gained = 2.0 * min(PART, max(0.05, last / max(before, 1e-300)))
     for name in ("minimum_gap", "minimum_gap_on_axis"):
         errors[name] = max(gained * abs(values[name] - rough[name]), max(unseen, COMPANY * widest) * scales[name])
+    film = fine.resolution.model.film
+    if isinstance(film, ShearThinning) and film.law.plateau < 1:
+        for name in ("minimum_gap", "minimum_gap_on_axis", "minimum_radius"):
+            errors[name] = max(errors[name], CUSP / fine.mesh.modes * scales[name])
     for name in ("minimum_radius", "minimum_angle"):
         errors[name] = max(4.0 * errors[name], unseen * (2.0 if fine.resolution.model.film.uses_speed else 1.0))
     ok = coarse.outcome.ok and fine.outcome.ok

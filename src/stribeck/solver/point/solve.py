@@ -19,11 +19,10 @@ from stribeck.equations.point.films import is_isotropic
 from stribeck.equations.point.iteration import Iterated
 from stribeck.equations.point.mesh_choice import MeshTooLargeError, operators_of, resolution
 from stribeck.equations.point.observables import identity_error
-from stribeck.equations.point.planes import PLANES, has_viscosity_at_rest
+from stribeck.equations.point.planes import PLANES, has_far_film
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.plane import BODIES
@@ -194,10 +193,11 @@ def check_model(model: Model) -> None:
     """Refuse by name what the equations of a ball do not have."""
     if type(model.film) not in PLANES:
         raise InputError(f"fluid = {model.film.name}: its flow in the plane under a ball is not implemented.")
-    if isinstance(model.film, ShearThinning) and not has_viscosity_at_rest(model.film.law):
+    if not has_far_film(as_solved(model)):
         raise InputError(
-            f"fluid = {model.film.name}: far from the contact the fluid is hardly sheared, and the viscosity of a power law "
-            "grows there without bound; give Carreau or Cross, whose viscosity at low rates is that of the contact."
+            f"fluid = {model.film.name} with cavitation = exit: the film far from a ball that breaks in a power law is not "
+            "implemented; give Carreau or Cross, whose viscosity at low rates is that of the contact, or a cavity pressure "
+            "below zero."
         )
     if isinstance(model.film, Newtonian) and not is_isotropic(model.film.flow):
         raise InputError(

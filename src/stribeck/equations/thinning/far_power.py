@@ -1,0 +1,203 @@
+r"""The film far from a ball of a fluid whose viscosity is a power of the rate, down to the slowest.
+
+In a gap :math:`r^2/2` rates fall as :math:`r^{-2}`, stresses as :math:`r^{-2n}` and the pressure as :math:`r^{-1-2n}`, for all
+fluids and ball in the same way: with :math:`r_0^2 = 2 \lambda t` and :math:`\rho = r/r_0`
+
+.. math:: p_f = \frac{\rho^{-1-2n}}{3 t r_0} \sum_k c_k \cos k\theta, \qquad
+    \frac{\mathbf F}{\lambda r^2} = \mathbf f(c, \theta), \qquad 3 f_r + \partial_\theta f_\theta = 0
+
+with f from columns across the film.  The offset changes the gap by the part :math:`\epsilon = 2 z_0/r^2`, pressure and flux to
+first order by multiples of it, with :math:`f_r + \partial_\theta f_\theta = 0`.
+
+The drag grows as :math:`r^{2-2n}`: its integrals to infinity have no finite value, and those here are without that power, so
+that integrals up to a radius are right.
+
+Source: ours, from the generalised Reynolds equation.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from stribeck._types import Array, Indices
+from stribeck.contacts.cut_off import FULL
+from stribeck.equations.thinning.column import Column, column
+from stribeck.fluids.laws import RateLaw
+
+ANGLES, STEPS, ALIKE = 32, 40, 1e-11
+"""Angles in half a turn, steps of Newton's iteration, and the largest of the equations after which it ends."""
+
+DIFFERENCE, PART = 1e-6, 1e-3
+"""Step of the derivative by a coefficient, and change of the gap for that by the offset."""
+
+KNOWN, SECOND = 3e-6, 50.0
+"""Stated error of friction over the drag up to the rim, from which the finite parts are differences; and the same over the
+square of the part by which the gap differs."""
+
+
+class _Similar(NamedTuple):
+    """Coefficients of the pressure, of the flux along the radius over r**2, and the integral of the shear over h."""
+
+    pressure: Array
+    flux: Array
+    shear: float
+
+
+def _grid() -> tuple[Array, Indices, Array, Array]:
+    """Return angles, odd modes, and their cosines and sines at the angles."""
+    theta, modes = (np.arange(ANGLES) + 0.5) * math.pi / ANGLES, np.arange(1, ANGLES, 2)
+    waves = np.multiply.outer(theta, modes)
+    return theta, modes, np.cos(waves), np.sin(waves)
+
+
+def _flux(law: RateLaw, slide: float, found: Array, change: Array, part: float) -> tuple[Array, Array, Column]:
+    """Return the coefficients of both components of the flux at the reference radius, and the columns.
+
+    ``found`` has the coefficients of the pressure, shape (number, modes), ``change`` the part of them that grows with that
+    of the gap.
+    """
+    theta, modes, cosines, sines = _grid()
+    n = cast("Any", law).exponent
+    along = np.stack([np.cos(theta), -np.sin(theta)])[:, None] * np.ones((len(found), 1))
+    gradient = np.stack([-((1.0 + 2.0 * n) * found + 2.0 * change) @ cosines.T, -(found * modes) @ sines.T])
+    slope, slip = (1.0 + part) * gradient, -slide / (1.0 + part) * along
+    flow = column(law, slope.reshape(2, -1), slip.reshape(2, -1))
+    flux = (1.0 + part) ** 2 * flow.carried.reshape(gradient.shape) - 0.5 * (1.0 + part) * along
+    return flux[0] @ cosines * (2.0 / ANGLES), flux[1] @ sines * (2.0 / ANGLES), flow
+
+
+def _solved(law: RateLaw, slide: float, start: Array, base: _Similar | None, part: float, known: Array) -> _Similar:
+    """Return the film; the radial flux that is not ``base``'s falls as r**-2 besides."""
+    theta, modes, _, _ = _grid()
+    old_radial = 0.0 if base is None else base.flux
+    old_angular, power = known, 3.0 if base is None else 1.0
+
+    def equations(found: Array) -> tuple[Array, Array, Column]:
+        change = np.zeros_like(found) if base is None else found - base.pressure
+        radial, angular, flow = _flux(law, slide, found, change, part)
+        return power * (radial - old_radial) + modes * (angular - old_angular), radial, flow
+
+    found = start
+    left = equations(found[None])[0][0]
+    for _ in range(STEPS):
+        moved = found + np.concatenate([DIFFERENCE * np.eye(found.size), -DIFFERENCE * np.eye(found.size)])
+        values = equations(moved)[0]
+        jacobian = (values[: found.size] - values[found.size :]).T / (2.0 * DIFFERENCE)
+        step, length = np.linalg.solve(jacobian, -left), 1.0
+        while length > 1e-3:
+            there = equations((found + length * step)[None])[0][0]
+            if np.linalg.norm(there) < np.linalg.norm(left):
+                break
+            length *= 0.5
+        else:
+            break
+        found, left = found + length * step, there
+        if np.abs(left).max() <= ALIKE:
+            break
+    _, radial, flow = equations(found[None])
+    along = np.stack([np.cos(theta), -np.sin(theta)])
+    if slide:
+        shear = -(flow.mean * along).sum(axis=0) / slide
+    else:
+        shear = (flow.ease[0] * along[0] ** 2 + 2.0 * flow.ease[1] * along[0] * along[1] + flow.ease[2] * along[1] ** 2) / (
+            1.0 + part
+        )
+    return _Similar(found, radial[0], float(shear.sum()) * 2.0 * math.pi / ANGLES)
+
+
+@lru_cache(maxsize=32)
+def similar(law: Any, slide: float) -> tuple[_Similar, _Similar]:
+    """Return the film of a law, and its change by the part by which the gap differs."""
+    start, nothing = np.zeros(ANGLES // 2), np.zeros(ANGLES // 2)
+    start[0] = -1.2  # of a Newtonian fluid
+    found = _solved(law, slide, start, None, 0.0, nothing)
+    angular = _flux(law, slide, found.pressure[None], nothing[None], 0.0)[1][0]
+    below, above = (_solved(law, slide, found.pressure, found, part, angular) for part in (-PART, PART))
+    double = 2.0 * PART
+    pressure, flux = ((getattr(above, name) - getattr(below, name)) / double for name in ("pressure", "flux"))
+    return found, _Similar(pressure, flux, (above.shear - below.shear) / double)
+
+
+class FarPower:
+    """The film of a ball beyond a rim.
+
+    Parameters
+    ----------
+    law : RateLaw
+        A power law, its time in Hertz units at this speed.
+    slide : float
+        Half the slide-to-roll ratio.
+    speed, rim : float
+        Speed group, and radius of the rim [a].
+    """
+
+    is_all = True
+
+    def __init__(self, law: RateLaw, slide: float, speed: float, rim: float) -> None:
+        self.law, self.slide, self.speed, self.rim = law, slide, speed, rim
+        self.exponent: float = cast("Any", law).exponent
+        self.ratio = rim / math.sqrt(2.0 * law.time * speed)
+        """The rim over the radius where the rate is one over the relaxation time."""
+
+    @cached_property
+    def _film(self) -> tuple[_Similar, _Similar]:
+        return similar(replace(cast("Any", self.law), relaxation_time=1.0), self.slide)
+
+    @property
+    def drag(self) -> float:
+        """An estimate of the drag up to the rim."""
+        return math.pi * self._unit
+
+    def doubt(self, offset: float) -> float:
+        """Return an estimate of the error of the friction."""
+        return self.drag * (KNOWN + SECOND * (2.0 * max(1.0, abs(offset)) / self.rim**2) ** 2)
+
+    def beyond(self, radius: float) -> FarPower:
+        """Return the film beyond another radius."""
+        return FarPower(self.law, self.slide, self.speed, radius)
+
+    @property
+    def _unit(self) -> float:
+        """Unit of the pressure at the rim times the rim to the power three."""
+        return float(self.speed / 1.5 * self.ratio ** (2.0 - 2.0 * self.exponent))
+
+    def _parts(self, offset: float) -> float:
+        return 2.0 * offset / self.rim**2
+
+    def first(self, offset: float) -> float:
+        """Return the factor of cos(theta) in the pressure at the rim."""
+        base, change = self._film
+        return self._unit * float(base.pressure[0] + self._parts(offset) * change.pressure[0]) / self.rim**3
+
+    def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array]:
+        """Return pressure, its radial derivative, and flux along the radius more than that of its slope, and by the offset."""
+        odd = _grid()[1]
+        cosines, rim = np.cos(np.multiply.outer(angles, odd[odd < modes])), self.rim
+        found = []
+        for film, power in zip(self._film, (1.0, 3.0), strict=True):
+            pressure, flux = (cosines @ each[: cosines.shape[1]] for each in (film.pressure, film.flux))
+            slope = -(power + 2.0 * self.exponent) * pressure
+            found.append((self._unit / rim**3 * pressure, self._unit / rim**4 * slope, self.speed * rim**2 * flux))
+        (pressure, slope, flux), more = found
+        by_offset = np.stack(more) * self._parts(1.0)
+        # What the walls carry, and what the slope moves in the gap of a fluid that does not thin, is counted elsewhere.
+        gap, carried = 0.5 * rim**2, self.speed * np.cos(angles)
+        by_offset[2] += carried - gap**3 * by_offset[1] - 3.0 * gap**2 * slope
+        return np.stack([pressure, slope, flux + gap * carried - gap**3 * slope]), by_offset
+
+    def tails(self, offset: float) -> tuple[float, float, float]:
+        """Return the parts of shear, pressure flow and moment beyond the rim, and Newtonian logarithms up to it."""
+        base, change = self._film
+        q, part, log = 2.0 - 2.0 * self.exponent, self._parts(offset), math.log(self.rim)
+        drag = self.ratio**q * (-base.shear / q + part * change.shear / (2.0 - q))
+        first = self._unit * float(base.pressure[0] + part * change.pressure[0])
+        moment = math.pi * self._unit * float(-base.pressure[0] / q + part * change.pressure[0] / (2.0 - q))
+        # By parts: (r h f)/2 at the rim, and half the moment; the constant is that of the other fluids.
+        poiseuille = -0.25 * math.pi * (1.0 + part) * first - 0.5 * moment - 0.5 * FULL.poiseuille * self.speed
+        strength = FULL.poiseuille * self.speed * log
+        return self.speed / 3.0 * drag + FULL.couette * self.speed * log, poiseuille + strength, moment - 2.0 * strength
