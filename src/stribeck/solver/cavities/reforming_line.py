@@ -114,7 +114,7 @@ class ReformingLine(LineProblem):
         of_values = found.observables[:, columns] / self.scales(found.observables[:1], np.array([s]))[:, columns]
         return found, radius(of_values, reach)
 
-    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Array) -> Array:
+    def missed(self, left: Expansion, right: Expansion, parts: Array, values: Callable[[], Array]) -> Array:
         """Return the difference from a state in the middle; between films with and without a cavity, zero."""
         if not has_cavity(left.point.state) and not has_cavity(right.point.state):
             return super().missed(left, right, parts, values)
@@ -125,7 +125,7 @@ class ReformingLine(LineProblem):
         if middle is None:
             return np.full(POSITION + 1, np.inf)
         place = 0.5 * (left.coordinate + right.coordinate)
-        known = values[int(np.argmin(np.abs(parts - 0.5)))]
+        known = values()[int(np.argmin(np.abs(parts - 0.5)))]
         scales = self.scales(known[None], np.array([place]))[0]
         wrong = np.abs(middle - known) / scales
         found[:POSITION] = UNSEEN * np.where(np.isfinite(known), np.nan_to_num(wrong, nan=np.inf), 0.0)[:POSITION]
