@@ -215,8 +215,10 @@ class FrictionModel:
         self.contact, self.data, self.free = contact, data, tuple(free)
         self.rule = RULES[contact.groups.geometry]
         self.contacts = tuple(contact.replace(speed=1.0, **inputs) for inputs in data.inputs)
-        for each in self.contacts:
-            check_solid(each.groups, "and a fit takes one solid for all rows of a curve; fit with an elastic solid.")
+        groups = [each.groups for each in self.contacts]
+        self.physics, self.model = [each.physics for each in groups], contact.groups.model
+        for each in groups:
+            check_solid(each, "and a fit takes one solid for all rows of a curve; fit with an elastic solid.")
         exponents = [self._exponents(curve) for curve in range(len(data.curves))]
         self.exponents = np.array(exponents).reshape(len(data.curves), len(self.free), 4 + len(self.rule.inputs))
         self.logs = self.logs_at(data.curve, data.values)
@@ -245,8 +247,8 @@ class FrictionModel:
         groups: dict[Any, tuple[Physics, tuple[ModelChange, ...], list[int]]] = {}
         for c in np.unique(curve).tolist():
             moving = self.moving[c]
-            contact = self.contact_of(c, theta) if moving else self.contacts[c]
-            physics, changes = contact.groups.physics, self._changes(c, theta, moving)
+            physics = self.contact_of(c, theta).groups.physics if moving else self.physics[c]
+            changes = self._changes(c, theta, moving) if moving else ()
             same = next((key for key, each in groups.items() if each[:2] == (physics, changes)), c)
             groups.setdefault(same, (physics, changes, []))[2].append(c)
         found = []
@@ -357,7 +359,7 @@ class FrictionModel:
         found = self._parts(theta, x, curve, parts_of)
         names = self.rule.parts(found.definition)
         parts, inputs = dict(zip(names, found.values[1:], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
-        fixed = {"far": far_film(self.contact.groups.model)}
+        fixed = {"far": far_film(self.model)}
 
         def viscous(values: Any, groups: Any, others: Any) -> Any:
             """Return the viscous friction after changes of parts, of the logarithms of speed and load, and of inputs."""
