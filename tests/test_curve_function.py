@@ -13,7 +13,10 @@ from stribeck.curves.function import solved_at
 from stribeck.curves.regime import Transition
 from stribeck.equations.observables import ROW
 from stribeck.quantities.outputs import NAMES
+from stribeck.solver import corrector
+from stribeck.solver.cold_start import first_path
 from stribeck.solver.line_path import LineProblem
+from stribeck.solver.refinement import converge
 
 SEED = 61_441
 CONTACT = sb.LineContact(
@@ -125,6 +128,21 @@ def test_marks_are_read_off_a_coarse_curve_within_their_errors_and_polished_on_s
     assert not solved
     assert coarse.landmark(Transition.BOUNDARY_END).error < 0.2 * coarse.landmark(Transition.BOUNDARY_END, coarse.rtol).error
     assert len(solved) in (1, 2)
+
+
+def test_a_curve_like_another_needs_few_meshes_no_cold_start_and_is_the_same(monkeypatch):
+    before, moved = sb.stribeck_curve(CONTACT, points=200, rtol=1e-4), CONTACT.replace(load="31 N/m")
+    begun, meshes = [], []
+    monkeypatch.setattr(corrector, "first_path", lambda groups: begun.append(groups) or first_path(groups))
+    monkeypatch.setattr(corrector, "converge", lambda *given, **more: meshes.append(given) or converge(*given, **more))
+    curve = sb.stribeck_curve(moved, points=200, rtol=1e-4, like=before)
+    used = len(meshes)
+    assert not begun and curve._function.problem.like == []  # it holds no other curve
+    anew = sb.stribeck_curve(moved, points=200, rtol=1e-4)
+    assert len(begun) == 1 and used < 0.7 * (len(meshes) - used)
+    speeds = np.geomspace(1.01 * max(curve.values[0], anew.values[0]), 0.99 * min(curve.values[-1], anew.values[-1]), 40)
+    one, two = curve.at(speeds), anew.at(speeds)
+    assert (np.abs(one.friction - two.friction) <= one.friction_error + two.friction_error).all()
 
 
 def test_fields_are_solved_where_they_are_asked_for(curve):

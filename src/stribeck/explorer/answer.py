@@ -214,7 +214,9 @@ class Answerer:
         if in_atlas(contact) or key in self._kept:
             return False
         try:
-            self._keep(key, lambda: solved_curve(contact, definition, report))
+            last = self._last_curves.get(contact.INPUTS.geometry)
+            like = None if last is None else last.solved
+            self._keep(key, lambda: solved_curve(contact, definition, report, like))
         except (InputError, SolveError) as problem:
             self._kept[key] = None
             self._kept["why", _key(contact), definition] = str(problem)

@@ -216,7 +216,7 @@ def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple
     return Curve(speed, friction, solid, marks, f"from the lookup table, within {_power(row.error)}")
 
 
-def solved_curve(contact: Contact, definition: Definition, report: Report) -> Curve:
+def solved_curve(contact: Contact, definition: Definition, report: Report, like: StribeckCurve | None = None) -> Curve:
     """Return a curve of solved states, with the transitions located on them.
 
     Parameters
@@ -227,6 +227,8 @@ def solved_curve(contact: Contact, definition: Definition, report: Report) -> Cu
         By which minimum and transitions go.
     report : callable
         Called with the finished part; an exception that it raises ends the work.
+    like : StribeckCurve, optional
+        The curve before, whose states serve as guesses.
 
     Returns
     -------
@@ -241,7 +243,12 @@ def solved_curve(contact: Contact, definition: Definition, report: Report) -> Cu
     geometry = contact.INPUTS.geometry
     points = SOLVED_POINTS[geometry]
     found = stribeck_curve(
-        contact, points=points, rtol=SOLVED_RTOL, definition=definition, on_point=lambda done, of: report(done / of)
+        contact,
+        points=points,
+        rtol=SOLVED_RTOL,
+        definition=definition,
+        on_point=lambda done, of: report(done / of),
+        like=like,
     )
     if len(found) < 2:
         raise SolveError(found.outcome, None, found.outcome.value)

@@ -134,6 +134,12 @@ class Corrector:
         tail, gap_tail = self._widest
         self.tolerances = min(tail, RELAX * self.tolerances[0]), min(gap_tail, RELAX * self.tolerances[1])
 
+    def move_to(self, operators: Operators, fine: FineOperators) -> None:
+        """Go on with a mesh that is known already."""
+        if self.operators is None or self.operators.mesh is not operators.mesh:
+            self._change_to(operators, fine)
+            self.inverse = None
+
     def _change_to(self, operators: Operators, fine: FineOperators | None) -> None:
         """Take another mesh; the states on the last one keep of its operators what is not for Jacobians alone."""
         if self.operators is not None:

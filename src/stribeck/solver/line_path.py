@@ -17,6 +17,7 @@ from stribeck.equations.gap import minimum_gaps
 from stribeck.equations.line import Equations, Operators
 from stribeck.equations.observables import ROW, observables
 from stribeck.equations.state import State, fall_of, is_thinning, solve_state
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.hermite import hermite_weights, missed_by
 from stribeck.numerics.newton import Inverse, Root
 from stribeck.numerics.panels import Mesh, interpolation_error
@@ -77,6 +78,9 @@ NEGLIGIBLE = 0.1
 OFFSET_FLOOR = 5e-3
 """The error of the offset is relative to it where it exceeds this."""
 
+SIMILAR = 0.5
+"""Distance from a state of a similar contact over the radius of convergence there, up to which it is a guess."""
+
 DOUBTFUL = 0.4
 """Uncertainty of a prediction above which Newton's iteration does not start from it."""
 
@@ -102,9 +106,20 @@ class LinePoint(NamedTuple):
 
 
 class LineProblem:
-    """The states of the line: ``groups_at(s)`` gives the groups at coordinate s, ``direction`` their derivatives."""
+    """The states of the line: ``groups_at(s)`` gives the groups at coordinate s, ``direction`` their derivatives.
 
-    def __init__(self, groups_at: Callable[[float], Groups], direction: Direction, rtol: float, uniform: bool = True) -> None:
+    ``like`` are states along a similar contact: states of this one are sought from those, and on their meshes, which spares
+    the cold start and most new meshes.  Each is verified as any other.
+    """
+
+    def __init__(
+        self,
+        groups_at: Callable[[float], Groups],
+        direction: Direction,
+        rtol: float,
+        uniform: bool = True,
+        like: Sequence[Expansion] = (),
+    ) -> None:
         self.groups_at, self.direction, self.uniform = groups_at, direction, uniform
         start = groups_at(0.0)
         film = start.model.film
@@ -118,6 +133,8 @@ class LineProblem:
         self.corrector = Corrector(groups_at, self.rtol, GAP_PART)
         self.failure: RefinedState | None = None
         self._inverses: list[tuple[State, Inverse]] = []
+        kind = start.model.cavitation
+        self.like = [one for one in like if one.point.state.groups.model.cavitation is kind is not Cavitation.REFORM]
 
     @property
     def held(self) -> Flags:
@@ -155,7 +172,10 @@ class LineProblem:
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
         """Return the expanded state at ``s``, see :class:`stribeck.solver.path.Problem`."""
         groups = self.groups_at(s)
-        if near and _alike(*near):
+        refined = self._from_similar(s, groups, near)
+        if refined is not None:
+            pass
+        elif near and _alike(*near):
             guess, doubt = self._guess(s, groups, near)
             if not doubt <= DOUBTFUL:
                 return Outcome.PATH_LOST
@@ -163,7 +183,7 @@ class LineProblem:
             if not (np.isfinite(gap).all() and gap.min() > 0 and guess.dilation > 0):
                 return Outcome.NOT_FINITE
             spread = max(abs(guess.minimum_position - one.point.state.minimum_position) for one in near)
-            refined: RefinedState | None = self.corrector.solve(guess, groups, SPREAD * spread)
+            refined = self.corrector.solve(guess, groups, SPREAD * spread)
         else:
             refined = self.corrector.cold(groups)
         if refined is None:
@@ -173,6 +193,23 @@ class LineProblem:
             return refined.outcome
         refined = replace(refined, outcome=Outcome.CONVERGED)  # rounding limits it, within the tolerance
         return self._expanded(s, refined, min((one.radius for one in near), default=2.0))
+
+    def _from_similar(self, s: float, groups: Groups, near: Sequence[Expansion]) -> RefinedState | None:
+        """Return the state from the nearest one of a similar contact, on its mesh; None if there is none, or it fails."""
+        found = min(self.like, key=lambda one: abs(one.coordinate - s), default=None)
+        if found is None or abs(found.coordinate - s) > SIMILAR * found.radius:
+            return None
+        point: LinePoint = found.point
+        w, doubt = beyond(point.unknowns, s - found.coordinate)
+        if not doubt <= DOUBTFUL:
+            return None
+        base = with_positive_gap(groups)[0]
+        guess = self.state(replace(base, model=as_in(point.state, base.model)), point, w)
+        positions = [one.point.state.minimum_position for one in near]
+        spread = max((abs(guess.minimum_position - each) for each in positions), default=0.0)
+        self.corrector.move_to(guess.equations.operators, point.fine)
+        refined = self.corrector.solve(guess, groups, SPREAD * spread)
+        return refined if refined.outcome.ok else None
 
     def _expanded(self, s: float, refined: RefinedState, near: float) -> Expansion:
         state, values, estimate = refined.state, refined.values, refined.estimate

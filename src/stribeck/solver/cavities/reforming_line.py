@@ -56,11 +56,19 @@ SLOPE_STEP = 1e-5
 """Step of the difference for the slope of the gap along x."""
 
 
-def problem_of(groups_at: Callable[[float], Groups], direction: Direction, rtol: float, uniform: bool = True) -> LineProblem:
+def problem_of(
+    groups_at: Callable[[float], Groups],
+    direction: Direction,
+    rtol: float,
+    uniform: bool = True,
+    like: Sequence[Expansion] = (),
+) -> LineProblem:
     """Return the states of the line along a path, see :class:`stribeck.solver.line_path.LineProblem`."""
     groups = groups_at(0.0)
     opens = groups.model.cavitation is Cavitation.REFORM and groups.model.cavity_pressure < 0 and groups.speed > 0
-    return (ReformingLine if opens else LineProblem)(groups_at, direction, rtol, uniform)
+    if opens:
+        return ReformingLine(groups_at, direction, rtol, uniform)
+    return LineProblem(groups_at, direction, rtol, uniform, like)
 
 
 class ReformingLine(LineProblem):
