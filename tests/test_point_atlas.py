@@ -267,8 +267,9 @@ def test_parts_for_fits_have_the_derivatives_of_their_values():
 
 
 @pytest.mark.quick
-def test_fits_begin_on_it_where_it_holds():
-    contact = ball(wetted_radius=3e-3)
+@pytest.mark.parametrize("cavitation", ["none", "exit"])
+def test_fits_begin_on_it_where_it_holds(cavitation):
+    contact = ball(wetted_radius=3e-3, cavitation=cavitation)
     curve = sb.stribeck_curve(contact, speed=(contact.speed / 30, contact.speed * 30), points=9, method="atlas")
     data = sb.Measurements(
         "speed", curve.values, curve.friction, None, np.zeros(9, dtype=int), ("a",), ({},), np.arange(2, 11)

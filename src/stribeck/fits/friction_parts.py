@@ -294,10 +294,16 @@ def ways_of(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
     return WAYS[model.contact.groups.geometry](model, definition, rtol)
 
 
+def _in_atlas(model: FrictionModel) -> bool:
+    """Return whether a table holds for all contacts of a fit, wherever in its box their states lie."""
+    kinds = {each.groups.model for each in model.contacts}
+    return len(kinds) == 1 and not any(model.moving) and atlas.for_groups(model.contact.groups) is not None
+
+
 def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
     kinds = {each.groups.model for each in model.contacts}
     solved = solved_parts(definition, rtol) if kinds == {ARTICLE} else kept_parts(definition, rtol)
-    if len(kinds) > 1 or any(model.moving) or atlas.for_groups(model.contact.groups) is None:
+    if not _in_atlas(model):
         return Ways(None, solved, solved)
     return Ways(atlas_parts(definition), atlas_or(solved, definition), solved)
 
@@ -305,10 +311,10 @@ def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> W
 def _of_ball(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
     if any(each.groups.model != ARTICLE for each in model.contacts):  # lattices know one model
         kept = kept_balls(model, definition, max(rtol, KEPT_RTOL))
-        return Ways(None, kept, kept)
+        return Ways(atlas_parts(definition), atlas_or(kept, definition), kept) if _in_atlas(model) else Ways(None, kept, kept)
     logs, varies = model.start()
     lattice, solved = lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL))
-    if atlas.for_groups(model.contact.groups) is None:
+    if not _in_atlas(model):
         return Ways(None, lattice, solved)
     return Ways(atlas_parts(definition), atlas_or(lattice, definition), solved)
 
