@@ -349,6 +349,13 @@ def mesh_for(
             wrong /= np.fmax(np.abs(fluid).max(), 1e-300)
             missed = wrong > (tolerance / TAIL_OF_ERROR) ** 2
             fields.append(np.where(missed[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
+        if ends and jump is not None and stretch[0, 0] == 1.0:  # the liquid behind the exit fills the gap up to a kink
+            h = gap.reshape(x.shape)
+            partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
+            kink = np.ptp(h, axis=1) / (2 * half_widths * guess.flux_gap**2)
+            drag = math.pi * math.sqrt(2 / float(central_gap.max()))
+            missed = partly & (kink * (2 * half_widths / x.shape[1]) ** 2 > 12 * drag * (tolerance / TAIL_OF_ERROR) ** 2)
+            fields.append(np.where(missed[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
         if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
             behind = x - (centre + float(width.mean()))
             fading = [min(1 / de, de) ** 0.5 * np.exp(-np.maximum(behind, 0.0) / de) for de in memories]

@@ -181,22 +181,26 @@ class PatirCheng(FlowFactors):
         """Return the fit of phi_s beyond, for v = 1."""
         return np.asarray(FACTORS[self.gamma][6] * np.exp(-0.25 * H))
 
-    def jump(self, gap: Array) -> Array | None:
-        """Return by how much sigma phi_s jumps between each node and the next one: the two fits do not meet.
+    def jump(self, gap: Array, slide: float) -> Array | None:
+        """Return by how much h + s sigma phi_s, over phi_x, jumps between each node and the next one: two fits do not meet.
 
-        Nor do their slopes: a kink k between nodes w apart puts a quadrature wrong by k w^2/12 at most, as a jump k w/6 does.
+        Nor do their slopes, nor that of phi_x where the fits end: a kink k between nodes w apart puts a quadrature wrong by
+        k w^2/12 at most, as a jump k w/6 does.
         """
-        v = 2 * self.substrate_share - 1
-        if v == 0:
+        v = abs(slide * (2 * self.substrate_share - 1))
+        if v == 0 and self.gamma <= 1:
             return None
         H = self._separation(gap)[0]
-        _, _, _, a_1, a_2, a_3, _ = FACTORS[self.gamma]
-        at = np.array(LINKED)
+        C, r, _, a_1, a_2, a_3, _ = FACTORS[self.gamma]
+        at, apart = np.array(LINKED), np.abs(np.diff(H)) / 6
         near, far = float(self._near(at)), float(self._far(at))
         kink = abs(near * (a_1 / LINKED - a_2 + 2 * a_3 * LINKED) + 0.25 * far)
-        height = abs(v) * (self.sigma or 0.0) * (abs(far - near) + kink * np.abs(np.diff(H)) / 6)
+        height = v * (self.sigma or 0.0) * (abs(far - near) + kink * apart)
         found = np.zeros_like(gap)
         found[..., :-1] = np.where((H[..., 1:] > LINKED) != (H[..., :-1] > LINKED), height, 0.0)
+        if self.gamma > 1:
+            ends = (H[..., 1:] > LEAST) != (H[..., :-1] > LEAST)
+            found[..., :-1] += np.where(ends, gap[..., :-1] * r / LEAST / (1 + LEAST**r / C) * apart, 0.0)
         return found
 
     def friction(self, gap: Array) -> tuple[tuple[Array, Array], tuple[Array, Array], tuple[Array, Array]]:

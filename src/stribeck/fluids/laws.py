@@ -103,8 +103,8 @@ class FlowFactors(Law, Protocol):
     def shear(self, gap: Array) -> tuple[Array, Array]:
         """Return what sliding carries along in valleys, sigma phi_s [u_Hz], and its slope."""
 
-    def jump(self, gap: Array) -> Array | None:
-        """Return by how much :meth:`shear` jumps between each node and the next one, zero mostly; None if it never does."""
+    def jump(self, gap: Array, slide: float) -> Array | None:
+        """Return by how much ``h + s S``, over phi_x, jumps between each node and the next one, zero mostly; None if never."""
         return None
 
     def friction(self, gap: Array) -> tuple[tuple[Array, Array], tuple[Array, Array], tuple[Array, Array]]:

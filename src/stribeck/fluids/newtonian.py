@@ -111,11 +111,11 @@ class Newtonian:
 
     def jump(self, gap: Array, pressure: Array | None) -> Array | None:
         """Return by how much G jumps between each node and the next one, zero mostly; None if it never does."""
-        height = self.flow.jump(gap)
+        height = self.flow.jump(gap, self.slide)
         if height is None or not height.any():
             return None
         eta = self._of_pressure(pressure)[0]
-        return np.asarray(eta / (self.flow.pressure(gap)[0] * gap**3) * abs(self.slide) * height)
+        return np.asarray(eta / (self.flow.pressure(gap)[0] * gap**3) * height)
 
     def tractions(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Array]:
         r"""Return :math:`(\phi_f \pm \phi_{fs}) \eta s/h \pm 3 \phi_{fp} h G`, at the substrate and at the cylinder."""
