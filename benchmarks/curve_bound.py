@@ -24,8 +24,8 @@ import numpy as np
 import stribeck as sb
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.scaling import SCALINGS
+from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.quantities.outputs import ABSOLUTE, NAMES
-from stribeck.solver.point.state import OBSERVABLES
 
 LAWS = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table")
 

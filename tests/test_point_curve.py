@@ -9,7 +9,7 @@ import pytest
 
 import stribeck as sb
 from stribeck.curves.regime import Transition
-from stribeck.equations.point.expansion import SMOOTH
+from stribeck.equations.point.observables import SMOOTH
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solve import solve_cold

@@ -10,9 +10,10 @@ from scipy.integrate import trapezoid
 import stribeck as sb
 from stribeck.contacts.cut_off import log_cut_offs
 from stribeck.contacts.groups import Groups
+from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.solution import finish_point, solution_of
-from stribeck.solver.point.state import OBSERVABLES, PointFields, PointObservables, PointState
+from stribeck.solver.point.state import PointFields, PointObservables, PointState
 
 SPEED, H0 = 0.02, 0.01
 """Speed group and central gap of a rigid ball, whose pressures and friction integrals are known in closed form."""

@@ -20,7 +20,7 @@ from stribeck.curves.function import CurveValues, Progress
 from stribeck.curves.landmarks import Landmark, places_of
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Transition
 from stribeck.curves.result import StribeckCurve
-from stribeck.equations.point.expansion import SMOOTH
+from stribeck.equations.point.observables import OBSERVABLES, SMOOTH
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.newton import root_between
 from stribeck.quantities.outcome import Outcome
@@ -30,7 +30,7 @@ from stribeck.solver.point.curve_path import CurveState, PointProblem
 from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.solution import PointSolution, finish_point, solution_of
 from stribeck.solver.point.solve import RTOL_RANGE
-from stribeck.solver.point.state import OBSERVABLES, PointState
+from stribeck.solver.point.state import PointState
 from stribeck.solver.solve import SolveError, describe
 
 __all__ = ["PointCurve", "point_curve", "point_speeds"]
@@ -53,6 +53,16 @@ COARSE = 1e-3
 PLATEAU, BRANCH = 1e-3, 1e-2
 """The curve ends where the load share changes by less than this over a decade of speed, and asperities cause less than this
 part of the friction."""
+
+
+TINY = 1e-300
+
+CRITERIA: dict[Transition, Callable[[Any, Any], Any]] = {
+    Transition.BOUNDARY_END: lambda fluid, asperities: fluid - BOUNDARY_FLUID_SHARE,
+    Transition.EQUAL_SHARES: lambda fluid, asperities: fluid - 0.5,
+    Transition.HYDRODYNAMIC_START: lambda fluid, asperities: asperities - HYDRODYNAMIC_CONTACT_SHARE,
+}
+"""By how much the load share of the fluid, or that of asperities in friction, exceeds the threshold of a transition."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,18 +138,24 @@ class PointCurve(StribeckCurve):
         solution = self._at(s)
         return Landmark(name, math.exp(s), self._total(solution), solution)  # type: ignore[arg-type]
 
+    @cached_property
+    def _at_unit(self) -> tuple[Groups, dict[str, Any], float]:
+        """The groups where what varies is one, what friction hangs on there, and that of asperities over their load share."""
+        rule, start = RULES["point"], self._path.groups_at(0.0)
+        inputs: dict[str, Any] = dict(rule.of_contact(self._path.contact_at(0.0))) | {"beta": self.beta}
+        if self.contact is None:
+            inputs["slide_to_roll"] = 2.0 * start.model.film.slide
+        return start, inputs, self.boundary_friction * float(rule.rubbing(start, inputs))
+
     def _parts_at(self, s: Array) -> tuple[Array, Array, Array]:
         """Return the load share of the fluid and both parts of the friction at real or complex coordinates."""
-        rule, start = RULES["point"], self._path.groups_at(0.0)
+        rule, (start, known, rubbing) = RULES["point"], self._at_unit
         rows = dict(zip(SMOOTH, self._solved_path.smooth(s).T, strict=True))
         rates = dict(zip(GROUPS, self._path.direction.tolist(), strict=True))
         speed, load = (float(getattr(start, name)) * np.exp(rates[name] * s) for name in ("speed", "load"))
-        inputs: dict[str, Any] = dict(rule.of_contact(self._path.contact_at(0.0))) | {"beta": self.beta}
+        inputs = dict(known)
         if math.isfinite(inputs["wetted_radius"]):
             inputs["wetted_radius"] *= np.exp(rule.exponents["wetted_radius"].get(self.over, 0.0) * s)
-        if self.contact is None:
-            inputs["slide_to_roll"] = 2.0 * start.model.film.slide
-        rubbing = self.boundary_friction * float(rule.rubbing(start, inputs))
         viscous = rule.viscous(rows, speed, load, inputs, self.definition)
         return rows["fluid_load_share"], rubbing * rows["contact_load_share"], viscous
 
@@ -192,22 +208,24 @@ class PointCurve(StribeckCurve):
         """Return one transition, or None where the curve does not hold it; it is read off the curve, without the others."""
         if name == Transition.MINIMUM:
             return self.minimum
-        places, fluid, by_asperities = self._shares
-        if name == Transition.HYDRODYNAMIC_START:
-            return self._crossing(name, places, by_asperities - HYDRODYNAMIC_CONTACT_SHARE)
-        return self._crossing(name, places, fluid - (BOUNDARY_FLUID_SHARE if name == Transition.BOUNDARY_END else 0.5))
+        places, fluid, share = self._shares
+        return self._crossing(name, places, CRITERIA[name](fluid, share))
 
     @cached_property
     def _shares(self) -> tuple[Array, Array, Array]:
         """Coordinates, and there the share of the fluid in the load and that of asperities in the friction."""
         if self._function is None:
             fluid, contact, total = self.observable("fluid_load_share"), self.friction_contact, np.asarray(self.friction)
-            places = np.log(self.values)
+            places, share = np.log(self.values), contact / np.maximum(total, TINY)
         else:
             places = places_of(self._solved_path)
-            fluid, contact, viscous = self._parts_at(places)
-            total = contact + viscous
-        return places, fluid, contact / np.maximum(total, 1e-300)
+            fluid, share = self._shares_at(places)
+        return places, fluid, share
+
+    def _shares_at(self, s: Array) -> tuple[Array, Array]:
+        """Return the load share of the fluid, and that of asperities in friction, at coordinates of a function."""
+        fluid, contact, viscous = self._parts_at(s)
+        return fluid, contact / np.maximum(contact + viscous, TINY)
 
     @cached_property
     def transitions(self) -> tuple[Landmark, ...]:
@@ -218,14 +236,10 @@ class PointCurve(StribeckCurve):
     def _excess(self, name: Transition, s: float) -> float:
         """Return by how much the criterion of a transition exceeds its threshold."""
         if self._function is not None:
-            fluid, contact, viscous = (float(part[0]) for part in self._parts_at(np.array([s])))
-            share = contact / max(contact + viscous, 1e-300)
-        else:
-            solution = self._at(s)
-            fluid, share = solution.fluid_load_share, self._contact_share(solution)
-        if name is Transition.HYDRODYNAMIC_START:
-            return share - HYDRODYNAMIC_CONTACT_SHARE
-        return fluid - (BOUNDARY_FLUID_SHARE if name is Transition.BOUNDARY_END else 0.5)
+            fluid, share = self._shares_at(np.array([s]))
+            return float(CRITERIA[name](fluid, share)[0])
+        solution = self._at(s)
+        return float(CRITERIA[name](solution.fluid_load_share, self._contact_share(solution)))
 
     def _crossing(self, name: Transition, places: Array, excess: Array) -> Landmark | None:
         """Return the first transition of this name between the given coordinates, or None."""

@@ -14,27 +14,13 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contacts.groups import Groups
-from stribeck.equations.point.observables import smooth_observables
+from stribeck.equations.point.observables import SMOOTH, smooth_observables
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.sensitivity import beside, solved
 from stribeck.equations.point.system import Equations, Linear, Unknowns
 from stribeck.numerics.series import implicit_series, interval
 
-__all__ = ["SMOOTH", "Expanded", "as_row", "corrected_once", "expand", "from_row"]
-
-SMOOTH = (
-    "contact_load_share",
-    "fluid_load_share",
-    "central_gap",
-    "central_pressure",
-    "offset",
-    "J_couette",
-    "J_poiseuille",
-    "J_balanced",
-    "J_published",
-    "J_pcx",
-)
-"""Observables that have a series: all but the minima of the gap."""
+__all__ = ["Expanded", "as_row", "corrected_once", "expand", "from_row"]
 
 SAMPLES = 20
 """Places at which the equations are evaluated."""

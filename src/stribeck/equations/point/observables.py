@@ -29,6 +29,36 @@ from stribeck.equations.point.minimum import Minimum, minimum_gap, minimum_on_ax
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.numerics.fourier_panels import PolarMesh, radau
 
+OBSERVABLES = (
+    "contact_load_share",
+    "fluid_load_share",
+    "central_gap",
+    "minimum_gap",
+    "minimum_radius",
+    "minimum_angle",
+    "minimum_gap_on_axis",
+    "central_pressure",
+    "offset",
+    "J_couette",
+    "J_poiseuille",
+    "J_balanced",
+    "J_published",
+    "J_pcx",
+)
+"""Names of the observables.
+
+``minimum_radius`` [a] and ``minimum_angle`` [radian, 0 downstream on the middle line, at most pi by symmetry] place
+the minimum of the gap; ``minimum_gap_on_axis`` is that of the middle line.  The J are the finite parts of the friction
+integrals, ``lim J(r < X) - (16/15) pi lambda ln X``; J_balanced is the force on the flat, J_published that on the ball
+without the contact pressure along x, which is J_pcx.
+"""
+
+MINIMA = ("minimum_gap", "minimum_radius", "minimum_angle", "minimum_gap_on_axis")
+"""Those that are no smooth functions of the unknowns: the place of the minimum jumps."""
+
+SMOOTH = tuple(name for name in OBSERVABLES if name not in MINIMA)
+"""All others, which have a series."""
+
 
 def at_centre(mesh: PolarMesh, field: Array) -> float:
     """Return the value of a nodal field at the centre: that of its axisymmetric mode, the others vanish there."""
@@ -42,7 +72,7 @@ def _to_centre(degree: int) -> Array:
 
 
 def observables(equations: Equations, y: Unknowns) -> dict[str, float]:
-    """Return the observables by name, see :data:`stribeck.solver.point.state.OBSERVABLES`."""
+    """Return the observables by name, see :data:`OBSERVABLES`."""
     return smooth_observables(equations, y) | minima(equations.operators.mesh, y.gap)
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from stribeck._types import Array, Flags
 from stribeck.contact_laws.law import is_exponential
 from stribeck.contacts.groups import Groups
-from stribeck.equations.point.expansion import SHARE, SMOOTH, corrected_once, expand, from_row
-from stribeck.equations.point.observables import identity_error, minima
+from stribeck.equations.point.expansion import SHARE, corrected_once, expand, from_row
+from stribeck.equations.point.observables import SMOOTH, identity_error, minima
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.sensitivity import beside
 from stribeck.equations.point.system import Linear, Unknowns

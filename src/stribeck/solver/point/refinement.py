@@ -28,7 +28,7 @@ from stribeck.equations.point.mesh_choice import (
     resolution,
     split_where_poor,
 )
-from stribeck.equations.point.observables import identity_error, observables
+from stribeck.equations.point.observables import MINIMA, identity_error, observables
 from stribeck.equations.point.system import Unknowns
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.quantities.outcome import Outcome
@@ -57,9 +57,9 @@ UNSEEN, UNSEEN_RADIAL, UNSEEN_SERIES = 5.0, 0.5, 0.4
 """Stated error of the minimum film over the last coefficients of its series in the angle, and in the radius; and over
 the sum of the angular one, continued as a geometric series."""
 
-THINNED_MINIMUM, THINNED, THINNED_DRAG = 1.5, 1.5e-3, 1e-2
+THINNED_MINIMUM, THINNED, THINNED_DRAG, THINNED_FRICTION = 1.5, 1.5e-3, 3e-2, 2.0
 """Where a fluid thins: stated error of the minimum film over that of other fluids, and the least error of all else over it,
-and of friction, as the viscosity has peaks where hardly anything is sheared."""
+and of friction, as the viscosity has peaks where hardly anything is sheared; and that of friction over the others'."""
 
 CUSP = 4e-3
 """Least stated error of the minimum film, times the number of angles, where the viscosity has a cusp, or no bound, at places
@@ -89,8 +89,6 @@ ROUNDING = 0.03
 LARGE = 200_000_000
 """Memory of the finer mesh from which the preconditioners of coarser ones are not kept for neighbours."""
 
-BY_NAME_MINIMUM = ("minimum_gap", "minimum_radius", "minimum_angle", "minimum_gap_on_axis")
-
 
 @dataclass(frozen=True, eq=False)
 class Pair:
@@ -112,7 +110,7 @@ class Pair:
     @property
     def total(self) -> float:
         """Largest error relative to its scale, but for those of the minimum film."""
-        return max(self.errors[name] / self.scales[name] for name in self.errors if name not in BY_NAME_MINIMUM)
+        return max(self.errors[name] / self.scales[name] for name in self.errors if name not in MINIMA)
 
     @property
     def minimum(self) -> float:
@@ -211,7 +209,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     if fine.equations.speed > 0:
         unseen += unseen_in_angle(fine)
     # Two meshes may agree by chance in one number, hardly in all.
-    widest = max(errors[name] / scales[name] for name in errors if name not in BY_NAME_MINIMUM)
+    widest = max(errors[name] / scales[name] for name in errors if name not in MINIMA)
     least = COMPANY * widest
     if fine.resolution.model.film.uses_speed:
         unseen *= THINNED_MINIMUM
@@ -220,7 +218,7 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
     errors = {name: max(error, least * scales[name]) for name, error in errors.items()}
     if fine.resolution.model.film.uses_speed:
         for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
-            errors[name] = max(errors[name], THINNED_DRAG * unseen * scales[name])
+            errors[name] = max(errors[name], max(THINNED_FRICTION * least, THINNED_DRAG * unseen) * scales[name])
     # The series of the side lobes falls from one mesh to the other as the error of the minimum does.
     last, before = (float(modal_amplitudes(level)[-2:].max()) for level in (fine, coarse))
     gained = 2.0 * min(PART, max(0.05, last / max(before, 1e-300)))

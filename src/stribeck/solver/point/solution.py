@@ -13,12 +13,13 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
+from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
-from stribeck.solver.point.state import OBSERVABLES, PointObservables, PointState
+from stribeck.solver.point.state import PointObservables, PointState
 from stribeck.solver.solve import SolveError, describe
 
 if TYPE_CHECKING:

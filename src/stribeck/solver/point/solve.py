@@ -18,7 +18,7 @@ from stribeck.equations.point.dry import dry_contact, hertz_gap
 from stribeck.equations.point.films import is_isotropic
 from stribeck.equations.point.iteration import Iterated
 from stribeck.equations.point.mesh_choice import MeshTooLargeError, operators_of, resolution
-from stribeck.equations.point.observables import identity_error
+from stribeck.equations.point.observables import OBSERVABLES, identity_error
 from stribeck.equations.point.planes import PLANES, has_far_film
 from stribeck.equations.point.system import LOAD, Equations, Unknowns
 from stribeck.fluids.cavitation import Cavitation
@@ -32,7 +32,7 @@ from stribeck.solver.cavities.reforming import follow_reforming, full_model, hol
 from stribeck.solver.point.level import Level
 from stribeck.solver.point.refinement import Pair, follow, holds_along_path, newton_tolerance, pair_of, refine
 from stribeck.solver.point.start import first_state
-from stribeck.solver.point.state import OBSERVABLES, PointFields, PointState
+from stribeck.solver.point.state import PointFields, PointState
 
 RTOL_RANGE = (1e-8, 1e-2)
 """Tolerances that a solve takes."""

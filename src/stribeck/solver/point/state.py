@@ -16,36 +16,12 @@ from stribeck.contacts.cut_off import far_film, friction_integral, log_cut_offs
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.point import PURE_SLIDING, PointContact
-from stribeck.equations.point.observables import FrictionWithin
+from stribeck.equations.point.observables import MINIMA, OBSERVABLES, FrictionWithin
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.refinement import Pair
 
-OBSERVABLES = (
-    "contact_load_share",
-    "fluid_load_share",
-    "central_gap",
-    "minimum_gap",
-    "minimum_radius",
-    "minimum_angle",
-    "minimum_gap_on_axis",
-    "central_pressure",
-    "offset",
-    "J_couette",
-    "J_poiseuille",
-    "J_balanced",
-    "J_published",
-    "J_pcx",
-)
-"""Names of the observables.
-
-``minimum_radius`` [a] and ``minimum_angle`` [radian, 0 downstream on the middle line, at most pi by symmetry] place
-the minimum of the gap; ``minimum_gap_on_axis`` is that of the middle line.  The J are the finite parts of the friction
-integrals, ``lim J(r < X) - (16/15) pi lambda ln X``; J_balanced is the force on the flat, J_published that on the ball
-without the contact pressure along x, which is J_pcx.
-"""
-
-WITHOUT_TOLERANCE = ("minimum_gap", "minimum_radius", "minimum_angle", "minimum_gap_on_axis")
+WITHOUT_TOLERANCE = MINIMA
 """Observables with stated errors that do not count in :attr:`PointState.error_estimate`: rtol does not limit them."""
 
 LOOSE_WHERE_TORN = ("J_couette", "J_balanced", "J_published", "central_pressure")
