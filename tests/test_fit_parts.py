@@ -110,10 +110,32 @@ def test_what_the_contact_does_not_have_cannot_be_free():
         TRUE.replace(layer_thickness=1)
 
 
-def test_a_body_that_remembers_is_refused_by_name():
-    contact = TRUE.replace(solid=sb.solids.StandardLinearSolid("10 ms", 3.0))
-    with pytest.raises(sb.InputError, match="standard linear solid, half-plane: its Deborah number changes with the speed"):
-        sb.fit(measured(SPEEDS, np.ones(6)), contact, free=["roughness"])
+REMEMBERS = TRUE.replace(solid=sb.solids.StandardLinearSolid("10 ms", 3.0))
+
+
+def test_the_deborah_number_of_a_row_is_that_of_its_speed():
+    """And moves with what is free: the modulus widens the contact, which a point of the body takes longer to pass."""
+    free, speeds = ("modulus", "boundary_friction"), SPEEDS[2:4]
+    data = measured(speeds, np.ones(2))
+    model = FrictionModel(REMEMBERS, data, free_inputs(REMEMBERS, data, free, FitSettings()))
+    kept, theta = kept_parts("balanced", 1e-6), np.array([0.1, 0.0])
+    found = model.predict(theta, kept)
+    moved = REMEMBERS.replace(modulus=REMEMBERS.modulus * np.exp(0.1))
+    solved = [sb.solve(moved.replace(speed=float(speed))).friction for speed in speeds]
+    assert found.friction == pytest.approx(solved, rel=1e-5)
+    ends = [model.predict(theta + [step, 0.0], kept).friction for step in (1e-3, -1e-3)]
+    assert found.jacobian[:, 0] == pytest.approx((ends[0] - ends[1]) / 2e-3, abs=1e-4)
+
+
+@pytest.mark.slow
+def test_a_fit_on_a_body_that_remembers_finds_what_made_the_data():
+    speeds = SPEEDS[1:5]
+    data = measured(speeds, [sb.solve(REMEMBERS.replace(speed=float(speed))).friction for speed in speeds], error=1e-4)
+    start = REMEMBERS.replace(roughness=1.3 * REMEMBERS.roughness, boundary_friction=0.8 * REMEMBERS.boundary_friction)
+    found = sb.fit(data, start, free=("roughness", "boundary_friction"), intervals=False)
+    assert found.converged
+    for name in ("roughness", "boundary_friction"):
+        assert found[name].value == pytest.approx(getattr(REMEMBERS, name), rel=1e-3)
 
 
 def test_an_exponent_stays_in_the_range_of_its_law():

@@ -52,6 +52,9 @@ __all__ = [
 MOST_KEPT = 60
 """Rows from which the states of another fluid or solid are solved as a curve: fewer are solved one by one."""
 
+NEAR = 0.3
+"""Largest change of a logarithm over which a single state is solved from another, if one more can be kept."""
+
 LATTICE_RTOL, BALL_RTOL = 3e-4, 1e-4
 """Tolerances of solved balls in the search, and the smallest in the values that a fit returns: far below what rigs resolve."""
 
@@ -183,8 +186,8 @@ def kept_parts(definition: Definition, rtol: float) -> PartsOf:
         pool = pools.setdefault((model.film.name, model.cavitation, model.solid.name), [])
         unused = list(pool)
         for i in np.argsort(-places[:, 0]).tolist():
-            if unused:
-                kept = min(unused, key=lambda each: each.distance(places[i]))
+            kept = min(unused, key=lambda each: each.distance(places[i]), default=None)
+            if kept is not None and (n > 1 or len(pool) > MOST_KEPT or kept.distance(places[i]) < NEAR):
                 unused.remove(kept)
             else:
                 near = min(pool, key=lambda each: each.distance(places[i]), default=None)
@@ -201,7 +204,7 @@ def kept_parts(definition: Definition, rtol: float) -> PartsOf:
     return parts
 
 
-@dataclass
+@dataclass(eq=False)
 class _Kept:
     """A solver, and the logarithms of the groups that it last solved."""
 

@@ -217,8 +217,10 @@ class FrictionModel:
         self.contacts = tuple(contact.replace(speed=1.0, **inputs) for inputs in data.inputs)
         groups = [each.groups for each in self.contacts]
         self.physics, self.model = [each.physics for each in groups], contact.groups.model
-        for each in groups:
-            check_solid(each, "and a fit takes one solid for all rows of a curve; fit with an elastic solid.")
+        self.remembers = [getattr(each.model.solid, "uses_speed", False) for each in groups]
+        if data.abscissa != "speed":
+            for each in groups:
+                check_solid(each, "which a fit must know; give a column of speeds, or fit with an elastic solid.")
         exponents = [self._exponents(curve) for curve in range(len(data.curves))]
         self.exponents = np.array(exponents).reshape(len(data.curves), len(self.free), 4 + len(self.rule.inputs))
         self.logs = self.logs_at(data.curve, data.values)
@@ -229,9 +231,9 @@ class FrictionModel:
         """Return the free inputs on which the model of a curve depends at fixed groups."""
         return tuple(change.input for change in self._changes(curve, theta, range(len(self.free))))
 
-    def _changes(self, curve: int, theta: Array, of: Iterable[int]) -> tuple[ModelChange, ...]:
+    def _changes(self, curve: int, theta: Array, of: Iterable[int], speed: float | None = None) -> tuple[ModelChange, ...]:
         """Return what each of some free inputs changes of the model of a curve, those that change nothing left out."""
-        contact, found = self.contact_of(curve, theta), []
+        contact, found = self.contact_of(curve, theta, speed), []
         for k in of:
             free = self.free[k]
             if free.curve not in (None, curve) or getattr(contact, free.name, None) is None:
@@ -242,18 +244,23 @@ class FrictionModel:
                 found.append(ModelChange(k, *beside))
         return tuple(found)
 
-    def _parts(self, theta: Array, x: Array, curve: Indices, parts_of: PartsOf) -> FrictionParts:
-        """Return the parts of the friction of all rows, those of curves with different models on their own."""
-        groups: dict[Any, tuple[Physics, tuple[ModelChange, ...], list[int]]] = {}
+    def _parts(self, theta: Array, x: Array, curve: Indices, values: Array, parts_of: PartsOf) -> FrictionParts:
+        """Return the parts of the friction of all rows, those with different models on their own."""
+        groups: list[tuple[Physics, tuple[ModelChange, ...], list[Indices]]] = []
         for c in np.unique(curve).tolist():
-            moving = self.moving[c]
-            physics = self.contact_of(c, theta).groups.physics if moving else self.physics[c]
-            changes = self._changes(c, theta, moving) if moving else ()
-            same = next((key for key, each in groups.items() if each[:2] == (physics, changes)), c)
-            groups.setdefault(same, (physics, changes, []))[2].append(c)
+            own, moving, remembers = np.nonzero(curve == c)[0], self.moving[c], self.remembers[c]
+            for rows in own[:, None] if remembers else own[None]:
+                speed = float(values[rows[0]]) if remembers else None
+                moved = moving or remembers
+                physics = self.contact_of(c, theta, speed).groups.physics if moved else self.physics[c]
+                changes = self._changes(c, theta, moving, speed) if moved else ()
+                same = next((each[2] for each in groups if each[:2] == (physics, changes)), None)
+                if same is None:
+                    groups.append((physics, changes, same := []))
+                same.append(rows)
         found = []
-        for physics, changes, curves in groups.values():
-            rows = np.nonzero(np.isin(curve, curves))[0]
+        for physics, changes, several in groups:
+            rows = np.concatenate(several)
             each = parts_of(Groups(x[rows, 0], x[rows, 1], x[rows, 2], **physics), changes)
             slopes = np.zeros((len(each.values), 3 + len(self.free), len(rows)))
             slopes[:, :3] = each.slopes[:, :3]
@@ -324,8 +331,8 @@ class FrictionModel:
         by[:, :, 2] -= exponent * by[:, :, 1]
         return logs, np.abs(by).max(axis=(0, 1), initial=0.0) > 1e-12
 
-    def contact_of(self, curve: int, theta: Array) -> Contact:
-        """Return the contact of a curve at a set of free inputs, at the speed of the case."""
+    def contact_of(self, curve: int, theta: Array, speed: float | None = None) -> Contact:
+        """Return the contact of a curve at a set of free inputs, at a speed, by default that of the case."""
         factors: dict[str, float] = {}
         for free, t in zip(self.free, theta.tolist(), strict=True):
             if free.curve in (None, curve):
@@ -333,7 +340,8 @@ class FrictionModel:
         contact = self.contacts[curve]
         values = {name: getattr(contact, name, None) for name in factors}
         return contact.replace(
-            speed=self.contact.speed, **{name: value * factors[name] for name, value in values.items() if value is not None}
+            speed=self.contact.speed if speed is None else speed,
+            **{name: value * factors[name] for name, value in values.items() if value is not None},
         )
 
     def predict(self, theta: Array, parts_of: PartsOf, at: tuple[Indices, Array] | None = None) -> Prediction:
@@ -353,10 +361,10 @@ class FrictionModel:
         Prediction
             Friction and derivatives.
         """
-        curve, logs = (self.data.curve, self.logs) if at is None else (at[0], self.logs_at(*at))
+        curve, values, logs = (self.data.curve, self.data.values, self.logs) if at is None else (*at, self.logs_at(*at))
         A = self.exponents[curve]
         x = np.exp(logs + np.einsum("p,npk->nk", theta, A))
-        found = self._parts(theta, x, curve, parts_of)
+        found = self._parts(theta, x, curve, values, parts_of)
         names = self.rule.parts(found.definition)
         parts, inputs = dict(zip(names, found.values[1:], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
         fixed = {"far": far_film(self.model)}
