@@ -145,6 +145,16 @@ def test_a_curve_like_another_needs_few_meshes_no_cold_start_and_is_the_same(mon
     assert (np.abs(one.friction - two.friction) <= one.friction_error + two.friction_error).all()
 
 
+def test_a_curve_is_sampled_anew_without_a_state(curve):
+    finer = curve.sampled(23)
+    assert len(finer) == finer.requested == 23 and finer.states == curve.states
+    assert finer.values[[0, -1]] == pytest.approx(curve.values[[0, -1]], rel=1e-12)
+    there = curve.at(finer.values[1:-1])
+    assert (np.abs(finer.friction[1:-1] - there.friction) <= there.friction_error).all()
+    with pytest.raises(sb.InputError, match="at least 2"):
+        curve.sampled(1)
+
+
 def test_fields_are_solved_where_they_are_asked_for(curve):
     solution = curve.solve_at("7 mm/s")
     alone = sb.solve(CONTACT.replace(speed=0.007), rtol=1e-9)

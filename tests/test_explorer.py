@@ -563,6 +563,15 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
     assert charts.friction_chart(heavier, [], [], LIGHT)["series"][0]["lineStyle"]["opacity"] < 1
 
 
+@pytest.mark.slow
+def test_the_solved_curve_of_a_ball_is_within_a_per_cent_of_its_states_between_its_points():
+    ball = sb.load_case("examples/rubber_ball.toml").contact
+    shown = curves.solved_curve(ball, "balanced", always)
+    for i in (20, 58, 71, 84):
+        exact = sb.solve(ball.replace(speed=float(shown.speed[i])), rtol=1e-4).friction().total
+        assert shown.friction["balanced"][i] == pytest.approx(exact, rel=1e-2)
+
+
 @pytest.mark.parametrize("change", [{"speed": 0.0}, {"roughness": 0.0}, {"boundary_friction": 0.0}])
 def test_rest_smooth_and_frictionless_contacts_are_shown(change):
     shown = Answerer()(replace(START, contact=START.contact.replace(**change)))

@@ -187,6 +187,28 @@ class StribeckCurve(Exported, Shown, ByValue):
         plain = CurveValues.of(value, *self._solved_path.at(s), self._sliding, self._least_error)
         return plain.with_friction(self.boundary_friction, self.beta, self.definition)
 
+    def sampled(self, points: int) -> StribeckCurve:
+        """Return the same curve with other points, evenly in the logarithm; they are read off it.
+
+        Parameters
+        ----------
+        points : int
+            Their number, at least 2.
+
+        Returns
+        -------
+        StribeckCurve
+            Between the same ends.
+
+        Raises
+        ------
+        InputError
+            If the curve is known at its points only.
+        """
+        if points < 2:
+            raise InputError(f"points = {points}; a curve has at least 2.")
+        return self._along(self._solved_path, np.geomspace(self.values[0], self.values[-1], points), points)
+
     def solve_at(self, value: Any) -> Solution:
         """Return the solution anywhere on the curve, with its fields: solved from the states beside it.
 

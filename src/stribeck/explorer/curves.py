@@ -47,7 +47,7 @@ ROWS = 31
 SOLVED_RTOL = 1e-4
 
 SOLVED_POINTS = {"line": 200, "point": 15}
-"""Points of curves that are solved."""
+"""Points of curves that are solved; of a ball those for which states are solved where it is no function."""
 
 
 class SolvedRows(NamedTuple):
@@ -233,18 +233,16 @@ def solved_curve(contact: Contact, definition: Definition, report: Report, like:
     Returns
     -------
     Curve
-        The curve; that of a ball between its points by a monotone interpolation of the logarithms.
+        The curve; one that is known at its points only, between them by a monotone interpolation of the logarithms.
 
     Raises
     ------
     InputError, SolveError
         Where it cannot be solved.
     """
-    geometry = contact.INPUTS.geometry
-    points = SOLVED_POINTS[geometry]
     found = stribeck_curve(
         contact,
-        points=points,
+        points=SOLVED_POINTS[contact.INPUTS.geometry],
         rtol=SOLVED_RTOL,
         definition=definition,
         on_point=lambda done, of: report(done / of),
@@ -252,12 +250,14 @@ def solved_curve(contact: Contact, definition: Definition, report: Report, like:
     )
     if len(found) < 2:
         raise SolveError(found.outcome, None, found.outcome.value)
+    if found.is_function and len(found) < POINTS:
+        found = found.sampled(POINTS)
     speed = np.asarray(found.values)
     friction = {kind: found.friction(definition=kind) for kind in DEFINITIONS}
     contact_part = np.asarray(friction[definition].contact)
     totals: dict[Definition, Array] = {kind: np.asarray(friction[kind]) for kind in DEFINITIONS}
     source = f"solved; estimated error {_power(found.error_estimate)}"
-    if geometry == "point":
+    if not found.is_function:
         source += f"; at {len(speed)} speeds, smooth in between"
         dense = np.unique(np.concatenate([np.geomspace(speed[0], speed[-1], POINTS), speed]))
         viscous = {kind: _between(speed, np.asarray(friction[kind].viscous), dense) for kind in DEFINITIONS}
