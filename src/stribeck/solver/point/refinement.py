@@ -61,6 +61,9 @@ THINNED_MINIMUM, THINNED, THINNED_DRAG, THINNED_FRICTION = 1.5, 1.5e-3, 3e-2, 2.
 """Where a fluid thins: stated error of the minimum film over that of other fluids, and the least error of all else over it,
 and of friction, as the viscosity has peaks where hardly anything is sheared; and that of friction over the others'."""
 
+NEARLY_ROLLING, MOST_OVER_SLIDE = 0.25, 4.0
+"""Half the slide-to-roll ratio below which these errors of friction grow as one over it, and by how much at most."""
+
 CUSP = 4e-3
 """Least stated error of the minimum film, times the number of angles, where the viscosity has a cusp, or no bound, at places
 that are not sheared."""
@@ -216,15 +219,18 @@ def pair_of(coarse: Level, fine: Level) -> Pair:
         least = max(THINNED_COMPANY * widest, THINNED * unseen)
         widest = max(widest, THINNED * unseen / COMPANY)
     errors = {name: max(error, least * scales[name]) for name, error in errors.items()}
-    if fine.resolution.model.film.uses_speed:
+    film = fine.resolution.model.film
+    if film.uses_speed:
+        # Drag is the stress over the slide.
+        drag = max(THINNED_FRICTION * least, THINNED_DRAG * unseen)
+        drag *= min(MOST_OVER_SLIDE, max(1.0, NEARLY_ROLLING / abs(film.slide))) if film.slide else 1.0
         for name in ("J_couette", "J_poiseuille", "J_balanced", "J_published"):
-            errors[name] = max(errors[name], max(THINNED_FRICTION * least, THINNED_DRAG * unseen) * scales[name])
+            errors[name] = max(errors[name], drag * scales[name])
     # The series of the side lobes falls from one mesh to the other as the error of the minimum does.
     last, before = (float(modal_amplitudes(level)[-2:].max()) for level in (fine, coarse))
     gained = 2.0 * min(PART, max(0.05, last / max(before, 1e-300)))
     for name in ("minimum_gap", "minimum_gap_on_axis"):
         errors[name] = max(gained * abs(values[name] - rough[name]), max(unseen, COMPANY * widest) * scales[name])
-    film = fine.resolution.model.film
     if isinstance(film, ShearThinning) and film.law.plateau < 1:
         for name in ("minimum_gap", "minimum_gap_on_axis", "minimum_radius"):
             errors[name] = max(errors[name], CUSP / fine.mesh.modes * scales[name])
