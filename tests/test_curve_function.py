@@ -278,3 +278,14 @@ def test_a_curve_goes_through_the_speed_at_which_a_cavity_opens():
             true = abs(read.values[name] - getattr(solved.observables, name))
             scale = 1.0 if "share" in name else getattr(solved.observables, name)
             assert true / scale < 3 * (read.errors[name] + solved.errors[name]) < 1e-3
+
+
+@pytest.mark.parametrize("geometry", ["line", "point"])
+def test_a_landmark_is_asked_for_by_a_short_name_and_another_is_refused(geometry):
+    groups = sb.Groups(1e-3, 0.1, 0.1, geometry=geometry)
+    curve = sb.stribeck_curve(groups, speed=(1e-3, 10.0), points=3, rtol=1e-3)
+    mark = curve.landmark("equal_shares")
+    assert mark is not None
+    assert mark == curve.landmark("fluid carries 50% of the load")
+    with pytest.raises(sb.InputError, match="boundary_end"):
+        curve.landmark("half")

@@ -18,7 +18,7 @@ from stribeck.contacts.groups import Groups
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import CurveValues, Progress
 from stribeck.curves.landmarks import Landmark, places_of
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Transition
+from stribeck.curves.regime import Transition, check_transition, excess
 from stribeck.curves.result import StribeckCurve
 from stribeck.equations.point.observables import OBSERVABLES, SMOOTH
 from stribeck.fluids.cavitation import Cavitation
@@ -56,13 +56,6 @@ part of the friction."""
 
 
 TINY = 1e-300
-
-CRITERIA: dict[Transition, Callable[[Any, Any], Any]] = {
-    Transition.BOUNDARY_END: lambda fluid, asperities: fluid - BOUNDARY_FLUID_SHARE,
-    Transition.EQUAL_SHARES: lambda fluid, asperities: fluid - 0.5,
-    Transition.HYDRODYNAMIC_START: lambda fluid, asperities: asperities - HYDRODYNAMIC_CONTACT_SHARE,
-}
-"""By how much the load share of the fluid, or that of asperities in friction, exceeds the threshold of a transition."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -204,12 +197,13 @@ class PointCurve(StribeckCurve):
         except SolveError:
             return None
 
-    def landmark(self, name: Transition, rtol: float | None = None) -> Landmark | None:
+    def landmark(self, name: str, rtol: float | None = None) -> Landmark | None:
         """Return one transition, or None where the curve does not hold it; it is read off the curve, without the others."""
-        if name == Transition.MINIMUM:
+        mark = check_transition(name)
+        if mark is Transition.MINIMUM:
             return self.minimum
         places, fluid, share = self._shares
-        return self._crossing(name, places, CRITERIA[name](fluid, share))
+        return self._crossing(mark, places, excess(mark, fluid, share))
 
     @cached_property
     def _shares(self) -> tuple[Array, Array, Array]:
@@ -237,13 +231,13 @@ class PointCurve(StribeckCurve):
         """Return by how much the criterion of a transition exceeds its threshold."""
         if self._function is not None:
             fluid, share = self._shares_at(np.array([s]))
-            return float(CRITERIA[name](fluid, share)[0])
+            return float(excess(name, fluid, share)[0])
         solution = self._at(s)
-        return float(CRITERIA[name](solution.fluid_load_share, self._contact_share(solution)))
+        return excess(name, solution.fluid_load_share, self._contact_share(solution))
 
-    def _crossing(self, name: Transition, places: Array, excess: Array) -> Landmark | None:
+    def _crossing(self, name: Transition, places: Array, above: Array) -> Landmark | None:
         """Return the first transition of this name between the given coordinates, or None."""
-        crossings = np.nonzero(np.diff(np.sign(excess)))[0]
+        crossings = np.nonzero(np.diff(np.sign(above)))[0]
         if not len(crossings):
             return None
         low, high = places[crossings[0] : crossings[0] + 2].tolist()

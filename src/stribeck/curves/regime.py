@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Literal
+from typing import Literal, TypeVar
 
+from stribeck._types import Array
 from stribeck.contacts.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, regime_of
 from stribeck.quantities.units import InputError, show
 
@@ -16,10 +17,14 @@ __all__ = [
     "Regime",
     "Transition",
     "check_method",
+    "check_transition",
+    "excess",
     "regime_of",
 ]
 
 Method = Literal["solver", "atlas"]
+
+Share = TypeVar("Share", float, Array)
 
 METHODS: tuple[Method, ...] = ("solver", "atlas")
 """Where states come from: solved, or read off :mod:`stribeck.atlas`."""
@@ -32,6 +37,27 @@ class Transition(StrEnum):
     EQUAL_SHARES = "fluid carries 50% of the load"
     HYDRODYNAMIC_START = f"asperities cause {HYDRODYNAMIC_CONTACT_SHARE:.0%} of the friction"
     MINIMUM = "minimum of friction"
+
+    @classmethod
+    def _missing_(cls, value: object) -> Transition | None:
+        """Return the place whose short name this is, as ``"minimum"``."""
+        return next((one for one in cls if isinstance(value, str) and value.lower() == one.name.lower()), None)
+
+
+def check_transition(name: str) -> Transition:
+    """Return the transition of this name, short or as in outputs."""
+    try:
+        return Transition(name)
+    except ValueError:
+        known = ", ".join(repr(one.name.lower()) for one in Transition)
+        raise InputError(f"name = {show(name)}; a curve is asked for one of {known}.") from None
+
+
+def excess(name: Transition, fluid: Share, by_asperities: Share) -> Share:
+    """Return how far the fluid's share in the load, or that of asperities in friction, is above a transition's threshold."""
+    if name == Transition.HYDRODYNAMIC_START:
+        return by_asperities - HYDRODYNAMIC_CONTACT_SHARE
+    return fluid - (BOUNDARY_FLUID_SHARE if name == Transition.BOUNDARY_END else 0.5)
 
 
 def check_method(method: str) -> Method:

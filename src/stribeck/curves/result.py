@@ -20,7 +20,7 @@ from stribeck.contacts.model import ARTICLE
 from stribeck.curves.coordinate import Coordinate, Over, given_values
 from stribeck.curves.function import COLUMNS, CurvePoint, CurveValues, rows_of, solved_at
 from stribeck.curves.landmarks import STATES_RTOL, Landmark, Landmarks, Place
-from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE, Regime, Transition, regime_of
+from stribeck.curves.regime import Regime, Transition, check_transition, excess, regime_of
 from stribeck.equations.observables import ROW, Observables
 from stribeck.equations.sensitivity import friction_slopes
 from stribeck.files.results import Exported
@@ -32,7 +32,7 @@ from stribeck.solver.notes import HARD, minimum_note
 from stribeck.solver.path import SolvedPath
 from stribeck.solver.refinement import RefinedState
 from stribeck.solver.solution import Solution
-from stribeck.solver.solve import finish, minimum_estimate
+from stribeck.solver.solve import check_rtol, finish, minimum_estimate
 
 if TYPE_CHECKING:
     import xarray
@@ -393,13 +393,13 @@ class StribeckCurve(Exported, Shown, ByValue):
         """The friction minimum, on a state where the slope vanishes; None where the curve has none inside."""
         return self.landmark(Transition.MINIMUM)
 
-    def landmark(self, name: Transition, rtol: float | None = None) -> Landmark | None:
+    def landmark(self, name: str, rtol: float | None = None) -> Landmark | None:
         """Return one transition, or the minimum.
 
         Parameters
         ----------
-        name : Transition
-            Which.
+        name : str
+            ``"boundary_end"``, ``"equal_shares"``, ``"hydrodynamic_start"`` or ``"minimum"``, or the name in outputs.
         rtol : float, optional
             Error of the observables up to which it is read off the curve: the tolerance of the curve costs no further
             state.  Beyond, a state is solved there.  1e-6 if omitted, or the tolerance of the curve if that is smaller.
@@ -408,13 +408,20 @@ class StribeckCurve(Exported, Shown, ByValue):
         -------
         Landmark or None
             None where the curve does not hold it.
+
+        Raises
+        ------
+        InputError
+            For another name, or a tolerance that is none.
         """
+        mark = check_transition(name)
         accepted = min(self.rtol, STATES_RTOL) if rtol is None else rtol
-        if (name, accepted) not in self._found:
-            find = self._lowest if name is Transition.MINIMUM else self._crossing_of
-            place = find(name, accepted)
-            self._found[name, accepted] = None if place is None else self._landmark(name, place)
-        return self._found[name, accepted]
+        check_rtol(accepted)
+        if (mark, accepted) not in self._found:
+            find = self._lowest if mark is Transition.MINIMUM else self._crossing_of
+            place = find(mark, accepted)
+            self._found[mark, accepted] = None if place is None else self._landmark(mark, place)
+        return self._found[mark, accepted]
 
     @cached_property
     def _found(self) -> dict[tuple[Transition, float], Landmark | None]:
@@ -437,19 +444,11 @@ class StribeckCurve(Exported, Shown, ByValue):
         return self._landmarks.lowest(lambda rows: np.add(*self._parts(rows)), slope, accepted)
 
     def _crossing_of(self, name: Transition, accepted: float) -> Place | None:
-        if name is Transition.HYDRODYNAMIC_START:
+        def above(rows: Array) -> Array:
+            contact, viscous = self._parts(rows)
+            return np.asarray(excess(name, rows[:, ROW["fluid_load_share"]], contact / (contact + viscous + TINY)))
 
-            def excess(rows: Array) -> Array:
-                contact, viscous = self._parts(rows)
-                return np.asarray(contact / (contact + viscous + TINY) - HYDRODYNAMIC_CONTACT_SHARE)
-
-        else:
-            share = BOUNDARY_FLUID_SHARE if name is Transition.BOUNDARY_END else 0.5
-
-            def excess(rows: Array) -> Array:
-                return np.asarray(rows[:, ROW["fluid_load_share"]] - share)
-
-        return self._landmarks.first(excess, lambda point: float(excess(_values(point).array()[None])[0]), accepted)
+        return self._landmarks.first(above, lambda point: float(above(_values(point).array()[None])[0]), accepted)
 
     @cached_property
     def transitions(self) -> tuple[Landmark, ...]:
