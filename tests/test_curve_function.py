@@ -282,7 +282,7 @@ def test_a_curve_goes_through_the_speed_at_which_a_cavity_opens():
 
 @pytest.mark.parametrize("geometry", ["line", "point"])
 def test_a_landmark_is_asked_for_by_a_short_name_and_another_is_refused(geometry):
-    groups = sb.Groups(1e-3, 0.1, 0.1, geometry=geometry)
+    groups = sb.Groups(1e-3, 0.1, 0.03, geometry=geometry)
     curve = sb.stribeck_curve(groups, speed=(1e-3, 10.0), points=3, rtol=1e-3)
     mark = curve.landmark("equal_shares")
     assert mark is not None
