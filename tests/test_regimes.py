@@ -457,3 +457,13 @@ def test_a_regime_beyond_the_next_one_is_not_called_out_of_reach():
     sentences = list(ways_to(RegimeMargins("boundary", (speed, load, roughness), ())))
     assert sentences[1].startswith("To reach hydrodynamic lubrication: load / ")
     assert "not reachable by changing roughness (range" in sentences[1] and "speed" not in sentences[1]
+
+
+def test_slow_speeds_at_which_the_fluid_keeps_its_share_are_not_searched():
+    heavy = CONTACT.replace(load="600 N/m")
+    assert heavy.groups.load > 1
+    speed = regime_margins(heavy, rtol=1e-4).margins[0]
+    slowest = speed.searched[0]
+    assert speed.less is None and heavy.speed / 10 > slowest > 10 * heavy.speed / margins_module.REACH
+    beyond = [sb.solve(heavy.replace(speed=slowest / factor), rtol=1e-4).fluid_load_share for factor in (1, 10, 1000)]
+    assert beyond[0] > beyond[1] > beyond[2] > 1.5 * 0.05

@@ -76,6 +76,11 @@ POINTS: dict[Geometry, int] = {"line": 41, "point": 3}
 FINER = 5
 """States solved anew between the two between which the regime changes, where the curve is no function."""
 
+LITTLE, CLEAR = 0.02, 1.5
+"""Change of the fluid's share over half a decade from which it is extrapolated to slow speed, and the factor by which the
+limit must exceed the bound of boundary lubrication for slower speeds not to be searched: from load group 1 on it may never
+fall below it."""
+
 THRESHOLD = 5e-3
 """Logarithm of the factor below which a contact is said to stand at the threshold."""
 
@@ -206,8 +211,9 @@ def regime_margins(
     -----
     Each input is followed by continuation, decade by decade, until the regime of :func:`regime_of` changes, by at most a
     factor of 1e6, as far as the groups lie in speed 1e-12 to 1e6, load 1e-8 to 1, where the law goes on to 10 and of a ball to
-    1e4, relative roughness 1e-6 to 1e3, and within :func:`physical_bounds`.  More load lowers the speed group as a power, and
-    the relative roughness.  Speed and viscosity enter as their product: one scan serves both.
+    1e4, relative roughness 1e-6 to 1e3, and within :func:`physical_bounds`; towards slow speed no further than to
+    where the fluid's share tends to a limit above its bound.  More load lowers the speed group as a power, and the relative
+    roughness.  Speed and viscosity enter as their product: one scan serves both.
     """
     check_rtol(rtol)
     definition = check_definition(definition)
@@ -294,6 +300,16 @@ def physical_bounds(contact: Contact, name: str) -> tuple[float, float]:
         high = search.roughest(contact)
     value = float(getattr(contact, name))
     return (min(low, value), max(high, value)) if value > 0 else (low, high)
+
+
+def _stays_mixed(curve: StribeckCurve) -> bool:
+    """Return whether the fluid's share, extrapolated as a geometric series of half decades, ends above its bound."""
+    share = curve.observable("fluid_load_share")
+    slow, middle, fast = (float(share[i]) for i in (0, len(share) // 2, -1))
+    first, second = fast - middle, middle - slow
+    if not 0 <= second < min(first, LITTLE):
+        return False
+    return slow - second**2 / (first - second) > CLEAR * BOUNDARY_FLUID_SHARE
 
 
 def _within(margin: Margin, bounds: tuple[float, float]) -> Margin:
@@ -384,6 +400,8 @@ class _Scan:
                 regime, place = self._located(curve, start, name, outward, *change)
                 return Crossing(regime, place, place / value), math.log(place / value)
             here = there
+            if name == "speed" and outward < 0 and _stays_mixed(curve):
+                break
         return None, outward * here
 
     def _curve(self, start: Contact, name: Over, near: float, far: float, points: int) -> StribeckCurve | None:
