@@ -115,6 +115,31 @@ _ROWS = (
         key="layer_thickness",
         of="a layer on a rigid base",
     ),
+    PartInput(
+        name="retardation_time",
+        label="retardation time of the body",
+        symbol=r"$\tau$",
+        dimension="time",
+        typical="10 ms",
+        source="creep of the rubber under a constant load",
+        path=("solid", "time"),
+        table="solid",
+        key="retardation_time",
+        of="a standard linear solid",
+    ),
+    PartInput(
+        name="modulus_ratio",
+        label="glassy over relaxed modulus of the body",
+        symbol="$r$",
+        dimension="number",
+        typical="3",
+        source="storage moduli at high and low frequencies",
+        path=("solid", "ratio"),
+        table="solid",
+        key="modulus_ratio",
+        range=(1.0, float("inf")),
+        of="a standard linear solid",
+    ),
 )
 
 PART_INPUTS = {row.name: row for row in _ROWS}
