@@ -16,7 +16,7 @@ from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.equations.thinning.column import column, flow_curve
-from stribeck.equations.thinning.far_power import FarPower
+from stribeck.equations.thinning.far_power import FarPower, similar
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.local_flow import profile
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross, Eyring, PowerLaw
@@ -216,6 +216,27 @@ def test_a_power_law_is_the_limit_of_fluids_whose_plateau_lies_at_slower_rates()
     for name in ("contact_load_share", "central_gap"):
         assert carreau.state.values[name] == pytest.approx(power.state.values[name], rel=2e-4, abs=2e-4), name
     assert carreau.observables.integral(1.0) == pytest.approx(power.observables.integral(1.0), rel=1e-3)
+
+
+@pytest.mark.parametrize(("exponent", "slide", "left"), [(0.05, 0.0, 1e-8), (0.3, 0.1, 1e-8), (0.3, 1.0, 2e-4)])
+def test_far_away_as_much_of_a_power_law_flows_in_as_out(exponent, slide, left):
+    law, angles = PowerLaw(1.0, exponent), 100
+    pressure = similar(law, slide)[0].pressure
+    theta, modes = (np.arange(angles) + 0.5) * math.pi / angles, np.arange(1, 2 * pressure.size, 2)
+    waves = np.multiply.outer(theta, modes)
+    slope = np.stack([-(1 + 2 * exponent) * np.cos(waves) @ pressure, -np.sin(waves) @ (modes * pressure)])
+    along = np.stack([np.cos(theta), -np.sin(theta)])
+    radial, angular = column(law, slope, -slide * along).carried - 0.5 * along
+    lost = (3 * radial @ np.cos(waves) + modes * (angular @ np.sin(waves))) * 2 / angles
+    assert np.abs(lost[:3]).max() < left
+
+
+def test_the_film_of_a_power_law_far_away_states_its_error():
+    law, slide, exponent = PowerLaw(1.0, 0.3), 0.99, 0.3
+    finer = similar(law, slide, 96)[0]
+    far = FarPower(law, slide, 0.1, 1000.0)
+    wrong = abs(similar(law, slide)[0].shear - finer.shear) / (2 * math.pi * (2 - 2 * exponent))
+    assert 1e-8 < wrong < far.doubt(0.0) / far.drag
 
 
 @pytest.mark.parametrize("fluid", [Cross(3.5, 0.1), Cross(3.5, 0.316), PowerLaw(3.5, 0.7)], ids=["slow", "resonant", "power"])

@@ -29,15 +29,19 @@ from stribeck.contacts.cut_off import FULL
 from stribeck.equations.thinning.column import Column, column
 from stribeck.fluids.laws import RateLaw
 
-ANGLES, STEPS, ALIKE = 32, 40, 1e-11
+ANGLES, STEPS, ALIKE = 64, 40, 1e-11
 """Angles in half a turn, steps of Newton's iteration, and the largest of the equations after which it ends."""
 
 DIFFERENCE, PART = 1e-6, 1e-3
 """Step of the derivative by a coefficient, and change of the gap for that by the offset."""
 
 KNOWN, SECOND = 3e-6, 50.0
-"""Stated error of friction over the drag up to the rim, from which the finite parts are differences; and the same over the
-square of the part by which the gap differs."""
+"""Smallest stated error of friction over the drag up to the rim, from which the finite parts are differences; and the same
+over the square of the part by which the gap differs."""
+
+
+STEEP, NEAR = 0.2, 1.5
+"""Exponent below which Newton's iteration starts from the film of a larger one, and how much larger that is."""
 
 
 class _Similar(NamedTuple):
@@ -48,9 +52,9 @@ class _Similar(NamedTuple):
     shear: float
 
 
-def _grid() -> tuple[Array, Indices, Array, Array]:
+def _grid(angles: int) -> tuple[Array, Indices, Array, Array]:
     """Return angles, odd modes, and their cosines and sines at the angles."""
-    theta, modes = (np.arange(ANGLES) + 0.5) * math.pi / ANGLES, np.arange(1, ANGLES, 2)
+    theta, modes = (np.arange(angles) + 0.5) * math.pi / angles, np.arange(1, angles, 2)
     waves = np.multiply.outer(theta, modes)
     return theta, modes, np.cos(waves), np.sin(waves)
 
@@ -61,19 +65,19 @@ def _flux(law: RateLaw, slide: float, found: Array, change: Array, part: float) 
     ``found`` has the coefficients of the pressure, shape (number, modes), ``change`` the part of them that grows with that
     of the gap.
     """
-    theta, modes, cosines, sines = _grid()
+    theta, modes, cosines, sines = _grid(2 * found.shape[1])
     n = cast("Any", law).exponent
     along = np.stack([np.cos(theta), -np.sin(theta)])[:, None] * np.ones((len(found), 1))
     gradient = np.stack([-((1.0 + 2.0 * n) * found + 2.0 * change) @ cosines.T, -(found * modes) @ sines.T])
     slope, slip = (1.0 + part) * gradient, -slide / (1.0 + part) * along
     flow = column(law, slope.reshape(2, -1), slip.reshape(2, -1))
     flux = (1.0 + part) ** 2 * flow.carried.reshape(gradient.shape) - 0.5 * (1.0 + part) * along
-    return flux[0] @ cosines * (2.0 / ANGLES), flux[1] @ sines * (2.0 / ANGLES), flow
+    return flux[0] @ cosines * (2.0 / len(theta)), flux[1] @ sines * (2.0 / len(theta)), flow
 
 
 def _solved(law: RateLaw, slide: float, start: Array, base: _Similar | None, part: float, known: Array) -> _Similar:
     """Return the film; the radial flux that is not ``base``'s falls as r**-2 besides."""
-    theta, modes, _, _ = _grid()
+    theta, modes, _, _ = _grid(2 * start.size)
     old_radial = 0.0 if base is None else base.flux
     old_angular, power = known, 3.0 if base is None else 1.0
 
@@ -107,14 +111,16 @@ def _solved(law: RateLaw, slide: float, start: Array, base: _Similar | None, par
         shear = (flow.ease[0] * along[0] ** 2 + 2.0 * flow.ease[1] * along[0] * along[1] + flow.ease[2] * along[1] ** 2) / (
             1.0 + part
         )
-    return _Similar(found, radial[0], float(shear.sum()) * 2.0 * math.pi / ANGLES)
+    return _Similar(found, radial[0], float(shear.mean()) * 2.0 * math.pi)
 
 
-@lru_cache(maxsize=32)
-def similar(law: Any, slide: float) -> tuple[_Similar, _Similar]:
+@lru_cache(maxsize=64)
+def similar(law: Any, slide: float, angles: int = ANGLES) -> tuple[_Similar, _Similar]:
     """Return the film of a law, and its change by the part by which the gap differs."""
-    start, nothing = np.zeros(ANGLES // 2), np.zeros(ANGLES // 2)
+    start, nothing = np.zeros(angles // 2), np.zeros(angles // 2)
     start[0] = -1.2  # of a Newtonian fluid
+    if law.exponent < STEEP:
+        start = similar(replace(law, exponent=NEAR * law.exponent), slide, angles)[0].pressure
     found = _solved(law, slide, start, None, 0.0, nothing)
     angular = _flux(law, slide, found.pressure[None], nothing[None], 0.0)[1][0]
     below, above = (_solved(law, slide, found.pressure, found, part, angular) for part in (-PART, PART))
@@ -148,6 +154,17 @@ class FarPower:
     def _film(self) -> tuple[_Similar, _Similar]:
         return similar(replace(cast("Any", self.law), relaxation_time=1.0), self.slide)
 
+    @cached_property
+    def _known(self) -> float:
+        """An estimate of the error of friction over the drag up to the rim, by half the angles.
+
+        Where a wall rests a stress has a kink along the angle, and the modes fall off slowly, the slower the smaller n.
+        """
+        half = similar(replace(cast("Any", self.law), relaxation_time=1.0), self.slide, ANGLES // 2)[0]
+        film, q = self._film[0], 2.0 - 2.0 * self.exponent
+        pressure = abs(film.pressure[0] - half.pressure[0]) * (0.25 + 0.5 / q)
+        return max(KNOWN, abs(film.shear - half.shear) / (2.0 * math.pi * q) + float(pressure))
+
     @property
     def drag(self) -> float:
         """An estimate of the drag up to the rim."""
@@ -155,7 +172,7 @@ class FarPower:
 
     def doubt(self, offset: float) -> float:
         """Return an estimate of the error of the friction."""
-        return self.drag * (KNOWN + SECOND * (2.0 * max(1.0, abs(offset)) / self.rim**2) ** 2)
+        return self.drag * (self._known + SECOND * (2.0 * max(1.0, abs(offset)) / self.rim**2) ** 2)
 
     def beyond(self, radius: float) -> FarPower:
         """Return the film beyond another radius."""
@@ -176,8 +193,8 @@ class FarPower:
 
     def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array]:
         """Return pressure, its radial derivative, and flux along the radius more than that of its slope, and by the offset."""
-        odd = _grid()[1]
-        cosines, rim = np.cos(np.multiply.outer(angles, odd[odd < modes])), self.rim
+        odd = np.arange(1, min(modes, ANGLES), 2)
+        cosines, rim = np.cos(np.multiply.outer(angles, odd)), self.rim
         found = []
         for film, power in zip(self._film, (1.0, 3.0), strict=True):
             pressure, flux = (cosines @ each[: cosines.shape[1]] for each in (film.pressure, film.flux))
