@@ -502,7 +502,7 @@ class Tab:
 
         try:
             if now.table.geometry == "point":
-                return '<p class="note">Margins of a ball take minutes; run stribeck regimes.</p>'
+                return '<p class="note">Margins of a ball take ten seconds to a minute; run stribeck regimes.</p>'
             return regime_margins(now.contact, definition=now.definition, on_point=go_on)
         except Superseded:
             return None
