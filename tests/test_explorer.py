@@ -30,6 +30,7 @@ from stribeck.explorer.charts.palette import DARK, LIGHT
 from stribeck.explorer.measured import fit_measured, read_measured, speeds_of
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import read_scan, with_scan
+from stribeck.quantities.units import format_si
 
 START = server.example()
 
@@ -501,6 +502,16 @@ def test_an_empty_address_is_the_start():
 
 
 # --- answers ---
+
+
+def test_the_scale_of_a_films_map_begins_at_the_minimum_film():
+    contact = sb.load_case(EXAMPLES / "pdms_ball.toml").contact.replace(speed="0.3 mm/s")
+    answer = Answerer()(replace(START, contact=contact))
+    scale = charts.plane_chart(answer, LIGHT)["visualMap"]
+    least = answer.solution.minimum_gap * contact.hertz.indentation
+    assert answer.plane is not None
+    assert scale["text"][1] == format_si(least, "length", 3)
+    assert scale["min"] == pytest.approx(math.log10(least), abs=1e-3)
 
 
 @pytest.mark.parametrize("name", ["speed", "load_group", "roughness", "boundary_friction"])

@@ -195,7 +195,9 @@ def plane_chart(answer: Answer, palette: Palette) -> Options:
     end = float(np.abs(side).max()) * hertz.half_width
     unit, name = _unit(end, "length")
     gap = np.ones((1, 1)) if plane is None else np.maximum(plane.gap, 1e-300) * hertz.indentation
-    low, high = float(gap.min()), 20 * float(gap[len(gap) // 2, len(gap) // 2])
+    # The thinnest place lies between those of the map.
+    low = 1.0 if plane is None else min(float(gap.min()), answer.solution.minimum_gap * hertz.indentation)
+    high = 20 * float(gap[len(gap) // 2, len(gap) // 2])
     values = np.round(np.log10(np.clip(gap, low, high)), 3)
     drawn = {"id": "film", "name": "film", "type": "custom", "data": [] if plane is None else values.ravel().tolist()}
     x, y = (linear_axis(f"position {axis} ({name})", -end / unit, end / unit, palette) for axis in ("x", "y"))
@@ -211,7 +213,7 @@ def plane_chart(answer: Answer, palette: Palette) -> Options:
     scale = {
         "type": "continuous",
         "seriesIndex": [],
-        "min": float(values.min()),
+        "min": round(math.log10(low), 3),
         "max": float(values.max()) + 1e-3,
         "calculable": False,
         "orient": "horizontal",
