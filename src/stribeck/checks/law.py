@@ -113,7 +113,7 @@ def tail(subject: Subject) -> Check | None:
         raise InputError(f"friction has no minimum and no transition from {low} to {high}, where it was looked for.")
     largest = max(abs(change) for pair in moves.values() for change in pair)
     said = "; ".join(
-        f"{_place(name)}, speed {100 * speed:+.0f} % and friction {100 * friction:+.0f} %"
+        f"{_place(name)}, speed {round(100 * speed, 0) + 0.0:+.0f} % and friction {round(100 * friction, 0) + 0.0:+.0f} %"
         for name, (speed, friction) in moves.items()
         if max(abs(speed), abs(friction)) >= WORTH_SAYING
     )
