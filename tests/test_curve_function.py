@@ -289,3 +289,15 @@ def test_a_landmark_is_asked_for_by_a_short_name_and_another_is_refused(geometry
     assert mark == curve.landmark("fluid carries 50% of the load")
     with pytest.raises(sb.InputError, match="boundary_end"):
         curve.landmark("half")
+
+
+@pytest.mark.parametrize("points", [1, 2.5, "ten"])
+def test_a_curve_is_sampled_at_a_whole_number_of_points(points):
+    curve = sb.stribeck_curve(sb.Groups(1e-3, 0.1, 0.03), speed=(1e-3, 1e-1), points=3, rtol=1e-3)
+    with pytest.raises(sb.InputError, match="whole number"):
+        curve.sampled(points)
+
+
+def test_a_curve_like_none_that_is_one_is_refused():
+    with pytest.raises(sb.InputError, match="similar contact"):
+        sb.stribeck_curve(sb.Groups(1e-3, 0.1, 0.03), speed=(1e-3, 1e-1), points=3, rtol=1e-3, like="the last")

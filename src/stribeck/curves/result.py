@@ -45,6 +45,17 @@ SLACK = 1e-12
 TINY = 1e-300
 """Added to a friction that may vanish."""
 
+POINTS_RANGE = (2, 100_000)
+"""Fewest and most points of a curve."""
+
+
+def check_points(points: int) -> None:
+    """Refuse a number of points that is none or out of range."""
+    low, high = POINTS_RANGE
+    if isinstance(points, bool) or not isinstance(points, int) or not low <= points <= high:
+        allowed = f"a whole number from {low} to {high}: a curve has at least {low}"
+        raise InputError(f"points = {show(points)}; it must be {allowed}.")
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StribeckCurve(Exported, Shown, ByValue):
@@ -203,10 +214,9 @@ class StribeckCurve(Exported, Shown, ByValue):
         Raises
         ------
         InputError
-            If the curve is known at its points only.
+            For a number that is none, or if the curve is known at its points only.
         """
-        if points < 2:
-            raise InputError(f"points = {points}; a curve has at least 2.")
+        check_points(points)
         return self._along(self._solved_path, np.geomspace(self.values[0], self.values[-1], points), points)
 
     def solve_at(self, value: Any) -> Solution:

@@ -20,7 +20,7 @@ from stribeck.curves.coordinate import Coordinate, Over, check_inside, read_prob
 from stribeck.curves.function import Progress
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.regime import Method, check_method
-from stribeck.curves.result import SLACK, StribeckCurve
+from stribeck.curves.result import SLACK, StribeckCurve, check_points
 from stribeck.curves.speed_range import SPEEDS, automatic_speed_range, fastest, grown, no_range, part_of_contact
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import refuse_former
@@ -32,8 +32,6 @@ from stribeck.solver.path import Expansion, follow
 from stribeck.solver.solve import SolveError, check_rtol, describe, finish, with_law
 
 __all__ = ["Landmark", "StribeckCurve", "stribeck_curve"]
-
-POINTS_RANGE = (2, 100_000)
 
 
 @overload
@@ -157,8 +155,9 @@ def stribeck_curve(
     if isinstance(base, Groups) and over == "speed":
         check_solid(base, "and groups hold it fixed; give a contact, or vary load or roughness.")
     boundary_friction, beta = coefficients(contact, boundary_friction, beta)
-    if isinstance(points, bool) or not isinstance(points, int) or not POINTS_RANGE[0] <= points <= POINTS_RANGE[1]:
-        raise InputError(f"points = {show(points)}; it must be a whole number from {POINTS_RANGE[0]} to {POINTS_RANGE[1]}.")
+    check_points(points)
+    if like is not None and not isinstance(like, StribeckCurve):
+        raise InputError(f"like = {show(like)}; it must be the curve of a similar contact, as stribeck_curve returns it.")
     coordinate = Coordinate(over, base)
     grows = ends is None and check_method(method) == "solver" and coordinate.geometry not in CURVES
     grows = grows and bool(coordinate.groups_at(0.0).roughness > 0)

@@ -150,9 +150,12 @@ class FarPower:
         self.ratio = rim / math.sqrt(2.0 * law.time * speed)
         """The rim over the radius where the rate is one over the relaxation time."""
 
+    def _film_by(self, angles: int) -> tuple[_Similar, _Similar]:
+        return similar(replace(cast("Any", self.law), relaxation_time=1.0), self.slide, angles)
+
     @cached_property
     def _film(self) -> tuple[_Similar, _Similar]:
-        return similar(replace(cast("Any", self.law), relaxation_time=1.0), self.slide)
+        return self._film_by(ANGLES)
 
     @cached_property
     def _known(self) -> float:
@@ -160,7 +163,7 @@ class FarPower:
 
         Where a wall rests a stress has a kink along the angle, and the modes fall off slowly, the slower the smaller n.
         """
-        half = similar(replace(cast("Any", self.law), relaxation_time=1.0), self.slide, ANGLES // 2)[0]
+        half = self._film_by(ANGLES // 2)[0]
         film, q = self._film[0], 2.0 - 2.0 * self.exponent
         pressure = abs(film.pressure[0] - half.pressure[0]) * (0.25 + 0.5 / q)
         return max(KNOWN, abs(film.shear - half.shear) / (2.0 * math.pi * q) + float(pressure))
