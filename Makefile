@@ -93,6 +93,7 @@ test: $(READY)
 
 slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n auto -m slow
+	$(ONE_THREAD) $(BIN)/python -m pytest -q -n auto --hypothesis-profile=search $(shell grep -l '^from hypothesis' tests/test_*.py)
 
 # Debian's chromium, or CHROMIUM=/path/to/it.
 browser: $(BROWSER)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 import stribeck as sb
 from stribeck.contact_laws.scaled import ShiftedLaw
@@ -19,6 +20,11 @@ from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
 from stribeck.quantities.outputs import NAMES
+
+# The same examples on every machine, so that a change is judged by what it changes; `make slow` searches for new ones.
+settings.register_profile("repeated", derandomize=True)
+settings.register_profile("search", max_examples=1000)
+settings.load_profile("repeated")
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 

@@ -5,7 +5,7 @@ import re
 
 import pytest
 from command_line import PDMS, call, call_outside, case_text
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 import stribeck as sb
@@ -279,6 +279,7 @@ WORDS = st.one_of(
 
 
 @pytest.mark.quick
+@example(tokens=["--help", "--help"])  # a NameError in cyclopts 4.0
 @given(tokens=st.lists(WORDS, max_size=7))
 @settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_nonsense_gets_a_sentence_and_never_a_traceback(capsys, folder, tokens):
