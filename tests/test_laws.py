@@ -422,6 +422,41 @@ def test_functions_that_are_no_law_are_refused(f, slope, sentence):
         sb.FunctionLaw(f, slope)
 
 
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        ({"name": "exponential"}, "^name = 'exponential' must be a word other than exponential, persson"),
+        ({"name": None}, "^name = None must be a word"),
+        ({"log_pressure": None}, "^log_pressure = None must be a function"),
+        ({"log_slope": 1.0}, "^log_slope = 1.0 must be a function"),
+        ({"lowest": math.nan}, "^lowest = nan"),
+        ({"lowest": "0"}, "^lowest = '0'"),
+        ({"checked": 1.0}, "checked = 1.0; .* two increasing positive separations"),
+        ({"checked": (1.0, 2.0, 3.0)}, "checked two increasing positive separations"),
+    ],
+)
+def test_settings_of_a_law_of_functions_are_refused_by_name_and_value(changed, sentence):
+    given = {"log_pressure": lambda s: -2 * s, "log_slope": lambda s: np.full_like(s, -2.0)}
+    with pytest.raises(sb.InputError, match=sentence):
+        sb.FunctionLaw(**given | changed)
+
+
+def test_a_law_that_a_user_calls_exponential_is_solved_as_it_is():
+    class Steep(Wall):
+        name = "exponential"
+
+        def log_pressure(self, s):
+            return -2 * np.asarray(s)
+
+        def log_slope(self, s):
+            return np.full_like(s, -2.0)
+
+    groups = sb.Groups(1e-4, 0.1, 1e-2)
+    gap = sb.solve(groups, law=Steep()).minimum_gap
+    assert gap == pytest.approx(sb.solve(sb.Groups(1e-4, 0.1, 0.5e-2)).minimum_gap, rel=1e-5)
+
+
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [

@@ -12,6 +12,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.law import AsperityLaw, WithArea, is_exponential
+from stribeck.contact_laws.persson import PerssonLaw
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["TAIL", "FiniteSurface", "has_endless_tail"]
@@ -25,7 +26,7 @@ MEASURED = 2.629
 
 def has_endless_tail(law: AsperityLaw | None) -> bool:
     """Return whether a law falls as exp(-s) however far the surfaces are apart, as the exponential one and Persson's do."""
-    return is_exponential(law) or (law is not None and law.name == "persson")
+    return is_exponential(law) or isinstance(law, PerssonLaw)
 
 
 @dataclass(frozen=True)

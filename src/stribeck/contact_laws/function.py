@@ -18,6 +18,10 @@ SLOPE_TOLERANCE = 1e-5
 """Relative difference between a function's derivative and the differences of its values that is refused."""
 
 
+TAKEN = ("exponential", "persson", "greenwood-williamson", "greenwood-tripp", "table", "smooth")
+"""Names by which files and reports know other laws."""
+
+
 @dataclass(frozen=True)
 class FunctionLaw:
     r"""Contact law given by two functions: ln(Phi) and its derivative.
@@ -31,7 +35,7 @@ class FunctionLaw:
     log_slope : callable
         df/ds, likewise, negative.
     name : str
-        What outputs call the law.
+        What outputs call the law; not the name of one of the package's.
     lowest : float
         Separation down to which the functions have values: zero, or minus infinity for functions that go on below.
     checked : tuple of float
@@ -40,8 +44,8 @@ class FunctionLaw:
     Raises
     ------
     InputError
-        If the functions return something else than finite numbers of the same shape, if f does not fall, or if its
-        differences are not its derivative within 1e-5.
+        If the functions return something else than finite numbers of the same shape, if f does not fall, if its
+        differences are not its derivative within 1e-5, or if the name is taken.
     """
 
     log_pressure: Callable[[Array], Array]
@@ -52,8 +56,17 @@ class FunctionLaw:
 
     def __post_init__(self) -> None:
         """Check the functions."""
-        low, high = self.checked
-        if not (self.lowest <= 0.0 and 0.0 < low < high < math.inf):
+        if not isinstance(self.name, str) or not self.name or self.name in TAKEN:
+            raise InputError(f"name = {show(self.name)} must be a word other than {', '.join(TAKEN)}, which are other laws.")
+        for name, function in (("log_pressure", self.log_pressure), ("log_slope", self.log_slope)):
+            if not callable(function):
+                raise InputError(f"{name} = {show(function)} must be a function of an array of separations.")
+        try:
+            low, high = map(float, self.checked)
+            in_order = self.lowest <= 0.0 < low < high < math.inf
+        except (TypeError, ValueError):
+            in_order = False
+        if not in_order:
             raise InputError(
                 f"lowest = {show(self.lowest)}, checked = {show(self.checked)}; lowest must be 0 or below, "
                 "checked two increasing positive separations."
@@ -86,7 +99,7 @@ class FunctionLaw:
         tuple of str
             One sentence each.
         """
-        if separation >= self.checked[0] or separation < 0:
+        if separation >= self.checked[0]:
             return ()
         return (f"The minimum separation is {separation:.2g}, below the range in which the contact law was checked.",)
 

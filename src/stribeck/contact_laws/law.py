@@ -8,6 +8,7 @@ from typing import Any, Protocol, runtime_checkable
 from weakref import WeakValueDictionary
 
 from stribeck._types import Array, Numbers
+from stribeck.contact_laws.exponential import SpectralExponential
 from stribeck.quantities.units import InputError, show
 
 
@@ -83,8 +84,8 @@ class ContactLaw(Protocol):
 
 
 def is_exponential(law: AsperityLaw | None) -> bool:
-    """Return whether a law is the exponential one of the article."""
-    return law is None or law.name == "exponential"
+    """Return whether a law is the exponential one of the article, whatever a law of a user is called."""
+    return law is None or isinstance(law, SpectralExponential)
 
 
 def has_constant_decay(law: AsperityLaw | None) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from stribeck._types import Array
+from stribeck.contact_laws.finite_surface import has_endless_tail
 from stribeck.contact_laws.law import is_exponential, largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.groups import Groups
@@ -191,7 +192,7 @@ def minimum_note(groups: Groups, contact: Contact | None, values: Values, fricti
     str
         One sentence, or none.
     """
-    if not (groups.roughness > 0 and friction > NEGLIGIBLE_SHARE and _is_limit_of_persson(groups)):
+    if not (groups.roughness > 0 and friction > NEGLIGIBLE_SHARE and has_endless_tail(groups.law)):
         return ""
     ratio, measured = _gap_ratio(groups, contact, values)
     if ratio <= LAW_RANGE[1]:
@@ -218,11 +219,6 @@ def _shares(contact: Contact | None, values: Values) -> tuple[float, float]:
     return values.contact_load_share, dry / (dry + viscous) if dry > 0 else 0.0
 
 
-def _is_limit_of_persson(groups: Groups) -> bool:
-    """Return whether the pressure of the law falls as that of Persson's at large gaps."""
-    return is_exponential(groups.law) or (groups.law is not None and groups.law.name == "persson")
-
-
 def _range(groups: Groups) -> str:
     """Return the law of a state and where it holds, in words."""
     if is_exponential(groups.law):
@@ -232,7 +228,7 @@ def _range(groups: Groups) -> str:
 
 def _far_note(groups: Groups, ratio: float, measured: str, shares: tuple[float, float], known: bool) -> tuple[str, ...]:
     """Return the note on a gap above the range; groups alone do not fix the friction, so it states what it assumes."""
-    if ratio <= LAW_RANGE[1] or not _is_limit_of_persson(groups):
+    if ratio <= LAW_RANGE[1] or not has_endless_tail(groups.law):
         return ()
     load, friction = shares
     supposed = "" if known else f", at boundary friction 1 and beta = {USUAL_BETA:g}"
