@@ -15,7 +15,8 @@ from stribeck.fluids.effective_medium import PERCOLATION, EffectiveMedium, mediu
 from stribeck.fluids.flow_factors import FLOOR, PatirCheng, mean_inverse_width, nominal_separation
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.rheology.rate_laws import Carreau, Cross, Eyring, PowerLaw
+from stribeck.fluids.rheology.eyring import Eyring
+from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
 from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, Roelands
 from stribeck.fluids.shear_thinning import ShearThinning
 

@@ -15,7 +15,8 @@ from stribeck.fluids.effective_medium import EffectiveMedium
 from stribeck.fluids.flow_factors import PatirCheng
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.rheology.rate_laws import Carreau, Eyring
+from stribeck.fluids.rheology.eyring import Eyring
+from stribeck.fluids.rheology.rate_laws import Carreau
 from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, Roelands
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.solids.layer import Layer

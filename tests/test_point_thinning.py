@@ -19,7 +19,8 @@ from stribeck.equations.thinning.column import column, flow_curve
 from stribeck.equations.thinning.far_power import FarPower, similar
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.local_flow import profile
-from stribeck.fluids.rheology.rate_laws import Carreau, Cross, Eyring, PowerLaw
+from stribeck.fluids.rheology.eyring import Eyring
+from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
 from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson
 from stribeck.fluids.shear_thinning import ShearThinning
 from stribeck.numerics.fourier_panels import PolarMesh

@@ -13,7 +13,8 @@ from stribeck.fluids.description import Fluid
 from stribeck.fluids.effective_medium import EffectiveMedium
 from stribeck.fluids.flow_factors import PatirCheng
 from stribeck.fluids.presets import PRESETS
-from stribeck.fluids.rheology.rate_laws import Carreau, Cross, Eyring, PowerLaw
+from stribeck.fluids.rheology.eyring import Eyring
+from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
 from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, Roelands
 from stribeck.quantities.units import InputError, show
 from stribeck.solids.layer import Layer

@@ -20,7 +20,8 @@ from stribeck.files.writing import PathLike
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.result import Fit
-from stribeck.fluids.rheology.rate_laws import Carreau, Eyring
+from stribeck.fluids.rheology.eyring import Eyring
+from stribeck.fluids.rheology.rate_laws import Carreau
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, format_percent, show

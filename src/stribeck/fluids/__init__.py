@@ -7,7 +7,8 @@ _HOMES = {
     "effective_medium": ("EffectiveMedium",),
     "flow_factors": ("PatirCheng",),
     "presets": ("PRESETS", "Liquid", "glycerol_water", "water"),
-    "rheology.rate_laws": ("Carreau", "Cross", "Eyring", "PowerLaw"),
+    "rheology.eyring": ("Eyring",),
+    "rheology.rate_laws": ("Carreau", "Cross", "PowerLaw"),
     "rheology.viscosity": ("Barus", "Constant", "DowsonHigginson", "Incompressible", "Roelands"),
 }
 __all__, __getattr__, __dir__ = _lazy_names(__name__, _HOMES)

@@ -4,7 +4,8 @@ from stribeck.fluids.description import Fluid
 from stribeck.fluids.effective_medium import EffectiveMedium
 from stribeck.fluids.flow_factors import PatirCheng
 from stribeck.fluids.presets import PRESETS, Liquid, glycerol_water, water
-from stribeck.fluids.rheology.rate_laws import Carreau, Cross, Eyring, PowerLaw
+from stribeck.fluids.rheology.eyring import Eyring
+from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
 from stribeck.fluids.rheology.viscosity import Barus, Constant, DowsonHigginson, Incompressible, Roelands
 
 __all__ = [

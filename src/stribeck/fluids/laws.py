@@ -126,6 +126,25 @@ class Smooth(FlowFactors):
         return np.zeros_like(gap), np.zeros_like(gap)
 
 
+class Profile(NamedTuple):
+    """The flow across the film at many nodes: rates x, stresses g and slopes dg/dx at the walls a and b, and A, B, C."""
+
+    x_a: Array
+    x_b: Array
+    g_a: Array
+    g_b: Array
+    slope_a: Array
+    slope_b: Array
+    by_mean: Array
+    mixed: Array
+    by_slope: Array
+
+    def change(self, r_0: Array | float, r_1: Array | float) -> tuple[Array, Array]:
+        """Return the changes of T and Q for those of both integrals."""
+        determinant = self.by_mean * self.by_slope - self.mixed**2
+        return (self.by_slope * r_0 - self.mixed * r_1) / determinant, (self.by_mean * r_1 - self.mixed * r_0) / determinant
+
+
 @runtime_checkable
 class RateLaw(Law, Protocol):
     """Shear stress as a function of the shear rate, rising.
@@ -150,6 +169,10 @@ class RateLaw(Law, Protocol):
 
     def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
         r"""Return :math:`\int x \, dg` and :math:`\int g x \, dg` from zero to x, where the stress is g."""
+
+    def across(self, r_0: Array, r_1: Array, start: tuple[Array, Array] | None) -> Profile | None:
+        """Return the flow across a film as :func:`stribeck.fluids.local_flow.profile` does; None if it takes the moments."""
+        return None
 
 
 def joined_names(base: str, *laws: Law) -> str:

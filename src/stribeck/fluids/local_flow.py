@@ -26,7 +26,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stribeck._types import Array, Flags
-from stribeck.fluids.laws import RateLaw
+from stribeck.fluids.laws import Profile, RateLaw
 
 ALIKE = 0.5
 """Smallest ratio of the wall rates, of one sign, at which the Gauss rule serves."""
@@ -55,25 +55,6 @@ SIDES = np.array([[-0.5], [0.5]])
 """Where the walls are across the film."""
 
 
-class Profile(NamedTuple):
-    """The flow across the film at many nodes: rates x, stresses g and slopes dg/dx at the walls a and b, and A, B, C."""
-
-    x_a: Array
-    x_b: Array
-    g_a: Array
-    g_b: Array
-    slope_a: Array
-    slope_b: Array
-    by_mean: Array
-    mixed: Array
-    by_slope: Array
-
-    def change(self, r_0: Array | float, r_1: Array | float) -> tuple[Array, Array]:
-        """Return the changes of T and Q for those of both integrals."""
-        determinant = self.by_mean * self.by_slope - self.mixed**2
-        return (self.by_slope * r_0 - self.mixed * r_1) / determinant, (self.by_mean * r_1 - self.mixed * r_0) / determinant
-
-
 def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | None = None) -> Profile:
     """Return the flow with the integrals ``r_0`` and ``r_1``, both of shape (n,), not both zero.
 
@@ -86,6 +67,9 @@ def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | N
     start : pair of ndarray, optional
         Wall rates to start from.
     """
+    closed = law.across(r_0, r_1, start)
+    if closed is not None:
+        return closed
     x = np.stack((r_0 - 6 * r_1, r_0 + 6 * r_1) if start is None else start)
     size = AT_REST * np.abs(x).max(axis=0)
     x = np.where(np.abs(x) < size, size, x)  # a wall at rest is singular in laws without a plateau

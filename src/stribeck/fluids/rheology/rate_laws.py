@@ -8,16 +8,14 @@ Each law is of the form :math:`\tau t/\eta_0 = g(t \dot\gamma)` with one time t,
     g(x) = \begin{cases}
         x \, [\epsilon + (1 - \epsilon)(1 + x^2)^{(n-1)/2}] & \text{Carreau} \\
         x \, [\epsilon + (1 - \epsilon)/(1 + x^m)] & \text{Cross} \\
-        \operatorname{arsinh} x, \quad t = \eta_0/\tau_0 & \text{Eyring} \\
         x \, (10^{-16} + x^2)^{(n-1)/2} \approx x^n & \text{power law}
     \end{cases}
 
-Source: [Carreau 1972], [Cross 1965], [Eyring 1936].
+Source: [Carreau 1972], [Cross 1965].
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from inspect import cleandoc
@@ -38,7 +36,7 @@ from stribeck.fluids.rheology.tabulated import (
 )
 from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["Carreau", "Cross", "Eyring", "PowerLaw"]
+__all__ = ["Carreau", "Cross", "PowerLaw"]
 
 Plateaus = TypeVar("Plateaus", bound="_BetweenPlateaus")
 
@@ -47,10 +45,7 @@ LOWEST = 1e-8
 away that for n <= 1/2 the drag has no bound."""
 
 MILDEST = 1e-3
-"""What plateaus and stresses change by on the way from nearly Newtonian fluids."""
-
-SERIES = [2 * k / math.factorial(2 * k + 1) for k in range(9, 0, -1)]
-"""Of Eyring's second moment over the third power of the stress, up to his: the next term is 1e-17 of the first."""
+"""What plateaus change by on the way from nearly Newtonian fluids."""
 
 
 @dataclass(frozen=True, init=False)
@@ -181,79 +176,6 @@ class Cross(_BetweenPlateaus):
     def smallest(self) -> float:
         """Return the logarithm of the rate below which the law is Newtonian to rounding."""
         return -38.0 / self.exponent
-
-
-@dataclass(frozen=True, init=False)
-class Eyring(RateLaw):
-    r"""The fluid whose stress grows as the logarithm of the rate, as that of oils does at high pressure.
-
-    .. math:: \dot\gamma = \frac{\tau_0}{\eta} \sinh\frac{\tau}{\tau_0}
-
-    Parameters
-    ----------
-    stress : str or float
-        Eyring's stress :math:`\tau_0 > 0` [Pa]; with groups :math:`\tau_0 u_\mathrm{Hz}/(\eta_0 U)` at their speed.
-
-    Raises
-    ------
-    InputError
-        Where the value is impossible or its unit is wrong.
-
-    Notes
-    -----
-    If the viscosity grows with the pressure, the stress :math:`\tau_0` is held.
-
-    Source: [Eyring 1936].
-    """
-
-    eyring_stress: float
-
-    def __init__(self, stress: str | float) -> None:
-        value = to_si(stress, "pressure", "stress")
-        if value <= 0:
-            raise InputError(f"stress = {show(stress)} must be above zero; oils have about '5 MPa'.")
-        set_numbers(self, eyring_stress=value)
-
-    @property
-    def name(self) -> str:
-        """Name that outputs print."""
-        return "eyring"
-
-    @property
-    def parameters(self) -> dict[str, float | str]:
-        """The stress."""
-        return parameters_of(self, "eyring_stress")
-
-    @property
-    def time(self) -> float:
-        """Viscosity over stress, in Hertz units."""
-        return 1.0 / self.eyring_stress
-
-    def scaled(self, units: FilmUnits) -> Self:
-        """Return the law in Hertz units."""
-        return type(self)(self.eyring_stress / units.stress)
-
-    def milder(self, part: float) -> Self:
-        """Return the fluid with a higher stress."""
-        return type(self)(self.eyring_stress * MILDEST ** (part - 1))
-
-    def stress(self, rate: Array) -> tuple[Array, Array]:
-        """Return arsinh(x) and its slope."""
-        return np.arcsinh(rate), 1 / np.hypot(1.0, rate)
-
-    def rate(self, stress: Array) -> Array:
-        """Return the rate at a stress."""
-        return np.sinh(np.minimum(stress, 700.0))
-
-    def moments(self, rate: Array, stress: Array) -> tuple[Array, Array]:
-        """Return ``cosh(g) - 1`` and ``g cosh(g) - sinh(g)``, without loss of digits at small g."""
-        g, cosh = stress, np.hypot(1.0, rate)
-        square = np.minimum(g, 1.0) ** 2
-        series = np.zeros_like(g)
-        for term in SERIES:
-            series *= square
-            series += term
-        return rate * (rate / (1 + cosh)), np.where(g < 1, g * square * series, g * cosh - rate)
 
 
 @dataclass(frozen=True, init=False)
