@@ -22,8 +22,8 @@ import numpy as np
 
 from stribeck._types import Array, Numbers
 from stribeck.fluids.fluid import MOST_KEPT, Fall, Key, Slopes, kept, same
-from stribeck.fluids.laws import DensityLaw, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
-from stribeck.fluids.local_flow import Profile, profile
+from stribeck.fluids.laws import DensityLaw, Profile, RateLaw, ViscosityLaw, joined_names, joined_parameters, notes_of
+from stribeck.fluids.local_flow import profile
 from stribeck.fluids.rheology.viscosity import Constant, Incompressible
 
 __all__ = ["ShearThinning"]
