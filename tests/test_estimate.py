@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 
 import stribeck as sb
-from stribeck.equations.error_estimate import FineOperators
+from stribeck.equations.error_estimate import FineOperators, error_estimates
 from stribeck.equations.line import Operators
 from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.panels import Mesh
+from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
+from stribeck.solver import refinement
 from stribeck.solver.cold_start import cold_start
-from stribeck.solver.refinement import verify
+from stribeck.solver.refinement import converge, verify
 
 SEED = 17_903
 
@@ -188,3 +190,19 @@ def test_more_nodes_a_panel_lower_the_error_exponentially_until_1e_10(name, solv
     assert rate > 1.5
     assert np.diff(np.log(errors)).max() < -1.0
     assert errors[-1] < 1e-10
+
+
+def test_meshes_grow_no_more_where_only_noise_of_the_gaps_is_left(monkeypatch):
+    sizes = []
+
+    def noisy(states, observed, fine):
+        sizes.append(fine.mesh.size)
+        found = error_estimates(states, observed, fine)
+        return [replace(one, interpolation=one.interpolation + 2e-6 * one.scales) for one in found]
+
+    groups = sb.Groups(*STATES["mixed"])
+    start = cold_start(groups).states[-1]
+    monkeypatch.setattr(refinement, "error_estimates", noisy)
+    monkeypatch.setattr(refinement, "NODAL_ROUNDING", 1e-6 * start.gap.min())
+    assert converge(start, groups, 1e-6).outcome is Outcome.ROUNDING
+    assert len(sizes) <= 3

@@ -119,6 +119,36 @@ def test_a_lost_path_reaches_as_far_as_it_was_solved():
     assert follow(Known(fails_below=5.0), 3.0, -9.0, 1e-6).expansions == ()
 
 
+def test_a_path_ends_where_rounding_leaves_more_than_the_tolerance():
+    class Rounded(Known):
+        asked = 0
+
+        def solve(self, s, near):
+            self.asked += 1
+            return Outcome.ROUNDING if s < -4.0 else super().solve(s, near)
+
+    problem = Rounded()
+    path = follow(problem, 3.0, -9.0, 1e-6)
+    assert path.outcome is Outcome.ROUNDING
+    assert -4.0 <= path.coordinates[0] < -3.5
+    assert problem.asked - len(problem.solved) < 20
+
+
+def test_a_path_that_halves_without_end_ends(monkeypatch):
+    monkeypatch.setattr("stribeck.solver.path.MOST_INTERVALS", 50)
+    monkeypatch.setattr("stribeck.solver.path.LONGEST_STEP", 0.2)
+
+    class Doubted(Known):
+        def missed(self, left, right, parts, values):
+            return np.full(3, 100.0 * (right.coordinate - left.coordinate))
+
+    problem = Doubted()
+    path = follow(problem, 3.0, -9.0, 1e-6)
+    assert path.outcome is Outcome.STATE_LIMIT
+    assert len(problem.solved) < 150
+    assert path.coordinates[-1] == 3.0 and path.coordinates[0] < 3.0
+
+
 def test_an_interrupted_path_keeps_what_was_reported():
     seen = []
 

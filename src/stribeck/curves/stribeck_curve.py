@@ -186,7 +186,7 @@ def stribeck_curve(
         if path.expansions:
             done = progress.done
             slowest, high = math.exp(lowest), math.exp(float(path.coordinates[-1]))
-            values = np.geomspace(slowest, high, points if path.outcome.ok else max(done, 1))
+            values = np.geomspace(slowest, high, points if path.outcome.ok else max(done, 2))
             progress.places, progress.done = np.log(values), min(done, points - 1) if path.outcome.ok else len(values)
             progress(math.log(slowest), math.log(high))
     else:

@@ -25,6 +25,9 @@ class Outcome(Enum):
         "ask for a larger rtol, or use the value with its error estimate."
     )
     PATH_LOST = "The path from known states to this one was lost; the points before it are kept; try values nearby."
+    STATE_LIMIT = (
+        "The curve takes more solved states than it may; the points before are kept; ask for a larger rtol or a shorter range."
+    )
     INTERRUPTED = "Interrupted; the finished points are kept."
 
     @property

@@ -359,8 +359,10 @@ class LineProblem:
         end = on(guess.mesh, (right, left))
         assert end is not None
         equations, y = guess.equations, guess.y
+        inverse = self._inverse_of(end.state)
         with np.errstate(all="ignore"):
-            y = y + equations.units(y) * self._inverse_of(end.state)(equations.residual(y))
+            for _ in range(1 if left.point.state.mesh is right.point.state.mesh else 2):
+                y = y + equations.units(y) * inverse(equations.residual(y))
             return observables(equations, y, float(guess.groups.load)).array(in_article=False)
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:

@@ -63,8 +63,14 @@ LONGEST_END = 0.05
 SHORTEST_INTERVAL = 0.01
 """Length below which an interval keeps its error: where a film ruptures no series converges."""
 
-NOISY, PROGRESS = 0.2, 0.8
+NOISY, PROGRESS = 0.4, 0.6
 """Length below which halving an interval must reduce its error to this part, or the error is rounding."""
+
+SHORTEST_AT_ROUNDING = 0.2
+"""Length of a step below which a path ends where rounding leaves more than the tolerance: what is beyond is no better."""
+
+MOST_INTERVALS = 500
+"""Intervals after which a path ends."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -395,12 +401,15 @@ def follow(
         alone = (Interval(problem, here, here),)
         upwards = end > here.coordinate
         while (left := abs(here.coordinate - end)) > 0 and not (until is not None and until(here)):
+            if len(found) >= MOST_INTERVALS:
+                return SolvedPath(problem, _ascending(found), Outcome.STATE_LIMIT)
             step = min(left, LONGEST_STEP, max(SHORTEST_INTERVAL, _step(here, rtol)))
             if left < 2 * step:  # two equal steps rather than a long and a short one
                 step = left if left <= step else 0.5 * left
             while isinstance(new := problem.solve(_beyond(here, end, step if upwards else -step), [here]), Outcome):
                 step *= SHORTER
-                if step < SHORTEST_STEP or new is Outcome.INTERRUPTED:
+                shortest = SHORTEST_AT_ROUNDING if new is Outcome.ROUNDING else SHORTEST_STEP
+                if step < shortest or new is Outcome.INTERRUPTED:
                     return SolvedPath(problem, _ascending(found) or alone, new)
             low, high = (here, new) if upwards else (new, here)
             parts = _refined(Interval(problem, low, high), rtol)
@@ -460,7 +469,7 @@ def _refined(interval: Interval, rtol: float, before: float = math.inf) -> list[
     at = 0.5 * (left.coordinate + right.coordinate)
     for near in ([left, right], [max(left, right, key=lambda end: end.radius)]):  # a series may be good on one side alone
         middle = problem.solve(at, near)
-        if not isinstance(middle, Outcome):
+        if not isinstance(middle, Outcome) or middle is Outcome.ROUNDING:
             break
     if isinstance(middle, Outcome):
         return [interval]

@@ -28,6 +28,12 @@ NODAL_ROUNDING = 16 * 2.0**-52
 MIN_GAP_TAIL = 0.02
 """Error of the read-off gap over the tolerance below which refining there alone does not help."""
 
+PROGRESS = 0.5
+"""Part to which a finer mesh must reduce the error where the noise of nodal gaps may be what is left."""
+
+NOISES = 4.0
+"""Error over that noise up to which it may be."""
+
 CLEARLY_FINER = 1.1
 """Ratio of mesh sizes above which the difference of two solutions measures the error of the coarser one."""
 
@@ -109,11 +115,12 @@ def converge(
         if last is not None and mesh.size >= CLEARLY_FINER * last[0] and not shared:
             estimate = estimate.at_most(np.abs(values.array(in_article) - last[1]))
         last = mesh.size, values.array(in_article)
-        if best.estimate is None or estimate.total < best.estimate.total:
+        before = math.inf if best.estimate is None else best.estimate.total
+        if estimate.total < before:
             best = RefinedState(groups, state, values, estimate, reached(estimate, rtol), (tail, gap_tail), fine)
         if best.outcome.ok:
             return best
-        if estimate.total <= 3 * estimate.floor:
+        if estimate.total <= 3 * estimate.floor or PROGRESS * before < estimate.total <= NOISES * _noise(best):
             outcome = Outcome.ROUNDING
             break
         halvings += halvings_for(estimate.of_ends / rtol)
