@@ -64,8 +64,9 @@ class Newtonian:
     flow: FlowFactors = Smooth()
     slide: float = 1.0
     uses_pressure: bool = field(init=False, repr=False, compare=False)
+    is_smooth: bool = field(init=False, repr=False, compare=False)
     is_plain: bool = field(init=False, repr=False, compare=False)
-    _known: dict[tuple[int, ...], tuple[Key, tuple[Array, Slopes]]] = field(init=False, repr=False, compare=False)
+    _known: dict[tuple[int, ...], tuple[Key, Slopes]] = field(init=False, repr=False, compare=False)
     uses_speed: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
@@ -73,7 +74,8 @@ class Newtonian:
         uses_pressure = not (isinstance(self.viscosity, Constant) and isinstance(self.density, Incompressible))
         object.__setattr__(self, "uses_pressure", uses_pressure)
         object.__setattr__(self, "_known", {})
-        object.__setattr__(self, "is_plain", not uses_pressure and isinstance(self.flow, Smooth))
+        object.__setattr__(self, "is_smooth", isinstance(self.flow, Smooth))
+        object.__setattr__(self, "is_plain", not uses_pressure and self.is_smooth)
 
     @property
     def name(self) -> str:
@@ -101,13 +103,18 @@ class Newtonian:
         """Return G."""
         if self.is_plain:
             return gradient(gap, flux_gap)
-        return self._parts(gap, pressure, flux_gap)[0]
+        eta, _, rho, _ = self._of_pressure(pressure)
+        width = gap - flux_gap / rho
+        if self.is_smooth:
+            return np.asarray(eta * width / (gap * gap * gap))
+        width += self.slide * self.flow.shear(gap)[0]
+        return np.asarray(eta * width / (self.flow.pressure(gap)[0] * gap * gap * gap))
 
     def slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
         """Return the derivatives of G."""
         if self.is_plain:
             return Slopes(gap_derivative(gap, flux_gap), None, flux_derivative(gap))
-        return self._parts(gap, pressure, flux_gap)[1]
+        return self._slopes(gap, pressure, flux_gap)
 
     def jump(self, gap: Array, pressure: Array | None) -> Array | None:
         """Return by how much G jumps between each node and the next one, zero mostly; None if it never does."""
@@ -173,34 +180,29 @@ class Newtonian:
         log, log_slope = self.viscosity.log(pressure)
         return np.exp(log), log_slope, *self.density.ratio(pressure)
 
-    def _parts(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Slopes]:
-        """Return G and its derivatives, those known if the last on as many nodes were for the same film."""
+    def _slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
+        """Return the derivatives of G, those known if the last on as many nodes were for the same film."""
         if len(gap.shape) == 2 and len(gap) == 1:
-            g, slopes = self._parts(gap[0], None if pressure is None else pressure[0], np.ravel(flux_gap))
+            slopes = self._slopes(gap[0], None if pressure is None else pressure[0], np.ravel(flux_gap))
             by_gap, by_pressure, by_flux, _ = slopes
-            return g[None], Slopes(by_gap[None], None if by_pressure is None else by_pressure[None], by_flux[None])
+            return Slopes(by_gap[None], None if by_pressure is None else by_pressure[None], by_flux[None])
         key = (flux_gap, gap, pressure)
         last = self._known.get(gap.shape)
         if last is not None and same(last[0], key):
             return last[1]
         if len(self._known) >= MOST_KEPT:
             self._known.clear()
-        found = self._made(gap, pressure, flux_gap)
-        found[0].flags.writeable = False
-        self._known[gap.shape] = kept(key), found
-        return found
-
-    def _made(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Slopes]:
-        """Return G and its derivatives."""
         h, m, s = gap, flux_gap, self.slide
         eta, eta_slope, rho, rho_slope = self._of_pressure(pressure)
         phi, phi_slope = self.flow.pressure(h)
         carried, carried_slope = self.flow.shear(h)
-        resistance = eta / (phi * h**3)
+        resistance = eta / (phi * h * h * h)
         g = resistance * (h - m / rho + s * carried)
         by_gap = resistance * (1 + s * carried_slope) - g * (phi_slope / phi + 3 / h)
         by_pressure = eta_slope * g + resistance * m * rho_slope / rho**2 if self.uses_pressure else None
-        return np.asarray(g), Slopes(by_gap, by_pressure, -resistance / rho)
+        found = Slopes(by_gap, by_pressure, -resistance / rho)
+        self._known[gap.shape] = kept(key), found
+        return found
 
 
 def flux_gap(gap: Array, weights: Array) -> float:

@@ -46,28 +46,35 @@ class Cells:
     def _place(self, x: Array) -> tuple[Indices, Array]:
         """Return the cell of each number and its place there."""
         cells = self.coefficients.shape[-1]
-        place = np.clip((x - self.start) / self.width, 0.0, cells)
-        cell = np.minimum(place.astype(np.intp), cells - 1)
-        return cell, 2 * (place - cell) - 1
+        place = x - self.start
+        place *= 1 / self.width
+        np.minimum(np.maximum(place, 0.0, out=place), cells, out=place)
+        cell = place.astype(np.intp)
+        np.minimum(cell, cells - 1, out=cell)
+        place -= cell
+        place *= 2.0
+        place -= 1.0
+        return cell, place
 
     def __call__(self, x: Array) -> Array:
         """Return the functions at x, shape (..., *x.shape)."""
         cell, s = self._place(x)
-        found: Array = self.coefficients[-1].take(cell, axis=-1)
-        for row in self.coefficients[-2::-1]:
+        rows = self.coefficients.take(cell, axis=-1, mode="clip")
+        found: Array = rows[-1]
+        for row in rows[-2::-1]:
             found *= s
-            found += row.take(cell, axis=-1)
+            found += row
         return found
 
     def with_slope(self, x: Array) -> tuple[Array, Array]:
         """Return the functions and their derivatives at x."""
         cell, s = self._place(x)
-        found = self.coefficients[-1].take(cell, axis=-1)
-        slope = np.zeros_like(found)
-        for row in self.coefficients[-2::-1]:
+        rows = self.coefficients.take(cell, axis=-1, mode="clip")
+        found, slope = rows[-1], np.zeros_like(rows[-1])
+        for row in rows[-2::-1]:
             slope *= s
             slope += found
             found *= s
-            found += row.take(cell, axis=-1)
+            found += row
         slope *= 2 / self.width
         return found, slope
