@@ -2,7 +2,7 @@
 
 Needs the extras ``app`` and ``browser`` and Debian's ``chromium`` (or CHROMIUM=/path/to/it); without them it says so.
 For each slider the arrow key is pressed with rests between; the clock runs in the page, from the event of the key to the first
-frame after the chart of friction has taken its data.
+frame after all charts, numbers and fields show the answer.
 """
 
 from __future__ import annotations
@@ -24,14 +24,16 @@ CASES = [Path(__file__).parents[1] / "examples" / name for name in ("pdms_cylind
 
 CLOCK = """() => {
   window.moves = [];
-  const chart = getElement(Number(document.querySelector('.chart-diagram').id.slice(1))).chart;
   addEventListener('keydown', () => { window.pressed = performance.now(); }, true);
-  chart.on('rendered', () => {
-    if (!window.pressed) return;
-    const start = window.pressed;
-    window.pressed = 0;
-    requestAnimationFrame(() => { window.moves.push(performance.now() - start); });
-  });
+  const frame = window.explorerFrame;
+  window.explorerFrame = (answer) => {
+    const drawn = frame(answer), start = window.pressed;
+    if (answer.moved && start) {
+      window.pressed = 0;
+      requestAnimationFrame(() => { window.moves.push(performance.now() - start); });
+    }
+    return drawn;
+  };
 }"""
 
 

@@ -112,7 +112,7 @@ class Answer:
     profile : Profile
         The fields, in Hertz units.
     plane : Field or None
-        The fields on the plane of a ball.
+        The fields on the plane of a ball, from the middle line on to one side, to which the other is equal.
     thin : tuple of AsymptoticField
         Asymptotic fields.
     speeds : tuple of float
@@ -179,7 +179,7 @@ class Answerer:
         plane = None
         if isinstance(solution, PointSolution):
             side = np.linspace(-PLANE_REACH, PLANE_REACH, PLANE_POINTS)
-            plane = solution.field(side, side[:, None])
+            plane = solution.field(side, side[PLANE_POINTS // 2 :, None])
         return Answer(
             inputs=inputs,
             solution=solution,

@@ -22,8 +22,8 @@ from stribeck.explorer.asked.inputs import FIELDS, GROUP_FIELDS, NAMES, Inputs
 from stribeck.explorer.asked.url import Pin
 from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.drawing import drawing
-from stribeck.explorer.charts.echarts import data_only, difference
 from stribeck.explorer.charts.palette import DARK, LIGHT
+from stribeck.explorer.charts.parts import Options, difference
 from stribeck.explorer.downloads import View, examples
 from stribeck.explorer.measured import Measured
 from stribeck.explorer.scans import ENDINGS
@@ -73,6 +73,21 @@ class ChoiceRow(ui.element, component="choice.js"):
         self._props |= {"name": name, "label": CHOICES[name].label, "start": start}
 
 
+class Chart(ui.element, component="chart.js"):
+    """A chart, empty until the first frame.
+
+    Parameters
+    ----------
+    name, label : str
+        Its name, and what it shows in words.
+    """
+
+    def __init__(self, name: str, label: str) -> None:
+        super().__init__()
+        self._props |= {"label": label}
+        self.classes(f"chart chart-{name}")
+
+
 def knob_state(now: Inputs, name: str) -> dict[str, Any]:
     """Return what a field, or a list, shows."""
     if name in CHOICES:
@@ -111,9 +126,10 @@ class Page:
         self.ways_of: Inputs | None = None
         self.moved: int | None = None
         self.knobs: dict[str, Slider | ChoiceRow] = {}
-        self.charts: dict[str, ui.echart] = {}
+        self.charts: dict[str, Chart] = {}
         self.toggles: dict[str, ui.toggle] = {}
         self.shown: dict[str, Any] = {}
+        self.drawn: dict[str, Options] = {}
         self.progress = ""
         self.dark = ui.dark_mode(None)
         self.palette = LIGHT
@@ -220,7 +236,7 @@ class Page:
 
     def chart(self, name: str, label: str) -> None:
         """Make an empty chart."""
-        self.charts[name] = ui.echart({}).classes(f"chart chart-{name}").props(f'role="img" aria-label="{label}"')
+        self.charts[name] = Chart(name, label)
 
     # --- what they show ---
 
@@ -295,17 +311,8 @@ class Page:
         # Closed ones are removed, or each would stay with its page.
         dialog.on("hide", dialog.delete)
 
-    def options(self, seen: View) -> dict[str, dict[str, Any]]:
-        """Return what all charts show."""
-        return charts.all_charts(seen.answer, seen.pins, seen.measured, self.palette)
-
     def draw_all(self, now: Inputs, seen: View) -> None:
-        """Put whole charts and all numbers into a page that is being made."""
-        for name, options in self.options(seen).items():
-            # Points come with the first frame: here each would be kept as an object of its own, 2 MB in all.
-            bare = options | {"series": [series | {"data": []} for series in options["series"]]}
-            self.charts[name].options.update(bare)
-            self.shown[f"chart-{name}"] = data_only(bare)
+        """Put all numbers into a page that is being made; its charts come with the first frame."""
         for element, content in self.words(seen):
             element.content = content
         self.shown |= {name: knob_state(now, name) for name in self.knobs}
@@ -357,27 +364,24 @@ class Page:
         """Send what changed, and wait until the browser has drawn it."""
         frame: dict[str, Any] = {"html": [], "charts": [], "knobs": [], "moved": self.moved}
         frame["waits"] = self.ways_words(now)
-        frame["units"] = {}
         frame["geometry"] = now.table.geometry
         self.moved = None
         for element, content in self.words(seen):
             if self.shown.get(element.html_id) != content:
                 self.shown[element.html_id] = content
                 frame["html"].append([element.html_id, content])
-        for name, whole in self.options(seen).items():
-            options = data_only(whole)
-            frame["units"][name] = options["xAxis"]["name"].partition("(")[2].partition(")")[0].strip("–")
-            changed = difference(self.shown[f"chart-{name}"], options)
-            self.shown[f"chart-{name}"] = options
+        for name, chart in charts.all_charts(seen.answer, seen.pins, seen.measured, self.palette).items():
+            changed = difference(self.drawn.get(name, {}), chart)
+            self.drawn[name] = chart
             if changed is not None:
-                frame["charts"].append([self.charts[name].id, *changed])
+                frame["charts"].append([self.charts[name].id, changed])
         for name, knob in self.knobs.items():
             state = knob_state(now, name)
             if self.shown.get(name) != state:
                 self.shown[name] = state
                 frame["knobs"].append([knob.id, state])
         try:
-            await self.client.run_javascript(f"return explorerFrame({dumps(frame)})", timeout=PATIENCE)
+            await self.client.run_javascript(f"explorerFrame({dumps(frame)})", timeout=PATIENCE)
         except TimeoutError:  # a tab in the background answers when it is looked at
             pass
 

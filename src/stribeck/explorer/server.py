@@ -91,6 +91,7 @@ def serve(case: Path | None = None, port: int | None = None, browser: bool = Tru
         message_history_length=MOST_RESENT,
         h11_max_incomplete_event_size=4 * LONGEST,
         ws_max_size=1_000_000,
+        ws_per_message_deflate=False,  # nothing leaves this machine
     )
 
 

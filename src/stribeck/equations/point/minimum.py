@@ -47,11 +47,14 @@ def minimum_on_axis(mesh: PolarMesh, h: Array) -> Minimum:
     """Return the minimum of the interpolated gap on the middle line."""
     coefficients = mesh.to_modes @ h
     signs = (-1.0) ** np.arange(mesh.modes)
-    found = [centre(mesh, h)]
-    for angle, profile in ((0.0, coefficients.sum(axis=0)), (np.pi, signs @ coefficients)):
-        start = mesh.radii[int(np.argmin(profile))]
-        found.append(_descend(mesh, coefficients, start, angle, True))
-    return min(found, key=lambda one: one.gap)
+    sides = [
+        (int(np.argmin(profile)), angle, profile)
+        for angle, profile in ((0.0, coefficients.sum(axis=0)), (math.pi, signs @ coefficients))
+    ]
+    # A side that rises from the centre on holds no minimum; the descent from the other side may cross the centre.
+    starts = [side for side in sides if side[0] > 0] or [min(sides, key=lambda side: side[2][0])]
+    found = [_descend(mesh, coefficients, mesh.radii[node], angle, True) for node, angle, _ in starts]
+    return min([centre(mesh, h), *found], key=lambda one: one.gap)
 
 
 def centre(mesh: PolarMesh, h: Array) -> Minimum:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 
@@ -11,22 +10,14 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.friction import Definition
 from stribeck.explorer.answer import Answer, round_down, round_up
-from stribeck.explorer.charts.echarts import Options, chart, legend, line, linear_axis, log_axis, marker, pairs, with_unit
 from stribeck.explorer.charts.palette import PIN_DASHES, Palette
+from stribeck.explorer.charts.parts import Options, chart, line, linear_axis, log_axis, marker, pairs, points
 from stribeck.explorer.curves import Curve, decade_of_roughness, hersey_scale
 from stribeck.explorer.measured import Measured, speeds_of
 from stribeck.quantities.units import DIMENSIONS, format_si
+from stribeck.solver.point.solution import Field
 
-__all__ = ["CHARTS", "all_charts"]
-
-CHARTS = ("friction", "gap", "pressure", "plane", "diagram")
-
-POLYGON = """(params, api) => {
-  const points = [];
-  for (let i = 0; i < api.value(2); i++) points.push(api.coord([api.value(2 * i + 3), api.value(2 * i + 4)]));
-  return {type: 'polygon', shape: {points}, style: {fill: api.visual('color')}, silent: true};
-}"""
-"""One polygon: a point of it, the number of its points, and all their coordinates in one row."""
+__all__ = ["all_charts"]
 
 
 def all_charts(
@@ -48,15 +39,14 @@ def all_charts(
     Returns
     -------
     dict of str to dict
-        By the names of :data:`CHARTS`.
+        By their names; the film on the plane of a ball alone.
     """
     return {
         "friction": friction_chart(answer, pins, measured, palette),
         "gap": gap_chart(answer, palette),
         "pressure": pressure_chart(answer, palette),
-        "plane": plane_chart(answer, palette),
         "diagram": diagram_chart(answer, palette),
-    }
+    } | ({} if answer.plane is None else {"plane": plane_chart(answer.plane, answer, palette)})
 
 
 def axis_of(answer: Answer, measured: Sequence[Measured]) -> tuple[float, float]:
@@ -96,8 +86,8 @@ def friction_chart(
         ]
         if curve.stale:
             for old in series:
-                old["lineStyle"]["opacity"] = 0.25
-        series[-1]["markArea"] = _regime_areas(curve, answer.speeds, scale, palette)
+                old["opacity"] = 0.25
+        series.append(_regime_bands(curve, answer.speeds, scale, palette))
     for i, (name, pinned, their_hersey) in enumerate(pins):
         factor = 1.0 if inputs.abscissa == "speed" else their_hersey
         values = pinned.friction[chosen]
@@ -105,20 +95,8 @@ def friction_chart(
         series.append(line(f"pin{i}", name, pinned.speed * factor, values, palette.pins[i % 6], 1.8, PIN_DASHES[i % 6]))
     for i, found in enumerate(measured):
         heights += _range(found.friction)
-        points = pairs(found.speed * scale, found.friction)
-        look = {"color": "transparent", "borderColor": palette.ink, "borderWidth": 1.6}
-        series.append(
-            {
-                "id": f"measured{i}",
-                "name": found.name,
-                "type": "scatter",
-                "data": points,
-                "symbol": ("circle", "diamond", "triangle")[i % 3],
-                "symbolSize": 7,
-                "itemStyle": look,
-                "z": 4,
-            }
-        )
+        symbol = ("circle", "diamond", "triangle")[i % 3]
+        series.append(points(f"measured{i}", found.name, found.speed * scale, found.friction, symbol, palette.ink))
     friction = answer.solution.friction(definition=chosen).total
     heights += [friction] if friction > 0 else []
     low, high = _friction_limits(heights)
@@ -126,18 +104,11 @@ def friction_chart(
     if minimum is not None:
         x = np.full(2, minimum.speed * scale)
         series.append(line("minimum", "minimum friction", x, np.array([low, high]), palette.mark, 1.4, [2, 3]))
-    point = [contact.speed * scale if contact.speed > 0 else ends[0], friction]
-    series.append(marker("point", point, palette))
-    unit = "sliding speed U (m/s)" if inputs.abscissa == "speed" else "Hersey number ηU/F (–)"
-    options = chart(
-        palette,
-        with_unit("friction", log_axis(unit, *ends, palette)),
-        log_axis("friction coefficient µ", low, high, palette),
-        series,
-    )
+    series.append(marker(contact.speed * scale if contact.speed > 0 else ends[0], friction, palette))
+    abscissa = "sliding speed U (m/s)" if inputs.abscissa == "speed" else "Hersey number ηU/F (–)"
     listed = [names[chosen], names[other], "from asperities", "from the fluid"] if curve is not None else []
-    listed += [s["name"] for s in series if s["id"].startswith(("pin", "measured", "minimum"))]
-    return options | {"legend": legend(palette, listed, [found.name for found in measured])}
+    listed += [each["name"] for each in series if each["id"].startswith(("pin", "measured", "minimum"))]
+    return chart(palette, log_axis(abscissa, *ends), log_axis("friction coefficient µ", low, high), series, listed)
 
 
 def gap_chart(answer: Answer, palette: Palette) -> Options:
@@ -157,10 +128,8 @@ def gap_chart(answer: Answer, palette: Palette) -> Options:
         series.append(line("rms", "roughness", np.array([-x_end, x_end]), np.full(2, rms * scale), palette.grey, 1.2, [6, 4]))
     series += _thin_series(answer, ("gap",), x_scale, scale, palette)
     low, high = round_down(min(shown) * scale), round_up(max(shown) * scale)
-    y = log_axis(f"gap ({u_unit})", low, high, palette)
-    axis = with_unit("gap", linear_axis(f"position x ({x_unit})", -x_end, x_end, palette))
-    options = chart(palette, axis, y, series)
-    return options | {"legend": legend(palette, [s["name"] for s in series])}
+    x = linear_axis(f"position x ({x_unit})", -x_end, x_end)
+    return chart(palette, x, log_axis(f"gap ({u_unit})", low, high), series, [each["name"] for each in series])
 
 
 def pressure_chart(answer: Answer, palette: Palette) -> Options:
@@ -182,65 +151,32 @@ def pressure_chart(answer: Answer, palette: Palette) -> Options:
     lowest = min(0.0, float(profile.fluid_pressure.min()), float(profile.pressure.min())) * scale
     high = round_up(1.02 * most)
     low = 0.0 if lowest > -0.01 * high else -round_up(-1.02 * lowest)
-    y = linear_axis(f"pressure ({name})", low, high, palette)
-    axis = with_unit("pressure", linear_axis(f"position x ({x_unit}); fluid enters left", -x_end, x_end, palette))
-    options = chart(palette, axis, y, series)
-    return options | {"legend": legend(palette, [s["name"] for s in series])}
+    axis = linear_axis(f"position x ({x_unit}); fluid enters left", -x_end, x_end)
+    return chart(palette, axis, linear_axis(f"pressure ({name})", low, high), series, [each["name"] for each in series])
 
 
-def plane_chart(answer: Answer, palette: Palette) -> Options:
-    """Return the film of a ball on its plane as colours, on a logarithmic scale; nothing for a cylinder."""
-    plane, hertz = answer.plane, answer.inputs.contact.hertz
-    side = np.ones(1) if plane is None else np.asarray(plane.x[0])
-    end = float(np.abs(side).max()) * hertz.half_width
+def plane_chart(plane: Field, answer: Answer, palette: Palette) -> Options:
+    """Return the film of a ball on its plane as colours, on a logarithmic scale."""
+    hertz = answer.inputs.contact.hertz
+    end = float(np.max(plane.x)) * hertz.half_width
     unit, name = _unit(end, "length")
-    gap = np.ones((1, 1)) if plane is None else np.maximum(plane.gap, 1e-300) * hertz.indentation
+    gap = np.maximum(plane.gap, 1e-300) * hertz.indentation
+    most = 20 * float(gap[0, gap.shape[1] // 2])
     # The thinnest place lies between those of the map.
-    low = 1.0 if plane is None else min(float(gap.min()), answer.solution.minimum_gap * hertz.indentation)
-    high = 20 * float(gap[len(gap) // 2, len(gap) // 2])
-    values = np.round(np.log10(np.clip(gap, low, high)), 3)
-    drawn = {"id": "film", "name": "film", "type": "custom", "data": [] if plane is None else values.ravel().tolist()}
-    x, y = (linear_axis(f"position {axis} ({name})", -end / unit, end / unit, palette) for axis in ("x", "y"))
-    x, y = ({**axis, "splitLine": {"show": False}} for axis in (x, y))
-    for axis in (x, y):
-        axis["axisLabel"] = axis["axisLabel"] | {"showMinLabel": False, "showMaxLabel": False}
-    options = chart(
-        palette,
-        x | {"name": f"position x ({name}); fluid enters left", "nameGap": 26},
-        y | {"nameGap": 36},
-        [drawn | {"progressive": 0, "clip": True, ":renderItem": FILM.replace("STOPS", json.dumps(FILM_COLOURS))}],
-    )
-    scale = {
-        "type": "continuous",
-        "seriesIndex": [],
-        "min": round(math.log10(low), 3),
-        "max": float(values.max()) + 1e-3,
-        "calculable": False,
-        "orient": "horizontal",
-        "left": 50,
-        "bottom": 0,
-        "itemHeight": 150,
-        "itemWidth": 11,
-        "text": [format_si(high, "length", 3), format_si(low, "length", 3)],
-        "textStyle": {"color": palette.grey, "fontSize": 11},
-        "inRange": {"color": FILM_COLOURS},
-    }
-    grid = {"left": 50, "top": 8, "width": FILM_WIDTH, "height": FILM_WIDTH}
-    tip = {"trigger": "item", ":formatter": "() => explorerFilmAt()", "confine": True}
-    return options | {"visualMap": scale, "grid": grid, "tooltip": options["tooltip"] | tip}
+    low, high = min(float(gap.min()), answer.solution.minimum_gap * hertz.indentation), min(float(gap.max()), most)
+    drawn = {"id": "film", "name": "film", "type": "film", "colours": FILM_COLOURS, "columns": gap.shape[1]}
+    drawn |= {"low": math.log10(low), "high": math.log10(high)}
+    drawn["data"] = np.round(np.log10(np.clip(gap, low, high)), 3).ravel().tolist()
+    x = linear_axis(f"position x ({name}); fluid enters left", -end / unit, end / unit)
+    made = chart(palette, x, linear_axis(f"position y ({name})", -end / unit, end / unit), [drawn])
+    beyond = "≥ " if most < gap.max() else ""
+    words = [format_si(low, "length", 3), beyond + format_si(high, "length", 3)]
+    scale = {"words": words, "colours": FILM_COLOURS}
+    return made | {"scale": scale, "square": True, "margin": {"left": 50, "bottom": 84}}
 
 
 FILM_COLOURS = ["#fde725", "#5ec962", "#21918c", "#3b528b", "#440154"]
 """Of the film of a ball, from thin to thick."""
-
-FILM_WIDTH = 294
-"""Of its picture, in pixels of the screen."""
-
-FILM = """(params, api) => params.dataIndex === 0 ? {
-  type: 'image',
-  style: explorerFilm(Array.from({length: params.dataInsideLength}, (_, i) => api.value(0, i)), STOPS, params.coordSys),
-} : undefined"""
-"""One image for the whole film: a rectangle for each place takes the browser longer than all other charts."""
 
 
 def diagram_chart(answer: Answer, palette: Palette) -> Options:
@@ -262,26 +198,10 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
     rows = roughness[: len(known)][known]
     left, right = np.full(len(rows), low), np.full(len(rows), high)
     b, h = end[known], begin[known]
-    # The areas are there before their data: what draws them is sent once, with the empty chart.
-    for name, one, two in (("boundary", left, b), ("mixed", b, h), ("hydrodynamic", h, right)):
-        outline = [*pairs(one, rows), *pairs(two[::-1], rows[::-1])]
-        row = [*outline[0], len(outline), *(value for point in outline for value in point)] if outline else []
-        series.append(
-            {
-                "id": f"area-{name}",
-                "name": name,
-                "type": "custom",
-                ":renderItem": POLYGON,
-                "clip": True,
-                "silent": True,
-                "data": [row] if row else [],
-                "color": palette.tints[name],
-                "itemStyle": {"color": palette.tints[name]},
-                "tooltip": {"show": False},
-                "z": 1,
-            }
-        )
-        if row:
+    if is_there:
+        for name, one, two in (("boundary", left, b), ("mixed", b, h), ("hydrodynamic", h, right)):
+            outline = [*pairs(one, rows), *pairs(two[::-1], rows[::-1])]
+            series.append({"id": f"area-{name}", "name": name, "type": "area", "data": outline, "color": palette.tints[name]})
             series.append(_region_name(name, one, two, rows, palette))
     if is_there and diagram is not None:
         inside = (b > low) & (b < high)
@@ -293,19 +213,14 @@ def diagram_chart(answer: Answer, palette: Palette) -> Options:
         series.append(line("minimum", "minimum friction", lowest, rows, palette.mark, 1.6, [2, 3]))
         if diagram.stale:
             for old in series:
-                old["itemStyle" if old["type"] == "custom" else "lineStyle"] = {
-                    **old.get("itemStyle" if old["type"] == "custom" else "lineStyle", {}),
-                    "opacity": 0.25,
-                }
+                old["opacity"] = 0.25
     height = min(max(1e6 * contact.roughness, float(roughness[0])), float(roughness[-1]))
     series.append(line("path", "changing speed", np.array([low, high]), np.full(2, height), palette.grey, 1.0, [4, 4]))
-    series.append(marker("point", [min(max(contact.speed, low), high), height], palette))
-    x = with_unit("diagram", log_axis("sliding speed U (m/s)", low, high, palette))
-    y = log_axis("roughness (µm)", float(roughness[0]), float(roughness[-1]), palette)
-    options = chart(palette, x, y, series)
+    series.append(marker(min(max(contact.speed, low), high), height, palette))
     listed = ["boundary ends", "hydrodynamic begins", "minimum friction"]
-    names = [name for name in listed if any(s["name"] == name for s in series)]
-    return options | {"legend": legend(palette, names)}
+    names = [name for name in listed if any(each["name"] == name for each in series)]
+    y = log_axis("roughness (µm)", float(roughness[0]), float(roughness[-1]))
+    return chart(palette, log_axis("sliding speed U (m/s)", low, high), y, series, names)
 
 
 def _region_name(name: str, one: Array, two: Array, rows: Array, palette: Palette) -> Options:
@@ -314,33 +229,21 @@ def _region_name(name: str, one: Array, two: Array, rows: Array, palette: Palett
     place = np.arange(len(rows)) / len(rows)
     i = int(np.argmax(np.where((place < 0.1) | (place > 0.8), -1.0, width)))
     wide = width[i] > 0.33 * math.log10(two.max() / one.min())
-    return {
-        "id": f"name-{name}",
-        "name": f"{name} region",
-        "type": "scatter",
-        "data": [[math.sqrt(one[i] * two[i]), float(rows[i])]] if wide else [],
-        "symbolSize": 0.1,
-        "silent": True,
-        "tooltip": {"show": False},
-        "label": {"show": True, "formatter": name, "color": palette.grey, "fontSize": 12, "fontStyle": "italic"},
-        "z": 2,
-    }
+    data = [[math.sqrt(one[i] * two[i]), float(rows[i])]] if wide else []
+    return {"id": f"name-{name}", "name": f"{name} region", "type": "text", "data": data, "words": name, "color": palette.grey}
 
 
-def _regime_areas(curve: Curve, ends: tuple[float, float], scale: float, palette: Palette) -> Options:
+def _regime_bands(curve: Curve, ends: tuple[float, float], scale: float, palette: Palette) -> Options:
     """Return the background of the regimes behind a curve."""
     low, high = (end * scale for end in ends)
     first, last = curve.transition("boundary"), curve.transition("hydrodynamic")
     b = low if first is None else min(max(first.speed * scale, low), high)
     h = (high if first is not None else b) if last is None else min(max(last.speed * scale, b), high)
     pieces = (("boundary", low, b), ("mixed", b, h), ("hydrodynamic", h, high))
-    label = {"show": True, "position": "insideTop", "color": palette.grey, "fontSize": 12, "fontStyle": "italic"}
-    data = [
-        [{"name": name, "xAxis": start, "itemStyle": {"color": palette.tints[name]}, "label": label}, {"xAxis": end}]
-        for name, start, end in pieces
-        if end > start * 1.0001 and not curve.stale
+    shown = [
+        [start, end, palette.tints[name], name] for name, start, end in pieces if end > start * 1.0001 and not curve.stale
     ]
-    return {"silent": True, "data": data}
+    return {"id": "bands", "name": "regimes", "type": "bands", "data": shown}
 
 
 def _thin_series(answer: Answer, fields: Sequence[str], x_scale: float, scale: float, palette: Palette) -> list[Options]:

@@ -31,7 +31,7 @@ POLICY = (
     "img-src 'self' data: blob:; font-src 'self' data:; connect-src 'self' ws://{host}; object-src 'none'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
-"""Content security policy. Vue compiles templates and ECharts formatters in the page, which needs the two unsafe sources."""
+"""Content security policy. Vue compiles templates in the page, which needs the two unsafe sources."""
 
 HEADERS = {
     "x-frame-options": "DENY",
