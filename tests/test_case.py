@@ -119,7 +119,8 @@ def test_a_byte_order_mark_is_read_over(write):
 
 def test_a_case_knows_every_quantity(write):
     pair = {"modulus": None, "youngs_modulus": '"2 MPa"', "poisson_ratio": "0.5"}
-    assert set(QUANTITIES) == set(CONTACT) | set(pair) | {"entrainment_speed"}
+    second = {"radius_2", "youngs_modulus_2", "poisson_ratio_2"}
+    assert set(QUANTITIES) == set(CONTACT) | set(pair) | second | {"entrainment_speed"}
     assert load_case(write(toml(contact=pair))).contact.modulus > 2e6
 
 

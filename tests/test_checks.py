@@ -186,7 +186,7 @@ def test_steel_is_said_to_be_outside_before_any_number(tmp_path, capsys):
         found = json.loads(call(capsys, *tokens, "--json").out)
         assert found["applies"] is False and answer.out.count("is that of metal") == 1
         assert {each["verdict"] for each in found["checks"]} >= {"fine", "outside"}
-        assert set(found["checks"][0]) == {"name", "value", "limit", "verdict", "sentence", "unit"}
+        assert set(found["checks"][0]) == {"name", "value", "limit", "verdict", "sentence", "unit", "at_least"}
     assert json.loads(call(capsys, "solve", PDMS, "--json").out)["applies"] is True
 
 
@@ -217,7 +217,7 @@ def test_every_fact_is_used_and_every_row_says_what_it_misses():
 
     found = checks_of(Listening(TRUE), "state")
     assert asked == names
-    assert [line.partition(":")[0] for line in found.unchecked] == [row.name for row in ROWS if row.missing]
+    assert list(found.missing) == [row.name for row in ROWS if row.missing]
     assert all(each.sentence.endswith(".") and (math.isfinite(each.value) or each.value > 0) for each in found)
     assert "<table>" in found._repr_html_()
 

@@ -25,9 +25,9 @@ BALL = {
 }
 
 
-def ball(**changes):
+def ball(contact=sb.PointContact, **changes):
     inputs = BALL | changes
-    return sb.PointContact(**{name: value for name, value in inputs.items() if value is not None})
+    return contact(**{name: value for name, value in inputs.items() if value is not None})
 
 
 @pytest.mark.quick
@@ -98,12 +98,15 @@ def test_a_ball_comes_back_from_its_groups():
 
 
 @pytest.mark.quick
-def test_two_bodies_are_soft_in_series_and_curved_in_parallel():
+@pytest.mark.parametrize("contact", [sb.PointContact, sb.LineContact])
+def test_two_bodies_are_soft_in_series_and_curved_in_parallel(contact):
     moduli = {"youngs_modulus": "2 MPa", "poisson_ratio": 0.5, "youngs_modulus_2": "6 MPa", "poisson_ratio_2": 0.4}
-    both = ball(modulus=None, radius_2="20 mm", **moduli)
+    both = ball(contact, load=1.3, modulus=None, radius_2="20 mm", **moduli)
     assert 1 / both.modulus == pytest.approx(0.75 / 2e6 + 0.84 / 6e6, rel=1e-13)
     assert 1 / both.radius == pytest.approx(1 / 9.5e-3 + 1 / 20e-3, rel=1e-13)
-    assert ball(modulus=None, youngs_modulus="2 MPa", poisson_ratio=0.5).modulus == pytest.approx(2e6 / 0.75, rel=1e-13)
+    assert ball(contact, load=1.3, modulus=None, youngs_modulus="2 MPa", poisson_ratio=0.5).modulus == pytest.approx(
+        2e6 / 0.75, rel=1e-13
+    )
 
 
 @pytest.mark.quick

@@ -5,8 +5,8 @@ from __future__ import annotations
 import html
 import math
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 __all__ = ["OUTSIDE", "Check", "Checks", "Verdict", "number_text", "verdict_of"]
@@ -30,13 +30,15 @@ class Check:
     value : float
         Its value for this contact, in ``unit``.
     limit : float
-        Largest value that is fine, in ``unit``.
+        Largest value that is fine, in ``unit``, or smallest if ``at_least``.
     verdict : {"fine", "doubtful", "outside"}
         Whether the model applies.
     sentence : str
         What the verdict means.
     unit : str
         Unit of value and limit; empty for a bare number.
+    at_least : bool
+        Whether larger values than the limit are the fine ones.
     """
 
     name: str
@@ -45,11 +47,13 @@ class Check:
     verdict: Verdict
     sentence: str
     unit: str = ""
+    at_least: bool = False
 
     @property
     def texts(self) -> tuple[str, str]:
-        """Value and limit with their unit, for tables."""
-        return number_text(self.value, self.unit), number_text(self.limit, self.unit)
+        """Value, and which values are fine, with their unit, for tables."""
+        limit = f"{'from' if self.at_least else 'up to'} {number_text(self.limit, self.unit)}"
+        return number_text(self.value, self.unit), "always" if self.limit == math.inf else limit
 
 
 @dataclass(frozen=True, repr=False)
@@ -60,12 +64,15 @@ class Checks:
     ----------
     checks : tuple of Check
         Those that could be made, in the order of the table.
-    unchecked : tuple of str
-        What could not be checked, and what is missing for it, one sentence each.
+    unsolved : tuple of str
+        What could not be checked, and why, one sentence each.
+    missing : dict of str to str
+        By name of a check, the fact that must be given for it.
     """
 
     checks: tuple[Check, ...]
-    unchecked: tuple[str, ...] = ()
+    unsolved: tuple[str, ...] = ()
+    missing: Mapping[str, str] = field(default_factory=dict)
 
     def __iter__(self) -> Iterator[Check]:
         """Iterate over the checks."""
@@ -106,6 +113,12 @@ class Checks:
             Those checks, in the order of the table.
         """
         return tuple(each for each in self.checks if each.verdict == verdict)
+
+    @property
+    def unchecked(self) -> tuple[str, ...]:
+        """What could not be checked, and what is missing for it, in sentences."""
+        facts = [f"{fact} ({name})" for name, fact in self.missing.items()]
+        return (*self.unsolved, *([f"facts not given: {', '.join(facts)}."] if facts else []))
 
     @property
     def headline(self) -> str:
@@ -151,7 +164,7 @@ class Checks:
 
     def __str__(self) -> str:
         """Return headline and table as text."""
-        rows = [("check", "value", "limit", "verdict"), *((each.name, *each.texts, each.verdict) for each in self.checks)]
+        rows = [("check", "value", "fine", "verdict"), *((each.name, *each.texts, each.verdict) for each in self.checks)]
         widths = [max(len(row[i]) for row in rows) for i in range(4)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
         said = [each.sentence for each in self.checks if each.verdict != "fine"]
@@ -166,7 +179,7 @@ class Checks:
             "</td></tr>"
             for each in self.checks
         )
-        head = "".join(f"<th>{name}</th>" for name in ("check", "value", "limit", "verdict", "meaning"))
+        head = "".join(f"<th>{name}</th>" for name in ("check", "value", "fine", "verdict", "meaning"))
         return f"<p>{html.escape(self.headline)}</p><table><tr>{head}</tr>{rows}</table>"
 
 
@@ -205,8 +218,6 @@ def number_text(value: float, unit: str) -> str:
     """
     from stribeck.quantities.units import DIMENSIONS, format_si
 
-    if value == math.inf:
-        return "unlimited"
     kind = next((name for name, each in DIMENSIONS.items() if unit and each.unit == unit), None)
     if kind is None or not math.isfinite(value):
         return f"{value:.3g} {unit}".rstrip()

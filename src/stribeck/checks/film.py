@@ -113,7 +113,7 @@ def molecules(subject: Subject) -> Check:
         "outside": "a viscosity means little there.",
     }[verdict]
     about = f"The minimum film is {number_text(film, 'm')}, {film / size:.2g} molecules of {number_text(size, 'm')}"
-    return Check("film against molecules", film, limit, verdict, f"{about}: {meaning}", "m")
+    return Check("film against molecules", film, limit, verdict, f"{about}: {meaning}", "m", at_least=True)
 
 
 def heating(subject: Subject) -> Check:

@@ -75,8 +75,9 @@ def range_at_centre(subject: Subject) -> Check | None:
     elif matters(contact, state.observables):
         sentence = f"The central gap is {ratio:.3g} h_rms, inside the range of the contact law."
     else:
+        limit = math.inf
         sentence = f"The central gap is {ratio:.3g} h_rms; asperities carry too little for the law to matter."
-    return Check("contact law at the centre", ratio, limit, verdict, sentence, "h_rms")
+    return Check("contact law at the centre", ratio, limit, verdict, sentence, "h_rms", limit == low)
 
 
 def range_at_minimum(subject: Subject) -> Check | None:

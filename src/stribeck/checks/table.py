@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from stribeck.checks import body, film, law
@@ -123,20 +123,20 @@ def checks_of(subject: Subject, effort: Effort = "tail") -> Checks:
     Checks
         The checks.
     """
-    found, unchecked = [], []
+    found, unsolved, missing = [], [], {}
     for row in ROWS:
         if EFFORTS.index(row.effort) > EFFORTS.index(effort):
             continue
         try:
             made = row.check(subject)
         except (SolveError, InputError) as problem:
-            unchecked.append(f"{row.name}: {problem}")
+            unsolved.append(f"{row.name}: {problem}")
             continue
         if made is not None:
             found.append(made)
         elif row.missing:
-            unchecked.append(f"{row.name}: give {row.missing}.")
-    return Checks(tuple(found), tuple(unchecked))
+            missing[row.name] = row.missing
+    return Checks(tuple(found), tuple(unsolved), missing)
 
 
 def checks_of_solution(solution: Solution, facts: dict[str, float] | None = None) -> Checks | None:
@@ -189,5 +189,5 @@ def checks_of_curve(
     )
     if over_speed and solution is None:
         minimum = law.range_at_minimum(subject)
-        found = Checks((*found.checks, *([minimum] if minimum is not None else [])), found.unchecked)
+        found = replace(found, checks=(*found.checks, *([minimum] if minimum is not None else [])))
     return found

@@ -32,10 +32,10 @@ class LineContact(WithParts):
     Parameters
     ----------
     radius : str or float
-        Radius :math:`R > 0` of the cylinder [m]; of two curved bodies :math:`1/R = 1/R_1 + 1/R_2`.
+        Radius :math:`R > 0` of the cylinder [m].
     modulus : str or float, optional
         Effective modulus :math:`E^* = E/(1 - \nu^2) > 0` [Pa], of two soft bodies
-        :math:`1/E^* = (1-\nu_1^2)/E_1 + (1-\nu_2^2)/E_2`; or give the next two.
+        :math:`1/E^* = (1-\nu_1^2)/E_1 + (1-\nu_2^2)/E_2`; or give Young's modulus and Poisson ratio.
     load : str or float
         Normal load per unit length :math:`F_N > 0` [N/m].
     viscosity : str or float
@@ -60,6 +60,12 @@ class LineContact(WithParts):
         Poisson ratio :math:`0 \le \nu \le 1/2` of the half-space [-].
     entrainment_speed : str or float, optional
         Mean of both surface speeds, in place of ``speed`` [m/s].
+    radius_2 : str or float, optional
+        Radius of the other body where it is curved too [m]; then :math:`1/R = 1/R_1 + 1/R_2`.
+    youngs_modulus_2 : str or float, optional
+        Young's modulus of the other body where it is soft too [Pa].
+    poisson_ratio_2 : float, optional
+        Poisson ratio of the other body [-].
     law : AsperityLaw, optional
         Contact law :math:`p_c = \beta E^* \Phi(\alpha h/h_\mathrm{rms})`; :math:`\Phi(s) = \exp(-s)` by default.
     fluid : Fluid or law of sb.fluids, optional

@@ -238,11 +238,7 @@ def _sentences(case: Case, solution: Solution, curve: StribeckCurve, found: Unce
 
 def _films(solution: Solution, curve: StribeckCurve, found: Uncertainty | None) -> tuple[tuple[str, str, str], ...]:
     if found is not None:
-        rows = []
-        for each in found.spreads:
-            value, low, high = (format_si(end, each.dimension) for end in (each.value, *each.interval_95))
-            rows.append((each.label, value, f"{low} to {high}"))
-        return tuple(rows)
+        return tuple((each.label, *each.texts) for each in found.spreads)
     assert solution.contact is not None
     height = solution.contact.hertz.indentation
     marks = tuple((str(mark.name), format_si(mark.value, "speed"), "") for mark in curve.transitions)

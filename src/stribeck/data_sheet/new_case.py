@@ -82,11 +82,16 @@ def new_case(geometry: Geometry = "line") -> str:
             if other.of == row.name:
                 given = [table.quantities[name] for name in other.inputs]
                 lines.append("# Or instead: " + "; ".join(f"{each.name} = {_value(each)}" for each in given))
+                if other.other:
+                    second = "; ".join(f"{name} = {_value(table.quantities[name])}" for name in other.other)
+                    lines.append(f"#   and, if the other body is not rigid, {second}")
         wanted = {row.name, *(name for other in table.alternatives if other.of == row.name for name in other.inputs)}
         for conversion in CONVERSIONS:
             if conversion.of in wanted and conversion.geometry in ("", geometry):
                 shown = "; ".join(f"{each.name} = {_quoted(each.typical, each.dimension)}" for each in conversion.inputs)
                 lines.append(f"# Or instead: {shown}   ({conversion.formula})")
+        if row.name == "radius":
+            lines.append(f"# radius_2 = {_value(table.quantities['radius_2'])}   # if the other body is curved too")
         lines.append("")
     if geometry == "line":
         lines += [

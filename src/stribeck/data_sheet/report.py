@@ -165,7 +165,7 @@ def _lines(content: Content) -> Iterator[tuple[str, bool]]:
     yield from heading("Does the model apply?")
     for check in content.checks:
         value, limit = check.texts
-        yield f"{check.name:<32}{value:<18}fine up to {limit:<16}{check.verdict}", False
+        yield f"{check.name:<32}{value:<18}fine {limit:<18}{check.verdict}", False
     for check in content.checks:
         if check.verdict != "fine":
             yield from wrapped(f"{check.verdict.capitalize()}: {check.sentence}")

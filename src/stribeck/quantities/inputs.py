@@ -293,13 +293,19 @@ class Alternative:
     other: tuple[str, ...] = ()
 
 
+def _in_series(*bodies: float) -> float:
+    """Return the modulus E* of one or two bodies from Young's modulus and Poisson ratio of each."""
+    return 1 / sum((1 - nu**2) / E for E, nu in zip(bodies[::2], bodies[1::2], strict=True))
+
+
 ALTERNATIVES = (
     Alternative(
         "modulus",
         ("youngs_modulus", "poisson_ratio"),
-        lambda E, nu: E / (1 - nu**2),
+        _in_series,
         "which is E*",
         "The Poisson ratio of rubber and gels is close to 0.5.",
+        ("youngs_modulus_2", "poisson_ratio_2"),
     ),
     Alternative("speed", ("entrainment_speed",), lambda mean: 2 * mean, "the sum of the surface speeds, twice their mean"),
 )
@@ -353,7 +359,43 @@ class InputTable:
         return frozenset(optional.union(*((other.of, *other.inputs, *other.other) for other in self.alternatives)))
 
 
-LINE = InputTable("line", "LineContact", ROWS, ALTERNATIVES)
+OTHER_BODY = (
+    Input(
+        name="radius_2",
+        label="radius of the other body",
+        symbol="$R_2$",
+        dimension="length",
+        typical="50 mm",
+        source="a second curved body; without it the other is flat",
+        derived=True,
+        optional=True,
+    ),
+    Input(
+        name="youngs_modulus_2",
+        label="Young's modulus of the other body",
+        symbol="$E_2$",
+        dimension="pressure",
+        typical="2.0 MPa",
+        source="PDMS Sylgard 184; without it the other body is rigid",
+        derived=True,
+        optional=True,
+    ),
+    Input(
+        name="poisson_ratio_2",
+        label="Poisson's ratio of the other body",
+        symbol=r"$\nu_2$",
+        dimension="number",
+        typical="0.5",
+        source="rubber and gels",
+        zero=True,
+        highest=0.5,
+        derived=True,
+        optional=True,
+    ),
+)
+"""Inputs of the other body of any contact, where it is curved or soft too."""
+
+LINE = InputTable("line", "LineContact", (*ROWS, *OTHER_BODY), ALTERNATIVES)
 """The inputs of a cylinder."""
 
 _BALL = "as in examples/pdms_ball.toml"
@@ -401,56 +443,12 @@ POINT_ROWS = (
         units=("mm", "cm"),
         optional=True,
     ),
-    Input(
-        name="radius_2",
-        label="radius of the other body",
-        symbol="$R_2$",
-        dimension="length",
-        typical="50 mm",
-        source="a second ball; without it the other body is flat",
-        derived=True,
-        optional=True,
-    ),
-    Input(
-        name="youngs_modulus_2",
-        label="Young's modulus of the other body",
-        symbol="$E_2$",
-        dimension="pressure",
-        typical="2.0 MPa",
-        source="PDMS Sylgard 184; without it the other body is rigid",
-        derived=True,
-        optional=True,
-    ),
-    Input(
-        name="poisson_ratio_2",
-        label="Poisson's ratio of the other body",
-        symbol=r"$\nu_2$",
-        dimension="number",
-        typical="0.5",
-        source="rubber and gels",
-        zero=True,
-        highest=0.5,
-        derived=True,
-        optional=True,
-    ),
+    *OTHER_BODY,
 )
 """The inputs of a ball. A new one is a row here and, if a contact keeps it, a field of :class:`PointContact`."""
 
 
-def _in_series(*bodies: float) -> float:
-    """Return the modulus E* of one or two bodies from Young's modulus and Poisson ratio of each."""
-    return 1 / sum((1 - nu**2) / E for E, nu in zip(bodies[::2], bodies[1::2], strict=True))
-
-
-POINT = InputTable(
-    "point",
-    "PointContact",
-    POINT_ROWS,
-    tuple(
-        replace(other, value=_in_series, other=("youngs_modulus_2", "poisson_ratio_2")) if other.of == "modulus" else other
-        for other in ALTERNATIVES
-    ),
-)
+POINT = InputTable("point", "PointContact", POINT_ROWS, ALTERNATIVES)
 """The inputs of a ball."""
 
 INPUT_TABLES = {"line": LINE, "point": POINT}

@@ -295,7 +295,7 @@ def format_bound(error: float) -> str:
     if float(digits) < error * (1 - 1e-9):  # rounding of the error itself is no reason
         step = 10.0 ** int(digits.partition("e")[2])
         digits = f"{float(digits) + step:.0e}"
-    return f"< {digits}"
+    return f"< {digits if error < 1e-4 else format(float(digits), 'g')}"
 
 
 def format_factor(factor: float) -> str:
@@ -342,8 +342,12 @@ def format_percent(part: float, digits: int = 2) -> str:
     return f"{float(f'{100 * part:.{digits}g}'):g} %"
 
 
+LEAST_SHARE = 1e-4
+"""Smallest share that is worth a number in text; files hold all of them."""
+
+
 def format_share(part: float, error: float) -> str:
-    """Return a share in per cent, or the bound that its error is where it lies below that.
+    """Return a share in per cent, or a bound where it is below its error or a ten-thousandth.
 
     Parameters
     ----------
@@ -360,10 +364,10 @@ def format_share(part: float, error: float) -> str:
     Examples
     --------
     >>> format_share(0.2034, 1e-7), format_share(9.75e-155, 1e-7)
-    ('20.3 %', '< 1e-05 %')
+    ('20.3 %', '< 0.01 %')
     """
-    if 0 < part <= error:
-        return f"{format_bound(100 * error)} %"
+    if 0 < part <= max(error, LEAST_SHARE):
+        return f"{format_bound(100 * max(error, LEAST_SHARE))} %"
     return f"{100 * part:.3g} %"
 
 

@@ -12,6 +12,13 @@ from stribeck.quantities.units import format_percent, format_si
 __all__ = ["Spread", "Uncertainty"]
 
 
+NEGLIGIBLE = 1e-6
+"""Load shares and friction coefficients below this are smaller than the error of the solver at its default tolerance."""
+
+LEAST_SOURCE = 1e-3
+"""Smallest share of the variance that is named."""
+
+
 @dataclass(frozen=True)
 class Spread:
     """The distribution of one number.
@@ -39,10 +46,19 @@ class Spread:
     dimension: str = "number"
 
     @property
+    def texts(self) -> tuple[str, str]:
+        """Value and 95 % interval, with units; numbers that no solver knows as a bound."""
+        value, low, high = (
+            f"< {NEGLIGIBLE:g}" if self.dimension == "number" and 0 < end < NEGLIGIBLE else format_si(end, self.dimension)
+            for end in (self.value, *self.interval_95)
+        )
+        return value, high if low == high else f"{low} to {high}"
+
+    @property
     def text(self) -> str:
-        """Value and 95 % interval, with units."""
-        low, high = (format_si(end, self.dimension) for end in self.interval_95)
-        return f"{format_si(self.value, self.dimension)} ({low} to {high})"
+        """Value and 95 % interval in one."""
+        value, interval = self.texts
+        return f"{value} ({interval})"
 
 
 @dataclass(frozen=True)
@@ -111,7 +127,8 @@ class Uncertainty:
     def sources(self) -> tuple[str, ...]:
         """The share of each input in the variance of friction, a sentence; none for a model without derivatives."""
         labels = self.contact.INPUTS.quantities
-        parts = ", ".join(f"{labels[name].label} {format_percent(part)}" for name, part in self.contributions.items())
+        named = {name: part for name, part in self.contributions.items() if part >= LEAST_SOURCE}
+        parts = ", ".join(f"{labels[name].label} {format_percent(part)}" for name, part in named.items())
         return (f"Sources of the variance of friction: {parts}.",) if parts else ()
 
     def _repr_html_(self) -> str:

@@ -31,7 +31,7 @@ def print_checks(console: Console, checks: Checks, title: str) -> None:
     console.print(checks.headline, style=STYLES[checks.verdict], markup=False, highlight=False, soft_wrap=True)
     if title:
         console.print(title, style="bold", markup=False, highlight=False)
-    table = table_of("check", "value", "fine up to", "verdict", right=(1, 2))
+    table = table_of("check", "value", "fine", "verdict", right=(1, 2))
     for each in checks:
         value, limit = each.texts
         table.add_row(each.name, value, limit, each.verdict, style=None if each.verdict == "fine" else STYLES[each.verdict])

@@ -22,7 +22,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.curves.landmarks import Landmark
 from stribeck.curves.result import StribeckCurve
 from stribeck.quantities.part_inputs import fitted_rows
-from stribeck.quantities.units import format_factor, format_share, format_si
+from stribeck.quantities.units import LEAST_SHARE, format_factor, format_share, format_si
 from stribeck.regimes.margins import RegimeMargins
 from stribeck.regimes.sentences import ways_to
 from stribeck.solver.base_solution import BaseSolution
@@ -103,7 +103,7 @@ def _print_sensitivities(console: Console, contact: Contact, sensitivities: Sens
             rows[name].label,
             format_si(value, rows[name].dimension),
             f"{slope:+.3f}",
-            f"{100 * _change(1.1, slope):+.2g} % friction",
+            _change_text(_change(1.1, slope)),
         )
     print_table(console, table)
     most = strongest(sensitivities)
@@ -127,8 +127,7 @@ def print_uncertainty(console: Console, found: Uncertainty) -> None:
     """
     table = table_of("with errors of the inputs", "value", "95 %", right=(1, 2))
     for each in found.spreads:
-        value, low, high = (format_si(end, each.dimension) for end in (each.value, *each.interval_95))
-        table.add_row(each.label, value, f"{low} to {high}")
+        table.add_row(each.label, *each.texts)
     print_table(console, table)
     say(console, f"Probability of each regime: {found.probabilities}.")
     for sentence in found.sources:
@@ -140,6 +139,11 @@ def _way(mark: Landmark, speed: float) -> str:
         return "from rest"
     factor = mark.value / speed
     return f"{format_factor(factor)}x faster" if factor >= 1 else f"{format_factor(1 / factor)}x slower"
+
+
+def _change_text(change: float) -> str:
+    """Return a relative change of friction in per cent."""
+    return f"{100 * change:+.2g} % friction" if abs(change) >= LEAST_SHARE else "no change"
 
 
 def _change(factor: float, slope: float) -> float:
