@@ -16,6 +16,8 @@ from rich.console import Console
 import stribeck as sb
 from stribeck.cases.fit_settings import OF_CONTACT as FREE
 from stribeck.cases.fit_settings import FitSettings, Prior
+from stribeck.checks.subject import Subject
+from stribeck.checks.table import checks_of
 from stribeck.cli.reports.fit import print_fit
 from stribeck.contact_laws.persson import persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
@@ -215,14 +217,16 @@ def test_an_input_at_its_bound_is_said(tmp_path):
 
 
 def test_a_boundary_friction_that_no_contact_has_is_named(capsys):
-    speeds, friction = exact(contact=TRUE.replace(boundary_friction=6.9))
+    speeds, friction = exact(contact=TRUE.replace(boundary_friction=3.4))
     found = sb.fit(measured(speeds, friction), TRUE, free=["boundary_friction"], intervals=False)
-    assert found["boundary_friction"].value == pytest.approx(6.9, rel=1e-3)
+    assert found["boundary_friction"].value == pytest.approx(3.4, rel=1e-3)
     assert found.outcome is sb.FitOutcome.IMPLAUSIBLE and found.to_dict()["outcome"] == "IMPLAUSIBLE"
-    assert any("boundary_friction 6.9 is larger than any dry friction" in note for note in found.notes)
+    assert any("boundary_friction 3.4 is larger than that of any known contact" in note for note in found.notes)
     print_fit(Console(), found, "")
-    assert "The fit ended at an impossible boundary friction" in capsys.readouterr().out
+    assert "The fit ended at an implausible boundary friction" in capsys.readouterr().out
     assert sb.fit(measured(*exact()), TRUE, free=["boundary_friction"], intervals=False).outcome is sb.FitOutcome.CONVERGED
+    for value, verdict in ((2.9, "fine"), (3.4, "doubtful")):
+        assert checks_of(Subject(TRUE.replace(boundary_friction=value)), "contact")["inputs"].verdict == verdict
 
 
 # --- several curves ---

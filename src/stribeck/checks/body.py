@@ -38,7 +38,7 @@ def usual(subject: Subject) -> Check:
         low, high = row.usual
         if not 0 < value < math.inf:
             continue
-        factor = max(low / value, value / high)
+        factor = max(low / value, value / high, FINE_FACTOR * value / row.implausible)
         worst = max(worst, factor)
         if factor > FINE_FACTOR:
             ends = (format_si(end, row.dimension) for end in (low, high))

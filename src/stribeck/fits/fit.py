@@ -32,6 +32,7 @@ from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_e
 from stribeck.fits.residuals import judge_residuals
 from stribeck.fits.result import Fit, FitOutcome, FittedInput, unit_of
 from stribeck.numerics.threads import one_blas_thread
+from stribeck.quantities.inputs import LINE
 from stribeck.quantities.part_inputs import fitted_rows
 from stribeck.quantities.units import InputError, format_si, show
 
@@ -42,9 +43,6 @@ LEVELS = (0.682689492137086, 0.95)
 
 STARTS, BEST_STARTS, START_FACTOR = 64, 4, 10.0
 """Places tried before the least squares, those followed, and how far from the case they lie."""
-
-LARGEST_BOUNDARY_FRICTION = 5.0
-"""Dry friction beyond that of any pair of surfaces; smooth rubber on glass, the largest, stays below it."""
 
 FIRST_NOISE = 0.1
 """Noise with which the search begins where it is not known."""
@@ -385,7 +383,7 @@ def _outcome(at: Minimum, inputs: Sequence[FittedInput]) -> FitOutcome:
 
 
 def _implausible(each: FittedInput) -> bool:
-    return each.name == "boundary_friction" and not each.is_factor and each.value > LARGEST_BOUNDARY_FRICTION
+    return not each.is_factor and each.name in LINE.quantities and each.value > LINE.quantities[each.name].implausible
 
 
 def _interval(free: FreeInput, ends: Ends) -> tuple[float, float]:
@@ -411,8 +409,8 @@ def _notes(
             )
         if _implausible(each):
             notes.append(
-                f"{each.label} {each.value:.2g} is larger than any dry friction: the data do not reach the boundary plateau, "
-                "or other inputs are wrong. Give it a bound or a prior in [fit], or do not free it."
+                f"{each.label} {each.value:.2g} is larger than that of any known contact: the data do not reach the boundary "
+                "plateau, or other inputs are wrong. Give it a bound or a prior in [fit], or do not free it."
             )
     named = {name for each in weak for name in each.names}
     for i in range(len(inputs)):

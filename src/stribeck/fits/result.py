@@ -34,7 +34,7 @@ class FitOutcome(Enum):
 
     CONVERGED = "The fit converged."
     AT_BOUND = "The fit ended at a bound of an input, whose value is therefore not an estimate; see the notes."
-    IMPLAUSIBLE = "The fit ended at an impossible boundary friction, so its values are not estimates; see the notes."
+    IMPLAUSIBLE = "The fit ended at an implausible boundary friction, so its values are not estimates; see the notes."
     STEP_LIMIT = "The fit did not converge: least squares reached its step limit; start closer, or free fewer inputs."
     NOT_AT_OPTIMUM = "The fit did not converge: least squares stopped before the optimum; start closer, or free fewer inputs."
 

@@ -65,6 +65,9 @@ class Input:
         Exponents with which it enters the groups of speed, load and roughness.
     usual : tuple of float
         Range that contacts have, in SI units: the ends of its slider.
+    implausible : float
+        Value beyond which something is wrong, as no known contact has it: a dry friction of 3 is that of smooth rubber on
+        clean glass, the largest of all.
     units : tuple of str
         Units to choose from; empty for a bare number.
     letters : tuple of str
@@ -95,6 +98,7 @@ class Input:
     source: str
     exponents: tuple[float, float, float] = (0, 0, 0)
     usual: tuple[float, float] = (0.0, math.inf)
+    implausible: float = math.inf
     units: tuple[str, ...] = ()
     letters: tuple[str, ...] = ()
     headers: tuple[str, ...] = ()
@@ -225,6 +229,7 @@ ROWS = (
         typical="0.7",
         source="dry PDMS, 0.5 to 1",
         usual=(0.01, 2.0),
+        implausible=3.0,
         letters=("mu0", "mu_0"),
         zero=True,
         known=0,
