@@ -1,12 +1,16 @@
 """What reports print: digits that the errors allow, and no share that is smaller than its error."""
 
+import io
 import json
 import re
 
 import pytest
 from command_line import call, case_text
+from rich.console import Console
 
 import stribeck as sb
+from stribeck.cli.reports.words import print_head
+from stribeck.contacts.with_parts import part_attributes
 from stribeck.quantities.units import format_share
 
 LAW = {"h_rms": '"1 um"', "hurst": "0.8", "longest_wavelength": '"150 um"', "shortest_wavelength": '"1.5 um"'}
@@ -58,3 +62,16 @@ def test_a_contact_area_that_vanishes_is_zero(capsys, tmp_path):
 )
 def test_shares_are_bounded_by_their_errors(part, error, text):
     assert format_share(part, error) == text
+
+
+def test_the_model_line_names_what_differs_from_the_article_in_si_units():
+    inputs = {"radius": 0.01, "modulus": 2e6, "load": 1.0, "viscosity": 0.02, "entrainment_speed": 0.03, "roughness": 1e-6}
+    ball = sb.PointContact(
+        **inputs, alpha=2.0, beta=0.05, boundary_friction=0.8, slide_to_roll=0.5, fluid=sb.fluids.Carreau("10 ms", 0.6)
+    )
+    assert part_attributes(ball.groups, ball)["slide_to_roll"] == 0.5
+    stream = io.StringIO()
+    print_head(Console(file=stream, width=300), "", ball, ball.groups)
+    said = stream.getvalue()
+    assert "Model: fluid carreau, relaxation time 10 ms, exponent 0.6, infinite viscosity 0 Pa*s.\n" in said
+    assert said.count("slide-to-roll ratio 0.5") == 1 and "slide to roll" not in said

@@ -100,7 +100,7 @@ def part_attributes(groups: Groups, contact: Contact | None = None) -> dict[str,
         slide_to_roll, cavity_pressure = 2 * film.slide, model.cavity_pressure
     else:
         laws = {"fluid": parts.fluid, "flow_factors": parts.flow_factors, "solid": parts.solid}
-        slide_to_roll, cavity_pressure = parts.slide_to_roll, parts.cavity_pressure
+        slide_to_roll, cavity_pressure = getattr(contact, "slide_to_roll", parts.slide_to_roll), parts.cavity_pressure
     found: dict[str, float | str] = {}
     for what, law in laws.items():
         if law is not None:

@@ -14,6 +14,7 @@ from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, Friction
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.contacts.with_parts import part_attributes
 from stribeck.curves.regime import regime_of
 from stribeck.quantities.inputs import ROWS
@@ -29,6 +30,16 @@ if TYPE_CHECKING:
 
 HANDS_ON = tuple(row.name for row in ROWS if not row.derived and not row.follows_surface)
 """Inputs that a designer can change; alpha and beta follow from the surface."""
+
+UNITS_BY_LAST_WORD = {
+    "time": "time",
+    "pressure": "pressure",
+    "stress": "pressure",
+    "viscosity": "viscosity",
+    "thickness": "length",
+    "coefficient": "pressure coefficient",
+}
+"""Dimensions of the numbers of fluids and solids, by the last word of their names."""
 
 WIDTH = 100
 """Smallest width of a table, in columns."""
@@ -134,15 +145,31 @@ def print_head(
     say(console, f"Groups: {', '.join(constant)}.")
     if groups.law is not None:
         say(console, law_sentence(groups.law))
-    parts = part_attributes(groups, contact)
+    parts = _beside_the_article(part_attributes(groups, contact), contact)
     if parts:
-        say(console, f"Model: {_numbers(parts)}{'' if contact is not None else ' (Hertz units)'}.")
+        say(console, f"Model: {_numbers(parts, contact is not None)}{'' if contact is not None else ' (Hertz units)'}.")
 
 
-def _numbers(parameters: Mapping[str, float | str]) -> str:
-    """Return names and values in words."""
-    said = ((name.replace("_", " "), value) for name, value in parameters.items())
-    return ", ".join(f"{name} {value if isinstance(value, str) else f'{value:.4g}'}" for name, value in said)
+def _beside_the_article(parts: Mapping[str, float | str], contact: Contact | None) -> dict[str, float | str]:
+    """Return those parts of a model that are neither the article's nor among the inputs, without the name of what has them."""
+    inputs = () if contact is None else contact.INPUTS.names
+    found = {}
+    for name, value in parts.items():
+        if name in inputs or (name, value) in (("cavitation", "none"), ("slide_to_roll", PURE_SLIDING)):
+            continue
+        owner = next((f"{what}_" for what in ("fluid", "flow_factors", "solid") if name.startswith(f"{what}_")), "")
+        found[name.removeprefix(owner)] = value
+    return found
+
+
+def _numbers(parameters: Mapping[str, float | str], si: bool = False) -> str:
+    """Return names and values in words, in SI units with these."""
+    said = []
+    for name, value in parameters.items():
+        kind = UNITS_BY_LAST_WORD.get(name.rpartition("_")[2]) if si else None
+        text = value if isinstance(value, str) else format_si(value, kind) if kind else f"{value:.4g}"
+        said.append(f"{name.replace('_', ' ')} {text}")
+    return ", ".join(said)
 
 
 def law_sentence(law: AsperityLaw) -> str:
