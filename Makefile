@@ -89,7 +89,7 @@ $(BIN)/uv: | $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check uv
 
 test: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m pytest -n auto --dist loadgroup
+	$(ONE_THREAD) $(BIN)/python -m pytest -n auto
 
 slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n auto -m slow

@@ -26,6 +26,22 @@ settings.register_profile("repeated", derandomize=True)
 settings.register_profile("search", max_examples=1000)
 settings.load_profile("repeated")
 
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Keep the tests of a module in one worker, as they share solved states; those of the figures in one for all three.
+
+    Marks cannot say so: pytest-xdist 3.8 ignores ``xdist_group`` under pytest 9.2 (its issue 1386).
+    """
+    from xdist.scheduler import LoadFileScheduling
+
+    class Together(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            return super()._split_scope(nodeid).replace("_claims_1", "").replace("_claims_2", "")
+
+    return Together(config, log)
+
+
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 
 LIFT = 5.0

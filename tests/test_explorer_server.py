@@ -23,9 +23,6 @@ import pytest
 pytest.importorskip("nicegui")
 
 
-pytestmark = pytest.mark.xdist_group("explorer server")
-
-
 def start(folder):
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "NICEGUI"))}
     return subprocess.Popen(

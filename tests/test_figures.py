@@ -20,9 +20,6 @@ import stribeck as sb
 from stribeck.figures import FIGURES, PaperFigure, build, figure_names, load_figure, make_figures, style
 from stribeck.figures.build import FigureJob, column, dataset
 
-# The data of a figure are computed once for all tests of one process (`make test` runs with --dist loadgroup).
-pytestmark = pytest.mark.xdist_group("figures")
-
 PANELS = {
     "3": "ab",
     "4": "abcd",

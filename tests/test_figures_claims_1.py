@@ -4,9 +4,6 @@ import numpy as np
 import pytest
 from figure_data import data_of
 
-# The data of a figure are computed once for all tests of one process (`make test` runs with --dist loadgroup).
-pytestmark = pytest.mark.xdist_group("figures")
-
 
 @pytest.fixture(scope="module")
 def curve():

@@ -10,9 +10,6 @@ import stribeck as sb
 from stribeck.asymptotics.rough.perturbation import phi
 from stribeck.figures import load_figure
 
-# The data of a figure are computed once for all tests of one process (`make test` runs with --dist loadgroup).
-pytestmark = pytest.mark.xdist_group("figures")
-
 
 @pytest.fixture(scope="module")
 def curves():

@@ -8,8 +8,6 @@ import pytest
 import stribeck as sb
 from stribeck.asymptotics.smooth import hydrodynamic
 
-pytestmark = pytest.mark.xdist_group("hydrodynamic formulas")  # whose solved curves are shared
-
 C = hydrodynamic.FILM_CONSTANT
 SPEEDS = np.geomspace(1e-10, 1e8, 55)
 

@@ -13,8 +13,6 @@ from stribeck.files import datasets as store
 from stribeck.quantities.outcome import Outcome
 from stribeck.regimes.weakening import roughness_without_minimum, weakening
 
-pytestmark = pytest.mark.xdist_group("phase diagram")  # whose solved curves are shared
-
 pytest.importorskip("xarray")
 
 diagrams = importlib.import_module("stribeck.regimes.phase_diagram")

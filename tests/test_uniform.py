@@ -10,8 +10,6 @@ from stribeck.asymptotics.formula import OutOfRangeWarning
 from stribeck.asymptotics.rough import load_sharing, perturbation, uniform
 from stribeck.asymptotics.smooth import hydrodynamic, wedge
 
-pytestmark = pytest.mark.xdist_group("uniform")  # whose solved curves are shared
-
 STATES = 120
 SPEEDS = np.geomspace(1e-9, 1e2, 12)
 

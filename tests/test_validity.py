@@ -20,8 +20,6 @@ from stribeck.evidence.ball import OBSERVED
 from stribeck.evidence.coefficients import JUDGED, RATIOS, largest_errors
 from stribeck.evidence.formulas import AXES, LOCATED, MEASURED, OF_STATE, error_map, error_maps, kind_of, relative_error
 
-pytestmark = pytest.mark.xdist_group("validity")  # whose solved curves are shared
-
 pytest.importorskip("xarray")
 
 DOCS = Path(__file__).parents[1] / "docs"
