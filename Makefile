@@ -7,8 +7,11 @@ BROWSER := $(VENV)/.ready-browser
 TOOLS  := $(VENV)/.ready-tools
 DOCS   := $(VENV)/.ready-docs
 
+# A test that does not end is ended with its traceback after four minutes, and the others go on (pytest 9; before, the traceback alone).
+FINITE := -o faulthandler_timeout=240 -o faulthandler_exit_on_timeout=true
+
 # Those with a mark of pytest, `quick`, so that no module without one is imported.
-QUICK  := -m pytest -q -n auto -m "quick and not slow" $(shell grep -l 'mark\.quick' tests/test_*.py)
+QUICK  := -m pytest -q -n auto $(FINITE) -m "quick and not slow" $(shell grep -l 'mark\.quick' tests/test_*.py)
 UV     := $(or $(shell command -v uv),$(BIN)/uv)
 
 # One BLAS thread for each test worker: two workers with two threads each slow each other down several times.
@@ -89,7 +92,7 @@ $(BIN)/uv: | $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check uv
 
 test: $(READY)
-	$(ONE_THREAD) $(BIN)/python -m pytest -n auto
+	$(ONE_THREAD) $(BIN)/python -m pytest -n auto $(FINITE)
 
 slow: $(READY)
 	$(ONE_THREAD) $(BIN)/python -m pytest -n auto -m slow
@@ -97,7 +100,7 @@ slow: $(READY)
 
 # Debian's chromium, or CHROMIUM=/path/to/it.
 browser: $(BROWSER)
-	$(ONE_THREAD) $(BIN)/python -m pytest -m browser $(BROWSER_TESTS) tests/test_browser.py tests/test_live_curve.py tests/test_benchmarks.py
+	$(ONE_THREAD) $(BIN)/python -m pytest $(FINITE) -m browser $(BROWSER_TESTS) tests/test_browser.py tests/test_live_curve.py tests/test_benchmarks.py
 
 screenshots: $(BROWSER)
 	$(ONE_THREAD) $(BIN)/python docs/explorer.py
