@@ -34,6 +34,9 @@ ALIKE = 0.5
 NODES, WEIGHTS = legendre.leggauss(9)
 """Gauss rule in the rate: exact to 1e-14 for rates that differ by a factor of two."""
 
+SHARES = 0.5 * WEIGHTS
+"""Weights of the mean."""
+
 STEEPEST = 1e-6
 """Relative difference of the wall rates below which the stress is linear in the rate to rounding of the moments."""
 
@@ -81,10 +84,12 @@ def profile(law: RateLaw, r_0: Array, r_1: Array, start: tuple[Array, Array] | N
     for _ in range(MOST_STEPS):
         ahead = _moved(law, here.x, here.g, part * here.step, here.slope)
         done = (part == 1.0) & (here.step_over_stress() < CLOSE)
-        done &= np.abs(ahead - here.x).max(axis=0) < CLOSE * np.abs(here.x).max(axis=0)
+        done &= larger(ahead - here.x) < CLOSE * larger(here.x)
         if done.any():
-            ended = (ahead, here.g + here.step, here.slope, here.by)
-            found[:, left[done]] = np.concatenate(ended)[:, done]
+            ended = np.concatenate((ahead, here.g + here.step, here.slope, here.by))
+            if len(left) == len(r_0) and done.all():
+                return Profile(*ended)
+            found[:, left[done]] = ended[:, done]
             if done.all():
                 return Profile(*found)
             more = ~done
@@ -124,7 +129,7 @@ class _Walls(NamedTuple):
 
     def step_over_stress(self) -> Array:
         """Return the step of the stresses over the larger of these."""
-        return np.asarray(np.abs(self.step).max(axis=0) / np.abs(self.g).max(axis=0))
+        return np.asarray(larger(self.step) / larger(self.g))
 
     def of(self, chosen: Flags) -> _Walls:
         """Return the chosen nodes."""
@@ -137,6 +142,12 @@ class _Walls(NamedTuple):
         return _Walls(*(np.where(kept, mine, its) for mine, its in zip(self, other, strict=True)))
 
 
+def larger(of_walls: Array) -> Array:
+    """Return the larger of the absolute values at both walls."""
+    size = np.abs(of_walls)
+    return np.asarray(np.maximum(size[0], size[1]))
+
+
 def _odd(law: RateLaw, rate: Array) -> tuple[Array, Array]:
     g, slope = law.stress(np.abs(rate))
     return np.copysign(g, rate), slope
@@ -145,7 +156,7 @@ def _odd(law: RateLaw, rate: Array) -> tuple[Array, Array]:
 def _moved(law: RateLaw, x: Array, g: Array, step: Array, slope: Array) -> Array:
     """Return the wall rates after a step of the stress: linear in the rate at the wall of the larger, else in the stress."""
     size = np.abs(x)
-    bound = LARGEST_STEP * size.max(axis=0)
+    bound = LARGEST_STEP * larger(x)
     linear = np.clip(x + step / slope, -bound, bound)
     minor = (size < ALIKE * size[::-1]) & (np.abs(step) > SMALL_STEP * np.abs(g))
     if minor.any():
@@ -159,13 +170,14 @@ def _moved(law: RateLaw, x: Array, g: Array, step: Array, slope: Array) -> Array
 def _integrals(law: RateLaw, x: Array, g: Array) -> tuple[Array, Array]:
     """Return both integrals and their derivatives A, B, C."""
     size = np.abs(x)
-    alike: Flags = (x[0] * x[1] > 0) & (size.min(axis=0) > ALIKE * size.max(axis=0))
-    found = np.empty((5, x.shape[1]))
-    for nodes, rule in ((~alike, _by_moments), (alike, _by_rule)):
-        if nodes.all():
-            found[:] = rule(law, x, g)
-        elif nodes.any():
-            found[:, nodes] = rule(law, x[:, nodes], g[:, nodes])
+    alike: Flags = (x[0] * x[1] > 0) & (np.minimum(size[0], size[1]) > ALIKE * np.maximum(size[0], size[1]))
+    few = np.flatnonzero(alike)
+    found = np.empty((5, len(alike)))
+    if len(few) < len(alike):
+        with np.errstate(all="ignore"):  # alike walls differ by nothing
+            found[:] = _by_moments(law, x, g)
+    if len(few):
+        found[:, few] = _by_rule(law, x[:, few], g[:, few])
     return found[:2], found[2:]
 
 
@@ -186,20 +198,14 @@ def _by_rule(law: RateLaw, x: Array, g_walls: Array) -> tuple[Array, ...]:
     middle, half = 0.5 * (x[0] + x[1]), 0.5 * (x[1] - x[0])
     offset = half * NODES[:, None]
     g, slope = _odd(law, middle + offset)
-    weights = 0.5 * WEIGHTS[:, None]
-    mean_slope = (weights * slope).sum(axis=0)  # Q = 2 half mean_slope
-    share = weights * slope / mean_slope  # d zeta
+    mean_slope = SHARES @ slope  # Q = 2 half mean_slope
     # zeta at the nodes: the stress relative to that in the middle of the film, over Q.
     flat = np.abs(half) < STEEPEST * np.abs(middle)
     Q = np.where(flat, 1.0, 2 * half * mean_slope)
     zeta = np.where(flat, 0.5 * NODES[:, None], (g - 0.5 * (g_walls[0] + g_walls[1])) / Q)
-    i_0 = middle + (share * offset).sum(axis=0)
-    i_1 = (share * zeta * offset).sum(axis=0)  # the mean of zeta is zero
     by_mean = 1 / mean_slope
-    return (
-        i_0,
-        i_1,
-        by_mean,
-        by_mean * (weights * zeta).sum(axis=0),
-        by_mean * (weights * zeta**2).sum(axis=0),
-    )
+    slope *= offset  # d zeta is the share of the slope in its mean
+    i_0 = middle + by_mean * (SHARES @ slope)
+    slope *= zeta
+    i_1 = by_mean * (SHARES @ slope)  # the mean of zeta is zero
+    return i_0, i_1, by_mean, by_mean * (SHARES @ zeta), by_mean * (SHARES @ (zeta * zeta))
