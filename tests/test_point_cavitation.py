@@ -8,6 +8,7 @@ import pytest
 from stribeck.contacts.cut_off import CAVITATED, RUPTURE
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import Model
+from stribeck.equations.cavities.torn import swept
 from stribeck.equations.cavities.wake import rupture_line, shear_missing
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.fourier_panels import PolarMesh
@@ -120,3 +121,14 @@ def test_neighbours_lead_to_the_state_that_a_cold_start_finds():
     assert warm.outcome.ok
     for name, value in cold.values.items():
         assert abs(warm.values[name] - value) <= 2 * (warm.absolute_errors[name] + cold.absolute_errors[name]), name
+
+
+@pytest.mark.quick
+def test_a_film_fills_as_many_torn_nodes_at_once_as_its_flow_fills():
+    gas = np.array([[0.0, 0.0, -3.5, 1.0, 1.0, 1.0, 1.0, 1.0]])
+    before = gas != 0.0
+    # The flow of 3.5 fills three gaps that lack 1 and half of the fourth, which stays torn.
+    assert swept(gas, before & (gas > 0.0), before).tolist() == [[False] * 6 + [True] * 2]
+    # Nodes that break are left alone, and nothing moves where nothing heals.
+    now = gas != 1.0
+    assert swept(np.abs(gas), now, ~now).tolist() == now.tolist()

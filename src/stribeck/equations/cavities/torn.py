@@ -63,6 +63,9 @@ BALANCED = 5e-9
 FLUID = 10.0
 """Part of the film pressure that GMRES may leave over that of the gap."""
 
+FARTHEST = 10
+"""Nodes by which a line of rupture moves downstream in one step."""
+
 WORN = 4.0
 """Steps of GMRES for a digit from which the next step makes its own preconditioner."""
 
@@ -307,6 +310,31 @@ class _Preconditioner:
         return np.asarray(x + self.kept.answers @ residuals)
 
 
+def swept(gas: Array, now: Flags, before: Flags) -> Flags:
+    """Return the nodes that are torn after a step, the film being spread over as many as fill with what it has to give.
+
+    Behind a line of rupture that lies too far upstream one node a step would heal, with the flow that ends there: that is
+    passed on to torn neighbours, whose gas it fills.
+
+    Parameters
+    ----------
+    gas : ndarray, shape (modes, rings)
+        What is missing at the nodes, as residuals; below zero where there is too much.
+    now, before : ndarray of bool
+        The torn nodes by complementarity, and those of the step.
+    """
+    torn, given, left = now.copy(), np.where(before & ~now, gas, 0.0), gas.copy()
+    for _ in range(FARTHEST):
+        if not given.any():
+            break
+        to = np.pad(torn, 1).astype(float)
+        share = np.pad(given / np.maximum(to[:-2, 1:-1] + to[2:, 1:-1] + to[1:-1, :-2] + to[1:-1, 2:], 1.0), 1)
+        left += share[:-2, 1:-1] + share[2:, 1:-1] + share[1:-1, :-2] + share[1:-1, 2:]
+        given = np.where(torn & (left < 0.0), left, 0.0)
+        torn &= given == 0.0
+    return torn
+
+
 def just_above(least: float) -> float:
     """Return the lowest pressure of a film that is not torn."""
     return least + max(float(np.finfo(float).eps) * abs(least), float(np.finfo(float).tiny))
@@ -347,8 +375,9 @@ def iterate_cavitated(
     y = Unknowns(start.gap, np.where(torn, least, start.fluid), start.offset)
 
     def now_torn(stiff: Array, passing: Passing) -> Flags:
-        gas = passing.gas(equations.flow(y.gap, y.fluid, y.offset))
-        return np.asarray(gas * passing.weights / stiff > y.fluid - least)
+        gas = passing.gas(equations.flow(y.gap, y.fluid, y.offset)) * passing.weights
+        found = np.asarray(gas / stiff > y.fluid - least)
+        return found if equations.spread is not None else swept(gas, found, torn)
 
     krylov = factorisations = steps = 0
     left, size, same, near = math.inf, math.inf, False, False
