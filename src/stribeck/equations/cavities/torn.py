@@ -63,8 +63,8 @@ BALANCED = 5e-9
 FLUID = 10.0
 """Part of the film pressure that GMRES may leave over that of the gap."""
 
-FARTHEST = 10
-"""Nodes by which a line of rupture moves downstream in one step."""
+FARTHEST, SWEPT = 10, 0.1
+"""Nodes by which a line of rupture moves downstream in one step, and the largest step after which it moves by more than one."""
 
 WORN = 4.0
 """Steps of GMRES for a digit from which the next step makes its own preconditioner."""
@@ -377,7 +377,7 @@ def iterate_cavitated(
     def now_torn(stiff: Array, passing: Passing) -> Flags:
         gas = passing.gas(equations.flow(y.gap, y.fluid, y.offset)) * passing.weights
         found = np.asarray(gas / stiff > y.fluid - least)
-        return found if equations.spread is not None else swept(gas, found, torn)
+        return swept(gas, found, torn) if size <= SWEPT and equations.spread is None else found
 
     krylov = factorisations = steps = 0
     left, size, same, near = math.inf, math.inf, False, False
@@ -420,11 +420,12 @@ def iterate_cavitated(
             steps += 1
             if solved.steps > -WORN * math.log10(wanted):
                 kept = None
+            size = size if part == 1.0 else max(size, 1.0)
             now = now_torn(linear.stiffness, linear.passing)
             same = bool((now == torn).all())
             torn = now
             if part < 1.0:
-                size, near = max(size, 1.0), False
+                near = False
                 continue
             left = 3.0 * size * size + solved.left * size
             # At slow speed the film pressure is small: a step may be small for the gap and not for the pressure.
