@@ -33,6 +33,7 @@ from stribeck.explorer.measured import fit_measured, read_measured, speeds_of
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import read_scan, with_scan
 from stribeck.quantities.units import format_si
+from stribeck.solids.viscoelastic import Prony
 
 START = server.example()
 
@@ -212,6 +213,7 @@ PARTS = [
     {"fluid": {"pressure_viscosity": "1.5 1/GPa", "viscosity_law": "roelands"}, "motion": {"slide_to_roll": 0}},
     {"cavitation": {"model": "reform", "pressure": "-0.1 MPa"}, "flow_factors": {"model": "effective-medium"}},
     {"flow_factors": {"model": "patir-cheng", "gamma": 3}, "solid": {"layer_thickness": 1e-3}},
+    {"solid": {"relaxation_times": ["1 ms", "10 ms"], "moduli": [1.0, 0.5]}},
 ]
 
 KINDS = [
@@ -385,6 +387,17 @@ def test_a_preset_is_a_viscosity_and_a_fluid():
     )
     shown = choices.choose(shown, "preset", "water")
     assert shown.contact.fluid == sb.fluids.Fluid() and shown.model == ""
+
+
+def test_a_viscoelastic_body_is_chosen_and_its_lists_are_typed_with_commas():
+    shown = choices.choose(choices.choose(START, "solid", "layer"), "solid", "Prony")
+    row = choices.state_of(shown, "solid")
+    assert row["value"] == "Prony" and ["relaxation_times", "relaxation times", "1 ms, 10 ms"] in row["details"]
+    typed = choices.typed_detail(shown, "solid", "relaxation_times", "2 ms,20 ms")
+    assert typed.contact.solid == Prony(["2 ms", "20 ms"], [1.0, 0.5])
+    assert choices.typed_detail(typed, "solid", "layer_thickness", "1 mm").contact.solid.base == sb.solids.Layer("1 mm")
+    with pytest.raises(sb.InputError, match="as many of both"):
+        choices.typed_detail(shown, "solid", "relaxation_times", "1 ms")
 
 
 def test_alpha_and_beta_follow_a_surface_whose_numbers_are_typed():

@@ -1,13 +1,19 @@
 """A new case runs as it is written; a report is one file with everything in it that asks no server for anything."""
 
+import dataclasses
 import html
 import re
+import runpy
+from pathlib import Path
 
 import pytest
 from command_line import EXAMPLES, call, case_text
 
 import stribeck as sb
+from stribeck.cases import model_parts
+from stribeck.cases.law import LAWS
 from stribeck.data_sheet.report import page_of
+from stribeck.fluids import presets
 from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.facts import FACTS
 from stribeck.quantities.inputs import INPUT_TABLES
@@ -52,6 +58,20 @@ def test_the_optional_tables_of_a_new_case_are_read_once_uncommented(tmp_path):
     path.write_text(text[:i] + re.sub("^# ", "", text[i:end], flags=re.M) + text[end:])
     contact = sb.load_case(path).contact
     assert str(contact.cavitation) == "exit" and contact.solid.thickness > 0
+
+
+@pytest.mark.quick
+def test_a_new_law_is_one_row_and_stands_in_new_cases_and_on_the_page(monkeypatch):
+    law = dataclasses.make_dataclass("CarreauYasuda", [("relaxation_time", float)])
+    monkeypatch.setitem(model_parts.RHEOLOGIES, "carreau-yasuda", model_parts.Part(law, {"relaxation_time": '"1 ms"'}))
+    monkeypatch.setattr(presets, "PRESETS", {**presets.PRESETS, "honey": presets.PRESETS["water"]})
+    source = Path(sb.__file__).parent
+    text = runpy.run_path(str(source / "data_sheet/new_case.py"))["new_case"]()
+    found = runpy.run_path(str(source / "explorer/asked/choices.py"))["CHOICES"]
+    for name in ("carreau-yasuda", "cross", "honey", "roelands", "patir-cheng", "retardation_time", *LAWS):
+        assert name in text, name
+    assert found["fluid"].options["carreau-yasuda"] == ("carreau-yasuda", (("relaxation_time",), ()))
+    assert "honey" in found["preset"].options and list(found["law"].options) == list(LAWS)
 
 
 @pytest.fixture(scope="module")

@@ -65,6 +65,13 @@ DENSITIES = {"incompressible": Part(), "dowson-higginson": Part(DowsonHigginson)
 FLUID_LAWS = {"model": RHEOLOGIES, "viscosity_law": VISCOSITY_LAWS, "density": DENSITIES}
 """Key of ``[fluid]`` -> the laws that it names; the first does nothing."""
 
+FLOW_FACTORS: dict[str, Callable[..., Any] | None] = {
+    "none": None,
+    "patir-cheng": PatirCheng,
+    "effective-medium": EffectiveMedium,
+}
+"""What ``[flow_factors]`` may name."""
+
 CONDITIONS = ("weight_fraction", "temperature", "grade")
 NAMES = ("name", "type", "kind", "law", "fluid", "liquid")
 """Keys that people write for the one that says which."""
@@ -211,15 +218,14 @@ def _motion(table: dict[str, Any], contact: Any) -> dict[str, Any]:
 
 
 def _flow_factors(table: dict[str, Any], contact: Any) -> dict[str, Any]:
-    model = _one_of(table, "model", ("none", "patir-cheng", "effective-medium"), "")
-    rest = {key: value for key, value in table.items() if key != "model"}
-    if model == "patir-cheng":
-        return {"flow_factors": PatirCheng(**rest)}
-    _only(rest, (), f"model = {model!r}")
-    return {"flow_factors": EffectiveMedium() if model == "effective-medium" else None}
+    model = _one_of(table, "model", tuple(FLOW_FACTORS), "")
+    made, rest = FLOW_FACTORS[model], {key: value for key, value in table.items() if key != "model"}
+    if made is not PatirCheng:
+        _only(rest, (), f"model = {model!r}")
+    return {"flow_factors": None if made is None else made(**rest)}
 
 
-MEMORIES: tuple[tuple[Callable[..., Any], dict[str, str]], ...] = (
+MEMORIES: tuple[tuple[type[Any], dict[str, str]], ...] = (
     (StandardLinearSolid, {"retardation_time": '"10 ms"', "modulus_ratio": "3.0"}),
     (Prony, {"relaxation_times": '["1 ms", "10 ms"]', "moduli": "[1.0, 0.5]"}),
 )

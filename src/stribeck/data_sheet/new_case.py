@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 
+from stribeck.cases.law import LAWS, NEEDED, Law
+from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES
 from stribeck.contacts.geometries import check_geometry
 from stribeck.contacts.groups import Geometry
+from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.conversions import CONVERSIONS
 from stribeck.quantities.facts import ROWS as FACTS
 from stribeck.quantities.inputs import INPUT_TABLES, Input
@@ -17,14 +20,16 @@ __all__ = ["new_case"]
 PARTS = """
 # A fluid that is not Newtonian, a film that breaks, a thin layer: remove the # of a table and of what you know.
 # [fluid]
-# preset = "water"   # or glycerol-water, silicone-oil, pao-10, ...: gives the viscosity too, at temperature = "25 degC"
-# model = "carreau"   # or cross, eyring, power-law; with relaxation_time = "1 ms", exponent = 0.7
-# pressure_viscosity = "20 1/GPa"   # viscosity_law = "barus" or "roelands"
+# preset = "water"   # or {presets}: gives the viscosity too, at temperature = "25 degC"
+{laws}
 # [cavitation]
 # model = "exit"   # the film ends at ambient pressure behind the contact; or "reform"
+# [flow_factors]
+# model = {flow_factors}
 # [solid]
 # layer_thickness = "2 mm"
 # poisson_ratio = 0.49
+# # A viscoelastic body has {memories}.
 """
 
 OPTIONS = """
@@ -100,16 +105,39 @@ def new_case(geometry: Geometry = "line") -> str:
             "",
         ]
     lines += [
-        '# Contact law: "exponential" (alpha, beta above), or "persson" with a table [surface] in their place and in that of',
-        '# roughness: h_rms = "1 um", hurst = 0.8, longest_wavelength = "150 um", shortest_wavelength = "1.5 um".',
-        'law = "exponential"',
-        PARTS.rstrip(),
+        f"# Contact law: {', '.join(map(_law, LAWS))}.",
+        "# In the place of alpha, beta and roughness a table [surface] may stand:",
+        '# h_rms = "1 um", hurst = 0.8, longest_wavelength = "150 um", shortest_wavelength = "1.5 um".',
+        f'law = "{LAWS[0]}"',
+        _parts().rstrip(),
         OPTIONS.format(**TOLERANCES[geometry]),
         "[check]",
         "# Used by stribeck check alone; remove the # of what you know.",
     ]
     lines += [f"# {fact.name} = {_quoted(fact.typical, fact.dimension)}   # {fact.label}; {fact.source}" for fact in FACTS]
     return "\n".join(lines) + "\n"
+
+
+def _law(name: Law) -> str:
+    return f'"{name}" (with [{NEEDED[name]}])' if name in NEEDED else f'"{name}"'
+
+
+def _parts() -> str:
+    """Return the optional tables, with all laws that the readers of cases know."""
+    laws = []
+    for key, parts in FLUID_LAWS.items():
+        first, *others = (name for name, part in parts.items() if part.law)
+        for name in (first, *others):
+            needed = "; ".join(f"{each} = {example}" for each, example in parts[name].needed.items())
+            with_them = f"   # with {needed}" if needed else ""
+            laws.append(f'# {"" if name == first else "# or "}{key} = "{name}"{with_them}')
+    factors = [f'"{name}"' for name, made in FLOW_FACTORS.items() if made]
+    return PARTS.format(
+        presets=", ".join(name for name in PRESETS if name != "water"),
+        laws="\n".join(laws),
+        flow_factors=f"{factors[0]}   # or {' or '.join(factors[1:])}",
+        memories=", or ".join("; ".join(f"{key} = {example}" for key, example in keys.items()) for _, keys in MEMORIES),
+    )
 
 
 def _about(row: Input) -> list[str]:

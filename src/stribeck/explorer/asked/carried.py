@@ -10,11 +10,12 @@ import functools
 import json
 import re
 from collections.abc import Mapping
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
 from stribeck.cases.case import Case, check_case
-from stribeck.cases.law import self_contained
+from stribeck.cases.law import LAWS, self_contained
 from stribeck.cases.model_parts import FLUID_LAWS, KEYS, take_parts
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
@@ -41,13 +42,7 @@ __all__ = [
     "toml_text",
 ]
 
-LAW_NAMES = {
-    "exponential": "exponential",
-    "persson": "Persson",
-    "greenwood-williamson": "Greenwood and Williamson",
-    "greenwood-tripp": "Greenwood and Tripp",
-    "table": "a table",
-}
+LAW_NAMES = {law: " and ".join(map(str.capitalize, law.split("-"))) for law in LAWS}
 
 LAW_TABLES = ("law", "surface", "table")
 MODEL = ("geometry", *LAW_TABLES, *KEYS)
@@ -101,17 +96,14 @@ def geometry_of(model: str) -> Any:
     return check_geometry(_object("model", model, MODEL).get("geometry", "line")) if model else "line"
 
 
-ATTRIBUTES = {"stress": "eyring_stress", "pressure_viscosity": "pressure_coefficient"}
-"""Key of a table -> attribute of its law, where they differ."""
-
-
 def fluid_table(fluid: Fluid) -> dict[str, Any]:
     """Return a fluid as the table ``[fluid]``, with its numbers in SI units; empty for one that is always the same."""
     found: dict[str, Any] = {}
     for key, laws, kept in zip(FLUID_LAWS, FLUID_LAWS.values(), (fluid.rheology, fluid.viscosity, fluid.density), strict=True):
         for name, part in laws.items():
             if part.law is not None and type(kept) is part.law:
-                found |= {key: name} | {each: getattr(kept, ATTRIBUTES.get(each, each)) for each in part.keys}
+                own = dict(zip(part.needed, signature(part.law).parameters, strict=False))  # it takes what it needs in order
+                found |= {key: name} | {each: getattr(kept, own.get(each, each)) for each in part.keys}
     return found
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from stribeck.cases.law import LAWS, law_of_file
-from stribeck.cases.model_parts import FLUID_LAWS, take_parts
+from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES, take_parts
 from stribeck.explorer.asked.carried import LAW_NAMES, fluid_table, json_text, tables_of
 from stribeck.explorer.asked.inputs import Inputs, exact_text, with_model
 from stribeck.fluids.cavitation import Cavitation
@@ -32,9 +32,8 @@ RTOL = {"line": 1e-6, "point": 1e-4}
 TYPICAL: dict[str, Any] = {
     **{
         key: tomllib.loads(f"value = {example}")["value"]
-        for laws in FLUID_LAWS.values()
-        for part in laws.values()
-        for key, example in part.needed.items()
+        for needed in (*(part.needed for laws in FLUID_LAWS.values() for part in laws.values()), *dict(MEMORIES).values())
+        for key, example in needed.items()
     },
     "slide_to_roll": 0.5,
     "layer_thickness": "2 mm",
@@ -50,8 +49,17 @@ WORDS = {
     "pressure": "cavity pressure",
     "hurst": "Hurst exponent",
     "pressure_viscosity": "pressure coefficient",
+    "patir-cheng": "Patir and Cheng",
+    "StandardLinearSolid": "viscoelastic, one time",
+    "Prony": "viscoelastic, Prony series",
 }
-"""Labels of keys that differ from the key itself."""
+"""Words for keys and names that differ from these themselves."""
+
+LAYER: Keys = (("layer_thickness",), ("poisson_ratio",))
+
+
+def _words(name: str) -> str:
+    return WORDS.get(name, name.replace("_", " ").replace("-", " "))
 
 
 @dataclass(frozen=True)
@@ -132,14 +140,15 @@ CHOICES = {
             "Flow factors",
             "flow_factors",
             "model",
-            {"none": ("none", NONE), "effective-medium": ("effective medium", NONE), "patir-cheng": ("Patir and Cheng", NONE)},
+            {name: (_words(name), NONE) for name in FLOW_FACTORS},
         ),
         Choice(
             "solid",
             "Soft body",
             "solid",
             "",
-            {"half-space": ("half-space", NONE), "layer": ("bonded layer", (("layer_thickness",), ("poisson_ratio",)))},
+            {"half-space": ("half-space", NONE), "layer": ("bonded layer", LAYER)}
+            | {each.__name__: (_words(each.__name__), (tuple(keys), sum(LAYER, ()))) for each, keys in MEMORIES},
         ),
     )
 }
@@ -153,8 +162,12 @@ def _where(choice: Choice) -> str:
 
 def chosen(choice: Choice, tables: Mapping[str, Any]) -> str:
     """Return what is chosen in the tables of a model."""
+    if not choice.table and not choice.key:
+        return choice.first
     if not choice.key:
-        return list(choice.options)[choice.table in tables] if choice.table else choice.first
+        given = tables.get(choice.table, {})
+        fits = [name for name, (_, (needed, _)) in choice.options.items() if set(needed) <= given.keys()]
+        return fits[-1]
     given = tables.get(choice.table, {}) if choice.table else tables
     if choice.name == "viscosity_law" and "pressure_viscosity" in given:
         return str(given.get(choice.key, "barus"))
@@ -202,7 +215,7 @@ def state_of(now: Inputs, name: str) -> dict[str, Any]:
         # A measured spectrum has no numbers to change; others keep those with which they came.
         own = [key for key in given if key not in ("h_rms", "wavenumber", "density", "title")]
         keys = () if "wavenumber" in given else tuple(dict.fromkeys((*own, *(() if "q0" in given else keys))))
-    details = [[key, WORDS.get(key, key.replace("_", " ")), str(given.get(key, ""))] for key in keys]
+    details = [[key, _words(key), _text(given.get(key, ""))] for key in keys]
     # A table of a contact law comes from a file only.
     options = [[key, words] for key, (words, _) in choice.options.items() if key != "table" or value == "table"]
     if name == "preset" and not offered(CHOICES["fluid"], tables):
@@ -292,14 +305,23 @@ def typed_detail(now: Inputs, name: str, key: str, text: str) -> Inputs:
     where, text = _where(choice), text.strip()
     table = {each: value for each, value in tables.get(where, {}).items() if each != key}
     if text:
-        try:
-            table[key] = float(text)
-        except ValueError:
-            table[key] = text
+        several = isinstance(TYPICAL.get(key), list)
+        table[key] = [_number(each.strip()) for each in text.split(",")] if several else _number(text)
     elif key in choice.options[chosen(choice, tables)][1][0]:
-        raise InputError(f"{key} is missing, which this choice needs; add {key} = {TYPICAL[key]}.")
+        raise InputError(f"{key} is missing, which this choice needs; add {key} = {_text(TYPICAL[key])}.")
     tables[where] = table
     return _of_surface(now, tables) if where == "surface" else _with(now, tables)
+
+
+def _text(value: Any) -> str:
+    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def _of_surface(now: Inputs, tables: dict[str, Any]) -> Inputs:
