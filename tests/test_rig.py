@@ -19,10 +19,10 @@ FRICTIONS = (0.5, 0.25, 0.0625, 0.125)
 
 @pytest.fixture
 def read(tmp_path):
-    def reader(text, name="rig.txt", **table):
+    def reader(text, name="rig.txt", geometry="line", **table):
         path = tmp_path / name
         path.write_text(text)
-        return sb.read_measurements(path, check_fit_table(table))
+        return sb.read_measurements(path, check_fit_table(table, geometry))
 
     return reader
 
@@ -166,3 +166,39 @@ def test_a_fit_prints_what_the_columns_were_taken_for(tmp_path, capsys):
     answer = call(capsys, "fit", data, case, "--free", "boundary_friction")
     assert answer.code == 0, answer.err
     assert "Read: friction = |'Friction force (N)' / 'Normal force (N)'|; speed = 2 x 'Mean speed (m/s)'" in answer.out
+
+
+def loads_and_repeats(loads=(1.0, 2.0), ratios=(50, 50)):
+    """Return an export with three repeats at each of two loads and slide-to-roll ratios; the first repeat is run-in."""
+    lines = ["Profile:\tsaliva", ""]
+    for load, ratio in zip(loads, ratios, strict=True):
+        for repeat in range(3):
+            lines.append("Rolling Speed (mm/s)\tSRR (%)\tBall Load (N)\tTraction Coeff (-)\tStep")
+            for i, (u, mu) in enumerate(zip(SPEEDS, FRICTIONS, strict=True)):
+                friction = mu / load * (1.2 if repeat == 0 else 1 + 0.004 * (-1) ** (i + repeat))
+                noise = 1 + 0.004 * math.sin(9 * i + 5 * repeat)
+                lines.append(f"{500 * u}\t{ratio}\t{load * noise:.4f}\t{friction:.6f}\t{load}/{repeat}")
+            lines.append("")
+    return "\n".join(lines)
+
+
+@pytest.mark.quick
+def test_several_loads_in_a_file_are_as_many_curves_of_a_ball(read):
+    found = read(loads_and_repeats(), geometry="point")
+    assert found.inputs == ({"load": 1.0, "slide_to_roll": 0.5}, {"load": 2.0, "slide_to_roll": 0.5})
+    assert found.friction == pytest.approx([*FRICTIONS, *(mu / 2 for mu in FRICTIONS)], rel=0.005)
+    assert found.error is not None and len(found.run_in) == 8
+    assert "'Ball Load (N)' as load of the curves, 1 N and 2 N" in found.taken
+    mixed = read(loads_and_repeats(loads=(1.0, 1.0), ratios=(20, 180)), geometry="point")
+    assert mixed.inputs == ({"load": 1.0, "slide_to_roll": 0.2}, {"load": 1.0, "slide_to_roll": 1.8})
+
+
+@pytest.mark.quick
+def test_several_forces_on_a_cylinder_name_its_curves_and_ask_for_their_loads(read):
+    found = read(loads_and_repeats())
+    assert found.curves == ("1 N", "2 N") and found.inputs == ({}, {})
+    assert 'a curve for each of 1 N and 2 N; give the load of each in [fit.curves."1 N"]' in found.taken
+    own = read(loads_and_repeats(), curves={"1 N": {"load": "50 N/m"}, "2 N": {"load": "100 N/m"}})
+    assert own.inputs == ({"load": 50.0}, {"load": 100.0})
+    assert read(loads_and_repeats(loads=(1.0, 1.0))).curves == ("data",)
+    assert read(loads_and_repeats(ratios=(20, 180))).curves == ("1 N, 0.2", "2 N, 1.8")

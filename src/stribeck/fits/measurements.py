@@ -17,7 +17,7 @@ import numpy as np
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.files.text_table import MISSING, TextTable, number_of, read_table
-from stribeck.fits.rig import MADE_SPEED, PATTERNS, RIG, Row, average_repeats, prepared
+from stribeck.fits.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, Row, average_repeats, prepared
 from stribeck.quantities.inputs import ROWS, quantity
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Shown
@@ -41,6 +41,7 @@ WORDS = {
     },
     "error": {"error", "friction error", "mu error", "uncertainty", "standard error", "standard deviation", "std", "sigma"},
     "curve": {"curve", "series", "sample"},
+    MADE_RATIO: {"slide to roll"},
 } | {
     row.name: {row.name.replace("_", " "), *row.headers}
     for row in ROWS
@@ -357,6 +358,8 @@ def _curves(
                     f"{show(name)}, has {first[at][1][quantity_name]:g} (SI); give them different names."
                 )
         of_row.append(at)
+    if len(labels) == 1 and not named:
+        labels = ["data"]
     unknown = [name for name in settings.curves if name not in labels]
     if unknown:
         known = ", ".join(labels)

@@ -39,11 +39,17 @@ PATTERNS = {
 MADE_SPEED = "speed [m/s]"
 """Header of the column of the speed that was made of others."""
 
+MADE_LOAD, MADE_RATIO, MADE_CURVE = "load", "slide_to_roll", "curve"
+"""Headers of the columns of what is constant along each curve, made of columns that were measured."""
+
+NEXT_LEVEL = 1.1
+"""Ratio of neighbouring values from which they belong to two settings, and not to the noise of one."""
+
 SAME_SPEED = 0.01
 """Relative difference up to which speeds are the same point."""
 
 FEWEST = 3
-"""Repeats from which their scatter is an error."""
+"""Repeats from which their scatter is an error, and rows from which a setting is one."""
 
 RUN_IN, CLEAR = 0.03, 3.0
 """Relative difference of a first run from the later ones, and that in standard errors, from which it is run-in."""
@@ -74,6 +80,12 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
     ------
     InputError
         If a speed may be the mean or the sum, or a force is zero.
+
+    Notes
+    -----
+    A normal force or a slide-to-roll ratio is the load or the ratio of its curve, for a ball: the median of what was measured.
+    Where it was set to several values there are as many curves.  The load of a cylinder is per length: there the force names
+    the curve alone.
     """
     found = _rig_columns(table, settings)
     said = []
@@ -97,7 +109,51 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
                 f"speeds or their sum; say which in [fit.columns] of the case: entrainment_speed = {show(plain)} (the mean) "
                 f"or speed = {show(plain)} (the sum)."
             )
+    for meaning, made_column in (("normal_force", MADE_LOAD), ("slide_to_roll", MADE_RATIO)):
+        if meaning in found and not {made_column, "curve"} & settings.columns.keys() and not known("curve"):
+            table, sentences = _levelled(table, found[meaning][0], meaning, made_column, settings)
+            said += sentences
     return table, tuple(said), found.get("run", [""])[0]
+
+
+def _levelled(
+    table: TextTable, name: str, meaning: str, made: str, settings: FitSettings
+) -> tuple[TextTable, tuple[str, ...]]:
+    """Return the table with a column of the values to which a measured column was set, and a sentence if there are several."""
+    values = _ratios(table, name) if meaning == "slide_to_roll" else _numbers(table, name, "force", "N")
+    if name == MADE_RATIO or not all(value is None or math.isfinite(value) for value in values):
+        return table, ()
+    of_value = _levels([abs(value) for value in values if value])
+    column = [of_value[abs(value)] if value else None for value in values]
+    several = sorted({value for value in column if value is not None})
+    unit = "" if meaning == "slide_to_roll" else " N"
+    listed = " and ".join(f"{value:g}{unit}" for value in several)
+    row = settings.inputs.quantities.get(made)
+    if row is None or row.dimension != ("number" if meaning == "slide_to_roll" else "force"):
+        labels = ["" if value is None else f"{value:g}{unit}" for value in column]
+        advice = f'; give the {made.replace("_", " ")} of each in [fit.curves."{labels[0]}"]'
+        if len(several) < 2:
+            return table, ()
+        if MADE_CURVE in table.header:
+            at = table.header.index(MADE_CURVE)
+            labels = [f"{cells[at]}, {label}" for cells, label in zip(table.rows, labels, strict=True)]
+            table = _without(table, MADE_CURVE)
+        return _with_texts(table, MADE_CURVE, labels), (f"{show(name)}: a curve for each of {listed}{advice}",)
+    sentence = f"{show(name)} as {made.replace('_', ' ')} of the curve{'s' * (len(several) > 1)}, {listed}"
+    return _with_column(_without(table, name), f"{made} [N]" if unit else made, column), (sentence,)
+
+
+def _levels(values: Sequence[float]) -> dict[float, float]:
+    """Return the setting that each measured value belongs to: the median of those that lie together."""
+    groups: list[list[float]] = []
+    for value in sorted(values):
+        if not groups or value > NEXT_LEVEL * groups[-1][-1]:
+            groups.append([])
+        groups[-1].append(value)
+    settings = [_rounded(float(np.median(group))) for group in groups if len(group) >= FEWEST]
+    if not settings:
+        return {value: _rounded(float(np.median(values))) for value in values}
+    return {value: min(settings, key=lambda each: abs(math.log(each / value))) for value in values}
 
 
 def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
@@ -117,6 +173,12 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
                 found.setdefault(meaning, []).append(name)
                 break
     return found
+
+
+def _rounded(value: float) -> float:
+    """Return a value with two digits if that changes it by less than 1 %, else with three."""
+    rough = float(f"{value:.2g}")
+    return rough if abs(rough / value - 1) < 0.01 else float(f"{value:.3g}")
 
 
 def _speed(table: TextTable, found: dict[str, list[str]]) -> tuple[list[float | None], str] | None:
@@ -170,6 +232,18 @@ def _with_column(table: TextTable, name: str, values: Sequence[float | None]) ->
     texts = ["" if value is None or not math.isfinite(value) else repr(value) for value in values]
     if table.decimal_comma:
         texts = [text.replace(".", ",") for text in texts]
+    return _with_texts(table, name, texts)
+
+
+def _without(table: TextTable, name: str) -> TextTable:
+    """Return the table without a column."""
+    at = table.header.index(name)
+    header, *rows = ((*row[:at], *row[at + 1 :]) for row in (table.header, *table.rows))
+    return replace(table, header=header, rows=tuple(rows), units_row=(*table.units_row[:at], *table.units_row[at + 1 :]))
+
+
+def _with_texts(table: TextTable, name: str, texts: Sequence[str]) -> TextTable:
+    """Return the table with one more column of cells."""
     rows = tuple((*row, text) for row, text in zip(table.rows, texts, strict=True))
     units = (*table.units_row, "") if table.units_row else ()
     return replace(table, header=(*table.header, name), rows=rows, units_row=units)
@@ -235,15 +309,11 @@ def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool)
     """
     marked, sentences = _run_in(rows, _counted(rows, runs))
     kept = [row for row in rows if keep_run_in or row[1] not in marked]
-    groups: dict[Any, list[Row]] = {}
-    for row in sorted(kept, key=lambda row: (row[0], sorted(row[5].items()), row[2])):
-        key = row[0], tuple(sorted(row[5].items()))
-        at = [k for k in groups if k[0] == key and abs(k[1] / row[2] - 1) <= SAME_SPEED]
-        groups.setdefault(at[-1] if at else (key, row[2]), []).append(row)
-    sizes = [len(group) for group in groups.values()]
-    if not sizes or np.median(sizes) < FEWEST:
+    sizes = [len(group) for group in _at_same_speed(rows).values()]
+    groups = _at_same_speed(kept)
+    if not groups or np.median(sizes) < FEWEST:
         return None
-    freedom = sum(size - 1 for size in sizes)
+    freedom = sum(len(group) - 1 for group in groups.values())
     squares = 0.0
     means = {}
     for key, group in groups.items():
@@ -269,6 +339,21 @@ def average_repeats(rows: Sequence[Row], runs: Sequence[str], keep_run_in: bool)
     return Averaged(made, tuple(sentences), tuple(sorted(marked)))
 
 
+def _curve_of(row: Row) -> tuple[str, tuple[tuple[str, float], ...]]:
+    """Return name and inputs of the curve of a row."""
+    return row[0], tuple(sorted(row[5].items()))
+
+
+def _at_same_speed(rows: Sequence[Row]) -> dict[Any, list[Row]]:
+    """Return rows of the same curve, inputs and speed together."""
+    groups: dict[Any, list[Row]] = {}
+    for row in sorted(rows, key=lambda row: (row[0], sorted(row[5].items()), row[2])):
+        key = _curve_of(row)
+        at = [k for k in groups if k[0] == key and abs(k[1] / row[2] - 1) <= SAME_SPEED]
+        groups.setdefault(at[-1] if at else (key, row[2]), []).append(row)
+    return groups
+
+
 def _counted(rows: Sequence[Row], runs: Sequence[str]) -> Sequence[str]:
     """Return the runs; where each row has a label of its own, as steps have, the k-th row at a speed is of run k."""
     if len(set(runs)) < len(runs):
@@ -286,8 +371,8 @@ def _run_in(rows: Sequence[Row], runs: Sequence[str]) -> tuple[set[int], list[st
     """Return the rows of first runs that differ from later ones, and a note on them."""
     marked: set[int] = set()
     said = []
-    for curve in dict.fromkeys(row[0] for row in rows):
-        mine = [(row, run) for row, run in zip(rows, runs, strict=True) if row[0] == curve]
+    for curve in dict.fromkeys(map(_curve_of, rows)):
+        mine = [(row, run) for row, run in zip(rows, runs, strict=True) if _curve_of(row) == curve]
         names = list(dict.fromkeys(run for _, run in mine))
         if len(names) < FEWEST:
             continue
@@ -305,7 +390,7 @@ def _run_in(rows: Sequence[Row], runs: Sequence[str]) -> tuple[set[int], list[st
         if abs(mean) > max(RUN_IN, CLEAR * error):
             numbers = [row[1] for row in first]
             marked |= set(numbers)
-            of = f" of curve {curve}" if curve else ""
+            of = "".join(f", {part}" for part in (curve[0], *(f"{name} {value:g}" for name, value in curve[1])) if part)
             said.append(
                 f"Run {names[0]}{of} lies {100 * math.expm1(mean):+.0f} % from the later ones: run-in, rows "
                 f'{min(numbers)} to {max(numbers)}, left out of the means; run_in = "keep" in [fit] keeps it.'
