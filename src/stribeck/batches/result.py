@@ -21,7 +21,7 @@ from stribeck.quantities.inputs import quantity, refuse_former, unit_of
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, show
 
 if TYPE_CHECKING:
     import xarray
@@ -53,6 +53,9 @@ class BatchSolution(Exported, Shown, ByValue):
         Estimated errors of the observables as a solution states them: relative, but absolute for the load shares.
     error_estimate : ndarray
         The largest of these of each state, as a solution states it.
+    own_viscous : dict of str to ndarray
+        By definition, viscous friction of each contact and its absolute error [-], where the observables do not give it: of
+        balls in a fluid that thins; else empty.
     """
 
     groups: Groups
@@ -64,6 +67,7 @@ class BatchSolution(Exported, Shown, ByValue):
     values: dict[str, Array] = field(repr=False)
     errors: dict[str, Array] = field(repr=False)
     error_estimate: Array = field(repr=False)
+    own_viscous: dict[Definition, Array] = field(default_factory=dict, repr=False)
 
     def __getattr__(self, name: str) -> Array:
         """Return an observable under its own name."""
@@ -106,19 +110,23 @@ class BatchSolution(Exported, Shown, ByValue):
         self, boundary_friction: float | None = None, beta: float | None = None, definition: Definition = "balanced"
     ) -> FrictionArray:
         rule, groups, definition = RULES[self.groups.geometry], self.groups, check_definition(definition)
-        if groups.geometry == "point" and groups.model.film.uses_speed:
+        if beta is not None and self.own_viscous:
             raise InputError(
-                f"fluid = {groups.model.film.name}: the friction of a ball in a fluid that thins needs the flow up to where "
-                "the liquid ends, which batches do not keep; solve the states one by one, as a curve or in a sweep."
+                f"beta = {show(beta)}: the friction of a ball in a fluid that thins ({groups.model.film.name}) needs the flow "
+                "up to where the liquid ends, which batches keep for the beta of their contacts alone; leave it out, or solve "
+                "the states one by one."
             )
         inputs = {"beta": self._coefficient("beta", beta), "far": far_film(groups.model)}
         for name, of in rule.inputs.items():
             inputs.setdefault(name, self._each(of))
         mu0 = rule.rubbing(groups, inputs) * self._coefficient("boundary_friction", boundary_friction)
-        parts = {name: self.values[name] for name in rule.parts("published") + rule.parts(definition)}
-        viscous = rule.viscous(parts, groups.speed, groups.load, inputs, definition)
-        error = np.abs(mu0) * self.errors["contact_load_share"]
-        error = error + rule.viscous_error(parts, self.errors, groups.speed, groups.load, inputs, definition)
+        if self.own_viscous:
+            viscous, error = self.own_viscous[definition]
+        else:
+            parts = {name: self.values[name] for name in rule.parts("published") + rule.parts(definition)}
+            viscous = rule.viscous(parts, groups.speed, groups.load, inputs, definition)
+            error = rule.viscous_error(parts, self.errors, groups.speed, groups.load, inputs, definition)
+        error = np.abs(mu0) * self.errors["contact_load_share"] + error
         contact = mu0 * self.contact_load_share
         return FrictionArray(contact, viscous, contact + viscous, error, self._friction)
 

@@ -15,6 +15,8 @@ from stribeck.batches.inputs import varied
 from stribeck.batches.order import chains_of
 from stribeck.batches.result import BatchSolution
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import DEFINITIONS, Definition
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import GROUPS, OUTPUT_TABLES
@@ -87,6 +89,9 @@ def solve_batch(
     values = {name: np.full(total, np.nan) for name in table}
     errors = {name: np.full(total, np.nan) for name in table}
     estimate = np.full(total, np.nan)
+    is_enough = RULES[groups.geometry].is_enough(groups.model)
+    own: dict[Definition, Array] = {} if is_enough else {each: np.full((2, total), np.nan) for each in DEFINITIONS}
+    each_contact = None if contacts is None else contacts.ravel()
     outcome = np.full(total, Outcome.INTERRUPTED, dtype=object)
     done = 0
 
@@ -98,15 +103,21 @@ def solve_batch(
         outcome[row], done = ended.outcome, done + 1
         if ended.solution is not None:
             estimate[row] = ended.solution.error_estimate
+            for definition, pair in own.items():
+                friction = ended.solution.friction(boundary_friction=0.0, definition=definition)
+                pair[:, row] = friction.viscous, friction.error
             for kept, found in ((values, _observed(ended.solution)), (errors, ended.solution.errors)):
                 for name, value in found.items():
                     kept.setdefault(name, np.full(total, np.nan))[row] = value
         if on_progress is not None:
             on_progress(done, total)
 
+    def contact_at(rows: Indices, i: int) -> Contact | None:
+        return None if each_contact is None else each_contact[rows[i]]
+
     try:
         for chain in chains_of(states, shape if is_grid else ()):
-            solve_in_order(states[chain], groups.physics, rtol, partial(keep, chain))
+            solve_in_order(states[chain], groups.physics, rtol, partial(keep, chain), partial(contact_at, chain))
     except KeyboardInterrupt:
         pass
 
@@ -114,7 +125,8 @@ def solve_batch(
         return {name: value.reshape(shape) for name, value in kept.items()}
 
     outcomes, estimates = outcome.reshape(shape), estimate.reshape(shape)
-    return BatchSolution(groups, contacts, names, given, rtol, outcomes, shaped(values), shaped(errors), estimates)
+    viscous = {each: pair.reshape(2, *shape) for each, pair in own.items()}
+    return BatchSolution(groups, contacts, names, given, rtol, outcomes, shaped(values), shaped(errors), estimates, viscous)
 
 
 def _observed(solution: BaseSolution) -> dict[str, float]:

@@ -23,6 +23,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import FULL, friction_integral
 from stribeck.contacts.friction import Definition, sliding_part
 from stribeck.contacts.groups import Geometry, Groups
+from stribeck.contacts.model import Model
 from stribeck.contacts.scaling import SCALINGS
 
 __all__ = ["IMAGINARY", "RULES", "FrictionRule"]
@@ -48,6 +49,8 @@ class FrictionRule(NamedTuple):
         Exponents of inputs of the contact in those of them that are ratios.
     parts : callable
         ``parts(definition)`` names the observables that the viscous friction takes.
+    is_enough : callable
+        ``is_enough(model)`` is whether these give the viscous friction for any inputs.
     viscous : callable
         ``viscous(parts, speed, load, inputs, definition)`` is the viscous friction coefficient.
     scale : callable
@@ -63,6 +66,7 @@ class FrictionRule(NamedTuple):
     inputs: Mapping[str, Callable[[Contact | None], float]]
     exponents: Mapping[str, Mapping[str, float]]
     parts: Callable[[Definition], tuple[str, ...]]
+    is_enough: Callable[[Model], bool]
     viscous: Callable[[Values, Any, Any, Values, Definition], Any]
     scale: Callable[[Values, Any], dict[str, Any]]
     rubbing: Callable[[Groups, Values], Any]
@@ -161,6 +165,7 @@ RULES: dict[Geometry, FrictionRule] = {
         inputs={"beta": _beta},
         exponents={},
         parts=_line_parts,
+        is_enough=lambda model: True,
         viscous=_line_viscous,
         scale=_line_scale,
         rubbing=lambda groups, inputs: sliding_part(2 * groups.model.film.slide),
@@ -175,6 +180,7 @@ RULES: dict[Geometry, FrictionRule] = {
         },
         exponents={"wetted_radius": {"radius": -1 / 3, "modulus": 1 / 3, "load": -1 / 3}},
         parts=_ball_parts,
+        is_enough=lambda model: not model.film.uses_speed,  # far out a fluid that thins follows no logarithm
         viscous=_ball_viscous,
         scale=_ball_scale,
         rubbing=lambda groups, inputs: _sliding(np.real(inputs["slide_to_roll"])),
