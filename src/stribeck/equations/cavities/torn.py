@@ -64,7 +64,7 @@ FLUID = 10.0
 """Part of the film pressure that GMRES may leave over that of the gap."""
 
 FARTHEST, SWEPT = 10, 0.1
-"""Nodes by which a line of rupture moves downstream in one step, and the largest step after which it moves by more than one."""
+"""Nodes by which a line of rupture moves downstream in a step, and the largest step after which it moves by more than one."""
 
 WORN = 4.0
 """Steps of GMRES for a digit from which the next step makes its own preconditioner."""
