@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -16,6 +17,10 @@ from stribeck.numerics.panels import Mesh
 
 LARGEST_AMPLIFICATION = 40.0
 """Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
+
+FAR_APART = 0.02
+"""Distance between the exits of the states [a] from which gaps are extrapolated at fixed places of the contact, not of the
+frame: the edge of a contact of asperities stays where it is while the exit moves through it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,10 +42,16 @@ class Extrapolation:
         """That of the last state; Newton's first step corrects it exactly."""
         return self.states[-1].offset
 
-    @property
+    @cached_property
     def exit(self) -> float:
         """Extrapolated as it is."""
         return float(sum(w * s.exit for w, s in zip(self.weights, self.states, strict=True)))
+
+    @cached_property
+    def _in_place(self) -> bool:
+        """Whether gaps are extrapolated at fixed places of the contact."""
+        exits = [s.exit for s in self.states]
+        return self.restart == math.inf and max(exits) - min(exits) > FAR_APART
 
     @property
     def restart(self) -> float:
@@ -64,7 +75,8 @@ class Extrapolation:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
         log_gap = np.zeros(mesh.size)
         for w, s in zip(self.weights, self.states, strict=True):
-            log_gap += w * (s.log_gap(mesh) if s.restart == self.restart else self._seen(s, mesh.nodes)[0])
+            in_frame = s.restart == self.restart and not self._in_place
+            log_gap += w * (s.log_gap(mesh) if in_frame else self._seen(s, mesh.nodes)[0])
         return log_gap
 
     def fields(self, x: Array) -> Array:
@@ -72,10 +84,14 @@ class Extrapolation:
         fields = np.zeros((2, x.size))
         for w, s in zip(self.weights, self.states, strict=True):
             fields += w * self._seen(s, x)
+        if self._in_place:
+            fields[1, x > 0] = 0.0
         return fields
 
     def _seen(self, state: State, x: Array) -> Array:
-        """Return the fields of a state whose cavity may have another length on its mesh."""
+        """Return the fields of a state whose exit may lie elsewhere, or whose cavity may have another length on its mesh."""
+        if self._in_place:
+            return state.fields(x + (self.exit - state.exit))
         return state.fields(x if state.restart == self.restart else x * (state.restart / self.restart))
 
 

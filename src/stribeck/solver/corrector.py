@@ -90,7 +90,8 @@ class Corrector:
                 self.operators, self.inverse = Operators(self.operators.mesh, base.model), None
             state = solve_state(base, self.operators, guess, newton_tolerance(self.rtol), MOST_STEPS, self.inverse)
             if state.outcome.ok:
-                if gap_is_resolved(state.mesh, state.gap, self.rtol, spread=spread):
+                centre = -state.exit / state.dilation
+                if gap_is_resolved(state.mesh, state.gap, self.rtol, centre=centre, spread=spread):
                     point = verify(state, groups, self.fine, self.rtol)
                     if point.outcome.ok:
                         self._look_for_coarser(state)
