@@ -323,16 +323,16 @@ def swept(gas: Array, now: Flags, before: Flags) -> Flags:
     now, before : ndarray of bool
         The torn nodes by complementarity, and those of the step.
     """
-    torn, given, left = now.copy(), np.where(before & ~now, gas, 0.0), gas.copy()
+    stays, left, given = before & now, gas.copy(), np.where(before & ~now, gas, 0.0)
     for _ in range(FARTHEST):
         if not given.any():
             break
-        to = np.pad(torn, 1).astype(float)
+        to = np.pad(stays, 1).astype(float)
         share = np.pad(given / np.maximum(to[:-2, 1:-1] + to[2:, 1:-1] + to[1:-1, :-2] + to[1:-1, 2:], 1.0), 1)
         left += share[:-2, 1:-1] + share[2:, 1:-1] + share[1:-1, :-2] + share[1:-1, 2:]
-        given = np.where(torn & (left < 0.0), left, 0.0)
-        torn &= given == 0.0
-    return torn
+        given = np.where(stays & (left < 0.0), left, 0.0)
+        stays &= given == 0.0
+    return stays | (now & ~before)
 
 
 def just_above(least: float) -> float:
