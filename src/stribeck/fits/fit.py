@@ -23,7 +23,7 @@ from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.fits.case_file import load_fit_case
-from stribeck.fits.friction_parts import PartsOf, ways_of
+from stribeck.fits.friction_parts import in_atlas, ways_of
 from stribeck.fits.identifiability import Unidentifiable, undetermined
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.model import FreeInput, FrictionModel, free_inputs
@@ -132,10 +132,10 @@ def fit(
     model = FrictionModel(contact, data, wanted)
     _check_enough(data, wanted)
     report = on_step or (lambda what, count: None)
-    scan, quick, solved = ways_of(model, definition, problem.rtol)
+    quick, solved = ways_of(model, definition, problem.rtol)
     goal = objective(model, quick, settings, settings.robust)
 
-    found = _search(goal, scan, report)
+    found = _search(goal, definition, report)
     fine = (
         found
         if quick is solved
@@ -181,12 +181,12 @@ def _check_enough(data: Measurements, wanted: Sequence[FreeInput]) -> None:
         )
 
 
-def _search(goal: Objective, scan: PartsOf | None, report: Step) -> Minimum:
+def _search(goal: Objective, definition: Definition, report: Step) -> Minimum:
     """Return the best minimum found from the case, and with the atlas from places around it, with the noise settled."""
     first = replace(goal, scale=FIRST_NOISE if goal.sigma is None else 1.0)
     starts = [np.zeros(len(goal.model.free))]
-    if scan is not None:
-        starts += _best(replace(first, parts_of=scan), _places(goal))
+    if in_atlas(goal.model):
+        starts += _best(first, _places(goal), definition)
     best: Minimum | None = None
     for start in starts:
         found = minimise(first, start, on_step=lambda n: report("searching", n))
@@ -205,18 +205,15 @@ def _brought_back(found: Minimum) -> Minimum:
     return moved if moved.value < found.value + SAME else found
 
 
-def _best(goal: Objective, places: list[Array]) -> list[Array]:
+def _best(goal: Objective, places: Array, definition: Definition) -> list[Array]:
     """Return the places where the residuals are smallest, of those inside the atlas."""
-    values = []
-    for place in places:
-        try:
-            values.append((goal.value(place, goal.residuals(place)[0]), place))
-        except InputError:
-            continue
-    return [place for _, place in sorted(values, key=lambda pair: pair[0])[:BEST_STARTS]]
+    residuals = goal.misfit(goal.model.read(places, definition))
+    values = np.array([goal.value(place, r) for place, r in zip(places, residuals, strict=True)])
+    best = np.argsort(values)[:BEST_STARTS]
+    return list(places[best[np.isfinite(values[best])]])
 
 
-def _places(goal: Objective) -> list[Array]:
+def _places(goal: Objective) -> Array:
     """Return places within a factor of ten of the case, spread evenly, the same each time."""
     from scipy.stats import qmc
 
@@ -224,7 +221,7 @@ def _places(goal: Objective) -> list[Array]:
     reach = math.log(START_FACTOR)
     low, high = np.maximum(low, -reach), np.minimum(high, reach)
     unit = qmc.Sobol(len(low), seed=20_261_121).random(STARTS)
-    return list(low + (high - low) * unit)
+    return np.asarray(low + (high - low) * unit)
 
 
 def _nearest(at: Minimum) -> Array:

@@ -44,13 +44,14 @@ __all__ = [
     "Ways",
     "atlas_parts",
     "atlas_or",
+    "in_atlas",
     "solved_parts",
     "ways_of",
 ]
 
 
 MOST_KEPT = 60
-"""Rows from which the states of another fluid or solid are solved as a curve: fewer are solved one by one."""
+"""Rows up to which each state is solved from one before, with a mesh of its own in memory; more are solved as a curve."""
 
 NEAR = 0.3
 """Largest change of a logarithm over which a single state is solved from another, if one more can be kept."""
@@ -266,13 +267,10 @@ class Ways(NamedTuple):
 
     Attributes
     ----------
-    scan : callable or None
-        So quickly that many places can be tried; None where there is no such way.
     quick, solved : callable
         For the search, and for the values that the fit returns.
     """
 
-    scan: PartsOf | None
     quick: PartsOf
     solved: PartsOf
 
@@ -297,29 +295,27 @@ def ways_of(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
     return WAYS[model.contact.groups.geometry](model, definition, rtol)
 
 
-def _in_atlas(model: FrictionModel) -> bool:
+def in_atlas(model: FrictionModel) -> bool:
     """Return whether a table holds for all contacts of a fit, wherever in its box their states lie."""
     kinds = {each.groups.model for each in model.contacts}
     return len(kinds) == 1 and not any(model.moving) and atlas.for_groups(model.contact.groups) is not None
 
 
 def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
-    kinds = {each.groups.model for each in model.contacts}
-    solved = solved_parts(definition, rtol) if kinds == {ARTICLE} else kept_parts(definition, rtol)
-    if not _in_atlas(model):
-        return Ways(None, solved, solved)
-    return Ways(atlas_parts(definition), atlas_or(solved, definition), solved)
+    if in_atlas(model):
+        solved = solved_parts(definition, rtol)
+        return Ways(atlas_or(solved, definition), solved)
+    kept = kept_parts(definition, rtol)
+    return Ways(kept, kept)
 
 
 def _of_ball(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
     if any(each.groups.model != ARTICLE for each in model.contacts):  # lattices know one model
         kept = kept_balls(model, definition, max(rtol, KEPT_RTOL))
-        return Ways(atlas_parts(definition), atlas_or(kept, definition), kept) if _in_atlas(model) else Ways(None, kept, kept)
+        return Ways(atlas_or(kept, definition) if in_atlas(model) else kept, kept)
     logs, varies = model.start()
     lattice, solved = lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL))
-    if not _in_atlas(model):
-        return Ways(None, lattice, solved)
-    return Ways(atlas_parts(definition), atlas_or(lattice, definition), solved)
+    return Ways(atlas_or(lattice, definition) if in_atlas(model) else lattice, solved)
 
 
 def kept_balls(model: FrictionModel, definition: Definition, rtol: float) -> PartsOf:

@@ -24,10 +24,12 @@ from typing import Any
 
 import numpy as np
 
+from stribeck import atlas
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film
+from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.with_parts import STEP, check_solid, models_beside
@@ -261,11 +263,12 @@ class FrictionModel:
         found = []
         for physics, changes, several in groups:
             rows = np.concatenate(several)
-            each = parts_of(Groups(x[rows, 0], x[rows, 1], x[rows, 2], **physics), changes)
+            states, at = np.unique(x[rows, :3], axis=0, return_inverse=True)  # repeats of a row are one state
+            each, at = parts_of(Groups(*states.T, **physics), changes), at.ravel()
             slopes = np.zeros((len(each.values), 3 + len(self.free), len(rows)))
-            slopes[:, :3] = each.slopes[:, :3]
-            slopes[:, [3 + change.input for change in changes]] = each.slopes[:, 3:]
-            found.append((rows, replace(each, slopes=slopes)))
+            slopes[:, :3] = each.slopes[:, :3, at]
+            slopes[:, [3 + change.input for change in changes]] = each.slopes[:, 3:, at]
+            found.append((rows, replace(each, values=each.values[:, at], slopes=slopes, errors=each.errors[:, at])))
         order = np.argsort(np.concatenate([rows for rows, _ in found]))
         values, slopes, errors = (
             np.concatenate([getattr(each, name) for _, each in found], axis=-1)[..., order]
@@ -343,6 +346,33 @@ class FrictionModel:
             speed=self.contact.speed if speed is None else speed,
             **{name: value * factors[name] for name, value in values.items() if value is not None},
         )
+
+    def read(self, places: Array, definition: Definition) -> Array:
+        """Return the friction of all rows at many places at once, off the atlas, see :func:`in_atlas`.
+
+        Parameters
+        ----------
+        places : ndarray, shape (m, p)
+            Logarithms of the factors on the free inputs, a place in each row.
+        definition : {"balanced", "published"}
+            Definition of the viscous friction.
+
+        Returns
+        -------
+        ndarray, shape (m, n)
+            Friction coefficient [-]; nan in all rows of a place from which one lies outside the box of its table.
+        """
+        x = np.exp(self.logs + np.einsum("mp,npk->mnk", places, self.exponents[self.data.curve]))
+        physics = self.contact.groups.physics
+        inside = atlas.covers(Groups(x[..., 0], x[..., 1], x[..., 2], **physics)).all(axis=1)
+        found = np.full(x.shape[:2], np.nan)
+        if inside.any():
+            x = x[inside]
+            groups = Groups(x[..., 0], x[..., 1], x[..., 2], **physics)
+            inputs = dict(zip(self.rule.inputs, np.moveaxis(x[..., 4:], -1, 0), strict=True))
+            contact, viscous = (term.reshape(groups.shape) for term in atlas.friction_terms(groups, inputs, definition))
+            found[inside] = x[..., 3] * contact + viscous
+        return found
 
     def predict(self, theta: Array, parts_of: PartsOf, at: tuple[Indices, Array] | None = None) -> Prediction:
         """Return the friction at logarithms of factors.

@@ -82,11 +82,18 @@ class Objective:
     def residuals(self, theta: Array) -> tuple[Array, Array, Prediction]:
         """Return the residuals of the data, their derivatives, and the prediction they come from."""
         predicted = self.model.predict(theta, self.parts_of)
-        r, J = predicted.friction - self.model.data.friction, predicted.jacobian
-        if self.logarithmic:
-            r, J = np.log(predicted.friction / self.model.data.friction), J / predicted.friction[:, None]
-        size = self.scale if self.sigma is None else self.scale * self.sigma
-        return r / size, J / (size if np.ndim(size) == 0 else np.asarray(size)[:, None]), predicted
+        J = predicted.jacobian / predicted.friction[:, None] if self.logarithmic else predicted.jacobian
+        return self.misfit(predicted.friction), J / self.size[:, None], predicted
+
+    def misfit(self, friction: Array) -> Array:
+        """Return the residuals of the data at predicted friction, rows along the last axis."""
+        measured = self.model.data.friction
+        return np.asarray((np.log(friction / measured) if self.logarithmic else friction - measured) / self.size)
+
+    @property
+    def size(self) -> Array:
+        """What the residual of each row is divided by."""
+        return self.scale * (np.ones(len(self.model.data)) if self.sigma is None else self.sigma)
 
     @property
     def priors(self) -> tuple[Array, Array]:
@@ -168,8 +175,8 @@ class Minimum:
         Their derivatives.
     prediction : Prediction
         Friction there.
-    distance : float
-        Estimated distance to the optimum, in standard errors.
+    fall : float
+        How far q is above its optimum, by its derivatives.
     ended : bool
         Whether the iteration and the scale of the noise came to rest.
     evaluations : int
@@ -183,10 +190,16 @@ class Minimum:
     residuals: Array
     jacobian: Array
     prediction: Prediction
-    distance: float
+    fall: float
     ended: bool
     evaluations: int
     objective: Objective
+
+    @property
+    def distance(self) -> float:
+        """Estimated distance to the optimum, in standard errors."""
+        noise = _noise(self) if self.objective.sigma is None else 1.0
+        return math.sqrt(self.fall) / max(noise, 1e-300)
 
     @property
     def converged(self) -> bool:
@@ -208,6 +221,7 @@ def minimise(
     on_step: Callable[[int], object] | None = None,
     tolerance: float = VALUE_TOLERANCE,
     flat: float = NO_INFORMATION,
+    near: float = 0.0,
 ) -> Minimum:
     """Return the minimum of q near a start, at a given scale of the noise.
 
@@ -229,6 +243,8 @@ def minimise(
         Relative change of q at which the least squares end.
     flat : float
         Singular value of the derivatives, over the largest, below which nothing changes along a direction.
+    near : float
+        Square root of the fall of q, by its derivatives at the start, below which the start is returned.
 
     Returns
     -------
@@ -280,11 +296,16 @@ def minimise(
         found[:, :n] = c * np.log1p(data / c), 1 / (1 + data / c), -1 / c / (1 + data / c) ** 2
         return found
 
-    ended = True
+    def reached(x: Array, ended: bool) -> Minimum:
+        theta = whole(x)
+        r, J, prediction = evaluate(theta)
+        part = Minimum(theta, goal.value(theta, r), r, J, prediction, 0.0, ended, count, goal)
+        return replace(part, fall=_fall(part, moving[~part.at_bound[moving]]))
+
     chosen: Any = loss if goal.robust else "linear"
     x = np.clip(np.asarray(start, dtype=float)[moving], low[moving] + 1e-9, high[moving] - 1e-9)
-    evaluate(whole(x))  # a start that cannot be solved is an error of its own
-    if len(moving):
+    first = reached(x, True)  # a start that cannot be solved is an error of its own
+    if len(moving) and first.fall >= near**2:
         found = least_squares(
             function,
             x,
@@ -296,12 +317,8 @@ def minimise(
             gtol=VALUE_TOLERANCE,
             max_nfev=most,
         )
-        ended, x = found.status > 0, found.x
-    theta = whole(x)
-    r, J, prediction = evaluate(theta)
-    part = Minimum(theta, goal.value(theta, r), r, J, prediction, 0.0, ended, count, goal)
-    free = moving[~part.at_bound[moving]]
-    return replace(part, distance=_distance(part, free))
+        return reached(found.x, found.status > 0)
+    return first
 
 
 def _held(J: Array, flat: float) -> Array:
@@ -315,16 +332,15 @@ def _held(J: Array, flat: float) -> Array:
     return np.asarray(np.where(S <= flat * S[0], size, 0.0)[:, None] * V)
 
 
-def _distance(at: Minimum, free: Array) -> float:
-    """Return the length of the Gauss-Newton step that is left, in standard errors of the noise."""
+def _fall(at: Minimum, free: Array) -> float:
+    """Return how far q falls along the Gauss-Newton step that is left, by its derivatives."""
     rows, means = at.objective.priors
     influence, _ = at.objective.influence(at.residuals)
     weights = np.where(at.residuals == 0, 1.0, influence / np.where(at.residuals == 0, 1.0, at.residuals))
     J = np.concatenate([np.sqrt(weights)[:, None] * at.jacobian, rows])[:, free]
     gradient = at.jacobian[:, free].T @ influence + rows[:, free].T @ (rows @ at.theta - means)
     step = np.linalg.lstsq(J.T @ J, gradient, rcond=1e-12)[0]
-    noise = _noise(at) if at.objective.sigma is None else 1.0
-    return float(math.sqrt(max(0.0, float(gradient @ step))) / max(noise, 1e-300))
+    return max(0.0, float(gradient @ step))
 
 
 def _scaled(at: Minimum) -> Minimum:
@@ -335,6 +351,7 @@ def _scaled(at: Minimum) -> Minimum:
     return replace(
         at,
         value=at.value / noise**2,
+        fall=at.fall / noise**2,
         residuals=at.residuals / noise,
         jacobian=at.jacobian / noise,
         objective=replace(at.objective, scale=at.objective.scale * noise),

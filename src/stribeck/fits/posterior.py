@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from stribeck import atlas
 from stribeck._types import Array
-from stribeck.contacts.line import Groups, InputError
 from stribeck.files.writing import MissingExtraError
+from stribeck.fits.friction_parts import in_atlas
 from stribeck.fits.objective import Minimum
 from stribeck.fits.result import Fit
+from stribeck.quantities.units import InputError
 
 __all__ = ["Posterior", "draw_posterior"]
 
@@ -85,7 +85,7 @@ def draw_posterior(fit: Fit, *, steps: int = 2000, on_step: Callable[[int, int],
     if isinstance(steps, bool) or not isinstance(steps, int) or steps < 100:
         raise InputError(f"steps = {steps!r}; a chain has at least 100.")
     at: Minimum = fit._minimum
-    missing = atlas.for_groups(at.objective.model.contact.groups) is None
+    missing = not in_atlas(at.objective.model)
     if not fit.converged or fit.robust or missing:
         why = fit.outcome.value if not fit.converged else "" if not fit.robust else "A robust loss is not a likelihood."
         raise InputError(f"no posterior is drawn. {why or f'The atlas has no table for the law {fit.law} of this contact.'}")
@@ -127,26 +127,11 @@ def _log_density(fit: Fit) -> Callable[[Array], Array]:
     goal, model = at.objective, at.objective.model
     low, high = goal.bounds
     rows, means = goal.priors
-    data = model.data
-    A = model.exponents[data.curve]
-    physics = model.contact.groups.physics
 
     def density(theta: Array) -> Array:
-        x = np.exp(model.logs + np.einsum("wp,npk->wnk", theta, A))
-        states = Groups(x[..., 0], x[..., 1], x[..., 2], **physics)
-        inside = ((theta > low) & (theta < high)).all(axis=1) & atlas.covers(states).all(axis=1)
-        found = np.full(len(theta), -np.inf)
-        if not inside.any():
-            return found
-        y = x[inside]
-        groups = Groups(y[..., 0], y[..., 1], y[..., 2], **physics)
-        inputs = dict(zip(model.rule.inputs, np.moveaxis(y[..., 4:], -1, 0), strict=True))
-        contact, viscous = (term.reshape(groups.shape) for term in atlas.friction_terms(groups, inputs, fit.definition))
-        friction = y[..., 3] * contact + viscous
-        r = np.log(friction / data.friction) if goal.logarithmic else friction - data.friction
-        squares = ((r / (1.0 if goal.sigma is None else goal.sigma)) ** 2).sum(axis=1)
-        likelihood = -0.5 * len(data) * np.log(squares) if goal.sigma is None else -0.5 * squares
-        found[inside] = likelihood - 0.5 * ((theta[inside] @ rows.T - means) ** 2).sum(axis=1)
-        return found
+        squares = (goal.misfit(model.read(theta, fit.definition)) ** 2).sum(axis=1)
+        likelihood = -0.5 * len(model.data) * np.log(squares) if goal.sigma is None else -0.5 * squares
+        inside = ((theta > low) & (theta < high)).all(axis=1) & np.isfinite(squares)
+        return np.where(inside, likelihood - 0.5 * ((theta @ rows.T - means) ** 2).sum(axis=1), -np.inf)
 
     return density
