@@ -142,7 +142,7 @@ def test_wavelengths_and_wave_numbers_say_the_same():
         ({"longest_wavelength": "1 mm"}, "mean the same"),
         ({"q0": "60 um"}, "q0 = '60 um' is a length; expected a wave number such as"),
         ({"q0": "-1 1/m"}, "not above zero"),
-        ({"gamma": 0.0}, "gamma = 0 must be above 0"),
+        ({"gamma": 0.0}, "gamma = 0.0 must be from 0.01 to 1"),
         ({"h_rms": "1"}, "no unit"),
         ({"h_rms": "0 um"}, "not above zero"),
     ],

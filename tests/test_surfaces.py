@@ -290,7 +290,7 @@ def test_a_line_and_the_map_that_it_was_cut_from_agree():
     [
         ({"trend": "cubic"}, "detrend = 'cubic' is not known"),
         ({"window": "kaiser"}, "window = 'kaiser' is not known"),
-        ({"gamma": 2.0}, "gamma = 2 must be above 0"),
+        ({"gamma": 2.0}, "gamma = 2.0 must be from 0.01 to 1"),
         ({"resolution": "1 kg"}, "a length such as"),
         ({"resolution": 0.0}, "not above zero"),
     ],

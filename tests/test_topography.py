@@ -240,7 +240,7 @@ def test_text_that_is_no_topography_is_refused_by_line(tmp_path, case):
         (np.ones(100), (1e-6,), "all heights are the same"),
         (np.arange(20.0), (1e-6,), "too few for a spectrum"),
         (np.where(np.arange(100) % 4, np.arange(100.0), np.nan), (1e-6,), "25 % of the points are missing"),
-        (np.arange(100.0), (0.0,), "is not positive"),
+        (np.arange(100.0), (0.0,), "spacing = 0.0 is not a positive number"),
         (np.arange(100.0), (1e-6, 1e-6), "neither a profile nor a map"),
     ],
 )

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from stribeck.contact_laws.persson import GAMMA, PerssonLaw, persson_law
+from stribeck.contact_laws.persson import GAMMA, PerssonLaw, check_gamma, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.quantities.units import InputError, show, to_si
 
@@ -41,7 +41,7 @@ class RoughSurface:
     roll_off_wavelength : str or float, optional
         Wavelength from which on the spectrum is flat [m].
     gamma : float
-        Reduction of the elastic energy in Persson's theory, above 0 and at most 1 [-].
+        Reduction of the elastic energy in Persson's theory, from 0.01 to 1 [-].
 
     Attributes
     ----------
@@ -88,9 +88,7 @@ class RoughSurface:
         if last is None:
             raise InputError("q1 is missing; give it as in '6e7 1/m', or shortest_wavelength as in '100 nm'.")
         bend = _cut_off("roll_off", roll_off, "roll_off_wavelength", roll_off_wavelength)
-        gamma = to_si(gamma, "number", "gamma")
-        if not 0 < gamma <= 1:
-            raise InputError(f"gamma = {gamma:g} must be above 0 and at most 1; 0.45 fits simulations.")
+        gamma = check_gamma(gamma)
         height = _length("h_rms", h_rms)
         checked = SelfAffine(height, first, last, to_si(hurst, "number", "hurst"), bend)
         fields = {"h_rms": height, "hurst": checked.hurst, "q0": first, "q1": last, "roll_off": bend or first, "gamma": gamma}

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import AsperityLaw, WithArea, is_exponential
+from stribeck.contact_laws.law import AsperityLaw, WithArea, check_law, is_exponential
 from stribeck.contact_laws.persson import PerssonLaw
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["TAIL", "FiniteSurface", "has_endless_tail"]
 
@@ -61,12 +61,11 @@ class FiniteSurface:
 
     def __post_init__(self) -> None:
         """Refuse what cannot be."""
-        alpha = self.alpha
-        if isinstance(alpha, bool) or not isinstance(alpha, int | float) or not 0 < alpha < math.inf:
-            raise InputError(f"alpha = {show(alpha)} must be a positive number, that of the contact law.")
-        if not has_endless_tail(self.base):
-            assert self.base is not None
-            raise InputError(f"base = {self.base.name}: this law has a tail of its own; give Persson's law, or None.")
+        if not to_si(self.alpha, "number", "alpha") > 0:
+            raise InputError(f"alpha = {show(self.alpha)} must be a positive number, that of the contact law.")
+        base = check_law(self.base)
+        if base is not None and not has_endless_tail(base):
+            raise InputError(f"base = {base.name}: this law has a tail of its own; give Persson's law, or None.")
 
     @property
     def name(self) -> str:

@@ -18,14 +18,17 @@ import scipy
 
 from stribeck._types import Array, Indices
 from stribeck.contact_laws.persson_integral import Integral, tabulate
-from stribeck.contact_laws.spectrum import SelfAffine, Spectrum, height_of_roughness
+from stribeck.contact_laws.spectrum import SelfAffine, Spectrum, height_of_roughness, table_of
 from stribeck.quantities.results import ByValue
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.units import InputError, show, to_si
 
-__all__ = ["GAMMA", "PerssonLaw", "exponential_limit", "persson_law"]
+__all__ = ["GAMMA", "PerssonLaw", "check_gamma", "exponential_limit", "persson_law"]
 
 GAMMA = 0.45
 """Reduction of the elastic energy; 0.42 to 0.45 fit simulations [YP08]."""
+
+LOWEST_GAMMA = 0.01
+"""Smallest gamma: far below those of simulations, and beta, which grows as exp(1.2/gamma), is still a number."""
 
 NEARLY_FULL = 0.42
 """Share of the surface in contact from which fluid no longer finds a way through [Dapp 2012]."""
@@ -197,7 +200,7 @@ class PerssonLaw(ByValue):
         ndarray
             Share of the area in contact, with all roughness of the spectrum [-].
         """
-        return np.asarray(scipy.special.erf(np.asarray(pressure, dtype=float) * (self.beta * math.sqrt(2) / self.rms_slope)))
+        return np.asarray(scipy.special.erf(self.area_slope * np.asarray(pressure, dtype=float)))
 
     def scaled(self, rms_height: float) -> PerssonLaw:
         """Return the law of the same shape of the spectrum with another rms height, without a new table.
@@ -240,7 +243,7 @@ def persson_law(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> Persso
     spectrum : Spectrum or SelfAffine
         Power spectrum of the roughness of both surfaces together.
     gamma : float
-        Reduction of the elastic energy, above 0 and at most 1 [-].
+        Reduction of the elastic energy, from 0.01 to 1 [-].
 
     Returns
     -------
@@ -271,7 +274,7 @@ def persson_law(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> Persso
         rms_height=table.rms_height,
         rms_slope=table.rms_slope,
         longest_wavelength=2 * math.pi / table.lowest,
-        gamma=float(gamma),
+        gamma=integral.gamma,
         error=error,
         _knots=knots,
         _coefficients=coefficients,
@@ -291,7 +294,7 @@ def exponential_limit(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> 
     spectrum : Spectrum or SelfAffine
         Power spectrum of the roughness of both surfaces together.
     gamma : float
-        Reduction of the elastic energy, above 0 and at most 1 [-].
+        Reduction of the elastic energy, from 0.01 to 1 [-].
 
     Returns
     -------
@@ -312,10 +315,16 @@ def exponential_limit(spectrum: Spectrum | SelfAffine, gamma: float = GAMMA) -> 
     return integral.alpha, integral.beta * table.lowest * table.rms_height
 
 
+def check_gamma(gamma: object) -> float:
+    """Return a reduction of the elastic energy as a float, from :data:`LOWEST_GAMMA` to 1."""
+    value = to_si(gamma, "number", "gamma")
+    if not LOWEST_GAMMA <= value <= 1:
+        raise InputError(f"gamma = {show(gamma)} must be from {LOWEST_GAMMA:g} to 1; 0.45 fits simulations.")
+    return value
+
+
 def _prepared(spectrum: Spectrum | SelfAffine, gamma: float) -> tuple[Integral, Spectrum]:
     """Return the integral for unit rms height and unit q_0, on which the shape does not depend, and the spectrum."""
-    if isinstance(gamma, bool | str) or not 0 < gamma <= 1:
-        raise InputError(f"gamma = {show(gamma)} is not a number above 0 and at most 1; 0.45 fits simulations.")
-    table = spectrum.spectrum if isinstance(spectrum, SelfAffine) else spectrum
+    table, gamma = table_of(spectrum), check_gamma(gamma)
     unit = Spectrum(table.wavenumber / table.lowest, table.density / table.density.max()).scaled(1.0)
-    return Integral.of(unit, float(gamma)), table
+    return Integral.of(unit, gamma), table

@@ -24,7 +24,7 @@ from stribeck._types import Array
 from stribeck.quantities.results import ByValue
 from stribeck.quantities.units import InputError, format_si, show
 
-__all__ = ["SelfAffine", "Spectrum", "height_of_roughness", "positive"]
+__all__ = ["SelfAffine", "Spectrum", "height_of_roughness", "positive", "table_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,7 +200,8 @@ class Spectrum(ByValue):
         InputError
             Where nothing of the table lies between them.
         """
-        low, high = max(positive("lowest", lowest), self.lowest), min(positive("highest", highest), self.highest)
+        lowest, highest = positive("lowest", lowest), positive("highest", highest)
+        low, high = max(lowest, self.lowest), min(highest, self.highest)
         if not low < high:
             raise InputError(
                 f"no part of the spectrum lies between {lowest:g} and {highest:g} 1/m; "
@@ -309,13 +310,21 @@ def _growth(power: Array, width: Array) -> Array:
     return np.asarray(width * np.where(small, 1 + z / 2, np.expm1(z) / np.where(small, 1.0, z)))
 
 
+def table_of(roughness: object) -> Spectrum:
+    """Return a spectrum as its table; refuse what is none."""
+    table = roughness.spectrum if isinstance(roughness, SelfAffine) else roughness
+    if not isinstance(table, Spectrum):
+        raise InputError(f"{show(roughness)} is no power spectrum; give a SelfAffine or a Spectrum.")
+    return table
+
+
 def positive(name: str, value: object) -> float:
     """Return a positive number as a float, or raise an error that names it."""
     try:
         number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         number = math.nan
-    if isinstance(value, bool | str) or not (math.isfinite(number) and number > 0):
+    if isinstance(value, bool | str | bytes | np.ndarray) or not (math.isfinite(number) and number > 0):
         raise InputError(f"{name} = {show(value)} is not a positive number; give one above zero, in SI units.")
     return number
 
@@ -334,7 +343,7 @@ def height_of_roughness(value: object, longest_wavelength: float) -> float:
 def _column(name: str, values: object) -> Array:
     try:
         array = np.array(values, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"{name} of the spectrum is not a column of numbers.") from None
     if array.ndim != 1:
         raise InputError(f"{name} of the spectrum has the shape {array.shape}; give a column of numbers.")

@@ -226,7 +226,7 @@ class TableLaw:
 def _column(name: str, values: ArrayLike) -> list[float]:
     try:
         found = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         found = np.empty((0, 0))
     if found.ndim != 1:
         raise InputError(f"{name} = {show(values)}; it must be a list of numbers, one for each row of the table.")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from stribeck.quantities.units import to_si
+
 __all__ = ["BOUNDARY_FLUID_SHARE", "HYDRODYNAMIC_CONTACT_SHARE", "Regime", "regime_of"]
 
 Regime = Literal["boundary", "mixed", "hydrodynamic"]
@@ -31,7 +33,13 @@ def regime_of(fluid_load_share: float, contact_friction_share: float) -> Regime:
     str
         ``"hydrodynamic"`` where asperities cause at most 10 % of the friction, else ``"boundary"`` where the fluid carries
         at most 5 % of the load, else ``"mixed"``.
+
+    Raises
+    ------
+    InputError
+        If one is no number.
     """
-    if contact_friction_share <= HYDRODYNAMIC_CONTACT_SHARE:
+    fluid = to_si(fluid_load_share, "number", "fluid_load_share")
+    if to_si(contact_friction_share, "number", "contact_friction_share") <= HYDRODYNAMIC_CONTACT_SHARE:
         return "hydrodynamic"
-    return "boundary" if fluid_load_share <= BOUNDARY_FLUID_SHARE else "mixed"
+    return "boundary" if fluid <= BOUNDARY_FLUID_SHARE else "mixed"

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from stribeck.contact_laws.persson import GAMMA, PerssonLaw, exponential_limit, persson_law
+from stribeck.contact_laws.persson import GAMMA, PerssonLaw, check_gamma, exponential_limit, persson_law
 from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
 from stribeck.files.results import Drawn
 from stribeck.quantities.results import Shown
@@ -202,9 +202,9 @@ def analyse(
     InputError
         Where an argument is impossible or the scan too poor for a spectrum.
     """
-    gamma = to_si(gamma, "number", "gamma")
-    if not 0 < gamma <= 1:
-        raise InputError(f"gamma = {gamma:g} must be above 0 and at most 1; 0.45 fits simulations.")
+    if not isinstance(topography, Topography):
+        raise InputError(f"topography = {show(topography)}; it must be a Topography, as of read_topography(path).")
+    gamma = check_gamma(gamma)
     shortest = None
     if resolution is not None:
         shortest = to_si(resolution, "length", "resolution")

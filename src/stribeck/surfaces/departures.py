@@ -139,9 +139,10 @@ def _size_notes(topography: Topography) -> list[str]:
     notes = []
     longest, height = max(topography.size), float(topography.heights.std())
     if not SMALLEST_SCAN <= longest <= LARGEST_SCAN:
+        than = "longer" if longest > LARGEST_SCAN else "shorter"
         notes.append(
-            f"The scan is {format_si(longest, 'length')} long, longer than any instrument measures; "
-            f"check the unit of positions."
+            f"The scan is {format_si(longest, 'length')} long, {than} than any instrument measures; "
+            "check the unit of positions."
         )
     if not SMALLEST_HEIGHT <= height <= LARGEST_HEIGHT:
         notes.append(f"The rms height is {format_si(height, 'length')}, which is not plausible; check the unit of heights.")

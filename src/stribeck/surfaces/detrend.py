@@ -112,7 +112,7 @@ def detrended(topography: Topography, trend: Trend = "curvature") -> tuple[Topog
     InputError
         Where the trend is unknown, or nothing is left without it.
     """
-    if trend not in TRENDS:
+    if not isinstance(trend, str) or trend not in TRENDS:
         raise InputError(f"detrend = {show(trend)} is not known; choose one of {', '.join(TRENDS)}.")
     if trend == "none":
         return topography, Form("none")

@@ -225,7 +225,7 @@ def line_density(wavenumber: Array, roughness: SelfAffine) -> Array:
 
 
 def _window(window: str, shape: tuple[int, ...]) -> Array:
-    if window not in ("hann", "none"):
+    if not isinstance(window, str) or window not in ("hann", "none"):
         raise InputError(f"window = {show(window)} is not known; choose hann, or none for periodic heights.")
     weight = np.ones(shape)
     if window == "hann":

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from numbers import Integral
 from typing import Any
 
 import numpy as np
 
 from stribeck._types import Array, Flags
-from stribeck.contact_laws.spectrum import SelfAffine, Spectrum
-from stribeck.quantities.units import InputError
+from stribeck.contact_laws.spectrum import SelfAffine, Spectrum, positive, table_of
+from stribeck.quantities.units import InputError, show
 
 __all__ = ["Topography", "synthetic_topography"]
 
@@ -62,8 +63,14 @@ class Topography:
 
     def __post_init__(self) -> None:
         """Check the heights and keep a read-only copy."""
-        z = np.array(self.heights, dtype=float)
         where = f"{self.source}: " if self.source else ""
+        try:
+            z = np.array(self.heights, dtype=float)
+        except (TypeError, ValueError, OverflowError):
+            raise InputError(f"{where}heights = {show(self.heights)} is no array of numbers.") from None
+        if not isinstance(self.spacing, tuple | list):
+            raise InputError(f"{where}spacing = {show(self.spacing)} must be a tuple: a distance along each axis, in m.")
+        object.__setattr__(self, "spacing", tuple(positive("spacing", step) for step in self.spacing))
         if z.ndim not in (1, 2) or len(self.spacing) != z.ndim:
             raise InputError(
                 f"{where}heights of shape {z.shape} with {len(self.spacing)} spacings are neither a profile nor a map."
@@ -74,8 +81,6 @@ class Topography:
                 f"{where}{' x '.join(map(str, z.shape))} points are too few for a spectrum; "
                 f"{kind} needs {FEWEST[z.ndim]} or more along each side."
             )
-        if not all(math.isfinite(step) and step > 0 for step in self.spacing):
-            raise InputError(f"{where}the spacing {self.spacing} m is not positive; give it with its unit.")
         z[~np.isfinite(z)] = np.nan
         share = float(np.isnan(z).mean())
         if share > MOST_MISSING:
@@ -87,7 +92,6 @@ class Topography:
             raise InputError(f"{where}all heights are the same; there is no roughness to evaluate.")
         z.setflags(write=False)
         object.__setattr__(self, "heights", z)
-        object.__setattr__(self, "spacing", tuple(float(step) for step in self.spacing))
 
     @property
     def is_line(self) -> bool:
@@ -179,24 +183,29 @@ def synthetic_topography(
     Raises
     ------
     InputError
-        Where the numbers of points are too small.
+        Where the numbers of points are too small, or an argument is impossible.
 
     Notes
     -----
     Wave numbers beyond those of the grid, pi/spacing, are left out.  A line is cut from a map of that length.
     """
-    table = roughness.spectrum if isinstance(roughness, SelfAffine) else roughness
+    table, step = table_of(roughness), positive("spacing", spacing)
+    counts: list[Any] = [*points, oversize] if isinstance(points, tuple | list) and len(points) in (1, 2) else [0]
+    if not all(isinstance(count, Integral) and count > 0 for count in counts):
+        raise InputError(
+            f"points = {show(points)}, oversize = {show(oversize)}: give whole numbers, of points along one or two axes."
+        )
     shape = points if len(points) == 2 else (points[0], max(64, points[0] // 4))
     n = tuple(oversize * count for count in shape)
     random = np.random.default_rng(seed)
-    q = [2 * math.pi * np.fft.fftfreq(count, spacing) for count in n]
-    amplitude = np.sqrt(table.at(np.hypot(*np.meshgrid(*q, indexing="ij"))) * (2 * math.pi / spacing) ** 2 / (n[0] * n[1]))
+    q = [2 * math.pi * np.fft.fftfreq(count, step) for count in n]
+    amplitude = np.sqrt(table.at(np.hypot(*np.meshgrid(*q, indexing="ij"))) * (2 * math.pi / step) ** 2 / (n[0] * n[1]))
     white = np.fft.fft2(random.standard_normal(n)) / math.sqrt(n[0] * n[1])
     heights = np.fft.ifft2(white * amplitude).real * (n[0] * n[1])
     cut = heights[: shape[0], : shape[1]]
     if len(points) == 1:
-        return Topography(cut[:, 0], (spacing,), source="synthetic")
-    return Topography(cut, (spacing, spacing), source="synthetic")
+        return Topography(cut[:, 0], (step,), source="synthetic")
+    return Topography(cut, (step, step), source="synthetic")
 
 
 def _count(flags: Flags) -> str:
