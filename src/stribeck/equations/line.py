@@ -173,10 +173,17 @@ class Equations:
         h, z0, h_star = y[..., at.gap], y[..., at.offset], y[..., at.flux_gap]
         p_f = y[..., at.pressure] if film.uses_pressure else None
         g = gradient_in_film(film, op.integral, h, p_f, h_star)
-        p_c = self.law.pressure(h)
-        r = np.empty_like(y)
-        r[..., at.gap] = h - z0 - (op.parabola if d is None else 0.5 * (d * op.mesh.nodes) ** 2) - op.deflected(p_c, d)
-        r[..., at.offset.start] = p_c @ op.weights - LOAD
+        pressure, r = self.law.pressure(h), np.empty_like(y)
+        if p_f is not None or d is not None or self.is_sliding:
+            fluid = self.speed * op.integral(g)
+            if d is not None:
+                fluid = d * fluid + op.cavity_pressure
+            if p_f is not None:
+                r[..., at.pressure] = p_f - fluid
+            pressure = pressure + (fluid if p_f is None else p_f)
+        parabola = op.parabola if d is None else 0.5 * (d * op.mesh.nodes) ** 2
+        r[..., at.gap] = h - z0 - parabola - op.deflected(pressure, d)
+        r[..., at.offset.start] = pressure @ op.weights - LOAD
         r[..., at.flux_gap] = self.flux_scale * (g @ op.integral.weights)[..., None]
         if op.has_exit:
             x_c = y[..., at.exit]
@@ -186,19 +193,6 @@ class Equations:
             in_cavity = op.model.cavity_pressure / self.speed
             r[..., at.flux_gap] = d * r[..., at.flux_gap] - self.flux_scale * in_cavity
             r[..., at.dilation] = self.flux_scale * (d * (g @ op.integral.weights_beyond)[..., None] + in_cavity)
-        if p_f is not None or d is not None:
-            fluid = self.speed * op.integral(g)
-            if d is not None:
-                fluid = d * fluid + op.cavity_pressure
-            if p_f is not None:
-                r[..., at.pressure] = p_f - fluid
-                fluid = p_f
-            r[..., at.gap] -= op.deflected(fluid, d)
-            r[..., at.offset.start] += fluid @ op.weights
-        elif self.is_sliding:
-            fluid = self.speed * op.integral(g)
-            r[..., at.gap] -= op.deflected(fluid, d)
-            r[..., at.offset.start] += fluid @ op.weights
         if d is not None:
             r[..., at.offset] += (d - 1) * (r[..., at.offset] + LOAD)
         return r

@@ -24,6 +24,12 @@ from stribeck.solver.refinement import RefinedState, converge, mesh_tolerances_f
 MOST_STEPS = 16
 """Newton and chord steps after which the current mesh is given up."""
 
+ROUGH = 1e-4
+"""Tolerance of Newton's iteration for a state from which a mesh is chosen."""
+
+FAR_OFF = 1e-3
+"""Error of a guess above which such a state tells whether the current mesh resolves it."""
+
 CHECK_EVERY = 25
 """States between two tests of whether a coarser mesh would do."""
 
@@ -88,7 +94,7 @@ class Corrector:
         if self.operators is not None and self.fine is not None:
             if base.model != self.operators.model:
                 self.operators, self.inverse = Operators(self.operators.mesh, base.model), None
-            state = solve_state(base, self.operators, guess, newton_tolerance(self.rtol), MOST_STEPS, self.inverse)
+            state = self._on_kept_mesh(guess, base, spread)
             if state.outcome.ok:
                 centre = -state.exit / state.dilation
                 if gap_is_resolved(state.mesh, state.gap, self.rtol, centre=centre, spread=spread):
@@ -100,6 +106,17 @@ class Corrector:
         part = 1.0 if base.model.cavitation is Cavitation.NONE else MOVING
         tail, gap_tail = self.tolerances
         return self._adopt(converge(guess, groups, self.rtol, (part * tail, part * gap_tail), spread=spread))
+
+    def _on_kept_mesh(self, guess: Guess, base: Groups, spread: float) -> State:
+        """Return the state on the current mesh; only a rough one if it is far from the guess and needs a finer mesh anyhow."""
+        assert self.operators is not None
+        rough = solve_state(base, self.operators, guess, ROUGH, MOST_STEPS, self.inverse)
+        if not rough.outcome.ok:
+            return rough
+        if rough.prediction_error > FAR_OFF and not gap_is_resolved(rough.mesh, rough.gap, self.rtol, spread=spread):
+            return rough
+        state = solve_state(base, self.operators, rough, newton_tolerance(self.rtol), MOST_STEPS, rough.root.inverse)
+        return replace(state, prediction_error=max(state.prediction_error, rough.prediction_error))
 
     def _kept(self, point: RefinedState) -> RefinedState:
         """Return the state without its inverse, which is kept here for the next one."""
