@@ -15,13 +15,14 @@ from scipy.sparse.linalg import gmres
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.model import Model
+from stribeck.equations import line
 from stribeck.equations.gap import gap_at, minimum_gap
 from stribeck.equations.line import LOAD, Equations, Operators
 from stribeck.equations.prediction import SeenFrom
 from stribeck.equations.state import mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
-from stribeck.fluids.rheology.viscosity import Barus, check_range
+from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, check_range
 from stribeck.numerics.newton import StepControl, root_find
 from stribeck.numerics.panels import Mesh
 from stribeck.numerics.running_integral import RunningIntegral, Volterra
@@ -124,8 +125,12 @@ def stacked(layout, gap, pressure, offset, flux_gap, leaving, dilation):
 
 
 @pytest.mark.parametrize("cavitation", list(Cavitation))
-@pytest.mark.parametrize("film", [Newtonian(), Newtonian(Barus(1.5))], ids=lambda film: film.name)
-def test_the_inverse_undoes_the_derivative_of_the_residual(film, cavitation, stiffening):
+@pytest.mark.parametrize(
+    ("film", "growth"), [(Newtonian(), 10.0), (Newtonian(Barus(1.5)), 10.0), (Newtonian(Barus(1.5)), 0.0)]
+)
+def test_the_inverse_undoes_the_derivative_of_the_residual(film, growth, cavitation, stiffening, monkeypatch):
+    """The last by LU factors of all unknowns, as where a thin film is compressed."""
+    monkeypatch.setattr(line, "MOST_GROWTH", growth)
     mesh = replace(stiffening.mesh, restart=0.25)
     operators = Operators(mesh, Model(film, cavitation, cavity_pressure=-0.02))
     equations = Equations(operators, 1e-3, stiffening.equations.law, stiffening.flux_gap**2)
@@ -204,6 +209,18 @@ def test_a_fluid_that_hardly_stiffens_is_newtonian():
         changes.append(found["h0"] / plain["h0"] - 1)
     assert abs(changes[0]) < 1e-9
     assert changes[2] / changes[1] == pytest.approx(2.0, abs=0.01)
+
+
+def test_a_thin_film_that_is_compressed_is_found():
+    """Its flux and density fix the gap: a pressure integrated from the inlet grew without bound."""
+    fluid = sb.fluids.Fluid(None, Barus(0.3), DowsonHigginson(0.8))
+    groups = sb.Groups(2e-7, 5e-3, 0.0)
+    solution = sb.solve(groups, fluid=fluid, cavitation="exit", rtol=1e-5)
+    assert solution.error_estimate <= 1e-5
+    middle = solution.profile(np.array([0.0, 0.5, -0.5]))
+    density = DowsonHigginson(0.8).ratio(middle.fluid_pressure)[0]
+    np.testing.assert_allclose(middle.gap * density, solution.flux_gap, rtol=5e-3)
+    np.testing.assert_allclose(middle.fluid_pressure, np.sqrt(1 - np.array([0.0, 0.25, 0.25])), rtol=2e-3)
 
 
 def test_a_pressure_coefficient_out_of_range_is_refused_and_names_who_solves_it():

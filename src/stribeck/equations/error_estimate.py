@@ -270,6 +270,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
             slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
         return slopes
 
+    stiff = equations.is_stiff(y)
     slopes = gradient(fluid)
     jump = jump_of(film)
     jumps = None if jump is None else jump(gap, fluid)
@@ -279,6 +280,8 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         pressure = equations.speed * integral(slopes)
         if d is not None:
             pressure = d * pressure + np.where(integral.outside_gap, 0.0, op.model.cavity_pressure)
+    elif stiff:
+        pressure = fluid
     else:
         pressure = _implied_pressure(equations, y, integral, gap, fluid)
         slopes = gradient(pressure)
@@ -302,9 +305,13 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     if op.has_exit:
         _of_ends(states, residual, integral, slopes, size)
     residual[:, :, at.pressure] = 0.0
+    if stiff and known is not None:
+        integrated = equations.speed * integral(slopes)
+        residual[0, :, at.pressure] = known - fine.lowered(integrated)
+        residual[1:, :, at.pressure] = size * np.abs(known)
     residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)[:, None]
     unknowns = states.correction(residual)
-    if known is not None:
+    if known is not None and not stiff:
         change = fine.lowered(fluid) - known
         change[:, -coarse.order :] = 0.0  # through infinity both are integrals of what the gap tells, and may have a kink
         unknowns[0][:, at.pressure] += change

@@ -44,6 +44,10 @@ __all__ = ["LOAD", "Equations", "Operators", "gradient_in_film", "slopes_in_film
 COLUMNS = 32
 """Columns of a Jacobian computed at once: a product as large as the whole needs new memory, which costs more than itself."""
 
+MOST_GROWTH = 10.0
+"""Logarithm of the growth of an error in the pressure from the edge of the film to its middle beyond which no integral from
+there is taken."""
+
 
 def gradient_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | None, flux_gap: Numbers) -> Array:
     """Return G at the nodes where the film is full, zero in the cavity."""
@@ -219,8 +223,20 @@ class Equations:
     def inverse(self, y: Array) -> Inverse:
         """Return the inverse of the Jacobian in :meth:`units` of the unknowns, by LU factors."""
         if self.film.uses_pressure:
-            return _Eliminated(self, y)
+            return _Coupled(self, y) if self.is_stiff(y) else _Eliminated(self, y)
         return LU.of(self.jacobian(y, self.units(y)), overwrite=True)
+
+    def is_stiff(self, y: Array) -> bool:
+        """Return whether a pressure that is integrated from one end grows too much: where a thin film is compressed.
+
+        There the flux and the density fix the gap, and the gap the pressure; a film that begins anew is left to the integral.
+        """
+        at, integral = self.layout, self.operators.integral
+        if not self.film.uses_pressure or self.operators.has_reformation:
+            return False
+        by_pressure = slopes_in_film(self.film, integral, y[..., at.gap], y[..., at.pressure], y[..., at.flux_gap]).by_pressure
+        assert by_pressure is not None
+        return bool(np.max(np.abs(self.speed * integral(by_pressure))) > MOST_GROWTH)
 
     def jacobian(self, y: Array, units: Array | None = None) -> Array:
         """Return the derivative of the residual, dense, in Fortran order; its columns times ``units``.
@@ -374,6 +390,49 @@ class Equations:
         fluxes = dy[..., at.flux_gap] / unit
         others = (np.abs(dy[..., block]).max(initial=0.0) for block in (at.pressure, at.exit, at.dilation))
         return float(max(np.abs(gaps).max(), np.abs(fluxes).max(), *others))
+
+
+class _Coupled:
+    """The inverse of the Jacobian with the fluid pressure among the unknowns, by LU factors of all of it."""
+
+    def __init__(self, equations: Equations, y: Array) -> None:
+        op, at, film = equations.operators, equations.layout, equations.film
+        h, n, units = y[at.gap], op.mesh.size, equations.units(y)
+        by_gap, by_pressure, by_flux, _ = slopes_in_film(film, op.integral, h, y[at.pressure], y[at.flux_gap])
+        assert by_pressure is not None
+        matrix = np.zeros((at.size, at.size), order="F")
+        gap, pressure, offset, flux = at.gap, at.pressure, at.offset.start, at.flux_gap.start
+        contact = equations.law.slope(h, equations.law.pressure(h))
+        running = op.integral.after(np.eye(n))
+        matrix[gap, gap] = np.eye(n) - op.deflection * contact
+        matrix[gap, pressure] = -op.deflection
+        matrix[gap, offset] = -1.0
+        matrix[pressure, gap] = -equations.speed * running * by_gap
+        matrix[pressure, pressure] = np.eye(n) - equations.speed * running * by_pressure
+        matrix[pressure, flux] = -equations.speed * (running @ by_flux)
+        matrix[offset, gap], matrix[offset, pressure] = op.weights * contact, op.weights
+        for k, end in enumerate(op.ends):
+            row = equations.flux_scale * end
+            matrix[flux + k, gap], matrix[flux + k, pressure] = row * by_gap, row * by_pressure
+            matrix[flux + k, flux] = row @ by_flux
+        if op.has_exit:
+            matrix[gap, at.exit.start] = -equations.positions(y)
+        matrix *= units
+        self.factors = LU.of(matrix, overwrite=True)
+
+    @property
+    def failure(self) -> Outcome | None:
+        """Failure of the factors."""
+        return self.factors.failure
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether the factors are finite."""
+        return self.factors.is_finite
+
+    def __call__(self, residuals: Array) -> Array:
+        """Return ``-J^-1 r`` in units of the unknowns."""
+        return self.factors(residuals)
 
 
 class _Eliminated:
