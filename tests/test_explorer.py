@@ -400,6 +400,14 @@ def test_a_viscoelastic_body_is_chosen_and_its_lists_are_typed_with_commas():
         choices.typed_detail(shown, "solid", "relaxation_times", "1 ms")
 
 
+def test_a_model_that_a_ball_cannot_have_is_refused_where_it_is_chosen():
+    ball = choices.choose(START, "geometry", "point")
+    with pytest.raises(sb.InputError, match="soft body must be a half-space or a bonded layer"):
+        choices.choose(ball, "solid", "StandardLinearSolid")
+    with pytest.raises(sb.InputError, match="soft body"):
+        choices.choose(choices.choose(START, "solid", "Prony"), "geometry", "point")
+
+
 def test_alpha_and_beta_follow_a_surface_whose_numbers_are_typed():
     shown = choices.choose(START, "law", "persson")
     longer = choices.typed_detail(shown, "law", "longest_wavelength", "300 um")
@@ -619,6 +627,17 @@ def test_formulas_are_drawn_where_their_range_holds_the_state_and_nowhere_else()
         solved = getattr(at_rest.profile(line.x), line.predicts)
         assert np.abs(line.value - solved).max() <= 1.05 * line.worst * np.abs(solved).max()
     assert asymptotic_fields(sb.solve(START.contact), 2.0) == []
+
+
+@pytest.mark.parametrize(
+    "change", [{"speed": 1e9}, {"roughness": 0.1}, {"radius": 1e6}, {"modulus": 1e-3}, {"viscosity": 1e7}]
+)
+def test_the_drawing_shows_the_body_of_any_contact(answer, change):
+    contact = START.contact.replace(**change)
+    for gap in (-10.0, 0.0, 1e-30, 1.0, 1e30):
+        solution = SimpleNamespace(central_gap=gap)
+        drawn = drawing(replace(answer, inputs=replace(START, contact=contact), solution=solution))
+        assert {each.get("class") for each in ElementTree.fromstring(drawn)} >= {"hard", "film", "soft"}
 
 
 @pytest.mark.parametrize(

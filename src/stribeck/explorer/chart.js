@@ -21,9 +21,9 @@ function ticksOf(axis, room) {
   const { low, high } = axis;
   const inside = (value) => value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9);
   if (!axis.log) {
-    const rough = (high - low) / Math.max(room / 70, 2);
+    const rough = (high - low) / Math.max(room / 60, 3);
     const power = 10 ** Math.floor(Math.log10(rough));
-    const step = power * [1, 2, 5, 10].find((each) => each * power >= 0.999 * rough);
+    const step = power * [5, 2, 1].find((each) => each * power <= 1.001 * rough);
     const first = Math.ceil(low / step - 1e-9);
     const count = Math.floor(high / step + 1e-9) - first + 1;
     return { major: Array.from({ length: count }, (_, i) => [(first + i) * step, short((first + i) * step, 6)]), minor: [] };

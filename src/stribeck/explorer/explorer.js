@@ -10,9 +10,10 @@ window.explorerFrame = (frame) => {
   return true;
 };
 
-// The answer takes longer than a moment: what stands there is that of the contact before.
-window.explorerWorking = (moved) => {
+// The answer takes longer than a moment: what stands there is that of the contact before, but for the fields.
+window.explorerWorking = (moved, knobs) => {
   document.body.classList.add("working");
+  for (const [id, now] of knobs) getElement(id)?.show(now);
   if (moved) getElement(moved)?.free();
 };
 

@@ -346,10 +346,17 @@ class Page:
         same = shown is not None and (shown.contact, shown.definition, shown.model) == (now.contact, now.definition, now.model)
         return "" if same else UPDATING
 
-    def show_working(self) -> None:
-        """Mark what is shown as that of the contact before, while the next one is being solved."""
+    def show_working(self, now: Inputs) -> None:
+        """Mark what is shown as that of the contact before, while the next one is being solved; the fields are its own."""
         moved, self.moved = self.moved, None
-        self.client.run_javascript(f"explorerWorking({dumps(moved)})")
+        self.client.run_javascript(f"explorerWorking({dumps(moved)}, {dumps(self.changed_knobs(now))})")
+
+    def changed_knobs(self, now: Inputs) -> list[list[Any]]:
+        """Return the fields and lists that show something else now, with what that is."""
+        states = {name: knob_state(now, name) for name in self.knobs}
+        changed = [[self.knobs[name].id, state] for name, state in states.items() if self.shown.get(name) != state]
+        self.shown |= states
+        return changed
 
     def show_progress(self) -> None:
         """Show the progress of the curve."""
@@ -362,9 +369,8 @@ class Page:
 
     async def draw(self, now: Inputs, seen: View) -> None:
         """Send what changed, and wait until the browser has drawn it."""
-        frame: dict[str, Any] = {"html": [], "charts": [], "knobs": [], "moved": self.moved}
-        frame["waits"] = self.ways_words(now)
-        frame["geometry"] = now.table.geometry
+        frame: dict[str, Any] = {"html": [], "charts": [], "knobs": self.changed_knobs(now), "moved": self.moved}
+        frame |= {"waits": self.ways_words(now), "geometry": now.table.geometry}
         self.moved = None
         for element, content in self.words(seen):
             if self.shown.get(element.html_id) != content:
@@ -375,11 +381,6 @@ class Page:
             self.drawn[name] = chart
             if changed is not None:
                 frame["charts"].append([self.charts[name].id, changed])
-        for name, knob in self.knobs.items():
-            state = knob_state(now, name)
-            if self.shown.get(name) != state:
-                self.shown[name] = state
-                frame["knobs"].append([knob.id, state])
         try:
             await self.client.run_javascript(f"explorerFrame({dumps(frame)})", timeout=PATIENCE)
         except TimeoutError:  # a tab in the background answers when it is looked at

@@ -389,7 +389,10 @@ class Tab:
                 else:
                     self.page.say(self.said)
                     self.said = ""
-                await self.page.draw(self.inputs, self.seen())
+                try:
+                    await self.page.draw(self.inputs, self.seen())
+                except Exception as problem:
+                    self.page.say(f"Internal error ({problem!r}). The last picture is kept.", bad=True)
         finally:
             self.working = False
         self.rest()
@@ -404,7 +407,7 @@ class Tab:
         work = asyncio.ensure_future(self.run(LIVE, self.compute, now, tuple(self.pins), speeds_of(self.measured)))
         done, _ = await asyncio.wait({work}, timeout=MOMENT)
         if not done:
-            self.page.show_working()
+            self.page.show_working(now)
         self.answer, self.pinned, self.states = await work
 
     def compute(self, now: Inputs, pins: Sequence[Pin], measured: Sequence[float] = ()) -> tuple[Answer, list[Any], list[Any]]:

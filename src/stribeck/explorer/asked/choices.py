@@ -6,18 +6,20 @@ Each row is a table of a case and one of its keys; the keys of a choice come fro
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from stribeck.cases.law import LAWS, law_of_file
 from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES, take_parts
+from stribeck.contacts.model import Model
 from stribeck.explorer.asked.carried import LAW_NAMES, fluid_table, json_text, tables_of
 from stribeck.explorer.asked.inputs import Inputs, exact_text, with_model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.presets import PRESETS
 from stribeck.quantities.units import InputError
+from stribeck.solver.point.solve import check_model
 
 __all__ = ["CHOICES", "Choice", "choose", "state_of", "typed_detail"]
 
@@ -28,6 +30,9 @@ NONE: Keys = ((), ())
 
 RTOL = {"line": 1e-6, "point": 1e-4}
 """Tolerance of the states where the geometry is chosen on the page."""
+
+CHECKS: dict[str, Callable[[Model], None]] = {"point": check_model}
+"""What refuses models that the equations of a geometry do not have."""
 
 TYPICAL: dict[str, Any] = {
     **{
@@ -334,4 +339,7 @@ def _of_surface(now: Inputs, tables: dict[str, Any]) -> Inputs:
 def _with(now: Inputs, tables: Mapping[str, Any], **numbers: float) -> Inputs:
     """Return the inputs with the tables of another model, of which nothing is kept that is as in the article."""
     kept = {name: value for name, value in tables.items() if value and value not in ("line", "exponential")}
-    return with_model(now, json_text(kept), **numbers)
+    found = with_model(now, json_text(kept), **numbers)
+    if found.table.geometry in CHECKS:
+        CHECKS[found.table.geometry](found.contact.groups.model)
+    return found

@@ -16,6 +16,9 @@ MIDDLE, GROUND, RADIUS = 141.0, 84.0, 150.0
 TOP = 4.0
 """Where the body is cut off [px]."""
 
+MOST_GAP = 40.0
+"""Largest gap, at which the body is still to be seen [px]."""
+
 MOST_ROUGH = 5.0
 """Largest amplitude of the roughness [px]."""
 
@@ -39,7 +42,7 @@ def drawing(answer: Answer) -> str:
     """
     contact, solution = answer.inputs.contact, answer.solution
     scales = contact.hertz
-    gap = _length(max(solution.central_gap, 0.0) * scales.indentation, 3.0)
+    gap = min(_length(max(solution.central_gap, 0.0) * scales.indentation, 3.0), MOST_GAP)
     rough = min(_length(contact.roughness, 1.3), MOST_ROUGH)
     a = 24.0 + 70.0 * min(contact.slope, 1.0) ** 0.5
     bottom = RADIUS - math.sqrt(RADIUS**2 - a**2)
