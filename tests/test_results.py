@@ -66,6 +66,8 @@ def test_a_result_equals_itself_after_pickling_and_no_other(state):
     again = pickle.loads(pickle.dumps(state))
     assert again == state and hash(again) == hash(state)
     assert state == sb.solve(CONTACT)
+    profile = state.profile([0.0, 0.5])
+    assert pickle.loads(pickle.dumps(profile)) == profile != state.profile([0.0, 0.6])
     assert state != sb.solve(CONTACT.replace(speed="1.001 mm/s")) and state != "state"
 
 
@@ -157,6 +159,9 @@ def test_an_attribute_that_is_misspelled_is_answered_with_the_nearest(state):
     with pytest.raises(AttributeError) as caught:
         state.minimum_gpa  # noqa: B018
     assert (caught.value.name, caught.value.obj) == ("minimum_gpa", state)  # of which Python makes "Did you mean"
+    for package, name, meant in ((sb, "stribek_curve", "stribeck_curve"), (sb.fluids, "Carreu", "Carreau")):
+        with pytest.raises(AttributeError, match=f"no attribute '{name}'; did you mean {meant}"):
+            getattr(package, name)
 
 
 def test_the_words_of_the_regimes_command_are_there_in_python(capsys):
@@ -184,6 +189,7 @@ def test_a_keyword_that_is_misspelled_is_answered_with_the_nearest(state):
         (lambda: sb.compare(noisy(seed=1), CONTACT, lawss={}), "did you mean laws"),
         (lambda: sb.explain(CONTACT, defintion="balanced"), "did you mean definition"),
         (lambda: sb.new_case(geometri="line"), "did you mean geometry"),
+        (lambda: sb.propagate(CONTACT, {"rougness": 0.1}), "did you mean roughness"),
         (lambda: sb.solve(CONTACT, zzz=1), "it takes problem, rtol, law, on_failure"),
     ):
         with pytest.raises((TypeError, sb.InputError), match=said):
@@ -194,7 +200,8 @@ def test_what_is_measured_or_checked_shows_itself_in_a_screen():
     examples = Path(__file__).parents[1] / "examples"
     surface = sb.surfaces.analyse(sb.surfaces.read_topography(examples / "cylinder_profile.csv"))
     measured = sb.read_measurements(examples / "pdms_measured.csv")
-    for each in (surface, surface.measured, measured, sb.check(CONTACT)):
+    profile, spread = sb.solve(CONTACT).profile(np.linspace(-3, 3, 500)), sb.propagate(CONTACT, {"roughness": 0.1})
+    for each in (surface, surface.measured, measured, sb.check(CONTACT), profile, spread):
         assert len(repr(each).splitlines()) < 25 and len(repr(each)) < 2500 and "<table" in each._repr_html_()
     assert "friction: 42 values, 0." in repr(measured) and "wavenumber: " in repr(surface.measured)
     ax = pytest.importorskip("matplotlib.figure").Figure().subplots()

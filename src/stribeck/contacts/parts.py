@@ -192,7 +192,7 @@ class WithParts(Contact):
         """Return a number of the fluid or the solid by its name, in SI units."""
         found = part_value(self.parts, name) if name in PART_INPUTS else None
         if found is None:
-            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
         return found
 
     @property

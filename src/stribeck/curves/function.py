@@ -236,7 +236,7 @@ class CurveValues(Shown, ByValue):
         """Return an observable under its own name."""
         if name != "values" and name in self.values:
             return self.values[name]
-        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
+        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
 
     def __dir__(self) -> list[str]:
         """Return the names of attributes, observables among them."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
@@ -36,9 +37,15 @@ def lazy_names(
         if name in packages:
             return import_module(f"{package}.{name}")
         if name not in modules:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+            raise AttributeError(f"module {package!r} has no attribute {name!r}{_nearest(name, public)}")
         found = getattr(import_module(f"{package}.{modules[name]}"), name)
         setattr(sys.modules[package], name, found)
         return found
 
     return public, find, lambda: public
+
+
+def _nearest(name: str, public: Sequence[str]) -> str:
+    """Return the name that was probably meant, as the end of a sentence; nothing of names that Python itself asks for."""
+    near = [] if name.startswith("_") else difflib.get_close_matches(name, public, n=1)
+    return f"; did you mean {near[0]}?" if near else ""

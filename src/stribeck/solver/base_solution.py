@@ -27,8 +27,8 @@ from stribeck.quantities.units import format_si
 __all__ = ["BaseSolution", "Profile", "si_films"]
 
 
-@dataclass(frozen=True)
-class Profile:
+@dataclass(frozen=True, eq=False, repr=False)
+class Profile(Shown, ByValue):
     """Fields along the contact.
 
     Attributes

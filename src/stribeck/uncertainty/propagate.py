@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -174,7 +175,9 @@ def kept_errors(contact: Contact, errors: Mapping[str, Any]) -> dict[str, float]
         kept, exponent = THROUGH.get(name, (name, 1.0))
         known = contact.INPUTS.names
         if kept not in known:
-            raise InputError(f"errors has {show(name)}, which is no input of a contact; known are {', '.join(known)}.")
+            near = difflib.get_close_matches(name, known, n=1)
+            hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}."
+            raise InputError(f"errors has {show(name)}, which is no input of a contact; {hint}")
         value = getattr(contact, kept)
         if value == 0:
             raise InputError(f"errors has {name}, which is zero: a relative error of zero has no meaning.")

@@ -61,7 +61,7 @@ class Spread:
         return f"{value} ({interval})"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Uncertainty:
     """A state with the propagated errors of its inputs.
 
@@ -122,6 +122,8 @@ class Uncertainty:
         width = max(len(each.label) for each in self.spreads)
         lines = [f"{each.label.ljust(width)}  {each.text}" for each in self.spreads]
         return "\n".join([*lines, f"Regime: {self.probabilities}.", *self.sources])
+
+    __repr__ = __str__
 
     @property
     def sources(self) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.point.observables import OBSERVABLES
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, real_array, show
 from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
@@ -44,8 +45,8 @@ CAVITY = (
 """Note on the friction of a film that forms anew."""
 
 
-@dataclass(frozen=True)
-class Field:
+@dataclass(frozen=True, eq=False, repr=False)
+class Field(Shown, ByValue):
     """Fields on the plane of the contact.
 
     Attributes
