@@ -1,5 +1,7 @@
 """Many states in one call: the same results as one by one, for every contact law, and nothing lost."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -198,3 +200,23 @@ def test_no_states_are_no_work():
     found = sb.solve_batch(sb.Groups(np.zeros(0), 0.1, 1e-3))
     assert found.central_gap.shape == (0,)
     assert found.error_estimate.shape == (0,)
+
+
+def test_at_high_speed_the_rigid_film_starts_the_solution_itself_or_a_path_to_it(monkeypatch):
+    solve_state, groups = cold_start.solve_state, sb.Groups(10.0, 0.1, 0.03)
+    direct = cold_start.cold_start(groups)
+    assert direct.outcome.ok and len(direct.states) == 1
+
+    def lost_at_first(*arguments):
+        state = solve_state(*arguments)
+        if calls:
+            return state
+        calls.append(arguments)
+        return replace(state, root=replace(state.root, outcome=Outcome.STEP_LIMIT))
+
+    calls = []
+    monkeypatch.setattr(cold_start, "solve_state", lost_at_first)
+    around = cold_start.cold_start(groups)
+    assert around.outcome.ok and len(around.states) > 1
+    offset_and_flux_gap = [path.states[-1].y[-2:] for path in (direct, around)]
+    assert offset_and_flux_gap[0] == pytest.approx(offset_and_flux_gap[1], rel=1e-2)

@@ -88,6 +88,8 @@ def test_an_input_far_from_all_contacts_is_named_with_its_usual_range():
     found = checks_of(Subject(TRUE.replace(roughness="10 mm", boundary_friction=2.9)), "contact")["inputs"]
     assert found.verdict == "doubtful" and found.value == pytest.approx(100)
     assert "roughness 10 mm, usually 1 nm to 100 µm" in found.sentence and "dry friction" not in found.sentence
+    small = checks_of(Subject(TRUE.replace(modulus="27 Pa")), "contact")["inputs"]
+    assert small.verdict == "doubtful" and "modulus 27 Pa, usually" in small.sentence
     assert verdicts(TRUE.replace(speed=0.0, roughness=0.0))["inputs"] == "fine"
     for name in ("wiper_blade", "contact_lens", "lip_seal"):
         assert verdicts(sb.load_case(EXAMPLES / f"{name}.toml").contact)["inputs"] == "fine", name

@@ -16,7 +16,7 @@ from stribeck.equations.point.planes import plane_of
 from stribeck.equations.point.preconditioner import BandedModes
 from stribeck.equations.point.system import Equations, Linear, Operators, Unknowns
 from stribeck.equations.thinning.column import column, flow_curve
-from stribeck.equations.thinning.far_power import FarPower, similar
+from stribeck.equations.thinning.far_power import KNOWN, FarPower, similar
 from stribeck.fluids.laws import FilmUnits
 from stribeck.fluids.local_flow import profile
 from stribeck.fluids.rheology.eyring import Eyring
@@ -233,11 +233,11 @@ def test_far_away_as_much_of_a_power_law_flows_in_as_out(exponent, slide, left):
 
 
 def test_the_film_of_a_power_law_far_away_states_its_error():
-    law, slide, exponent = PowerLaw(1.0, 0.3), 0.99, 0.3
+    law, slide, exponent = PowerLaw(1.0, 0.2), 1.0, 0.2  # where more is lost than is stated at least
     finer = similar(law, slide, 96)[0]
     far = FarPower(law, slide, 0.1, 1000.0)
     wrong = abs(similar(law, slide)[0].shear - finer.shear) / (2 * math.pi * (2 - 2 * exponent))
-    assert 1e-8 < wrong < far.doubt(0.0) / far.drag
+    assert KNOWN < wrong < far.doubt(0.0) / far.drag
 
 
 @pytest.mark.parametrize("fluid", [Cross(3.5, 0.1), Cross(3.5, 0.316), PowerLaw(3.5, 0.7)], ids=["slow", "resonant", "power"])
