@@ -102,6 +102,19 @@ def test_curves_with_different_fluids_are_fitted_together():
     assert found.contacts[1].pressure_coefficient == found["pressure_coefficient"].value
 
 
+def test_each_curve_keeps_its_own_fluid_where_no_number_of_it_is_free():
+    barus = {"fluid": sb.fluids.Barus("500 1/GPa")}
+    speeds = SPEEDS[2:4]
+    data = measured(np.tile(speeds, 2), np.ones(4), curve=np.repeat([0, 1], 2), curves=("a", "b"), inputs=({}, barus))
+    model = FrictionModel(TRUE, data, free_inputs(TRUE, data, ("roughness",), FitSettings()))
+    found = model.predict(np.zeros(1), kept_parts("balanced", 1e-6)).friction
+    assert found[:2] != pytest.approx(found[2:], rel=1e-3)
+    alone = [
+        sb.solve(each.replace(speed=speed)).friction().total for each in (TRUE, TRUE.replace(**barus)) for speed in speeds
+    ]
+    assert found == pytest.approx(alone, rel=1e-5)
+
+
 def test_what_the_contact_does_not_have_cannot_be_free():
     data = measured(SPEEDS, np.ones(6))
     with pytest.raises(sb.InputError, match=r"relaxation_time is free, but no curve has one.*thins"):
