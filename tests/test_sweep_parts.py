@@ -1,4 +1,4 @@
-"""Sweeps over cylinders with another fluid, cavitation, solid and motion."""
+"""Sweeps over cylinders and balls with another fluid, cavitation, solid and motion."""
 
 import numpy as np
 import pytest
@@ -80,7 +80,7 @@ def test_another_fluid_is_another_sweep(found):
 @pytest.mark.quick
 def test_groups_with_a_fluid_are_refused(tmp_path):
     text = "[groups]\nload = 0.1\nroughness = 1e-3\n[vary]\nspeed = [1e-3, 1e-4]\n[cavitation]\nmodel = 'exit'\n"
-    with pytest.raises(sb.InputError, match="for cylinders in SI units; give \\[contact\\]"):
+    with pytest.raises(sb.InputError, match="other fluids, solids and motions in SI units; give \\[contact\\]"):
         sb.load_sweep(write(tmp_path, text))
 
 
@@ -95,3 +95,54 @@ def test_films_that_form_anew_have_the_columns_of_both_ends(tmp_path):
     table = sb.sweep(write(tmp_path, text), tmp_path / "store").to_dataset()
     assert np.isfinite(table["exit_position"].values).all()
     assert (table["reformation_position"].values > table["exit_position"].values).all()
+
+
+BALL = """
+[contact]
+geometry = "point"
+radius = "9.5 mm"
+modulus = "1.6 MPa"
+viscosity = "50 mPa*s"
+entrainment_speed = "10 mm/s"
+roughness = "0.4 um"
+alpha = 2.0
+beta = 0.05
+boundary_friction = 0.7
+
+[vary]
+load = ["0.5 N", "1.3 N"]
+
+[fluid]
+model = "carreau"
+relaxation_time = "1 ms"
+exponent = 0.5
+
+[motion]
+slide_to_roll = 0.5
+
+[solver]
+rtol = 1e-2
+"""
+
+
+def test_balls_have_the_fluid_of_their_load(tmp_path):
+    """In Hertz units a relaxation time is another at each load."""
+    table = sb.sweep(write(tmp_path, BALL), tmp_path / "store").to_dataset()
+    for i in range(2):
+        contact = sb.PointContact(
+            radius="9.5 mm",
+            modulus="1.6 MPa",
+            viscosity="50 mPa*s",
+            entrainment_speed="10 mm/s",
+            slide_to_roll=0.5,
+            roughness="0.4 um",
+            alpha=2.0,
+            beta=0.05,
+            boundary_friction=0.7,
+            load=float(table["load"][i]),
+            fluid=sb.fluids.Carreau("1 ms", 0.5),
+        )
+        alone = sb.solve(contact, rtol=1e-2)
+        for name in ("central_gap", "contact_load_share"):
+            assert float(table[name][i]) == pytest.approx(getattr(alone, name), rel=2e-2)
+        assert float(table["friction_balanced"][i]) == pytest.approx(alone.friction.total, rel=2e-2)

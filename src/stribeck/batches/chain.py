@@ -109,7 +109,7 @@ def _balls(
 
     last = None
     for i, row in enumerate(states.tolist()):
-        groups = Groups(*row, **physics)
+        groups = Groups(*row, **_physics_of(physics, contact_of(i)))
         try:
             state = next_state(last, groups, rtol)
         except MemoryError:
@@ -123,6 +123,11 @@ def _balls(
             on_state(i, Ended(state.outcome, ball_of(state, contact_of(i))))  # type: ignore[arg-type]
         else:
             on_state(i, Ended(state.outcome, None, f"{describe(groups)}: {state.outcome.value}"))
+
+
+def _physics_of(physics: Physics, contact: Contact | None) -> Physics:
+    """Return what a state has beside its groups: in Hertz units a fluid in SI units is another at each load."""
+    return physics if contact is None or physics["model"] == ARTICLE else contact.groups.physics
 
 
 CHAINS = {"line": _cylinders, "point": _balls}
@@ -147,9 +152,8 @@ class _Chain:
         return Groups(*self.states[i].tolist(), **self.physics_of(i))
 
     def physics_of(self, i: int) -> Physics:
-        """Return what the i-th state has beside its groups: in Hertz units a fluid in SI units is another at each load."""
-        contact = None if self.physics["model"] == ARTICLE else self.contact_of(i)
-        return self.physics if contact is None else contact.groups.physics
+        """Return what the i-th state has beside its groups."""
+        return _physics_of(self.physics, self.contact_of(i))
 
     @one_blas_thread
     def run(self) -> None:

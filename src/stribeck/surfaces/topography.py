@@ -191,7 +191,7 @@ def synthetic_topography(
     """
     table, step = table_of(roughness), positive("spacing", spacing)
     counts: list[Any] = [*points, oversize] if isinstance(points, tuple | list) and len(points) in (1, 2) else [0]
-    if not all(isinstance(count, Integral) and count > 0 for count in counts):
+    if not all(isinstance(count, Integral) and int(count) > 0 for count in counts):
         raise InputError(
             f"points = {show(points)}, oversize = {show(oversize)}: give whole numbers, of points along one or two axes."
         )

@@ -142,7 +142,7 @@ def load_sweep(path: str | os.PathLike[str]) -> SweepDesign:
         A TOML file: a table ``[contact]`` (as in a case file) or ``[groups]`` (``speed``, ``load``, ``roughness``,
         ``boundary_friction``, ``beta``) with what stays fixed, a table ``[vary]`` with what does not, and where wanted
         ``[design]`` (``kind``, ``points``, ``seed``), ``[solver]`` (``rtol``), ``title`` and ``notes``; beside ``[contact]``
-        of a cylinder the tables of fluid, cavitation, motion, flow factors and solid of case files.
+        the tables of fluid, cavitation, motion, flow factors and solid of case files.
 
     Returns
     -------
@@ -177,10 +177,10 @@ def _checked(path: Path, table: dict[str, Any], problems: list[str]) -> SweepDes
     model = _model(geometry)
     table, parts, wrong = take_parts(table, geometry)
     problems += wrong
-    if parts and ("groups" in table or geometry != "line"):
+    if parts and "groups" in table:
         problems.append(
-            f"{', '.join(parts)}: sweeps have other fluids, solids and motions for cylinders in SI units; give [contact] in "
-            "the place of [groups], or leave the table out."
+            f"{', '.join(parts)}: sweeps have other fluids, solids and motions in SI units; give [contact] in the place of "
+            "[groups], or leave the table out."
         )
     raw_vary = table.get("vary")
     if "contact" in table and "groups" in table:
@@ -418,12 +418,13 @@ def _contacts(
             contacts.append(CONTACTS[geometry](**fixed, **dict(zip(varying, values, strict=True)), **parts))
         except InputError as problem:
             raise InputError(f"state {i}: {problem}") from None
-    inputs = {name: np.array([dict(contact.inputs())[name] for contact in contacts]) for name, _ in contacts[0].inputs()}
+    kept = [contact.to_si() for contact in contacts]
+    inputs = {name: np.array([each[name] for each in kept]) for name in kept[0]}
     for name in (row.name for row in INPUT_TABLES[geometry].rows if row.derived):
         if name in varying or name in fixed:
             inputs[name] = varying.get(name, np.full(len(contacts), fixed.get(name, math.nan)))
-    groups = np.array([[getattr(contact.groups, name) for name in GROUPS] for contact in contacts])
-    return inputs, groups, contacts[0].groups.model
+    groups = [contact.groups for contact in contacts]
+    return inputs, np.array([[getattr(each, name) for name in GROUPS] for each in groups]), groups[0].model
 
 
 def _groups(fixed: dict[str, float], varying: dict[str, Array]) -> tuple[dict[str, Array], Array]:
