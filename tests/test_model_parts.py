@@ -15,6 +15,7 @@ from scipy.sparse.linalg import gmres
 import stribeck as sb
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.model import Model
+from stribeck.contacts.with_parts import with_parts
 from stribeck.equations import line
 from stribeck.equations.gap import gap_at, minimum_gap
 from stribeck.equations.line import LOAD, Equations, Operators
@@ -29,6 +30,7 @@ from stribeck.numerics.running_integral import RunningIntegral, Volterra
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.layer import Layer, transfer
 from stribeck.solver.cold_start import cold_start
+from stribeck.solver.solve import spiked
 
 REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())
 BARUS = [row for row in REFERENCE["b_d_e"] if row["case"] == "barus"]
@@ -221,6 +223,12 @@ def test_a_thin_film_that_is_compressed_is_found():
     density = DowsonHigginson(0.8).ratio(middle.fluid_pressure)[0]
     np.testing.assert_allclose(middle.gap * density, solution.flux_gap, rtol=5e-3)
     np.testing.assert_allclose(middle.fluid_pressure, np.sqrt(1 - np.array([0.0, 0.25, 0.25])), rtol=2e-3)
+
+
+@pytest.mark.parametrize(("fluid", "said"), [(sb.fluids.Roelands(4.5, 9.6, 2.7e-4), "spike"), (Barus(1.0), "")])
+def test_a_failure_of_a_stiff_fluid_names_the_spike(fluid, said):
+    told = spiked(with_parts(sb.Groups(0.27, 1.5e-4, 2e-7), fluid=fluid))
+    assert said in told if said else told == ""
 
 
 def test_a_pressure_coefficient_out_of_range_is_refused_and_names_who_solves_it():

@@ -56,6 +56,9 @@ MIN_ESTIMATE = 0.03
 MIN_ESTIMATE_OF_OTHERS = 0.2
 """The same for films that end, other fluids, flow factors and solids, whose kinks finer nodes see only in part."""
 
+SPIKED = 2.5
+"""Pressure coefficient times Hertz pressure above which films were seen whose pressure rises to a spike."""
+
 SURE_ESTIMATE = 1e-10
 """Error above which estimates are reliable at smaller tolerances too."""
 
@@ -217,7 +220,7 @@ def _refined(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedStat
     """Return the refined state of ``groups`` from the cold start of ``base``; raise if no path leads there."""
     path = first_path(base)
     if not path.outcome.ok:
-        raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}{far}")
+        raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}{spiked(groups)}{far}")
     guess = path.states[-1]
     point = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
     for coarse in COARSER if point.state is None else ():
@@ -291,13 +294,26 @@ def untested(groups: Groups) -> str:
     return f" The solver has not been tested for {', '.join(outside)}; check the inputs." if outside else ""
 
 
+def spiked(groups: Groups) -> str:
+    """Return a sentence on the pressure spike of a fluid that stiffens much, to end a message of failure; empty for others."""
+    a = groups.model.film.parameters.get("pressure_coefficient", 0.0)
+    if not isinstance(a, float) or a <= SPIKED:
+        return ""
+    return (
+        f" Pressure coefficient times Hertz pressure is {a:.2g}: the pressure of a thick film rises to a spike there, as in "
+        "hard elastohydrodynamics, which this solver does not follow. Thinner films, at lower speed, have none."
+    )
+
+
 def finish(point: RefinedState, groups: Groups, contact: Contact | None, rtol: float, on_failure: str = "raise") -> Solution:
     """Return a refined state as a solution, or raise the error of its outcome."""
     solution = solution_of(point, contact, rtol)
     if solution is not None and (point.outcome.ok or on_failure == "return"):
         return solution
     reached = "" if solution is None else f" Achieved: {solution.error_estimate:.1e}, requested: {rtol:.1e}."
-    raise SolveError(point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}{untested(groups)}")
+    raise SolveError(
+        point.outcome, solution, f"{describe(groups)}: {point.outcome.value}{reached}{spiked(groups)}{untested(groups)}"
+    )
 
 
 def minimum_estimate(rtol: float, model: Model) -> float:
