@@ -115,6 +115,14 @@ def test_a_heavy_ball_whose_torn_nodes_settle_slowly_is_solved_from_cold():
     assert solve_cold(ball(1.29283e-4, 8.91201e-3, 0.360854), 1e-4).outcome.ok
 
 
+def test_ten_angles_serve_a_loose_tolerance_and_state_their_errors():
+    rough, sharp = (solve_cold(ball(0.0272, 0.024, 0.05), rtol) for rtol in (3e-3, 1e-4))
+    assert rough.mesh.modes == 10 < sharp.mesh.modes
+    assert rough.error_estimate <= 3e-3
+    for name, value in sharp.values.items():
+        assert abs(rough.values[name] - value) <= rough.absolute_errors[name] + sharp.absolute_errors[name], name
+
+
 def test_neighbours_lead_to_the_state_that_a_cold_start_finds():
     near = solve_cold(ball(0.1, 0.1), 1e-3)
     warm, cold = solve_from(near, ball(0.12, 0.1), 1e-3), solve_cold(ball(0.12, 0.1), 1e-3)

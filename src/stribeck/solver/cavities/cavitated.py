@@ -33,12 +33,15 @@ from stribeck.solver.point.level import PROBLEMS, Level, extrapolated, moved, so
 from stribeck.solver.point.refinement import CENTRAL, Pair, centre_tails, scales_of
 from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
 
-LADDER = ((10, 20), (15, 30), (20, 45), (30, 65), (45, 95))
+LADDER = ((5, 10), (10, 20), (15, 30), (20, 45), (30, 65), (45, 95))
 """Numbers of angles of the two meshes whose difference gives the error."""
+
+ROUGH_FRICTION = 10.0
+"""Stated error of friction over the tolerance above which the first of these do not serve: it falls slower than others."""
 
 WASTE, WASTE_ANEW = 0.25, 0.4
 """Stated error over the tolerance below which a state moves to the pair of meshes before the neighbour's; and the same if it
-needs other meshes anyway."""
+needs other meshes anyway, when it may move to the first."""
 
 COMPANY, FRONT = 0.6, 0.04
 """Smallest error that is stated of one observable over the largest, and that of the largest times the square of the number of
@@ -117,7 +120,7 @@ def refine_cavitated(
             serve = base.halvings == known.fine.resolution.halvings
             rungs = LADDER[_rung(known) + serve :]
         else:
-            base, rungs = _base(speed, law, guess, model), LADDER
+            base, rungs = _base(speed, law, guess, model), LADDER[_first_rung(rtol, model) :]
             start, mesh = guess.unknowns, guess.mesh
             if speed >= RIGID and model.cavitation is Cavitation.EXIT:
                 mesh = operators_of(base).mesh
@@ -125,9 +128,11 @@ def refine_cavitated(
         for angles in rungs:
             found = _pair(base, angles, speed, law, start, mesh)
             if isinstance(found, Outcome):
+                if best is None and angles == LADDER[0]:
+                    continue
                 return found if best is None else replace(best, outcome=found)
             best, start, mesh = found, found.fine.unknowns, found.fine.mesh
-            if held(found) <= rtol:
+            if holds_torn(found, rtol):
                 return found
     except MeshTooLargeError:
         pass
@@ -151,6 +156,11 @@ def rigid(mesh: PolarMesh, speed: float) -> Unknowns:
     gap = np.tile(offset + 0.5 * mesh.radii**2, (mesh.modes, 1))
     x = mesh.radii * np.cos(mesh.angles)[:, None]
     return Unknowns(gap, np.maximum(-0.2 * speed * x / gap**2, 0.0), offset)
+
+
+def _first_rung(rtol: float, model: Model) -> int:
+    """Return the place on the ladder of the first pair that may hold a tolerance; where gas moves, ten angles are too few."""
+    return int(model.cavitation is not Cavitation.EXIT or FRONT / LADDER[0][1] ** 2 > rtol)
 
 
 def _rung(pair: Pair) -> int:
@@ -186,7 +196,8 @@ def follow_cavitated(
         return extrapolated(weights, [getattr(pair, name) for _, pair in line], mesh)
 
     serves, rung = fits(now, speed, law), _rung(neighbour)
-    is_waste = held(neighbour) < (WASTE if serves else WASTE_ANEW) * rtol and rung > 0
+    part, lowest = (WASTE, 1) if serves else (WASTE_ANEW, _first_rung(rtol, now.model))
+    is_waste = rung > lowest and _within(neighbour, part * rtol, LADDER[rung - 1][1])
     if not serves or is_waste:
         fine = neighbour.fine
         base = now if serves else _base(speed, law, fine, now.model)
@@ -224,7 +235,13 @@ def _carried(coarse: Level, neighbour: Pair) -> Unknowns:
 
 def holds_torn(pair: Pair, rtol: float) -> bool:
     """Return whether the errors of a state hold a tolerance, or the smallest that is aimed at."""
-    return held(pair) <= max(rtol, pair.fine.equations.finest)
+    return _within(pair, max(rtol, pair.fine.equations.finest), pair.fine.mesh.modes)
+
+
+def _within(pair: Pair, rtol: float, angles: int) -> bool:
+    """Return whether the errors of a state would be within a tolerance on a mesh of this many angles."""
+    loose = max(pair.errors[name] / pair.scales[name] for name in LOOSE_WHERE_TORN)
+    return held(pair) <= rtol and (angles > LADDER[0][1] or loose <= ROUGH_FRICTION * rtol)
 
 
 def is_torn(pair: Pair) -> bool:
