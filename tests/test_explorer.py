@@ -402,6 +402,8 @@ def test_a_viscoelastic_body_is_chosen_and_its_lists_are_typed_with_commas():
 
 def test_a_model_that_a_ball_cannot_have_is_refused_where_it_is_chosen():
     ball = choices.choose(START, "geometry", "point")
+    assert [key for key, _ in choices.state_of(ball, "solid")["options"]] == ["half-space", "layer"]
+    assert [name for name in choices.CHOICES if choices.state_of(ball, name)["hidden"]] == ["motion"]
     with pytest.raises(sb.InputError, match="soft body must be a half-space or a bonded layer"):
         choices.choose(ball, "solid", "StandardLinearSolid")
     with pytest.raises(sb.InputError, match="soft body"):

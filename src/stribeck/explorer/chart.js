@@ -44,21 +44,36 @@ function scaleOf({ low, high, log }, from, to) {
   return (value) => from + factor * Math.log(value / low);
 }
 
+// 256 colours between some, each as one number of four bytes.
+function scaleOfColours(colours) {
+  const bytes = new Uint8ClampedArray(4 * 256);
+  for (let i = 0; i < 256; i++) {
+    const place = (i / 255) * (colours.length - 1);
+    const below = Math.min(Math.floor(place), colours.length - 2);
+    const part = (at, colour) => parseInt(colour.slice(at, at + 2), 16);
+    const mixed = [1, 3, 5].map((at) => part(at, colours[below]) + (place - below) * (part(at, colours[below + 1]) - part(at, colours[below])));
+    bytes.set([...mixed, 255], 4 * i);
+  }
+  return new Uint32Array(bytes.buffer);
+}
+
 // Logarithms of the film row by row, from the middle line on to one side, as an image with a pixel for each place on both.
+let filmColours = null;
 function imageOf({ data, columns, low, high, colours }) {
-  const stops = colours.map((colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16)));
+  filmColours ??= scaleOfColours(colours);
   const middle = data.length / columns - 1;
   const image = document.createElement("canvas");
   [image.width, image.height] = [columns, 2 * middle + 1];
   const brush = image.getContext("2d");
   const pixels = brush.createImageData(image.width, image.height);
-  data.forEach((value, i) => {
-    const place = Math.min(Math.max((value - low) / (high - low || 1), 0), 1) * (stops.length - 1);
-    const below = Math.min(Math.floor(place), stops.length - 2);
-    const colour = [0, 1, 2].map((c) => stops[below][c] + (place - below) * (stops[below + 1][c] - stops[below][c]));
-    const [row, column] = [Math.floor(i / columns), i % columns];
-    for (const beside of [middle - row, middle + row]) pixels.data.set([...colour, 255], 4 * (beside * columns + column));
-  });
+  const whole = new Uint32Array(pixels.data.buffer);
+  for (let row = 0, i = 0; row <= middle; row++) {
+    for (let column = 0; column < columns; column++, i++) {
+      const part = Math.min(Math.max((data[i] - low) / (high - low || 1), 0), 1);
+      const colour = filmColours[Math.round(255 * part)];
+      whole[(middle - row) * columns + column] = whole[(middle + row) * columns + column] = colour;
+    }
+  }
   brush.putImageData(pixels, 0, 0);
   return image;
 }
@@ -148,9 +163,15 @@ export default {
   },
   created() {
     this.options = { series: [], legend: [] };
+    this.size = [0, 0];
   },
   mounted() {
-    this.observer = new ResizeObserver(() => this.paint());
+    this.brush = this.$refs.canvas.getContext("2d");
+    // Kept, as asking for it in every frame would lay out the page in the middle of it.
+    this.observer = new ResizeObserver(([{ contentRect }]) => {
+      this.size = [contentRect.width, contentRect.height];
+      this.paint();
+    });
     this.observer.observe(this.$refs.canvas);
     document.fonts.ready.then(() => this.paint());
   },
@@ -176,12 +197,10 @@ export default {
       return this.options.series.filter((each) => !this.hidden.includes(each.name));
     },
     paint() {
-      const { canvas } = this.$refs ?? {};
-      const [width, height, ratio] = [canvas?.clientWidth, canvas?.clientHeight, window.devicePixelRatio];
+      const { brush, size: [width, height] } = this, { canvas } = brush, ratio = window.devicePixelRatio;
       if (!this.options.x || !width || !height) return;
       if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
       if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
-      const brush = canvas.getContext("2d");
       brush.setTransform(ratio, 0, 0, ratio, 0, 0);
       brush.clearRect(0, 0, width, height);
       const { left, right, top, bottom } = { ...MARGIN, ...this.options.margin };
@@ -203,12 +222,12 @@ export default {
       };
       const shown = this.shown();
       shown.filter((each) => BEHIND.includes(each.type)).forEach(part);
-      this.paintAxes(on, height);
+      this.paintAxes(on);
       shown.filter((each) => !BEHIND.includes(each.type)).forEach(part);
       if (this.options.scale) this.paintScale(on, height);
       if (this.pointer) this.tell();
     },
-    paintAxes({ brush, box, x, y }, height) {
+    paintAxes({ brush, box, x, y }) {
       const { x: across, y: up, grey, grid, square } = this.options;
       const [right, foot] = [box.left + box.width, box.top + box.height];
       const stroke = (colour, lines) => {

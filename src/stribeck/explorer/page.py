@@ -36,7 +36,6 @@ UPDATING = "Updating ..."
 PATIENCE = 2.0
 """Seconds after which a browser that does not answer gets the next picture nevertheless."""
 
-DEFINITIONS = {"balanced": "balanced", "published": "as published"}
 ABSCISSAS = {"speed": "speed", "hersey": "Hersey number"}
 
 
@@ -224,7 +223,7 @@ class Page:
             ui.html("<h2>Stribeck curve</h2>", sanitize=False)
             self.source = ui.html("", sanitize=False).classes("caption")
             with ui.element("div").classes("choice"):
-                for options, name in ((DEFINITIONS, "definition"), (ABSCISSAS, "abscissa")):
+                for options, name in ((charts.DEFINITIONS, "definition"), (ABSCISSAS, "abscissa")):
                     toggle = ui.toggle(options, value=getattr(now, name))
                     toggle.props(f'no-caps unelevated dense aria-label="{name}"')
                     self.toggles[name] = toggle

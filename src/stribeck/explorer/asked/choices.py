@@ -5,6 +5,7 @@ Each row is a table of a case and one of its keys; the keys of a choice come fro
 
 from __future__ import annotations
 
+import functools
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -12,12 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from stribeck.cases.law import LAWS, law_of_file
-from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES, take_parts
+from stribeck.cases.model_parts import FLOW_FACTORS, FLUID_LAWS, MEMORIES
 from stribeck.contacts.model import Model
-from stribeck.explorer.asked.carried import LAW_NAMES, fluid_table, json_text, tables_of
+from stribeck.explorer.asked.carried import LAW_NAMES, contact_of, fluid_table, json_text, tables_of
 from stribeck.explorer.asked.inputs import Inputs, exact_text, with_model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.presets import PRESETS
+from stribeck.quantities.inputs import INPUT_TABLES, quantity
 from stribeck.quantities.units import InputError
 from stribeck.solver.point.solve import check_model
 
@@ -179,20 +181,27 @@ def chosen(choice: Choice, tables: Mapping[str, Any]) -> str:
     return str(given.get(choice.key, choice.first))
 
 
-def offered(choice: Choice, tables: Mapping[str, Any]) -> bool:
-    """Return whether contacts of the geometry of these tables can have the choice at all."""
-    geometry = tables.get("geometry", "line")
-    if geometry == "line" or not choice.table:
-        return True
-    last = list(choice.options)[-1]
-    table = {choice.key: last} if choice.key else {}
-    table |= {key: TYPICAL[key] for key in choice.options[last][1][0]}
-    # Of a ball the slide-to-roll ratio is one of its inputs.
-    return choice.table != "motion" and _taken(choice.table, table, geometry)
-
-
-def _taken(name: str, table: dict[str, Any], geometry: str) -> bool:
-    return not take_parts({name: table}, geometry)[2]
+@functools.cache
+def possible(name: str, geometry: str) -> tuple[str, ...]:
+    """Return what contacts of a geometry can have of a choice."""
+    choice, check = CHOICES[name], CHECKS.get(geometry)
+    if check is None or not choice.table:
+        return tuple(choice.options)
+    if choice.table == "motion":  # of a ball the slide-to-roll ratio is one of its inputs
+        return (choice.first,)
+    inputs = INPUT_TABLES[geometry]
+    numbers = {row.name: None if row.optional else quantity(row.name, _number(row.typical), inputs) for row in inputs.rows}
+    found = []
+    for value, (_, (needed, _)) in choice.options.items():
+        table = {key: TYPICAL[key] for key in needed} | ({choice.key: value} if choice.key else {})
+        try:
+            check(
+                contact_of(json_text({"geometry": geometry} | ({choice.table: table} if table else {})), numbers).groups.model
+            )
+        except InputError:
+            continue
+        found.append(value)
+    return tuple(found)
 
 
 def state_of(now: Inputs, name: str) -> dict[str, Any]:
@@ -222,10 +231,9 @@ def state_of(now: Inputs, name: str) -> dict[str, Any]:
         keys = () if "wavenumber" in given else tuple(dict.fromkeys((*own, *(() if "q0" in given else keys))))
     details = [[key, _words(key), _text(given.get(key, ""))] for key in keys]
     # A table of a contact law comes from a file only.
-    options = [[key, words] for key, (words, _) in choice.options.items() if key != "table" or value == "table"]
-    if name == "preset" and not offered(CHOICES["fluid"], tables):
-        options = [each for each in options if not each[0] or not fluid_table(PRESETS[each[0]]().fluid)]
-    return {"hidden": not offered(choice, tables), "value": value, "options": options, "details": details}
+    known = [key for key in possible(name, tables.get("geometry", "line")) if key != "table"]
+    options = [[key, words] for key, (words, _) in choice.options.items() if key in known or key == value]
+    return {"hidden": len(known) < 2, "value": value, "options": options, "details": details}
 
 
 def choose(now: Inputs, name: str, value: str) -> Inputs:

@@ -17,7 +17,10 @@ from stribeck.explorer.measured import Measured, speeds_of
 from stribeck.quantities.units import DIMENSIONS, format_si
 from stribeck.solver.point.solution import Field
 
-__all__ = ["all_charts"]
+__all__ = ["DEFINITIONS", "all_charts"]
+
+DEFINITIONS: dict[Definition, str] = {"balanced": "balanced", "published": "as published"}
+"""Words for the definitions of friction."""
 
 
 def all_charts(
@@ -71,7 +74,7 @@ def friction_chart(
     ends = ends[0] * scale, ends[1] * scale
     chosen = inputs.definition
     other: Definition = "balanced" if chosen == "published" else "published"
-    names = {"balanced": "balanced", "published": "as published"}
+    names = DEFINITIONS
     series: list[Options] = []
     heights: list[float] = []
     if curve is not None:
