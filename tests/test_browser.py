@@ -447,7 +447,7 @@ def test_it_fits_a_phone(open_page):
 def test_it_is_dark_where_the_system_is(open_page):
     page = open_page(color_scheme="dark")
     page.wait_for_selector("body.body--dark")
-    page.wait_for_function(f"({CHART})('friction').series.find(s => s.id === 'friction').color !== '#1f2328'")
+    page.wait_for_function(f"({CHART})('friction').series.some(s => s.id === 'friction' && s.color !== '#1f2328')")
 
 
 def test_the_distances_are_those_of_the_regimes_command(open_page):

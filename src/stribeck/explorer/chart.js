@@ -147,7 +147,7 @@ export default {
   props: { label: String },
   template: `
     <div>
-      <div class="legend" v-if="legend.length" role="group" :aria-label="'Lines of: ' + label">
+      <div class="legend" role="group" :aria-label="'Lines of: ' + label">
         <button v-for="each in legend" :key="each.name" type="button" :aria-pressed="String(!hidden.includes(each.name))"
           :title="(hidden.includes(each.name) ? 'Show ' : 'Hide ') + each.name" @click="toggle(each.name)">
           <svg viewBox="0 0 22 10" aria-hidden="true">
