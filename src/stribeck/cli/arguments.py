@@ -25,6 +25,38 @@ File = Annotated[Path | None, Parameter(show_default=False)]
 Pair = Annotated[tuple[str, str] | None, Parameter(allow_leading_hyphen=True, show_default=False, negative="")]
 Triple = Annotated[tuple[str, str, str] | None, Parameter(allow_leading_hyphen=True, show_default=False, negative="")]
 
+BoundaryFriction = Annotated[Number, Parameter(help="Dry friction coefficient; only with --groups, default 1.")]
+Beta = Annotated[Number, Parameter(help="Contact-law beta; only with --groups, default 1.")]
+GroupsLaw = Annotated[
+    Word,
+    Parameter(help="Contact law: exponential (default), greenwood-williamson or greenwood-tripp; only with --groups."),
+]
+SlideToRoll = Annotated[
+    Number,
+    Parameter(
+        help="Slide-to-roll ratio 2 (u1 - u2)/(u1 + u2): 2 is pure sliding, 0 pure rolling; defaults to the value in the "
+        "case, or 2."
+    ),
+]
+CavitationWord = Annotated[
+    Word,
+    Parameter(
+        help="How the film ends: none, exit (at ambient pressure) or reform (at the pressure of a cavity); defaults to the "
+        "case, or none."
+    ),
+]
+CavityPressure = Annotated[
+    Number,
+    Parameter(
+        help="Pressure of the cavity with --cavitation reform, above the ambient one, such as '-0.1 MPa'; with --groups over "
+        "p_Hz."
+    ),
+]
+FlowFactorsWord = Annotated[
+    Word,
+    Parameter(help="What roughness does to the flow: none, effective-medium or patir-cheng; defaults to the case, or none."),
+]
+
 
 def read_case(
     path: Path | None, groups: Sequence[str] | None, boundary_friction: str | None, beta: str | None, law: str | None

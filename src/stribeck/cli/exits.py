@@ -90,6 +90,11 @@ def stdout_console() -> Console:
     return Table(file=sys.stdout)
 
 
+def say(console: Console, text: str, style: str | None = None) -> None:
+    """Print a sentence as it stands, in one line however narrow the terminal is."""
+    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+
 class Interrupted:
     """Whether Ctrl-C was pressed: libraries that are loaded just then make another error of it."""
 

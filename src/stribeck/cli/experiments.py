@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 import stribeck as sb
 from stribeck.cli.arguments import CaseFile, File, Flag, Number, Word, as_whole, check_pictures
-from stribeck.cli.exits import stdout_console
+from stribeck.cli.exits import say, stdout_console
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.units import InputError
 
@@ -122,4 +122,4 @@ def _given(command: str, data: Path | None, case: Path | None) -> tuple[Path, Ca
 def _say(*texts: str) -> None:
     console = stdout_console()
     for text in filter(None, texts):
-        console.print(text, markup=False, highlight=False, soft_wrap=True)
+        say(console, text)

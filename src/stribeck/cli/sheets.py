@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 import stribeck as sb
 from stribeck.cli.arguments import CaseFile, File, Flag, Word, need_extra
-from stribeck.cli.exits import stdout_console
+from stribeck.cli.exits import say, stdout_console
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import atomic_write, check_writable
 from stribeck.quantities.units import InputError
@@ -46,8 +46,8 @@ def new_command(
     with atomic_write(output, (".toml",), force=force) as temporary:
         temporary.write_text(text, encoding="utf-8")
     console = stdout_console()
-    console.print(f"Written: {output}", markup=False, highlight=False, soft_wrap=True)
-    console.print(f"Put your values in, then: stribeck check {output}", markup=False, highlight=False, soft_wrap=True)
+    say(console, f"Written: {output}")
+    say(console, f"Put your values in, then: stribeck check {output}")
     return 0
 
 
@@ -92,5 +92,5 @@ def report_command(
         content = sb.write_report(case, output, data, force=force, on_step=lambda n, m: progress(n, m, "report"))
     console = stdout_console()
     for line in (content.headline, *content.sentences, f"Written: {output}"):
-        console.print(line, markup=False, highlight=False, soft_wrap=True)
+        say(console, line)
     return 0

@@ -11,11 +11,18 @@ from cyclopts import Parameter
 import stribeck as sb
 from stribeck.cli.arguments import (
     AXES,
+    Beta,
+    BoundaryFriction,
     CaseFile,
+    CavitationWord,
+    CavityPressure,
     File,
     Flag,
+    FlowFactorsWord,
+    GroupsLaw,
     Number,
     Pair,
+    SlideToRoll,
     Triple,
     Word,
     as_group,
@@ -27,7 +34,7 @@ from stribeck.cli.arguments import (
     model_parts,
     read_case,
 )
-from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain, stdout_console
+from stribeck.cli.exits import BAD_INPUT, FAILED, INTERRUPTED, complain, say, stdout_console
 from stribeck.cli.progress import interruptible
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError, format_si
@@ -38,13 +45,13 @@ def solve_command(
     /,
     *,
     groups: Triple = None,
-    boundary_friction: Number = None,
-    beta: Number = None,
-    law: Word = None,
-    slide_to_roll: Number = None,
-    cavitation: Word = None,
-    cavity_pressure: Number = None,
-    flow_factors: Word = None,
+    boundary_friction: BoundaryFriction = None,
+    beta: Beta = None,
+    law: GroupsLaw = None,
+    slide_to_roll: SlideToRoll = None,
+    cavitation: CavitationWord = None,
+    cavity_pressure: CavityPressure = None,
+    flow_factors: FlowFactorsWord = None,
     rtol: Number = None,
     plot: File = None,
     json: Flag = False,
@@ -64,21 +71,6 @@ def solve_command(
         Case file (TOML); its speed is the sum of the surface speeds, which is twice the mean (entrainment) speed.
     groups
         Dimensionless groups instead of a case: SPEED LOAD ROUGHNESS.
-    boundary_friction
-        Dry friction coefficient; only with --groups, default 1.
-    beta
-        Contact-law beta; only with --groups, default 1.
-    law
-        Contact law: exponential (default), greenwood-williamson or greenwood-tripp; only with --groups.
-    slide_to_roll
-        Slide-to-roll ratio 2 (u1 - u2)/(u1 + u2): 2 is pure sliding, 0 pure rolling; defaults to the value in the case, or 2.
-    cavitation
-        How the film ends: none, exit (at ambient pressure) or reform (at the pressure of a cavity); defaults to the case, or
-        none.
-    cavity_pressure
-        Pressure of the cavity with --cavitation reform, above the ambient one, such as '-0.1 MPa'; with --groups over p_Hz.
-    flow_factors
-        What roughness does to the flow: none, effective-medium or patir-cheng; defaults to the case, or none.
     rtol
         Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6.
     plot
@@ -118,7 +110,7 @@ def solve_command(
     report.print_solution(console, solution, title, mu, b, checks)
     print_conversions(console, loaded)
     for picture in pictures:
-        console.print(f"Written: {picture}", markup=False, highlight=False, soft_wrap=True)
+        say(console, f"Written: {picture}")
     return 0
 
 
@@ -133,13 +125,13 @@ def curve_command(
     points: Number = None,
     rtol: Number = None,
     groups: Pair = None,
-    boundary_friction: Number = None,
-    beta: Number = None,
-    law: Word = None,
-    slide_to_roll: Number = None,
-    cavitation: Word = None,
-    cavity_pressure: Number = None,
-    flow_factors: Word = None,
+    boundary_friction: BoundaryFriction = None,
+    beta: Beta = None,
+    law: GroupsLaw = None,
+    slide_to_roll: SlideToRoll = None,
+    cavitation: CavitationWord = None,
+    cavity_pressure: CavityPressure = None,
+    flow_factors: FlowFactorsWord = None,
     definition: Word = None,
     json: Flag = False,
     force: Flag = False,
@@ -173,21 +165,6 @@ def curve_command(
         Relative error tolerance, 1e-11 to 1e-2; defaults to the value in the case, or 1e-6.
     groups
         Dimensionless groups instead of a case: the two that stay fixed, in the order speed, load, roughness.
-    boundary_friction
-        Dry friction coefficient; only with --groups, default 1.
-    beta
-        Contact-law beta; only with --groups, default 1.
-    law
-        Contact law: exponential (default), greenwood-williamson or greenwood-tripp; only with --groups.
-    slide_to_roll
-        Slide-to-roll ratio 2 (u1 - u2)/(u1 + u2): 2 is pure sliding, 0 pure rolling; defaults to the value in the case, or 2.
-    cavitation
-        How the film ends: none, exit (at ambient pressure) or reform (at the pressure of a cavity); defaults to the case, or
-        none.
-    cavity_pressure
-        Pressure of the cavity with --cavitation reform, above the ambient one, such as '-0.1 MPa'; with --groups over p_Hz.
-    flow_factors
-        What roughness does to the flow: none, effective-medium or patir-cheng; defaults to the case, or none.
     definition
         Viscous friction: balanced (default) or published; defaults to the value in the case.
     json
@@ -340,7 +317,7 @@ def figures_command(
         if each.files:
             kept = ", kept data" if each.outcome == "reused" else ""
             names_of_files = ", ".join(map(str, each.files))
-            console.print(f"Figure {each.name}{kept}: {names_of_files}", markup=False, highlight=False, soft_wrap=True)
+            say(console, f"Figure {each.name}{kept}: {names_of_files}")
     for each in made:
         if each.outcome in ("failed", "unwritten"):
             complain(each.message, FAILED)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from stribeck.checks.check import Checks
-from stribeck.cli.reports.words import print_table, say, table_of
+from stribeck.cli.exits import say
+from stribeck.cli.reports.words import print_table, table_of
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -28,9 +29,9 @@ def print_checks(console: Console, checks: Checks, title: str) -> None:
     title : str
         Headline.
     """
-    console.print(checks.headline, style=STYLES[checks.verdict], markup=False, highlight=False, soft_wrap=True)
+    say(console, checks.headline, STYLES[checks.verdict])
     if title:
-        console.print(title, style="bold", markup=False, highlight=False)
+        say(console, title, "bold")
     table = table_of("check", "value", "fine", "verdict", right=(1, 2))
     for each in checks:
         value, limit = each.texts

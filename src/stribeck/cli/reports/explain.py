@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import stribeck as sb
 from stribeck.checks.check import Checks
 from stribeck.checks.table import checks_of_curve
+from stribeck.cli.exits import say
 from stribeck.cli.reports.regimes import print_regimes, print_uncertainty
-from stribeck.cli.reports.words import print_conversions, say
+from stribeck.cli.reports.words import print_conversions
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.curves.result import StribeckCurve

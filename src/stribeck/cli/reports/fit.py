@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from stribeck.cli.exits import say
 from stribeck.cli.reports.words import print_first
 from stribeck.fits.case_file import format_interval, format_value
 from stribeck.fits.posterior import Posterior
@@ -42,18 +44,18 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
     from rich.console import Console
     from rich.table import Table
 
-    def say(text: str, style: str = "") -> None:
-        console.print(text, style=style or None, markup=False, highlight=False, soft_wrap=True)
-
+    tell = partial(say, console)
     print_first(console, fit.checks)
     if title:
-        say(title, "bold")
+        tell(title, "bold")
     data = fit.data
     curves = f", {len(data.curves)} curves" if len(data.curves) > 1 else ""
-    say(f"{len(data)} rows{curves} of {data.path or 'measured friction'}; contact law: {fit.law}; friction: {fit.definition}.")
+    tell(
+        f"{len(data)} rows{curves} of {data.path or 'measured friction'}; contact law: {fit.law}; friction: {fit.definition}."
+    )
     if data.taken:
-        say(data.taken)
-    say(fit.outcome.value, "" if fit.outcome is FitOutcome.CONVERGED else "bold red")
+        tell(data.taken)
+    tell(fit.outcome.value, None if fit.outcome is FitOutcome.CONVERGED else "bold red")
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for name in ["input", "fitted", "error", "68 %", "95 %", "case", *(["posterior 95 %"] if posterior else [])]:
         table.add_column(name, no_wrap=True)
@@ -67,26 +69,26 @@ def print_fit(console: Console, fit: Fit, title: str, files: Sequence[str] = (),
     # Wider than a narrow terminal rather than cut: an end of an interval without its digits is none.
     Console(file=console.file, width=max(TABLE, console.width)).print(table)
     if fit.held:
-        say(_held(fit))
-    say(_noise(fit))
+        tell(_held(fit))
+    tell(_noise(fit))
     shift = (
         ""
         if math.isnan(fit.solver_shift)
         else f"; replacing the lookup table by the solver moved it by {fit.solver_shift:.1g} standard errors"
     )
-    say(f"The fitted friction comes from the solver, with relative error {fit.model_error:.1g}{shift}.")
+    tell(f"The fitted friction comes from the solver, with relative error {fit.model_error:.1g}{shift}.")
     if posterior:
-        say(posterior.message)
+        tell(posterior.message)
     for sentence in fit.quality.messages:
-        say(f"Warning: {sentence}", "bold yellow")
+        tell(f"Warning: {sentence}", "bold yellow")
     for each_weak in fit.undetermined:
         message = each_weak.message
-        say(f"Warning: {message}", "bold yellow")
+        tell(f"Warning: {message}", "bold yellow")
     for note in fit.notes:
         if not fit.checks.covers(note):
-            say(f"Note: {note}", "yellow")
+            tell(f"Note: {note}", "yellow")
     for name in files:
-        say(f"Written: {name}")
+        tell(f"Written: {name}")
 
 
 def fit_json(fit: Fit, title: str, files: Sequence[str] = (), posterior: Posterior | None = None) -> dict[str, Any]:

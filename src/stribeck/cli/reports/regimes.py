@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from stribeck.checks.check import Checks
+from stribeck.cli.exits import say
 from stribeck.cli.reports.words import (
     Sensitivities,
     contact_part,
@@ -14,7 +15,6 @@ from stribeck.cli.reports.words import (
     print_outcome,
     print_table,
     regime_now,
-    say,
     strongest,
     table_of,
 )

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from stribeck.checks.check import Checks
+from stribeck.cli.exits import say
 from stribeck.cli.reports.words import (
     contact_part,
     digits,
@@ -19,7 +20,6 @@ from stribeck.cli.reports.words import (
     print_head,
     print_outcome,
     print_table,
-    say,
     table_of,
 )
 from stribeck.contacts.friction import DEFINITIONS

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from stribeck.cli.exits import say
 from stribeck.quantities.units import format_si
 from stribeck.surfaces.analysis import Surface
 from stribeck.surfaces.plot import error_text
@@ -29,7 +30,7 @@ def print_surface(console: Console, surface: Surface, written: Sequence[str] = (
         Files that were written.
     """
     for line in [*surface_lines(surface), *(f"Written: {name}" for name in written)]:
-        console.print(line, markup=False, highlight=False, soft_wrap=True)
+        say(console, line)
 
 
 def surface_lines(surface: Surface) -> list[str]:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, TextIO
 
+from stribeck.cli.exits import say
 from stribeck.quantities.outcome import Outcome
 from stribeck.sweeps.columns import ERROR
 from stribeck.sweeps.dataset import Sweep
@@ -71,18 +73,15 @@ def sweep_json(sweep: Sweep, files: Sequence[str]) -> dict[str, Any]:
 
 def print_sweep(console: Console, sweep: Sweep, files: Sequence[str]) -> None:
     """Print how many states there are, how they ended, and where they are."""
-
-    def say(text: str) -> None:
-        console.print(text, markup=False, highlight=False, soft_wrap=True)
-
+    tell = partial(say, console)
     if sweep.about["title"]:
-        say(sweep.about["title"])
+        tell(sweep.about["title"])
     varied = ", ".join(sweep.about["varied"])
-    say(f"{sweep.finished} of {len(sweep)} states are finished in {sweep.path}; {varied} varied, {sweep.about['kind']}.")
+    tell(f"{sweep.finished} of {len(sweep)} states are finished in {sweep.path}; {varied} varied, {sweep.about['kind']}.")
     speed = f", {sweep.computed / sweep.seconds:.3g} per second" if sweep.computed and sweep.seconds > 0 else ""
-    say(f"Computed now: {sweep.computed}{speed}; found in the store: {sweep.finished - sweep.computed}.")
+    tell(f"Computed now: {sweep.computed}{speed}; found in the store: {sweep.finished - sweep.computed}.")
     for name, count in sweep.outcomes.items():
         meaning = "An error of the program; please report it." if name == ERROR else Outcome[name].value
-        say(f"{count} {name}: {meaning}")
+        tell(f"{count} {name}: {meaning}")
     for file in files:
-        say(f"Written: {file}")
+        tell(f"Written: {file}")

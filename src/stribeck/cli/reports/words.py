@@ -10,6 +10,7 @@ import numpy as np
 
 from stribeck.cases.case import Case
 from stribeck.checks.check import Checks
+from stribeck.cli.exits import say
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition, Friction
@@ -129,7 +130,7 @@ def print_head(
     """Print whether the model applies if it does not, the headline, the inputs and the groups, without those that vary."""
     print_first(console, checks)
     if title:
-        console.print(title, style="bold", markup=False, highlight=False)
+        say(console, title, "bold")
     if contact is not None:
         shown = [
             f"{contact.INPUTS.quantities[name].label} {format_si(value, contact.INPUTS.quantities[name].dimension, 4)}"
@@ -197,13 +198,13 @@ def print_outcome(
     say(console, f"{outcome} Largest estimated relative error: {error:.1e}.{film}")
     for note in notes:
         if checks is None or not checks.covers(note):
-            console.print(f"Note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+            say(console, f"Note: {note}", "yellow")
 
 
 def print_first(console: Console, checks: Checks | None) -> None:
     """Print first, if a check is outside, that the model does not apply."""
     if checks is not None and checks.first_line:
-        console.print(checks.first_line, style="bold red", markup=False, highlight=False, soft_wrap=True)
+        say(console, checks.first_line, "bold red")
 
 
 def print_conversions(console: Console, case: Case | None) -> None:
@@ -215,11 +216,6 @@ def print_conversions(console: Console, case: Case | None) -> None:
 def conversions_json(case: Case | None) -> dict[str, Any]:
     """Return the conversions of data-sheet inputs; empty if there are none."""
     return {"conversions": list(case.conversions)} if case is not None and case.conversions else {}
-
-
-def say(console: Console, text: str) -> None:
-    """Print a sentence as it stands."""
-    console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def table_of(*columns: str, right: Sequence[int] = ()) -> Any:
