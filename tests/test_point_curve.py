@@ -9,6 +9,7 @@ import pytest
 
 import stribeck as sb
 from stribeck.curves.regime import Transition
+from stribeck.curves.stribeck_curve import continued
 from stribeck.equations.point.observables import SMOOTH
 from stribeck.quantities.outcome import Outcome
 from stribeck.solver.point.path import NeighbourSolver
@@ -154,3 +155,17 @@ def test_a_curve_of_a_ball_chooses_its_speeds_from_plateau_to_branch():
     assert found.regimes[0] == "boundary"
     assert found.regimes[-1] == "hydrodynamic"
     assert found.observable("fluid_load_share")[0] < 1e-3
+
+
+def test_a_curve_of_states_goes_on_from_those_it_has(monkeypatch):
+    groups = sb.Groups(0.1, 0.001, 0.0002, geometry="point")
+    curve = sb.stribeck_curve(groups, speed=(0.08, 0.1), points=2, cavitation="exit", rtol=3e-3)
+    monkeypatch.setattr("stribeck.solver.point.path.solve_cold", None)  # a start from cold would fail
+    faster, slower = (continued(curve, end, 3) for end in (0.2, 0.04))
+    assert faster.values == pytest.approx([0.1, 0.1 * 2**0.5, 0.2])
+    assert slower.values == pytest.approx([0.04, (0.04 * 0.08) ** 0.5, 0.08])
+    assert faster.solutions[0].state.values == curve.solutions[-1].state.values
+    known = solve_cold(faster.solutions[-1].groups, 1e-4)
+    for name in SMOOTH:
+        error = faster.solutions[-1].state.absolute_errors[name] + known.absolute_errors[name]
+        assert abs(faster.solutions[-1].state.values[name] - known.values[name]) <= error, name

@@ -38,6 +38,9 @@ __all__ = ["PointCurve", "point_curve", "point_speeds"]
 LOCATION_TOLERANCE = 1e-7
 """Relative tolerance to which a transition is located; its own error is that of the solved states."""
 
+SOLVED_LOCATION = 1e-2
+"""The same over the tolerance of the states, where each place that is looked at is a state to solve."""
+
 MINIMUM_WIDTH = 0.8
 """Width of the logarithms around a minimum on which friction is a polynomial."""
 
@@ -109,6 +112,12 @@ class PointCurve(StribeckCurve):
     def _along(self, path: SolvedPath, values: Array, requested: int) -> PointCurve:
         solutions = tuple(_solutions(path, self._path, np.log(values)))
         return replace(self, values=values, solutions=solutions, outcome=path.outcome, requested=requested, _function=path)
+
+    def _solved_at(self, values: Array, on_point: Callable[[int, int], object] | None) -> PointCurve:
+        solutions, where, _, outcome, failed = _point_by_point(self._path, values, self._solver, on_point)
+        if not solutions and failed is not None:
+            finish_point(failed, self.contact)
+        return replace(self, values=where, solutions=solutions, outcome=outcome, requested=len(values))
 
     def _friction_of(self, boundary_friction: float, beta: float, definition: Definition) -> Array:
         found = [s.friction(boundary_friction, beta, definition) for s in self.solutions]
@@ -242,7 +251,8 @@ class PointCurve(StribeckCurve):
             return None
         low, high = places[crossings[0] : crossings[0] + 2].tolist()
         try:
-            place = root_between(lambda s: self._excess(name, s), low, high, LOCATION_TOLERANCE)
+            near = LOCATION_TOLERANCE if self.is_function else max(LOCATION_TOLERANCE, SOLVED_LOCATION * self.rtol)
+            place = root_between(lambda s: self._excess(name, s), low, high, near)
             return None if place is None else self._mark(name, place)
         except SolveError:
             return None
@@ -340,24 +350,24 @@ def _followed(
 def _point_by_point(
     coordinate: Coordinate, values: Array, solver: NeighbourSolver, on_point: Callable[[int, int], object] | None
 ) -> _Traced:
-    """Return the points of a curve, each solved from its neighbour, from fast to slow."""
-    solutions: list[PointSolution] = []
-    where: list[float] = []
+    """Return the points of a curve, each solved from its neighbour, from fast to slow or from where states are known."""
+    found: dict[float, PointSolution] = {}
     outcome, failed = Outcome.CONVERGED, None
+    slow, fast = (min((abs(s - math.log(end)) for s in solver.states), default=0.0) for end in values[[0, -1]])
     try:
-        for done, value in enumerate(values[::-1].tolist(), 1):
+        for done, value in enumerate(values.tolist() if slow < fast else values[::-1].tolist(), 1):
             s = math.log(value)
             state = solver(s)
             if state.outcome.ok:
-                solutions.append(solution_of(solver.states[s], coordinate.contact_at(s)))
-                where.append(value)
+                found[value] = solution_of(solver.states[s], coordinate.contact_at(s))
             else:
                 outcome, failed = state.outcome, state
             if on_point is not None:
                 on_point(done, len(values))
     except KeyboardInterrupt:
         outcome = Outcome.INTERRUPTED
-    return tuple(solutions[::-1]), np.array(where[::-1]), None, outcome, failed
+    where = sorted(found)
+    return tuple(found[value] for value in where), np.array(where), None, outcome, failed
 
 
 def point_speeds(groups: Groups, boundary_friction: float, beta: float, definition: Definition) -> tuple[float, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -123,6 +124,10 @@ class StribeckCurve(Exported, Shown, ByValue):
     def is_function(self) -> bool:
         """Whether the curve is known between its points too."""
         return self._function is not None
+
+    def _solved_at(self, values: Array, on_point: Callable[[int, int], object] | None) -> StribeckCurve:
+        """Return the curve at other values, solved from its states, where it is known at its points only."""
+        raise NotImplementedError
 
     @property
     def states(self) -> int:

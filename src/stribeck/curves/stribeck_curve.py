@@ -221,7 +221,11 @@ def stribeck_curve(
 
 @one_blas_thread
 def continued(
-    curve: StribeckCurve, end: float, points: int, on_point: Callable[[int, int], object] | None = None
+    curve: StribeckCurve,
+    end: float,
+    points: int,
+    on_point: Callable[[int, int], object] | None = None,
+    begin: float | None = None,
 ) -> StribeckCurve:
     """Continue a curve from its nearer end to ``end``, without a cold start.
 
@@ -235,12 +239,23 @@ def continued(
         Number of points.
     on_point : callable, optional
         ``on_point(done, points)`` is called for progress.
+    begin : float, optional
+        Where a curve that is known at its points only begins instead.
 
     Returns
     -------
     StribeckCurve
         As of :func:`stribeck_curve`; as far as it was reached.
+
+    Raises
+    ------
+    SolveError
+        If it is known at its points only, and no further state can be solved.
     """
+    if not curve.is_function:
+        nearer: float = min(curve.values[[0, -1]].tolist(), key=lambda value: abs(math.log(value / end)))
+        low, high = sorted((nearer if begin is None else begin, end))
+        return curve._solved_at(np.geomspace(low, high, points), on_point)
     known = curve._solved_path
     s = math.log(end)
     here = min(known.expansions[0], known.expansions[-1], key=lambda one: abs(one.coordinate - s))

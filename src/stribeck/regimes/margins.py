@@ -408,7 +408,7 @@ class _Scan:
         """Return the states between two values of an input; None where the solver does not reach them all."""
         try:
             if near in self.known:  # where another curve begins or ends: a start from cold costs as much as a decade
-                curve = continued(self.known[near], far, points, self._report)
+                curve = continued(self.known[near], far, points, self._report, near)
             else:
                 ends: Any = {name: (min(near, far), max(near, far))}
                 settings: Any = {"rtol": self.rtol, "definition": self.definition, "on_point": self._report}
@@ -421,6 +421,8 @@ class _Scan:
             return None
         if curve.is_function:
             self.known |= {near: curve, far: curve}
+        else:
+            self.known |= dict.fromkeys(curve.values.tolist(), curve)
         return curve
 
     def _report(self, done: int, points: int) -> None:
