@@ -529,6 +529,17 @@ def test_an_empty_address_is_the_start():
 # --- answers ---
 
 
+def test_dry_friction_changes_no_film_of_a_ball(monkeypatch):
+    ball = replace(START, contact=sb.load_case(EXAMPLES / "rubber_ball.toml").contact, rtol=1e-4)
+    model = Answerer()
+    model(ball)
+    monkeypatch.setattr("stribeck.explorer.answer.solve_from", None)  # not asked
+    drier = replace(ball, contact=ball.contact.replace(boundary_friction=0.3, speed=ball.contact.speed))
+    found = model(drier).solution
+    assert found.contact == drier.contact
+    assert found.friction().total == pytest.approx(sb.solve(drier.contact, rtol=1e-4).friction().total, rel=1e-4)
+
+
 def test_the_scale_of_a_films_map_begins_at_the_minimum_film():
     contact = sb.load_case(EXAMPLES / "pdms_ball.toml").contact.replace(speed="0.3 mm/s")
     answer = Answerer()(replace(START, contact=contact))
