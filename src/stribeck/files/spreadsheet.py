@@ -16,6 +16,7 @@ __all__ = ["SPREADSHEETS", "text_of_spreadsheet"]
 SPREADSHEETS = (".xlsx", ".xlsm")
 
 LARGEST_CELLS = 5_000_000
+"""Cells of a workbook that are read; a small file may unpack to any number."""
 
 
 def text_of_spreadsheet(path: Path) -> str:
@@ -46,8 +47,10 @@ def text_of_spreadsheet(path: Path) -> str:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of styles and validations, which do not matter here
             book = openpyxl.load_workbook(path, read_only=True, data_only=True)
-            sheets = [[list(row) for row in sheet.iter_rows(values_only=True)] for sheet in book.worksheets]
+            sheets = _sheets(path, book)
             book.close()
+    except InputError:
+        raise
     except Exception as problem:  # zip, XML and openpyxl raise errors of many kinds, and each means the same
         said = " ".join(str(problem).split())
         raise InputError(f"{path} cannot be read as a spreadsheet ({said}); export it as CSV.") from None
@@ -55,7 +58,23 @@ def text_of_spreadsheet(path: Path) -> str:
     if not counts or max(counts) == 0:
         raise InputError(f"{path} holds no numbers in any of its sheets; formulas count only after a program has saved them.")
     sheet = sheets[counts.index(max(counts))]
-    return "\n".join("\t".join(_text(cell) for cell in row) for row in sheet)
+    width = max(map(len, sheet))
+    return "\n".join("\t".join([*map(_text, row), *[""] * (width - len(row))]) for row in sheet)
+
+
+def _sheets(path: Path, book: Any) -> list[list[list[Any]]]:
+    """Return the cells of each row of each sheet, up to its last that is filled."""
+    sheets, count = [], 0
+    for sheet in book.worksheets:
+        rows = []
+        for values in sheet.iter_rows(values_only=True):
+            last = max((i for i, cell in enumerate(values, 1) if cell is not None), default=0)
+            count += 1 + last
+            if count > LARGEST_CELLS:
+                raise InputError(f"{path} has more than {LARGEST_CELLS} cells; keep the sheet with the measured rows.")
+            rows.append(list(values[:last]))
+        sheets.append(rows)
+    return sheets
 
 
 def _is_number(cell: Any) -> bool:
