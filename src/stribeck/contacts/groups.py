@@ -6,9 +6,8 @@ Eq. (Hertz_scales).
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
-from typing import Any, Literal, TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -17,15 +16,11 @@ from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
 from stribeck.contact_laws.law import AsperityLaw, ContactLaw, check_law, has_constant_decay
 from stribeck.contact_laws.scaled import ScaledLaw
 from stribeck.contacts.model import ARTICLE, Model
-from stribeck.contacts.scaling import SCALINGS, Scaling
+from stribeck.contacts.scaling import SCALINGS, Geometry, Scaling, check_geometry
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
 
 __all__ = ["LARGEST", "SMALLEST", "Geometry", "Groups", "Physics"]
-
-Geometry = Literal["line", "point"]
-"""What touches: a cylinder or a ball."""
-
 
 SMALLEST, LARGEST = 1e-300, 1e300
 """Bounds of what is not zero, far beyond any contact: products and squares of the groups stay in double precision."""
@@ -100,9 +95,7 @@ class Groups:
         """Check the groups and make them floats or read-only arrays."""
         if self.law is not None:
             check_law(self.law)
-        if not isinstance(self.geometry, str) or self.geometry not in SCALINGS:
-            known = " or ".join(map(repr, SCALINGS))
-            raise InputError(f"geometry = {show(self.geometry)}; it must be {known}: a cylinder or a ball.")
+        check_geometry(self.geometry)
         if not isinstance(self.model, Model):
             raise InputError(f"model = {show(self.model)}; it must be a stribeck.contacts.model.Model.")
         for name, positive in (("speed", False), ("load", True), ("roughness", False)):
@@ -175,8 +168,6 @@ class Groups:
         """
         beta = quantity("beta", beta)
         with np.errstate(all="ignore"):
-            if self.geometry == "line":
-                return 4 * beta * beta * self.load * self.speed / (3 * math.pi)
             return self.speed * self.slope(beta) ** self.scaling.hersey_power / self.scaling.hersey_divisor
 
     def slope(self, beta: float = 1.0) -> float | Array:

@@ -17,8 +17,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any, Literal
 
-__all__ = ["SCALINGS", "Scaling"]
+from stribeck.quantities.units import InputError, show
+
+__all__ = ["SCALINGS", "Geometry", "Scaling", "check_geometry"]
+
+Geometry = Literal["line", "point"]
+"""What touches: a cylinder or a ball."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +56,17 @@ class Scaling:
     hersey_divisor: float
 
 
-SCALINGS = {
+SCALINGS: dict[Geometry, Scaling] = {
     "line": Scaling("line", 0.5 * math.pi, 0.5, 1.0, 2.0, 2, 3 * math.pi),
     "point": Scaling("point", 2 * math.pi / 3, 1 / 3, 2 / 3, 0.5 * math.pi, 1, 4 * math.pi),
 }
 """The geometries by name: a cylinder, whose load is per unit length, and a ball."""
+
+
+def check_geometry(geometry: Any) -> Geometry:
+    """Return the name of a geometry; refuse what is none."""
+    for known in SCALINGS:
+        if isinstance(geometry, str) and geometry == known:
+            return known
+    names = " or ".join(map(repr, SCALINGS))
+    raise InputError(f"geometry = {show(geometry)}; it must be {names}: a cylinder or a ball.")

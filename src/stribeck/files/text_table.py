@@ -20,7 +20,19 @@ from stribeck.files.reading import read_bounded
 from stribeck.files.spreadsheet import SPREADSHEETS, text_of_spreadsheet
 from stribeck.quantities.units import DIMENSIONS, InputError, show, to_si
 
-__all__ = ["MISSING", "TextTable", "cells_of", "number_of", "read_table", "read_two_columns", "text_of", "values_of"]
+__all__ = [
+    "MISSING",
+    "TextTable",
+    "cells_of",
+    "header_words",
+    "is_called",
+    "number_of",
+    "read_table",
+    "read_two_columns",
+    "split_header",
+    "text_of",
+    "values_of",
+]
 
 MISSING = frozenset({"", "-", "--", "---", "na", "n/a", "nan", "null", "none", "#n/a", "#nv", "nv", "?", "bad", "***"})
 """Cells that hold no value, in lower case."""
@@ -40,6 +52,7 @@ LOOK_AHEAD = 3
 _POINT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 _COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
 _WITH_UNIT = re.compile(r"([+-]?[0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)\s*([A-Za-zµμ%°].*)")
+_HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 _NAMED = re.compile(r"\s*([^\[\](),;]*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 
 
@@ -200,6 +213,24 @@ def read_two_columns(
     kinds = zip(units, with_units.values(), names, strict=True)
     first, second = (to_si(f"1 {unit}", kind, name) for unit, kind, name in kinds)
     return values, (first, second)
+
+
+def split_header(header: str) -> tuple[str, str]:
+    """Return the words of a header and its unit, as of ``speed [mm/s]`` or ``speed / mm/s``; empty where it has none."""
+    parts = _HEADER.fullmatch(header)
+    if parts is None or not parts[1]:
+        return header.strip(), ""
+    return parts[1].strip(), next(unit for unit in parts.groups()[1:] if unit is not None).strip()
+
+
+def header_words(header: str) -> str:
+    """Return the words of a header in lower case, without its unit and without signs."""
+    return " ".join(re.sub(r"[^0-9a-zµμ]+", " ", split_header(header)[0].lower()).split())
+
+
+def is_called(header: str, name: str) -> bool:
+    """Return whether a name means a header, with or without its unit."""
+    return name.strip() in (header, split_header(header)[0])
 
 
 def values_of(

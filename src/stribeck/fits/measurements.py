@@ -16,7 +16,7 @@ import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.text_table import MISSING, TextTable, number_of, read_table
+from stribeck.files.text_table import MISSING, TextTable, header_words, is_called, number_of, read_table, split_header
 from stribeck.fits.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, Row, average_repeats, prepared
 from stribeck.quantities.inputs import ROWS, quantity
 from stribeck.quantities.keywords import answers_typos
@@ -56,7 +56,6 @@ BARE = {"": 1.0, "-": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01, "‰": 0.001}
 """Units of a friction coefficient."""
 
 _FORCE = re.compile(r"force|kraft|\(m?N\)|\[m?N\]", re.IGNORECASE)
-_HEADER = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -153,7 +152,7 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
             if place is None or mu is None or error is None or None in inputs.values():
                 empty.append(number)
                 continue
-            name = label if len(frictions) == 1 else f"{label} {_split(column)[0]}".strip()
+            name = label if len(frictions) == 1 else f"{label} {split_header(column)[0]}".strip()
             known = {key: value for key, value in inputs.items() if value is not None}
             rows.append((name, number, place, mu, error, known))
             runs.append(table.rows[i][table.header.index(run)] if run else "")
@@ -210,7 +209,7 @@ class _Reader:
         key = (column, meaning)
         if key not in self.factors:
             row = self.table.units_row[at] if self.table.units_row else ""
-            unit = self.settings.units.get(meaning) or _split(column)[1] or row
+            unit = self.settings.units.get(meaning) or split_header(column)[1] or row
             where = f"{self.table.path}: column {show(column)}"
             self.factors[key] = self._factor(unit, meaning, where)
         return self.factors[key]
@@ -264,18 +263,6 @@ class _Reader:
         return value
 
 
-def _split(header: str) -> tuple[str, str]:
-    """Return the words of a header and its unit, empty where it has none."""
-    parts = _HEADER.fullmatch(header)
-    if parts is None or not parts[1]:
-        return header.strip(), ""
-    return parts[1].strip(), next(unit for unit in parts.groups()[1:] if unit is not None).strip()
-
-
-def _plain(text: str) -> str:
-    return " ".join(re.sub(r"[^0-9a-zµμ]+", " ", text.lower()).split())
-
-
 def _columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
     """Return what is in the file -> headers of its columns."""
     found: dict[str, list[str]] = {}
@@ -284,7 +271,7 @@ def _columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
         if meaning in RIG:
             continue
         for text in texts:
-            same = [name for name in table.header if text.strip() in (name, _split(name)[0])]
+            same = [name for name in table.header if is_called(name, text)]
             if len(same) != 1:
                 raise InputError(
                     f"{table.path}: {_listed(table)}, none called {show(text)}, which [fit.columns] has as {meaning}."
@@ -293,7 +280,7 @@ def _columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
     declared = {name for names in found.values() for name in names}
     declared |= {name for name in table.header if _declared_for_rig(name, settings)}
     for name in table.header:
-        words = _plain(_split(name)[0])
+        words = header_words(name)
         for meaning, known in WORDS.items():
             if name in declared or words not in known or meaning in settings.columns:
                 continue
@@ -309,8 +296,8 @@ def _columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]]:
         missing = ["speed"] * (not any(name in found for name in ABSCISSAS)) + ["friction"] * ("friction" not in found)
         used = {name for names in found.values() for name in names}
         unknown = [name for name in table.header if name not in used] or [""]
-        speeds = [name for name in unknown if re.search(r"/\s*(s|min|h)\b", _split(name)[1])]
-        bare = [name for name in unknown if name not in speeds and _split(name)[1] in (*BARE, "") and not _FORCE.search(name)]
+        speeds = [name for name in unknown if re.search(r"/\s*(s|min|h)\b", split_header(name)[1])]
+        bare = [name for name in unknown if name not in speeds and split_header(name)[1] in BARE and not _FORCE.search(name)]
         if "friction" in missing and not bare and any(_FORCE.search(name) for name in unknown):
             raise InputError(
                 f"{table.path}: {_listed(table)}, none of which is a friction coefficient; a force is none: add a column "
@@ -373,7 +360,7 @@ def _has(table: TextTable, settings: FitSettings, meaning: str) -> bool:
     wanted = ABSCISSAS if meaning == "speed" else (meaning,)
     if any(each in settings.columns for each in wanted):
         return True
-    words = {_plain(_split(name)[0]) for name in table.header if not _declared_for_rig(name, settings)}
+    words = {header_words(name) for name in table.header if not _declared_for_rig(name, settings)}
     # Beside these a sliding speed is the difference of the surface speeds, and the speed their sum.
     rolling = [PATTERNS[each] for each in ("slide_to_roll", "entrainment_speed", "surface_speeds")]
     rolls = any(re.fullmatch(pattern, word) for pattern in rolling for word in words)
@@ -384,7 +371,7 @@ def _has(table: TextTable, settings: FitSettings, meaning: str) -> bool:
 def _declared_for_rig(name: str, settings: FitSettings) -> bool:
     """Return whether the settings say that a column is one of a rig."""
     texts = [text for meaning in RIG for text in np.atleast_1d(settings.columns.get(meaning, [])).tolist()]
-    return any(text.strip() in (name, _split(name)[0]) for text in texts)
+    return any(is_called(name, text) for text in texts)
 
 
 def _taken(columns: dict[str, list[str]], made: tuple[str, ...], run: str) -> str:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stribeck._types import Array, Indices
-from stribeck.fits.objective import Minimum
+from stribeck.fits.objective import MAD, Minimum
 
 __all__ = ["Quality", "judge_residuals"]
 
@@ -113,7 +113,7 @@ def _structure(at: Minimum, curve: Indices) -> tuple[float, float]:
     U = U[:n, S > 1e-10 * S[0]]
     noise = np.random.default_rng(SEED).standard_normal((DRAWS, n))
     drawn = np.concatenate([at.residuals[None], noise - noise @ U @ U.T])
-    spread = np.maximum(1.482602218505602 * np.median(np.abs(drawn), axis=1, keepdims=True), 1e-300)
+    spread = np.maximum(MAD * np.median(np.abs(drawn), axis=1, keepdims=True), 1e-300)
     drawn = np.clip(drawn / spread, -CLIP, CLIP)
     power = (drawn**2).sum(axis=1)
     following = curve[1:] == curve[:-1]

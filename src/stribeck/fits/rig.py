@@ -15,15 +15,13 @@ from typing import Any
 import numpy as np
 
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.files.text_table import MISSING, TextTable, number_of
+from stribeck.files.text_table import MISSING, TextTable, header_words, is_called, number_of, split_header
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["MADE_SPEED", "RIG", "Averaged", "Row", "average_repeats", "prepared"]
 
 RIG = ("entrainment_speed", "sliding_speed", "surface_speeds", "slide_to_roll", "friction_force", "normal_force", "run")
 """What a column of a rig may be beside those of a friction curve."""
-
-_UNIT = re.compile(r"(.*?)\s*(?:\[(.*)\]|\((.*)\)|(?:\s/\s|\sin\s)(.*))\s*")
 
 PATTERNS = {
     "entrainment_speed": r"(mean|average|entrain\w*|rolling)( \w+)? (speed|velocity)|(speed|velocity) (mean|rolling)",
@@ -79,7 +77,7 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
     Raises
     ------
     InputError
-        If a speed may be the mean or the sum, or a force is zero.
+        If a speed may be the mean or the sum, or a cell is no number.
 
     Notes
     -----
@@ -102,7 +100,7 @@ def prepared(table: TextTable, settings: FitSettings, known: Callable[[str], boo
             table = _with_column(table, MADE_SPEED, values)
             said.append(sentence)
     elif "slide_to_roll" in found and "speed" not in settings.columns:
-        plain = next((name for name in table.header if _words(name) in ("speed", "velocity", "u", "v")), None)
+        plain = next((name for name in table.header if header_words(name) in ("speed", "velocity", "u", "v")), None)
         if plain is not None:
             raise InputError(
                 f"{table.path}: the file has a slide-to-roll ratio, so that {show(plain)} may be the mean of both surface "
@@ -162,13 +160,13 @@ def _rig_columns(table: TextTable, settings: FitSettings) -> dict[str, list[str]
     declared = set()
     for meaning, wanted in settings.columns.items():
         texts = wanted if isinstance(wanted, list) else [wanted]
-        declared |= {name for name in table.header for text in texts if text.strip() in (name, _split(name)[0])}
+        declared |= {name for name in table.header for text in texts if is_called(name, text)}
         if meaning in RIG:
-            found[meaning] = [name for name in table.header if name in declared and _is_named(name, texts)]
+            found[meaning] = [name for name in table.header if any(is_called(name, text) for text in texts)]
     for name in table.header:
         for meaning, pattern in PATTERNS.items():
-            if name not in declared and meaning not in settings.columns and re.fullmatch(pattern, _words(name)):
-                if meaning == "normal_force" and _split(name)[1] not in ("N", "mN", "kN"):
+            if name not in declared and meaning not in settings.columns and re.fullmatch(pattern, header_words(name)):
+                if meaning == "normal_force" and split_header(name)[1] not in ("N", "mN", "kN"):
                     continue
                 found.setdefault(meaning, []).append(name)
                 break
@@ -202,14 +200,14 @@ def _speed(table: TextTable, found: dict[str, list[str]]) -> tuple[list[float | 
 
 def _ratios(table: TextTable, name: str) -> list[float | None]:
     """Return a slide-to-roll ratio as a number; in per cent if its unit says so."""
-    factor = 0.01 if _split(name)[1] == "%" else 1.0
+    factor = 0.01 if split_header(name)[1] == "%" else 1.0
     return [None if value is None else factor * value for value in _cells(table, name)]
 
 
 def _numbers(table: TextTable, name: str, dimension: str, unit: str) -> list[float | None]:
     """Return the numbers of a column in SI units."""
     at = table.header.index(name)
-    written = _split(name)[1] or (table.units_row[at] if table.units_row else "")
+    written = split_header(name)[1] or (table.units_row[at] if table.units_row else "")
     if not written:
         raise InputError(f"{table.path}: column {show(name)} has no unit; write it in the header, as in '{name} [{unit}]'.")
     factor = to_si(f"1 {written}", dimension, f"the unit of column {show(name)}")
@@ -247,21 +245,6 @@ def _with_texts(table: TextTable, name: str, texts: Sequence[str]) -> TextTable:
     rows = tuple((*row, text) for row, text in zip(table.rows, texts, strict=True))
     units = (*table.units_row, "") if table.units_row else ()
     return replace(table, header=(*table.header, name), rows=rows, units_row=units)
-
-
-def _split(header: str) -> tuple[str, str]:
-    parts = _UNIT.fullmatch(header)
-    if parts is None or not parts[1]:
-        return header.strip(), ""
-    return parts[1].strip(), next(unit for unit in parts.groups()[1:] if unit is not None).strip()
-
-
-def _words(header: str) -> str:
-    return " ".join(re.sub(r"[^0-9a-z]+", " ", _split(header)[0].lower()).split())
-
-
-def _is_named(name: str, texts: Sequence[str]) -> bool:
-    return any(text.strip() in (name, _split(name)[0]) for text in texts)
 
 
 Row = tuple[str, int, float, float, float, dict[str, float]]
