@@ -150,7 +150,10 @@ def test_sliders_in_si_move_the_curve_and_the_link_opens_it_again(open_live):
 @pytest.mark.browser
 def test_sliders_of_the_groups_and_what_lies_beyond_the_table(open_live):
     page = open_live()
+    before = shown(page)
     page.get_by_label("dimensionless groups").check()
+    assert shown(page) == pytest.approx(before, rel=1e-9)  # the same contact
+    page = open_live("#live-curve?mode=groups&speed_group=1e-5&load_group=0.1&roughness_group=1e-4")
     assert shown(page) == pytest.approx(sb.atlas.friction(sb.Groups(1e-5, 0.1, 1e-4), 0.7, 0.06), rel=1e-6)
     page.evaluate("location.hash = '#live-curve?mode=si&modulus=1e5'")
     page.wait_for_selector("#live-curve.live-beyond")

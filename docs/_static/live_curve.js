@@ -178,6 +178,7 @@ function stribeckState(mode, v) {
     return `${number(value / 10 ** power, digits)} ${steps[power].replace("*", "·")}`.trim();
   }
 
+  const powerOfTen = power => power === 0 ? "1" : power === 1 ? "10" : `10${superscript(power)}`;
   const superscript = power => String(power).replace("-", "⁻").replace(/[0-9]/g, digit => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]);
   const regimeOf = at => at.solid <= 0.1 * at.friction ? "hydrodynamic" : at.fluidShare <= 0.05 ? "boundary" : "mixed";
 
@@ -245,8 +246,22 @@ function stribeckState(mode, v) {
   const link = element("button", {type: "button"}, "Copy link"), reset = element("button", {type: "button"}, "Reset");
   for (const [value, words] of [["si", "SI units"], ["groups", "dimensionless groups"]]) {
     const radio = element("input", {type: "radio", name: `${NAME}-mode`, value, id: `${NAME}-${value}`});
-    radio.addEventListener("change", () => { mode = value; build(); show(); });
+    radio.addEventListener("change", () => {
+      mode = value;
+      if (mode === "groups") groupsOfContact();
+      build();
+      show();
+    });
     modes.append(element("span", {}, radio, element("label", {for: radio.id}, words)));
+  }
+
+  // The sliders of the groups begin with the contact that was shown, as far as they reach.
+  function groupsOfContact() {
+    const {speed, load, roughness} = stribeckState("si", values);
+    for (const [name, value] of Object.entries({speed_group: speed, load_group: load, roughness_group: roughness})) {
+      const row = inputs.groups.find(each => each.name === name);
+      values[name] = Math.min(Math.max(value, row.low), row.high);
+    }
   }
 
   function build() {
@@ -285,11 +300,11 @@ function stribeckState(mode, v) {
     };
     for (const power of decades(row.low, row.high)) {
       drawn.push(element("line", {class: "live-grid", x1: X(10 ** power), x2: X(10 ** power), y1: TOP, y2: HEIGHT - BOTTOM}));
-      drawn.push(tick(X(10 ** power), HEIGHT - BOTTOM + 17, `10${superscript(power)}`, "middle"));
+      drawn.push(tick(X(10 ** power), HEIGHT - BOTTOM + 17, powerOfTen(power), "middle"));
     }
     for (const power of decades(low, high)) {
       drawn.push(element("line", {class: "live-grid", x1: LEFT, x2: WIDTH - RIGHT, y1: Y(10 ** power), y2: Y(10 ** power)}));
-      drawn.push(tick(LEFT - 6, Y(10 ** power) + 4, `10${superscript(power)}`, "end"));
+      drawn.push(tick(LEFT - 6, Y(10 ** power) + 4, powerOfTen(power), "end"));
     }
     drawn.push(tick((LEFT + WIDTH) / 2, HEIGHT - 8, mode === "si" ? "speed (m/s)" : "speed group", "middle"));
     const title = tick(14, HEIGHT / 2 - 10, "friction coefficient", "middle");
@@ -310,7 +325,7 @@ function stribeckState(mode, v) {
       + `(${number(100 * now.solid / now.friction)} % from asperities); the fluid carries ${number(100 * now.fluidShare)} % of the load.`];
     const lambda = state.rms > 0 ? `, ${number(now.minimumGap / state.rms)} times the roughness` : "";
     const lengths = inputs.si[0].steps;
-    parts.push(mode === "si" ? `Minimum film ${withUnit(film, lengths)}${lambda}.` : `Minimum gap ${number(now.minimumGap)} u_Hz.`);
+    parts.push(mode === "si" ? `Minimum film ${withUnit(film, lengths)}${lambda}.` : `Minimum gap ${number(now.minimumGap)} of the Hertz indentation.`);
     if (minimum) parts.push(`Friction is at its minimum, ${number(at(minimum).friction, 4)}, at ${speed(minimum)}.`);
     const text = parts.join(" ");
     return text[0].toUpperCase() + text.slice(1);
