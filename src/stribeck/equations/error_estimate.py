@@ -22,12 +22,12 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
 from stribeck.equations.drag import Nodal, viscous_friction
-from stribeck.equations.line import LOAD, Equations, Operators, gradient_in_film, slopes_in_film
+from stribeck.equations.line import LOAD, Operators, gradient_in_film, slopes_in_film
 from stribeck.equations.observables import ROW, VISCOUS, Observables, friction_integrals, friction_scale, gradients
 from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import StackedStates, is_thinning, jump_of
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
-from stribeck.numerics.running_integral import RunningIntegral, Volterra
+from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.quantities.outputs import ABSOLUTE, ENDS, NAMES
 from stribeck.solids.half_plane import (
     Blocks,
@@ -74,9 +74,6 @@ GAPS = [ROW["central_gap"], ROW["minimum_gap"]]
 FRICTION = [ROW["viscous_published"], ROW["viscous_balanced"]]
 DRAG = [ROW[name] for name in VISCOUS]
 POSITIONS = [ROW[row.name] for row in ENDS]
-
-PRESSURE_STEPS = 2
-"""Steps towards the fluid pressure that a gap implies, from that at the nodes, with the derivative there."""
 
 
 def _by_highest(s: Array, order: int) -> Array:
@@ -270,23 +267,21 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
             slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
         return slopes
 
-    stiff = equations.is_stiff(y)
     slopes = gradient(fluid)
     jump = jump_of(film)
     jumps = None if jump is None else jump(gap, fluid)
     if jumps is not None:
         slopes = slopes + 0.5 * jumps
-    if fluid is None:
-        pressure = equations.speed * integral(slopes)
-        if d is not None:
-            pressure = d * pressure + np.where(integral.outside_gap, 0.0, op.model.cavity_pressure)
-    elif stiff:
-        pressure = fluid
-    else:
-        pressure = _implied_pressure(equations, y, integral, gap, fluid)
-        slopes = gradient(pressure)
-    fluid = pressure
-    pressure = equations.law.pressure(gap) + fluid
+    integrated = equations.speed * integral(slopes)
+    if d is not None:
+        integrated = d * integrated + np.where(integral.outside_gap, 0.0, op.model.cavity_pressure)
+    lowered = None if fluid is None else fine.lowered(integrated)
+    if fluid is None or lowered is None:
+        fluid = unresolved = integrated
+    else:  # what the nodes hold of it is a row of its own; through infinity it may have a kink
+        unresolved = fluid + integrated - coarse.to_order(lowered * coarse.stretch, mesh.order) / mesh.stretch
+        fluid[:, finer] = unresolved[:, finer] = integrated[:, finer]
+    pressure = equations.law.pressure(gap) + unresolved
     deflection = fine.deflection(pressure, op)
     residual = np.empty((1 + PATTERNS, *y.shape))
     parabola = op.parabola if not op.has_exit else 0.5 * equations.positions(y) ** 2
@@ -305,16 +300,11 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     if op.has_exit:
         _of_ends(states, residual, integral, slopes, size)
     residual[:, :, at.pressure] = 0.0
-    if stiff and known is not None:
-        integrated = equations.speed * integral(slopes)
-        residual[0, :, at.pressure] = known - fine.lowered(integrated)
-        residual[1:, :, at.pressure] = size * np.abs(known)
+    if lowered is not None:
+        residual[0, :, at.pressure] = known - lowered
+        residual[0, :, at.pressure][:, -coarse.order :] = 0.0
     residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)[:, None]
     unknowns = states.correction(residual)
-    if known is not None and not stiff:
-        change = fine.lowered(fluid) - known
-        change[:, -coarse.order :] = 0.0  # through infinity both are integrals of what the gap tells, and may have a kink
-        unknowns[0][:, at.pressure] += change
     if not op.is_article:
         friction = np.zeros((len(DRAG), len(y)))
         if equations.is_sliding:
@@ -328,22 +318,6 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         found = friction_integrals(mesh, gap, h_star, slopes, op.model.solid.far_gap)
         friction = np.abs(scale * found - observed[:, FRICTION].T)
     return Perturbations(unknowns, friction)
-
-
-def _implied_pressure(equations: Equations, y: Array, integral: RunningIntegral, gap: Array, guess: Array) -> Array:
-    """Return the fluid pressure that gaps on a finer mesh imply, rows of them, from that at the nodes."""
-    op, film, h_star = equations.operators, equations.film, y[:, equations.layout.flux_gap]
-    d = equations.dilation(y)
-    speed = np.broadcast_to(equations.speed * (1.0 if d is None else d), (len(y), 1))
-    cavity = np.where(integral.outside_gap, 0.0, op.model.cavity_pressure if op.has_reformation else 0.0)
-    by_pressure = slopes_in_film(film, integral, gap, guess, h_star).by_pressure
-    assert by_pressure is not None
-    solved = [Volterra(integral, row) for row in speed * by_pressure]
-    pressure = guess
-    for _ in range(PRESSURE_STEPS):
-        rest = speed * integral(gradient_in_film(film, integral, gap, pressure, h_star)) + cavity - pressure
-        pressure = pressure + rest + np.stack([each(each.factor * r) for each, r in zip(solved, rest, strict=True)])
-    return pressure
 
 
 def _of_ends(states: StackedStates, residual: Array, integral: RunningIntegral, slopes: Array, size: float) -> None:

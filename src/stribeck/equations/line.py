@@ -238,7 +238,7 @@ class Equations:
         assert by_pressure is not None
         return bool(np.max(np.abs(self.speed * integral(by_pressure))) > MOST_GROWTH)
 
-    def jacobian(self, y: Array, units: Array | None = None) -> Array:
+    def jacobian(self, y: Array, units: Array | None = None, volterra: Volterra | None = None) -> Array:
         """Return the derivative of the residual, dense, in Fortran order; its columns times ``units``.
 
         ::
@@ -271,7 +271,8 @@ class Equations:
         of_pressure = None
         if by_p is not None:
             rows = [scaled.deflection, scaled.weights[None], *(end[None] * by_p for end in scaled.ends)]
-            of_pressure = Volterra(op.integral, speed * by_p).after(np.concatenate(rows))
+            volterra = Volterra(op.integral, speed * by_p) if volterra is None else volterra
+            of_pressure = volterra.after(np.concatenate(rows))
         if self.is_sliding:
             deflection = scaled.deflection_of_gradient if of_pressure is None else of_pressure[:n]
             load = scaled.load_of_gradient if of_pressure is None else of_pressure[n]
@@ -458,7 +459,7 @@ class _Eliminated:
         if d is not None:
             g = gradient_in_film(film, op.integral, y[at.gap], y[at.pressure], y[at.flux_gap])
             self.by_dilation = equations.fluid_by_dilation(g, d, self.by_pressure)
-        self.reduced = LU.of(equations.jacobian(y, self.units), overwrite=True)
+        self.reduced = LU.of(equations.jacobian(y, self.units, self.volterra), overwrite=True)
 
     @property
     def failure(self) -> Outcome | None:
