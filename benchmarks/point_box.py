@@ -67,10 +67,10 @@ def finer_mesh(state: PointState) -> Resolution:
     """Return the mesh of the judge."""
     fine = state.work.fine
     modes = max(fine.mesh.modes, min(MOST_MODES, round(FINER_MODES * fine.mesh.modes)))
-    # Narrower panels at the edge may leave a wider one in the middle: it is halved besides.
-    now, middle = fine.resolution, float(fine.mesh.edges[1])
-    splits = tuple(sorted({*now.splits, middle, 0.5 * middle}))
-    return replace(now, halvings=now.halvings + 1, degree=now.degree + FINER_DEGREE, modes=modes, splits=splits)
+    # Narrower panels at the edge of the contact would leave wider ones elsewhere, where splits are edges then: all are halved.
+    now, near = fine.resolution, fine.mesh.edges[: fine.mesh.log_from + 1]
+    splits = tuple(sorted({*now.splits, *(0.5 * (near[:-1] + near[1:])).tolist()}))
+    return replace(now, degree=now.degree + FINER_DEGREE, modes=modes, splits=splits)
 
 
 def better_values(state: PointState, finer: Resolution) -> dict[str, float] | None:
@@ -78,7 +78,7 @@ def better_values(state: PointState, finer: Resolution) -> dict[str, float] | No
     fine = state.work.fine
     speed, law = fine.equations.speed, fine.equations.law
     if speed == 0:
-        level = _dry_level(law, 20, TIGHT, state.groups.model, finer.halvings)
+        level = _dry_level(law, 20, TIGHT, state.groups.model, finer.halvings + 1)
     else:
         level = solve_level(finer, speed, law, fine.unknowns, fine.mesh, TIGHT, largest=math.inf)
     if not level.outcome.ok:
