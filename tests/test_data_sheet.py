@@ -221,10 +221,10 @@ def test_regimes_prints_conversions_and_the_probability_of_each_regime(tmp_path,
 
     monkeypatch.setattr("stribeck.cli.reports.explain.regime_margins", lambda *_, **__: RegimeMargins("mixed", (), ()))
     path = tmp_path / "case.toml"
-    path.write_text(case_text({"roughness": None, "ra": '"0.8 +- 0.2 um"', "speed": '"20 mm/s"'}))
+    path.write_text(case_text({"roughness": None, "ra": '{ value = "0.8 um", error = "0.2 um" }', "speed": '"20 mm/s"'}))
     answer = call(capsys, "regimes", path)
     assert answer.code == 0
-    assert "Converted: roughness = 1.003 µm from ra = '0.8 +- 0.2 um'" in answer.out
+    assert "Converted: roughness = 1.003 µm from ra = '0.8 um +- 0.2 um'" in answer.out
     assert "Probability of each regime: boundary 0 %, mixed" in answer.out
     found = json.loads(call(capsys, "regimes", path, "--json").out)
     assert sum(found["uncertainty"]["regime_probabilities"].values()) == pytest.approx(1)
@@ -254,3 +254,17 @@ def test_the_drag_behind_a_ball_whose_film_breaks_is_that_of_its_own_far_film():
     for definition in ("balanced", "published"):
         viscous = _values(state, definition, contact)[1]
         assert math.exp(viscous) * contact.beta == pytest.approx(state.friction(definition=definition).viscous, rel=1e-12)
+
+
+@pytest.mark.quick
+def test_what_no_solver_knows_is_printed_as_a_bound():
+    def spread(*numbers, dimension="number"):
+        return sb.Spread("share", "share", numbers[0], numbers[0], numbers[1:], numbers[1:], dimension)
+
+    assert spread(3e-10, 4.8e-13, 8.9e-8).texts == ("< 1e-06", "< 1e-06")
+    assert spread(3e-10, 4.8e-13, 2e-3).texts == ("< 1e-06", "< 1e-06 to 0.002")
+    assert spread(3e-10, 1e-10, 1e-9, dimension="length").texts == ("300 pm", "100 pm to 1 nm")
+    shares = {"roughness": 0.99, "beta": 0.0099, "load": 1e-4}
+    found = sb.Uncertainty(TRUE, {}, (), {"mixed": 1 - 5e-5, "hydrodynamic": 5e-5}, shares, "atlas")
+    assert found.probabilities == "mixed 100 %, hydrodynamic < 0.1 %"
+    assert found.sources == ("Sources of the variance of friction: roughness 99 %, contact-law beta 0.99 %.",)

@@ -251,13 +251,13 @@ def _convert(
     """Put the input that a conversion gives in the place of those it follows from, and return what was done."""
     names = [each.name for each in row.inputs]
     there = [name for name in names if values.get(name) is not None]
-    shown = " and ".join(f"{name} = {show(given[name])}" for name in there)
+    shown = " and ".join(f"{name} = {_shown(given[name])}" for name in there)
     missing = [each for each in row.inputs if each.name not in there]
     if missing:
         raise InputError(f"{shown} needs {missing[0].name} too, as in {missing[0].name} = {show(missing[0].typical)}.")
     if values.get(row.of) is not None:
         raise InputError(
-            f"{row.of} = {show(given.get(row.of, values[row.of]))} and {shown} are both given; remove one of them."
+            f"{row.of} = {_shown(given.get(row.of, values[row.of]))} and {shown} are both given; remove one of them."
         )
     numbers = [_si(each, values.pop(each.name)) for each in row.inputs]
     result = row.value(*numbers)
@@ -273,6 +273,13 @@ def _convert(
     besides = "".join(f", {name} = {value:g} assumed" for name, value in assumed.items())
     made = f"{row.of} = {format_si(result, table.quantities[row.of].dimension, 4)} from {shown}"
     return f"{made}: {row.formula} ({row.source}{about}){besides}."
+
+
+def _shown(value: Any) -> str:
+    """Return a value as it was given, ``{ value, error }`` as people write it."""
+    if isinstance(value, Mapping) and value.keys() == {"value", "error"}:
+        return show(f"{value['value']} +- {value['error']}")
+    return show(value)
 
 
 def _slope(row: Conversion, numbers: list[float], i: int) -> float:

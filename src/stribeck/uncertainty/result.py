@@ -7,13 +7,16 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from stribeck.contacts.contact import Contact
-from stribeck.quantities.units import format_percent, format_si
+from stribeck.quantities.units import format_percent, format_share, format_si
 
 __all__ = ["Spread", "Uncertainty"]
 
 
 NEGLIGIBLE = 1e-6
 """Load shares and friction coefficients below this are smaller than the error of the solver at its default tolerance."""
+
+SAMPLING = 1e-3
+"""Probabilities below this are those of a few of the 20 000 samples."""
 
 LEAST_SOURCE = 1e-3
 """Smallest share of the variance that is named."""
@@ -99,7 +102,7 @@ class Uncertainty:
     @property
     def probabilities(self) -> str:
         """The probability of each regime in words."""
-        return ", ".join(f"{name} {100 * value:.3g} %" for name, value in self.regimes.items())
+        return ", ".join(f"{name} {format_share(value, SAMPLING)}" for name, value in self.regimes.items())
 
     def to_dict(self) -> dict[str, Any]:
         """Return spreads, probabilities and contributions, ready for JSON.
