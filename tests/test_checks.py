@@ -84,6 +84,18 @@ def test_a_verdict_turns_at_its_limits(name, fact, values):
 
 
 @pytest.mark.quick
+def test_a_limit_says_on_which_side_of_it_values_are_fine():
+    centre = "contact law at the centre"
+    found = checks_of(Subject(TRUE), "state")
+    assert (found["Hertz pressure"].texts[1], found["film against molecules"].texts[1]) == ("up to 5 MPa", "from 10 nm")
+    limits = [
+        checks_of(Subject(TRUE.replace(load=load, speed=speed)), "state")[centre] for load, speed in ((2000, 0), (30, 1))
+    ]
+    assert [each.texts[1] for each in limits] == ["from 0.4 h_rms", "always"]
+    assert [each.verdict for each in limits] == ["outside", "fine"]
+
+
+@pytest.mark.quick
 def test_an_input_far_from_all_contacts_is_named_with_its_usual_range():
     found = checks_of(Subject(TRUE.replace(roughness="10 mm", boundary_friction=2.9)), "contact")["inputs"]
     assert found.verdict == "doubtful" and found.value == pytest.approx(100)
