@@ -27,6 +27,7 @@ def test_a_notebook_begins_with_its_title_and_explains_its_code(path):
     assert kinds.count("markdown") >= kinds.count(None) - 1
 
 
+@pytest.mark.slow  # each build of the site runs them cell by cell
 @EACH
 def test_a_notebook_runs_and_its_claims_hold(path, monkeypatch):
     pyplot = pytest.importorskip("matplotlib.pyplot")

@@ -204,7 +204,7 @@ def test_what_is_not_self_affine_is_said_to_be_so():
     noise = np.random.default_rng(105).standard_normal((64, 64)) * 1e-7
     with pytest.raises(sb.InputError, match="only white noise"):
         analyse(Topography(noise, (STEP, STEP)))
-    wave = analyse(Topography(1e-6 * np.sin(np.arange(256) / 5) + 1e-2 * noise.ravel()[:256], (STEP,)))
+    wave = analyse(Topography(1e-6 * np.sin(np.arange(192) / 5) + 1e-2 * noise.ravel()[:192], (STEP,)))
     assert any("The spectrum is not self-affine" in note for note in wave.notes)
     assert any("steeper than that of self-affine" in note for note in wave.notes)
     assert not any("self-affine" in note for note in analyse(synthetic_topography(ROLLED, (64, 64), STEP, 97)).notes)
