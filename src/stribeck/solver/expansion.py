@@ -38,7 +38,17 @@ from stribeck.numerics.series import (
 )
 from stribeck.quantities.outputs import ALL_NAMES, NAMES
 
-__all__ = ["Direction", "Expanded", "corrected", "expand_any_film", "expand_article"]
+__all__ = [
+    "Direction",
+    "Expanded",
+    "around_state",
+    "corrected",
+    "expand_any_film",
+    "expand_article",
+    "from_logs",
+    "observed",
+    "residuals",
+]
 
 SHIFTED = [ROW["central_gap"], ROW["offset"]]
 
@@ -295,22 +305,15 @@ def expand_any_film(
         The coefficients.
     """
     start, units = _started(equations, y)
-    around, load = _around(equations, groups, direction, samples, models)
+    around, load = around_state(equations, groups, direction, samples.places, models)
     powers = samples.powers(order)
 
     def local(k: int, w: Array) -> Array:
-        y = from_logs(equations, powers[:, :k] @ w[:k])
-        if len(around) == 1:
-            return around[0].residual(y)
-        return np.stack([one.residual(row) for one, row in zip(around, y, strict=True)])
+        return residuals(around, from_logs(equations, powers[:, :k] @ w[:k]))
 
     unknowns = implicit_series(start, samples, local, lambda k, w, v: v, lambda r: units * inverse(r), order)
     y = from_logs(equations, powers @ unknowns)
-    if len(around) == 1:
-        each = observables_of_stacked(around[0], y, load)
-    else:
-        each = [observables(one, row, own) for one, row, own in zip(around, y, load[:, 0].tolist(), strict=True)]
-    values = np.array([one.array(in_article=False) for one in each])
+    values = observed(around, y, load)
     if not equations.is_sliding:
         lacks = samples.powers(len(shifts) - 1) @ shifts
         gap = y[:, equations.layout.gap] + lacks[:, None]
@@ -322,11 +325,27 @@ def expand_any_film(
     return Expanded(unknowns, found, np.full_like(found, np.nan))
 
 
-def _around(
-    equations: Equations, groups: Groups, direction: Direction, samples: Samples, models: Sequence[Model]
+def residuals(around: Sequence[Equations], y: Array) -> Array:
+    """Return the residuals of rows of unknowns, by equations that hold all rows or each its own."""
+    if len(around) == 1:
+        return around[0].residual(y)
+    return np.stack([one.residual(row) for one, row in zip(around, y, strict=True)])
+
+
+def observed(around: Sequence[Equations], y: Array, load: Array) -> Array:
+    """Return the observables of rows of unknowns, shape (rows, n), by the same equations."""
+    if len(around) == 1:
+        each = observables_of_stacked(around[0], y, load)
+    else:
+        each = [observables(one, row, own) for one, row, own in zip(around, y, load[:, 0].tolist(), strict=True)]
+    return np.array([one.array(in_article=False) for one in each])
+
+
+def around_state(
+    equations: Equations, groups: Groups, direction: Direction, places: Array, models: Sequence[Model]
 ) -> tuple[list[Equations], Array]:
-    """Return the equations around those of a state, all speeds and laws in columns or one by one, and the load groups."""
-    speed, load, roughness = np.exp(np.outer(samples.places, direction)).T[..., None]
+    """Return the equations at places from a state, all speeds and laws in columns or one by one, and the load groups."""
+    speed, load, roughness = np.exp(np.outer(places, direction)).T[..., None]
     speed, load, law = float(groups.speed) * speed, float(groups.load) * load, contact_law(groups)
     assert isinstance(law, ExponentialLaw | ScaledLaw | NoContact)
     changes: dict[str, Any] = {}

@@ -15,7 +15,7 @@ from stribeck.contacts.model import Model
 from stribeck.equations.error_estimate import GAP_FLOOR, GAPS, FineOperators
 from stribeck.equations.gap import minimum_gaps
 from stribeck.equations.line import Equations, Operators
-from stribeck.equations.observables import ROW, observables
+from stribeck.equations.observables import ROW
 from stribeck.equations.state import State, fall_of, is_thinning, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.hermite import hermite_weights, missed_by
@@ -26,7 +26,17 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import ABSOLUTE, ALL_NAMES, NAMES
 from stribeck.solver.at_rest import shift_along, with_positive_gap
 from stribeck.solver.corrector import Corrector, from_cold, keeps_cavity
-from stribeck.solver.expansion import Direction, Expanded, corrected, expand_any_film, expand_article, from_logs
+from stribeck.solver.expansion import (
+    Direction,
+    Expanded,
+    around_state,
+    corrected,
+    expand_any_film,
+    expand_article,
+    from_logs,
+    observed,
+    residuals,
+)
 from stribeck.solver.path import KNOT_PART, Expansion, rate
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
 
@@ -343,7 +353,7 @@ class LineProblem:
         if self.exact or not self.moves or not _alike(left, right):
             return found
         places = left.coordinate + parts * (right.coordinate - left.coordinate)
-        corrected = np.stack([self._corrected_once(s, left, right) for s in places.tolist()])
+        corrected = self._corrected(left, right, parts)
         everything = values()
         known, scales = everything[:, :POSITION], self.scales(everything, places)[:, :POSITION]
         with np.errstate(all="ignore"):  # values that are not finite count as wrong
@@ -353,17 +363,22 @@ class LineProblem:
         found[:POSITION] += UNSEEN * np.where(beyond > 0, beyond, 0.0)
         return found
 
-    def _corrected_once(self, s: float, left: Expansion, right: Expansion) -> Array:
-        """Return the observables of the state between two expansions, corrected once with the Jacobian of the nearer one."""
-        guess, _ = self._guess(s, self.groups_at(s), [left, right])
-        end = on(guess.mesh, (right, left))
-        assert end is not None
-        equations, y = guess.equations, guess.y
-        inverse = self._inverse_of(end.state)
+    def _corrected(self, left: Expansion, right: Expansion, parts: Array) -> Array:
+        """Return the observables of states between two expansions, corrected with the Jacobian of that on the finer mesh.
+
+        A guess from another mesh is corrected twice: it is worse between the nodes.
+        """
+        end = max(left, right, key=lambda one: one.point.state.mesh.size)
+        state: State = end.point.state
+        t = left.coordinate + parts * (right.coordinate - left.coordinate) - end.coordinate
+        direction, _ = shift_along(self.groups_at(end.coordinate), state.groups, self.direction, 1)
+        models = [] if self.uniform else [as_in(state, self.groups_at(end.coordinate + each).model) for each in t.tolist()]
+        around, load = around_state(state.equations, state.groups, direction, t, models)
+        y, inverse = from_logs(state.equations, between(left, right, end.point, parts)), self._inverse_of(state)
         with np.errstate(all="ignore"):
             for _ in range(1 if left.point.state.mesh is right.point.state.mesh else 2):
-                y = y + equations.units(y) * inverse(equations.residual(y))
-            return observables(equations, y, float(guess.groups.load)).array(in_article=False)
+                y = y + state.equations.units(y) * inverse(residuals(around, y))
+            return observed(around, y, load)
 
     def read(self, left: Expansion, right: Expansion, parts: Array) -> tuple[Array, Array, Sequence[int]]:
         """Return the minimum gap and its position on the finer mesh, or each on the mesh that resolves it better."""
