@@ -364,11 +364,17 @@ class LineProblem:
         return found
 
     def _corrected(self, left: Expansion, right: Expansion, parts: Array) -> Array:
-        """Return the observables of states between two expansions, corrected with the Jacobian of that on the finer mesh.
+        """Return the observables of states between two expansions, ascending, corrected with the Jacobian of the nearer one.
 
         A guess from another mesh is corrected twice: it is worse between the nodes.
         """
-        end = max(left, right, key=lambda one: one.point.state.mesh.size)
+        if left.point.state.mesh is right.point.state.mesh:
+            return self._corrected_by(right, left, right, parts, 1)
+        nearer = [(left, parts[parts < 0.5]), (right, parts[parts >= 0.5])]
+        return np.concatenate([self._corrected_by(end, left, right, some, 2) for end, some in nearer])
+
+    def _corrected_by(self, end: Expansion, left: Expansion, right: Expansion, parts: Array, times: int) -> Array:
+        """Return the same by one of the two, on its mesh."""
         state: State = end.point.state
         t = left.coordinate + parts * (right.coordinate - left.coordinate) - end.coordinate
         direction, _ = shift_along(self.groups_at(end.coordinate), state.groups, self.direction, 1)
@@ -376,7 +382,7 @@ class LineProblem:
         around, load = around_state(state.equations, state.groups, direction, t, models)
         y, inverse = from_logs(state.equations, between(left, right, end.point, parts)), self._inverse_of(state)
         with np.errstate(all="ignore"):
-            for _ in range(1 if left.point.state.mesh is right.point.state.mesh else 2):
+            for _ in range(times):
                 y = y + state.equations.units(y) * inverse(residuals(around, y))
             return observed(around, y, load)
 
