@@ -275,6 +275,13 @@ def test_a_thick_layer_is_the_half_plane_but_for_its_offset():
     assert differences[0] / differences[1] == pytest.approx(4.0, rel=0.05)
 
 
+def test_a_thick_film_on_a_thin_layer_has_its_offset():
+    """The pressure where the panels in x ended was still felt: the offset was wrong by 2.4e-6."""
+    groups, layer = sb.Groups(39e3, 1e-3, 0.0), sb.solids.Layer(1.8)
+    coarse, fine = (sb.solve(groups, solid=layer, rtol=rtol) for rtol in (1e-6, 1e-8))
+    assert coarse.offset == pytest.approx(fine.offset, rel=2e-7)
+
+
 def test_a_curve_of_a_film_that_ends_finds_its_range_and_its_minimum():
     """Minimum of friction at load 0.1 and kappa 1e-3 with a free exit: 0.02410 at speed 1.095e-3; full film 0.02635."""
     curve = sb.stribeck_curve(sb.Groups(1e-4, 0.1, 1e-4), cavitation="exit", points=7, rtol=1e-5)
