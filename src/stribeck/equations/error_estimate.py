@@ -300,7 +300,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     if op.has_exit:
         _of_ends(states, residual, integral, slopes, size)
     residual[:, :, at.pressure] = 0.0
-    if lowered is not None:
+    if known is not None and lowered is not None:
         residual[0, :, at.pressure] = known - lowered
         residual[0, :, at.pressure][:, -coarse.order :] = 0.0
     residual[1:] *= _signs(coarse.panels, coarse.order, at.size - at.numbers.start, at.numbers.start)[:, None]
