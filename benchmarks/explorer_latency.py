@@ -28,7 +28,7 @@ CLOCK = """() => {
   const frame = window.explorerFrame;
   window.explorerFrame = (answer) => {
     const drawn = frame(answer), start = window.pressed;
-    if (answer.knobs.length && start) {
+    if (answer.html.length && start) {
       window.pressed = 0;
       requestAnimationFrame(() => { window.moves.push(performance.now() - start); });
     }
