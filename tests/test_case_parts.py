@@ -86,7 +86,10 @@ def test_every_solid_is_read(table, solid):
 def test_a_preset_gives_the_viscosity_too():
     contact = {name: value for name, value in CONTACT.items() if name != "viscosity"}
     liquid = {"preset": "glycerol-water", "weight_fraction": 0.8, "temperature": "20 degC"}
-    assert case_of(contact, fluid=liquid).contact.viscosity == sb.fluids.glycerol_water(0.8, 20).viscosity
+    case = case_of(contact, fluid=liquid)
+    assert case.contact.viscosity == sb.fluids.glycerol_water(0.8, 20).viscosity
+    [said] = case.conversions
+    assert said.startswith("viscosity = ") and "weight_fraction = 0.8 and temperature = '20 degC': Cheng 2008" in said
     thinning = case_of(contact, fluid={"preset": "xanthan"}).contact
     assert thinning.fluid == sb.fluids.PRESETS["xanthan"]().fluid
     with pytest.raises(sb.InputError, match=r"\[fluid\] preset = 'water' and viscosity = .* are both given"):
@@ -115,6 +118,10 @@ def test_flow_factors_take_alpha_and_roughness_of_the_contact():
         ({"fluid": {"viscosity_law": "constant", "pressure_viscosity": 1}}, r"\[fluid\] pressure_viscosity = 1 is given, but"),
         ({"fluid": {"pressure_viscosity": "15 1/GPa", "reference_pressure": 1}}, r"but viscosity_law = 'barus' has no such"),
         ({"fluid": {"pressure_viscosity": "15 GPa"}}, r"\[fluid\] pressure_coefficient = '15 GPa' is a pressure"),
+        (
+            {"fluid": {"viscosity": 0.05}},
+            r"viscosity = 0.05 is not a known key; it belongs in the table \[contact\]",
+        ),
         ({"fluid": {"preset": "honey"}}, r"\[fluid\] preset = 'honey' must be one of"),
         ({"fluid": {"preset": "water", "model": "cross"}}, r"\[fluid\] model = 'cross' is given, but a preset"),
         ({"fluid": "water"}, r"\[fluid\] fluid = 'water' must be a table"),

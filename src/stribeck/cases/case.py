@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
-from stribeck.cases.model_parts import take_parts
+from stribeck.cases.model_parts import preset_said, take_parts
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import CONTACTS, check_geometry
 from stribeck.contacts.groups import Geometry
@@ -226,7 +226,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         fit=fit,
         facts=facts,
         errors=errors,
-        conversions=conversions,
+        conversions=(*conversions, *preset_said(tables, contact.viscosity)),
         tables=tables,
         **checked["solver"],
     )

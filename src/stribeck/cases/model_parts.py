@@ -16,11 +16,13 @@ from stribeck.fluids.presets import PRESETS
 from stribeck.fluids.rheology.eyring import Eyring
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
 from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, Roelands
-from stribeck.quantities.units import InputError, show
+from stribeck.quantities.conversions import GIVEN
+from stribeck.quantities.inputs import INPUT_TABLES
+from stribeck.quantities.units import InputError, format_si, show
 from stribeck.solids.layer import Layer
 from stribeck.solids.viscoelastic import Prony, StandardLinearSolid
 
-__all__ = ["KEYS", "take_parts"]
+__all__ = ["KEYS", "preset_said", "take_parts"]
 
 
 class Part(NamedTuple):
@@ -91,6 +93,10 @@ KEYS = {
 """Table -> its keys."""
 
 
+CONTACT_KEYS = {*INPUT_TABLES["point"].quantities, *GIVEN, "geometry"}
+"""Keys of ``[contact]``, for those who write them below another table."""
+
+
 def take_parts(tables: dict[str, Any], geometry: str) -> tuple[dict[str, Any], dict[str, Any], list[str]]:
     """Return the tables without those of the model, what these say, and what is wrong with them.
 
@@ -149,6 +155,8 @@ def _unknown(key: str, value: Any, known: tuple[str, ...]) -> str:
     near = difflib.get_close_matches(key, known, n=1, cutoff=0.8)
     meant = near or [each for each in ("preset", "model") if key in NAMES and each in known]
     advice = f"did you mean {' or '.join(meant)}" if meant else f"known are {', '.join(known)}"
+    if key in CONTACT_KEYS:
+        advice = "it belongs in the table [contact]: keys go to the last [table] above them"
     return f"{key if key.isprintable() else repr(key)} = {show(value)} is not a known key; {advice}."
 
 
@@ -202,6 +210,30 @@ def _preset(table: dict[str, Any], contact: Any) -> dict[str, Any]:
             )
         contact["viscosity"] = liquid.viscosity
     return {"fluid": liquid.fluid}
+
+
+def preset_said(tables: dict[str, Any], viscosity: float) -> tuple[str, ...]:
+    """Return where the viscosity of a preset is from, in a sentence; nothing where no liquid is named.
+
+    Parameters
+    ----------
+    tables : dict
+        The tables of a file as written.
+    viscosity : float
+        Viscosity of the contact [Pa s].
+
+    Returns
+    -------
+    tuple of str
+        At most one sentence.
+    """
+    table = tables.get("fluid")
+    if not isinstance(table, dict) or "preset" not in table:
+        return ()
+    preset = PRESETS[table["preset"]]
+    conditions = {**preset.conditions, **{key: table[key] for key in CONDITIONS if key in table}}
+    given = " and ".join(f"{name} = {show(value)}" for name, value in {"preset": table["preset"], **conditions}.items())
+    return (f"viscosity = {format_si(viscosity, 'viscosity', 4)} from {given}: {preset.source} ({preset.range}).",)
 
 
 def _cavitation(table: dict[str, Any], contact: Any) -> dict[str, Any]:
