@@ -133,7 +133,7 @@ def test_killing_the_run_keeps_the_states_and_another_goes_on_without_the_cluste
         finally:
             process.kill()
     assert process.returncode == 130, err
-    assert "the lock was taken over" in err and "the same command goes on from there" in err
+    assert "the lock was taken over" in err and "run the same command again to resume" in err
     assert not (store / LOCK).exists()
     kept = sb.open_sweep(store).finished
     last = sb.sweep(file, store)
