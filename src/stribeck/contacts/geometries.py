@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.groups import Geometry, check_geometry
 from stribeck.contacts.line import LineContact
 from stribeck.contacts.point import PointContact
-from stribeck.contacts.scaling import Geometry, check_geometry
 
 __all__ = ["CONTACTS", "check_geometry"]
 

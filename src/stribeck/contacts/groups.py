@@ -16,11 +16,11 @@ from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
 from stribeck.contact_laws.law import AsperityLaw, ContactLaw, check_law, has_constant_decay
 from stribeck.contact_laws.scaled import ScaledLaw
 from stribeck.contacts.model import ARTICLE, Model
-from stribeck.contacts.scaling import SCALINGS, Geometry, Scaling, check_geometry
+from stribeck.contacts.scaling import SCALINGS, Geometry, Scaling
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.units import InputError, show
 
-__all__ = ["LARGEST", "SMALLEST", "Geometry", "Groups", "Physics"]
+__all__ = ["LARGEST", "SMALLEST", "Geometry", "Groups", "Physics", "check_geometry"]
 
 SMALLEST, LARGEST = 1e-300, 1e300
 """Bounds of what is not zero, far beyond any contact: products and squares of the groups stay in double precision."""
@@ -269,3 +269,12 @@ def _check_ratio(roughness: float | Array, relative: float | Array) -> None:
             f"the relative roughness has the value {ratio[wrong].flat[0]:g} and must be zero or "
             f"from {SMALLEST:g} to {LARGEST:g}; check the units of the inputs."
         )
+
+
+def check_geometry(geometry: Any) -> Geometry:
+    """Return the name of a geometry; refuse what is none."""
+    for known in SCALINGS:
+        if isinstance(geometry, str) and geometry == known:
+            return known
+    names = " or ".join(map(repr, SCALINGS))
+    raise InputError(f"geometry = {show(geometry)}; it must be {names}: a cylinder or a ball.")

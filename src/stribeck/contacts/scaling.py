@@ -17,11 +17,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
-from stribeck.quantities.units import InputError, show
-
-__all__ = ["SCALINGS", "Geometry", "Scaling", "check_geometry"]
+__all__ = ["SCALINGS", "Geometry", "Scaling"]
 
 Geometry = Literal["line", "point"]
 """What touches: a cylinder or a ball."""
@@ -61,12 +59,3 @@ SCALINGS: dict[Geometry, Scaling] = {
     "point": Scaling("point", 2 * math.pi / 3, 1 / 3, 2 / 3, 0.5 * math.pi, 1, 4 * math.pi),
 }
 """The geometries by name: a cylinder, whose load is per unit length, and a ball."""
-
-
-def check_geometry(geometry: Any) -> Geometry:
-    """Return the name of a geometry; refuse what is none."""
-    for known in SCALINGS:
-        if isinstance(geometry, str) and geometry == known:
-            return known
-    names = " or ".join(map(repr, SCALINGS))
-    raise InputError(f"geometry = {show(geometry)}; it must be {names}: a cylinder or a ball.")
