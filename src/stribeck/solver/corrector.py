@@ -96,8 +96,7 @@ class Corrector:
                 self.operators, self.inverse = Operators(self.operators.mesh, base.model), None
             state = self._on_kept_mesh(guess, base, spread)
             if state.outcome.ok:
-                centre = -state.exit / state.dilation
-                if gap_is_resolved(state.mesh, state.gap, self.rtol, centre=centre, spread=spread):
+                if self._is_resolved(state, spread):
                     point = verify(state, groups, self.fine, self.rtol)
                     if point.outcome.ok:
                         self._look_for_coarser(state)
@@ -113,10 +112,14 @@ class Corrector:
         rough = solve_state(base, self.operators, guess, ROUGH, MOST_STEPS, self.inverse)
         if not rough.outcome.ok:
             return rough
-        if rough.prediction_error > FAR_OFF and not gap_is_resolved(rough.mesh, rough.gap, self.rtol, spread=spread):
+        if rough.prediction_error > FAR_OFF and not self._is_resolved(rough, spread):
             return rough
         state = solve_state(base, self.operators, rough, newton_tolerance(self.rtol), MOST_STEPS, rough.root.inverse)
         return replace(state, prediction_error=max(state.prediction_error, rough.prediction_error))
+
+    def _is_resolved(self, state: State, spread: float) -> bool:
+        centre = -state.exit / state.dilation
+        return gap_is_resolved(state.mesh, state.gap, self.rtol, centre=centre, spread=spread)
 
     def _kept(self, point: RefinedState) -> RefinedState:
         """Return the state without its inverse, which is kept here for the next one."""
