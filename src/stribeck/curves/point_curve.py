@@ -374,14 +374,15 @@ def point_speeds(groups: Groups, boundary_friction: float, beta: float, definiti
     """Return the speed groups from the boundary plateau of a ball to its hydrodynamic branch.
 
     They are found on coarse states a decade apart, down from the speed at which the smooth film is thirty times the
-    roughness; smooth surfaces have no plateau, and their curve covers eight decades up to speed 10.
+    roughness, or from the first below it that is solved; smooth surfaces have no plateau, and their curve covers eight decades
+    up to speed 10.
     """
     kappa = float(groups.relative_roughness)
     if kappa == 0:
         return SLOWEST, 10.0
     solver = NeighbourSolver(lambda s: replace(groups, speed=math.exp(s)), COARSE)
-    top = min(FASTEST, max(1e-6, (30 * kappa / 0.42) ** (1 / 0.6)))
-    high, low, share = top, top, None
+    fastest, low, share = FASTEST, min(FASTEST, max(1e-6, (30 * kappa / 0.42) ** (1 / 0.6))), None
+    high = low
 
     def contact_part(state: PointState) -> float:
         friction = solution_of(state, None).friction(boundary_friction, beta, definition)
@@ -390,11 +391,14 @@ def point_speeds(groups: Groups, boundary_friction: float, beta: float, definiti
     while low > SLOWEST:
         state = solver(math.log(low))
         if not state.outcome.ok:
-            break
+            if share is not None:
+                break
+            fastest = low = high = low / 10
+            continue
         if contact_part(state) < BRANCH:
             high = low
         found = float(state.values["fluid_load_share"])
         if share is not None and abs(share - found) < PLATEAU and state.values["contact_load_share"] > 0.1:
             break
         share, low = found, low / 10
-    return max(low, SLOWEST), min(10 * high, FASTEST)
+    return max(low, SLOWEST), min(10 * high, fastest)
