@@ -262,6 +262,13 @@ def test_regimes_follow_one_another_and_meet_at_the_transitions(curve):
         assert [name for name, low, high in ranges if low <= value <= high] == [regime]
 
 
+@pytest.mark.parametrize("points", [2, 3, 5])
+def test_regimes_of_few_points_meet_at_the_same_places(curve, points):
+    """Where the load is shared in halves no regime ends; and between two points a whole regime may lie."""
+    for (name, low, high), (other, from_, to) in zip(curve.sampled(points).regime_ranges, curve.regime_ranges, strict=True):
+        assert (name, low, high) == (other, pytest.approx(from_, rel=1e-5), pytest.approx(to, rel=1e-5))
+
+
 def test_regimes_of_a_curve_over_the_roughness_run_the_other_way():
     curve = sb.stribeck_curve(CONTACT, roughness=("0.02 um", "10 um"), points=7)
     assert [name for name, _, _ in curve.regime_ranges] == ["hydrodynamic", "mixed", "boundary"]

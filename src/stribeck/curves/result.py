@@ -341,11 +341,16 @@ class StribeckCurve(Exported, Shown, ByValue):
         regimes = self.regimes
         edges = [float(self.values[0])]
         names = [regimes[0]]
-        marks = [mark.value for mark in self.transitions if mark is not self.minimum]
+        marks = {mark.name: mark.value for mark in self.transitions}
+        ends = {"boundary": Transition.BOUNDARY_END, "hydrodynamic": Transition.HYDRODYNAMIC_START}
         for i in range(1, len(self)):
             if regimes[i] != names[-1]:
                 low, high = float(self.values[i - 1]), float(self.values[i])
-                edges.append(next((value for value in marks if low <= value <= high), math.sqrt(low * high)))
+                located = {name: marks.get(ends[name], low) for name in (names[-1], regimes[i]) if name in ends}
+                inside = [value for value in located.values() if low < value < high]
+                if len(inside) == 2:
+                    names.append("mixed")
+                edges += inside or [math.sqrt(low * high)]
                 names.append(regimes[i])
         return tuple(zip(names, edges, [*edges[1:], float(self.values[-1])], strict=True))
 
