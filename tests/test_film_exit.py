@@ -111,6 +111,12 @@ def state_of(groups):
     return solved_point(groups, 1e-7).state
 
 
+def test_a_thin_film_is_cut_where_its_pressure_falls_to_zero():
+    """Cut at the next of evenly spaced places, the film ended beyond a layer that no mesh resolved, and nothing was found."""
+    beyond = [sb.solve(sb.Groups(speed, 3.26e-6, 0.0, model=ENDING)).exit_position - 1 for speed in (1.2e-12, 2.2e-12)]
+    assert math.log(beyond[1] / beyond[0]) / math.log(2.2 / 1.2) == pytest.approx(0.4, abs=1e-3)
+
+
 @pytest.mark.slow
 def test_random_cold_starts_of_films_that_end_are_solved_and_their_errors_covered():
     rng, missed, states = np.random.default_rng(20_261), 0, 200

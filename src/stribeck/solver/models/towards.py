@@ -366,12 +366,15 @@ def _along(start: Groups, end: Groups, first: State) -> Path[State]:
 def _seen_from_exit(state: State) -> SeenFrom:
     """Return the guess of a film that ends where the pressure of the full film falls to zero behind its maximum."""
     width = math.sqrt(1.0 + float(state.gap.min()))
-    x = np.linspace(-2 * width, 2 * width, LOOKED_AT)
+    nodes = state.mesh.nodes
+    x = np.union1d(np.linspace(-2 * width, 2 * width, LOOKED_AT), nodes[np.abs(nodes) < 2 * width])
     pressure = state.fields(x)[1]
     highest = int(np.argmax(pressure))
-    behind = np.flatnonzero(pressure[highest:] <= 0)
-    end = float(x[highest + behind[0]]) if len(behind) else width
-    return SeenFrom(state, max(end, NEAREST_EXIT * width))
+    behind = highest + np.flatnonzero(pressure[highest:] <= 0)
+    if not len(behind):
+        return SeenFrom(state, width)
+    end = np.linspace(x[behind[0] - 1], x[behind[0]], LOOKED_AT)
+    return SeenFrom(state, max(float(end[np.argmax(state.fields(end)[1] <= 0)]), NEAREST_EXIT * width))
 
 
 def _blended(groups: Groups, path: Path[State], start: State) -> Path[State]:
