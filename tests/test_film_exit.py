@@ -117,6 +117,11 @@ def test_a_thin_film_is_cut_where_its_pressure_falls_to_zero():
     assert math.log(beyond[1] / beyond[0]) / math.log(2.2 / 1.2) == pytest.approx(0.4, abs=1e-3)
 
 
+def test_a_film_whose_first_mesh_is_too_fine_for_its_guess_comes_from_a_coarser_one():
+    solution = sb.solve(sb.Groups(1.219360144469988, 6.268266254394199e-08, 0.0, model=ENDING), rtol=1e-8)
+    assert solution.exit_position == pytest.approx(1.06349326, rel=1e-7)
+
+
 @pytest.mark.slow
 def test_random_cold_starts_of_films_that_end_are_solved_and_their_errors_covered():
     rng, missed, states = np.random.default_rng(20_261), 0, 200

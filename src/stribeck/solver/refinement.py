@@ -34,6 +34,9 @@ PROGRESS = 0.5
 NOISES = 4.0
 """Error over that noise up to which it may be."""
 
+COARSER = 10.0
+"""Factor of the Legendre tails, twice at most, where Newton's iteration does not reach a first state on a fine mesh."""
+
 CLEARLY_FINER = 1.1
 """Ratio of mesh sizes above which the difference of two solutions measures the error of the coarser one."""
 
@@ -87,6 +90,7 @@ def converge(
     base, _ = with_positive_gap(groups)
     law = contact_law(base)
     tail, gap_tail = mesh_tolerances_for(rtol) if tolerances is None else tolerances
+    first = tail
     best = RefinedState(groups, None, None, None, Outcome.REFINEMENT_LIMIT)
     last: tuple[int, Array] | None = None
     halvings = 0
@@ -101,7 +105,10 @@ def converge(
         state = solve_state(base, Operators(mesh, base.model), guess, newton_tolerance(rtol))
         if not state.outcome.ok:
             outcome = state.outcome
-            break
+            if best.state is not None or tail > COARSER * first:
+                break
+            tail, gap_tail = COARSER * tail, COARSER * gap_tail
+            continue
         if isinstance(guess, State):  # the prediction becomes the first state on the way to this one
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
         fine, values, in_article = FineOperators(mesh), values_of(state, groups), state.equations.operators.is_article
