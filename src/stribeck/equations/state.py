@@ -367,8 +367,8 @@ def mesh_for(
         carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_OF_ERROR / tolerance
         dragged = reach * (DRAG_OF_LAYER * min(1.0, float(central_gap.max())) * (TAIL_OF_ERROR / tolerance) ** 2) ** 0.25
         reach = max(reach, min(reach + REACH_OF_LAYER * thickness, carried), min(thickness, dragged))
-    if broken and tolerance < COARSE:
-        reach = max(reach, plateau, FAR_OFF * scale)
+    if tolerance < COARSE:
+        reach = max(reach, plateau, FAR_OFF * scale if broken else 0.0)
     if memories:  # where the panel through infinity begins, all is forgotten
         reach = max(reach, FORGOTTEN * max(memories))
     if not ends:

@@ -122,7 +122,7 @@ class ShearThinning:
     def fall(self, speed: float) -> Fall:
         """Return how the pressure falls off far away: there the rate is about 1/h, and h about x**2/2."""
         rate = self.law.plateau
-        return Fall(math.sqrt(2 * self.law.time * speed / rate) if 0 < rate < 1 else 0.0, rate < 1)
+        return Fall(math.sqrt(2 * self.law.time * speed / rate) if rate > 0 else 0.0, rate < 1)
 
     def gradient(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
         """Return G."""
