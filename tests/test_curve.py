@@ -269,6 +269,14 @@ def test_regimes_of_few_points_meet_at_the_same_places(curve, points):
         assert (name, low, high) == (other, pytest.approx(from_, rel=1e-5), pytest.approx(to, rel=1e-5))
 
 
+def test_where_asperities_hardly_rub_no_mixed_regime_is_put_between_two_points():
+    groups = sb.Groups(1e-3, 0.1, 1e-2)
+    curve = sb.stribeck_curve(groups, speed=np.geomspace(1e-5, 1, 5), boundary_friction=1e-3, beta=1.0).sampled(2)
+    (boundary, _, end), (film, start, _) = curve.regime_ranges
+    assert (boundary, film, end) == ("boundary", "hydrodynamic", start)
+    assert start == curve.landmark("hydrodynamic_start").value
+
+
 def test_regimes_of_a_curve_over_the_roughness_run_the_other_way():
     curve = sb.stribeck_curve(CONTACT, roughness=("0.02 um", "10 um"), points=7)
     assert [name for name, _, _ in curve.regime_ranges] == ["hydrodynamic", "mixed", "boundary"]

@@ -348,8 +348,10 @@ class StribeckCurve(Exported, Shown, ByValue):
                 low, high = float(self.values[i - 1]), float(self.values[i])
                 located = {name: marks.get(ends[name], low) for name in (names[-1], regimes[i]) if name in ends}
                 inside = [value for value in located.values() if low < value < high]
-                if len(inside) == 2:
+                if len(inside) == 2 and inside[0] < inside[1]:
                     names.append("mixed")
+                elif len(inside) == 2:  # where asperities hardly rub the film is hydrodynamic before it bears load
+                    inside = [located["hydrodynamic"]]
                 edges += inside or [math.sqrt(low * high)]
                 names.append(regimes[i])
         return tuple(zip(names, edges, [*edges[1:], float(self.values[-1])], strict=True))
