@@ -109,7 +109,8 @@ class EffectiveMedium(FlowFactors):
             raise InputError("flow factors in SI units are no film yet; give them to a contact or to groups.")
         beyond = np.maximum(gap / self.sigma - PERCOLATION, NEAREST)
         phi, slope = _lifted_factor().with_slope(np.log(beyond))
-        slope *= (beyond > NEAREST) & (beyond < FARTHEST)
+        if not NEAREST < beyond.min() <= beyond.max() < FARTHEST:
+            slope *= (beyond > NEAREST) & (beyond < FARTHEST)
         slope /= beyond * self.sigma
         return phi, slope
 

@@ -11,7 +11,7 @@ Source: [BP] Eq. (thin-film_dl); isoviscous fluid, no flow factors.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Self
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -36,6 +36,20 @@ def gap_derivative(gap: Array, flux_gap: Numbers) -> Array:
 def flux_derivative(gap: Array) -> Array:
     """Return the derivative of :func:`gradient` with respect to h*, ``-1/h**3``."""
     return -1.0 / gap**3
+
+
+class _Column(NamedTuple):
+    """What a film is at nodes, and what it was made for."""
+
+    key: Key
+    gradient: Array
+    slopes: Slopes | None
+
+    @property
+    def as_row(self) -> _Column:
+        """The same of a single row of nodes."""
+        slopes = None if self.slopes is None else Slopes(*(None if each is None else each[None] for each in self.slopes))
+        return _Column(self.key, self.gradient[None], slopes)
 
 
 @dataclass(frozen=True)
@@ -66,7 +80,7 @@ class Newtonian:
     uses_pressure: bool = field(init=False, repr=False, compare=False)
     is_smooth: bool = field(init=False, repr=False, compare=False)
     is_plain: bool = field(init=False, repr=False, compare=False)
-    _known: dict[tuple[int, ...], tuple[Key, Slopes]] = field(init=False, repr=False, compare=False)
+    _known: dict[tuple[int, ...], _Column] = field(init=False, repr=False, compare=False)
     uses_speed: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
@@ -103,18 +117,18 @@ class Newtonian:
         """Return G."""
         if self.is_plain:
             return gradient(gap, flux_gap)
+        if not self.is_smooth:
+            return self._at(gap, pressure, flux_gap).gradient
         eta, _, rho, _ = self._of_pressure(pressure)
-        width = gap - flux_gap / rho
-        if self.is_smooth:
-            return np.asarray(eta * width / (gap * gap * gap))
-        width += self.slide * self.flow.shear(gap)[0]
-        return np.asarray(eta * width / (self.flow.pressure(gap)[0] * gap * gap * gap))
+        return np.asarray(eta * (gap - flux_gap / rho) / (gap * gap * gap))
 
     def slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
         """Return the derivatives of G."""
         if self.is_plain:
             return Slopes(gap_derivative(gap, flux_gap), None, flux_derivative(gap))
-        return self._slopes(gap, pressure, flux_gap)
+        found = self._at(gap, pressure, flux_gap, with_slopes=True).slopes
+        assert found is not None
+        return found
 
     def jump(self, gap: Array, pressure: Array | None) -> Array | None:
         """Return by how much G jumps between each node and the next one, zero mostly; None if it never does."""
@@ -180,28 +194,28 @@ class Newtonian:
         log, log_slope = self.viscosity.log(pressure)
         return np.exp(log), log_slope, *self.density.ratio(pressure)
 
-    def _slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Slopes:
-        """Return the derivatives of G, those known if the last on as many nodes were for the same film."""
+    def _at(self, gap: Array, pressure: Array | None, flux_gap: Numbers, with_slopes: bool = False) -> _Column:
+        """Return G and where asked for its derivatives, those known if the last on as many nodes were for the same film."""
         if len(gap.shape) == 2 and len(gap) == 1:
-            slopes = self._slopes(gap[0], None if pressure is None else pressure[0], np.ravel(flux_gap))
-            by_gap, by_pressure, by_flux, _ = slopes
-            return Slopes(by_gap[None], None if by_pressure is None else by_pressure[None], by_flux[None])
+            return self._at(gap[0], None if pressure is None else pressure[0], np.ravel(flux_gap), with_slopes).as_row
         key = (flux_gap, gap, pressure)
         last = self._known.get(gap.shape)
-        if last is not None and same(last[0], key):
-            return last[1]
+        if last is not None and same(last.key, key) and (last.slopes is not None or not with_slopes):
+            return last
         if len(self._known) >= MOST_KEPT:
             self._known.clear()
         h, m, s = gap, flux_gap, self.slide
         eta, eta_slope, rho, rho_slope = self._of_pressure(pressure)
-        phi, phi_slope = self.flow.pressure(h)
         carried, carried_slope = self.flow.shear(h)
+        phi, phi_slope = self.flow.pressure(h)
         resistance = eta / (phi * h * h * h)
         g = resistance * (h - m / rho + s * carried)
-        by_gap = resistance * (1 + s * carried_slope) - g * (phi_slope / phi + 3 / h)
-        by_pressure = eta_slope * g + resistance * m * rho_slope / rho**2 if self.uses_pressure else None
-        found = Slopes(by_gap, by_pressure, -resistance / rho)
-        self._known[gap.shape] = kept(key), found
+        slopes = None
+        if with_slopes:
+            by_gap = resistance * (1 + s * carried_slope) - g * (phi_slope / phi + 3 / h)
+            by_pressure = eta_slope * g + resistance * m * rho_slope / rho**2 if self.uses_pressure else None
+            slopes = Slopes(by_gap, by_pressure, -resistance / rho)
+        found = self._known[gap.shape] = _Column(kept(key), g, slopes)
         return found
 
 
