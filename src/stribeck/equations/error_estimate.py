@@ -260,14 +260,17 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     flat = (np.abs(h - h_star) < FLAT * h).reshape(len(y), coarse.panels, -1).all(axis=2)
     flat &= not is_thinning(film)  # it turns sharply where the rate is zero
 
-    def gradient(p: Array | None) -> Array:
-        slopes = gradient_in_film(film, integral, gap, p, h_star)
-        if flat.any():
-            smooth = coarse.to_order(gradient_in_film(film, op.integral, h, known, h_star), mesh.order)
-            slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
-        return slopes
-
-    slopes = gradient(fluid)
+    slopes = gradient_in_film(film, integral, gap, fluid, h_star)
+    if flat.any():
+        smooth = gradient_in_film(film, op.integral, h, known, h_star)
+        if getattr(film, "is_plain", False):
+            smooth = coarse.to_order(smooth, mesh.order)
+        else:  # what conducts is no such difference, and may turn sharply
+            conducted = slopes_in_film(film, op.integral, h, known, h_star).by_flux
+            finer_conducted = slopes_in_film(film, integral, gap, fluid, h_star).by_flux
+            missing = np.divide(smooth, conducted, out=np.zeros_like(smooth), where=conducted != 0)
+            smooth = coarse.to_order(missing, mesh.order) * finer_conducted
+        slopes = np.where(np.repeat(flat, mesh.order, axis=1), smooth, slopes)
     jump = jump_of(film)
     jumps = None if jump is None else jump(gap, fluid)
     if jumps is not None:

@@ -237,6 +237,11 @@ def is_thinning(film: Film) -> bool:
     return hasattr(film, "fall")
 
 
+def is_rough(film: Film) -> bool:
+    """Return whether roughness hinders the flow: the pressure gradient then turns where the last paths of the flow close."""
+    return not getattr(film, "is_smooth", True)
+
+
 def jump_of(film: Film) -> Callable[[Array, Array | None], Array | None] | None:
     """Return what tells by how much the pressure gradient jumps between each node and the next one; None if it never does."""
     return None if getattr(film, "is_plain", False) else getattr(film, "jump", None)
@@ -284,8 +289,10 @@ def mesh_for(
         If more panels are needed than :data:`mesh.MAX_PANELS`.
     """
     cavitation = groups.model.cavitation
-    plateau, broken = fall_of(groups.model.film, float(groups.speed))
-    thins, jump = is_thinning(groups.model.film), jump_of(groups.model.film)
+    film = groups.model.film
+    plateau, broken = fall_of(film, float(groups.speed))
+    turns_sharply = is_thinning(film) or (is_rough(film) and tolerance < COARSE)
+    jump = jump_of(film)
     ends, restart = cavitation is not Cavitation.NONE, math.inf
     if cavitation is Cavitation.REFORM:
         restart = _cavity_on_mesh(guess)
@@ -296,7 +303,7 @@ def mesh_for(
     scale = 2.0 ** round(float(np.log2(width).mean()))
     minimum_position = guess.minimum_position / to_guess
     lift = 1.0
-    if thins and isinstance(guess, State):  # turns that no load feels are felt by flux and drag
+    if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
 

@@ -14,7 +14,7 @@ from stribeck.equations.error_estimate import ErrorEstimate, FineOperators, erro
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Operators
 from stribeck.equations.observables import Observables, observables
-from stribeck.equations.state import END_GAIN, State, fall_of, jump_of, mesh_for, solve_state
+from stribeck.equations.state import END_GAIN, State, fall_of, is_rough, mesh_for, solve_state
 from stribeck.fluids import newtonian as reynolds
 from stribeck.numerics.panels import MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
@@ -113,12 +113,11 @@ def converge(
             state = replace(state, prediction_error=max(state.prediction_error, guess.prediction_error))
         fine, values, in_article = FineOperators(mesh), values_of(state, groups), state.equations.operators.is_article
         [estimate] = error_estimates(state.stacked, [values], fine)
-        # Where a film ends, the rate falls to zero in a fluid without a plateau, or a flow factor jumps, two meshes may
+        # Where a film ends, the rate falls to zero in a fluid without a plateau, or roughness stops the flow, two meshes may
         # share the cause of their error.
         film = state.equations.film
         shared = state.equations.operators.has_exit or fall_of(film, 1.0).broken
-        jump = jump_of(film)
-        shared |= jump is not None and jump(state.gap, state.fluid_pressure) is not None
+        shared |= is_rough(film)
         if last is not None and mesh.size >= CLEARLY_FINER * last[0] and not shared:
             estimate = estimate.at_most(np.abs(values.array(in_article) - last[1]))
         last = mesh.size, values.array(in_article)
