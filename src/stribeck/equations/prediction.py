@@ -10,10 +10,13 @@ from functools import cached_property
 import numpy as np
 
 from stribeck._types import Array
+from stribeck.equations.gap import minimum_gap
 from stribeck.equations.guess import Guess
 from stribeck.equations.state import State
+from stribeck.fluids.cavitation import Cavitation
 from stribeck.numerics.continuation import extrapolation_weights
 from stribeck.numerics.panels import Mesh
+from stribeck.solids.solid import lengths_of
 
 LARGEST_AMPLIFICATION = 40.0
 """Sum of the absolute extrapolation weights above which a predictor uses fewer points: it would amplify their errors."""
@@ -21,6 +24,10 @@ LARGEST_AMPLIFICATION = 40.0
 FAR_APART = 0.02
 """Distance between the exits of the states [a] from which gaps are extrapolated at fixed places of the contact, not of the
 frame: the edge of a contact of asperities stays where it is while the exit moves through it."""
+
+SHARPNESS = 6.0
+"""Over the distance from the middle of the pressure to the minimum of the gap, how sharply a prediction begins to move with
+that minimum: half way, by ``tanh``."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +60,29 @@ class Extrapolation:
         exits = [s.exit for s in self.states]
         return self.restart == math.inf and max(exits) - min(exits) > FAR_APART
 
+    @cached_property
+    def _moved(self) -> Array | None:
+        """How far the minimum of each gap lies behind the predicted one; None where it is no edge that moves.
+
+        The film leaves a body that remembers where that has not yet come back, and the place moves with the film by many of
+        the film's own lengths.
+        """
+        model = self.states[-1].equations.operators.model
+        if model.cavitation is not Cavitation.NONE or not lengths_of(model.solid).memories:
+            return None
+        lowest = np.array([minimum_gap(s.mesh, s.gap)[0] for s in self.states])
+        moved = np.asarray(lowest - self.weights @ lowest)
+        return moved if SHARPNESS * np.abs(moved).max() < self._edge[1] else None
+
+    @cached_property
+    def _edge(self) -> tuple[float, float]:
+        """The middle of the pressure of the last state, and how far behind it the gap is at its minimum."""
+        last = self.states[-1]
+        load = last.mesh.weights * sum(last.equations.pressures(last.y))
+        near = np.abs(last.mesh.nodes) <= last.mesh.edges[-1]
+        middle = float(load[near] @ last.mesh.nodes[near] / load.sum())
+        return middle, minimum_gap(last.mesh, last.gap)[0] - middle
+
     @property
     def restart(self) -> float:
         """That of the last state."""
@@ -73,6 +103,8 @@ class Extrapolation:
 
     def log_gap(self, mesh: Mesh) -> Array:
         """Return the logarithm of the gap at the nodes of ``mesh``."""
+        if self._moved is not None:
+            return np.asarray(self.fields(mesh.nodes)[0])
         log_gap = np.zeros(mesh.size)
         for w, s in zip(self.weights, self.states, strict=True):
             in_frame = s.restart == self.restart and not self._in_place
@@ -81,9 +113,13 @@ class Extrapolation:
 
     def fields(self, x: Array) -> Array:
         """Return the logarithm of the gap and the fluid pressure at ``x``."""
-        fields = np.zeros((2, x.size))
-        for w, s in zip(self.weights, self.states, strict=True):
-            fields += w * self._seen(s, x)
+        fields, places = np.zeros((2, x.size)), [x] * len(self.states)
+        if self._moved is not None:
+            middle, distance = self._edge
+            with_edge = 0.5 * (1 + np.tanh(SHARPNESS * ((x - middle) / distance - 0.5)))
+            places = [x + moved * with_edge for moved in self._moved]
+        for w, s, place in zip(self.weights, self.states, places, strict=True):
+            fields += w * self._seen(s, place)
         if self._in_place:
             fields[1, x > 0] = 0.0
         return fields
