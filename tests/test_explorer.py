@@ -1,12 +1,14 @@
 """The explorer without its browser: linked inputs, addresses, answers, charts, numbers and files."""
 
 import csv
+import gc
 import io
 import json
 import math
 import re
 import socket
 import sys
+import time
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -32,6 +34,7 @@ from stribeck.explorer.charts.parts import difference
 from stribeck.explorer.measured import fit_measured, read_measured, speeds_of
 from stribeck.explorer.reading import read_file
 from stribeck.explorer.scans import read_scan, with_scan
+from stribeck.quantities import units
 from stribeck.quantities.units import format_si
 from stribeck.solids.viscoelastic import Prony
 
@@ -866,6 +869,20 @@ def test_a_port_in_use_is_refused_and_another_is_found():
         assert {first.getsockname()[1], second.getsockname()[1]} <= set(server.PORTS)
     with pytest.raises(sb.InputError, match="port = 70000 must be a whole number from 1 to 65535"):
         server.listen(70000)
+
+
+def test_what_a_page_would_wait_for_is_prepared_beside_it(monkeypatch):
+    units._registry.cache_clear()
+    monkeypatch.setattr(server, "SETTLED", 0.0)
+    try:
+        server.prepare()
+        assert gc.get_freeze_count()
+        deadline = time.monotonic() + 60
+        while not units._registry.cache_info().currsize and time.monotonic() < deadline:
+            time.sleep(0.02)
+    finally:
+        gc.unfreeze()
+    assert units._registry.cache_info().currsize
 
 
 # --- the command ---

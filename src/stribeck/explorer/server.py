@@ -5,6 +5,7 @@ from __future__ import annotations
 import secrets
 import socket
 import sys
+import threading
 from functools import partialmethod
 from pathlib import Path
 from urllib.parse import quote
@@ -15,8 +16,9 @@ from stribeck.explorer.asked.inputs import Inputs, from_case, units_of
 from stribeck.explorer.asked.url import LONGEST, check_length
 from stribeck.explorer.downloads import KINDS, name_of, shown_name
 from stribeck.explorer.serving.guard import Guard, check_host
+from stribeck.explorer.serving.tidy import set_aside
 from stribeck.files.writing import MissingExtraError
-from stribeck.quantities.units import InputError
+from stribeck.quantities.units import InputError, to_si
 
 __all__ = ["serve"]
 
@@ -29,6 +31,9 @@ OPENING = 120.0
 
 RECONNECT = 30.0
 """Seconds after which a page without browser is forgotten."""
+
+SETTLED = 5.0
+"""Seconds after the start, when the first page stands, in which what no page shall wait for is prepared."""
 
 MOST_RESENT = 20
 """Messages that are kept for a browser whose connection was interrupted; each may hold all charts."""
@@ -75,6 +80,7 @@ def serve(case: Path | None = None, port: int | None = None, browser: bool = Tru
     address = f"http://{f'[{host}]' if ':' in host else host}:{chosen}/?token={token}"
     build(start, chosen, token)
     nicegui.app.on_startup(lambda: print(f"stribeck explorer: {address} (Ctrl-C ends it)", flush=True))
+    nicegui.app.on_startup(prepare)
     # NiceGUI takes the number of a port, which another program may have taken by then, and no socket.
     Server.run = partialmethod(Server.run, sockets=[listening])  # type: ignore[method-assign,assignment]
     nicegui.ui.run(
@@ -93,6 +99,14 @@ def serve(case: Path | None = None, port: int | None = None, browser: bool = Tru
         ws_max_size=1_000_000,
         ws_per_message_deflate=False,  # nothing leaves this machine
     )
+
+
+def prepare() -> None:
+    """Prepare what a page would wait for: in the background all units, of which the first odd one takes pint half a second."""
+    set_aside()
+    units = threading.Timer(SETTLED, to_si, ("1 inch", "length", "unit"))
+    units.daemon = True
+    units.start()
 
 
 def build(start: Inputs, port: int, token: str) -> None:
