@@ -29,7 +29,11 @@ COARSE = 5
 """The same where many rows are located at once, each passage then narrowed."""
 
 NARROWINGS = 6
-"""Rounds of that, false position and trisection of the logarithm of the speed by turns, with both ends kept."""
+"""Rounds of that at most."""
+
+AROUND, THIRDS = np.array([-0.04, -0.004, 0.004, 0.04]), np.array([1 / 3, 2 / 3])
+"""Where a round looks: around the place by false position, and where that is far off, at thirds, over the distance of the
+ends.  A few states read off a table cost what one does."""
 
 NARROW_ENOUGH = 0.2
 """Part of the table's error below which the ends of a passage are no longer moved together."""
@@ -82,7 +86,7 @@ def transition_speeds(
     speeds : tuple of float, optional
         Smallest and largest speed group between which to look; those of the table by default.
     narrowings : int
-        Rounds in which a passage is narrowed, two evaluations each; with fewer the stated error is larger.
+        Rounds in which a passage is narrowed, at most; with fewer the stated error is larger.
     slide_to_roll, wetted_radius : float
         Motion and liquid of balls, as in :func:`stribeck.atlas.friction`.
 
@@ -148,21 +152,17 @@ def _passages(
     first, one = place[which, rows], np.arange(len(rows))
     low, high = grid[first], grid[first + 1]
     below, above = values[which, rows, first], values[which, rows, first + 1]
-    for number in range(narrowings):
+    for _ in range(narrowings):
         if np.all(above - below <= NARROW_ENOUGH * stated):
             break
-        # Two points around the one by false position, so that both ends close in.
-        middle, width = low + (high - low) * below / (below - above), 0.02 * (high - low)
-        if number % 2:  # where false position leaves one end behind
-            middle, width = 0.5 * (low + high), (high - low) / 6
-        pair = np.clip(np.stack([middle - width, middle + width]), low, high)
-        left, right = signs(pair, np.broadcast_to(roughness[rows], pair.shape))[which, :, one].T
-        under, over = left < 0, right < 0
-        ends = (low, below, high, above)
-        low = np.where(over, pair[1], np.where(under, pair[0], ends[0]))
-        below = np.where(over, right, np.where(under, left, ends[1]))
-        high = np.where(~under, pair[0], np.where(~over, pair[1], ends[2]))
-        above = np.where(~under, left, np.where(~over, right, ends[3]))
+        middle = low + (high - low) * below / (below - above)
+        between = np.concatenate([middle + AROUND[:, None] * (high - low), low + THIRDS[:, None] * (high - low)])
+        between = np.sort(np.clip(between, low, high), axis=0)
+        at = signs(between, np.broadcast_to(roughness[rows], between.shape))[which, :, one].T
+        places, heights = np.vstack([low, between, high]), np.vstack([below, at, above])
+        last = np.argmax((heights[:-1] < 0) & (heights[1:] >= 0), axis=0)
+        low, high = places[last, one], places[last + 1, one]
+        below, above = heights[last, one], heights[last + 1, one]
     steep = (above - below) / np.maximum(high - low, 1e-300)
     found[which, rows] = low + (high - low) * below / (below - above)
     error[which, rows] = stated / np.maximum(steep, 1e-300) + (high - low)
