@@ -6,7 +6,8 @@ Usage::
 
 Speed group 1e-5 to 1e-1 at load 0.1 and roughness 1e-4, rtol 1e-6, in the time of one processor.  A state along a curve is one
 of 41, all models at the same speeds, solved from those before it on their mesh for as long as that serves, and verified: the
-first is not counted.  Each is timed beside that of the article's model at the same speed.  A whole curve takes as many states as its series need, and has its cold start in it.
+first is not counted.  Each is timed beside that of the article's model at the same speed.  A whole curve takes as many states
+as its series need, and has its cold start in it.
 """
 
 from __future__ import annotations
@@ -86,7 +87,9 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=7)
     parser.add_argument("--only", choices=sorted(MODELS))
     arguments = parser.parse_args()
-    print("| model | a state from those before it: median, lowest to highest | allowed | whole curve | states solved (article) |")
+    print(
+        "| model | a state from those before it: median, lowest to highest | allowed | whole curve | states solved (article) |"
+    )
     print("|---|---|---|---|---|")
     seconds({})
     for name, (parts, allowed) in MODELS.items():

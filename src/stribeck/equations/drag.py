@@ -20,9 +20,8 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array, Flags, Numbers
-from stribeck.equations.line import Equations, scattered, slopes_in_film
+from stribeck.equations.line import Equations
 from stribeck.fluids.fluid import Slopes
-from stribeck.numerics.panels import towards_infinity
 from stribeck.numerics.running_integral import RunningIntegral
 
 __all__ = ["drag_gradients", "friction_scale", "viscous_friction"]
@@ -60,103 +59,105 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
         Gap and fluid pressure.
     """
     op, at, film = equations.operators, equations.layout, equations.film
-    mesh, order = nodal.integral.mesh, nodal.integral.mesh.order
-    d, h_star = equations.dilation(y), y[..., at.flux_gap]
-    far = equations.far_gap(y)
-    t, tail_weights, to_tail = towards_infinity(order)
-    t = t * mesh.half_widths[-1]
-    xi, t_nodes = 1 / t, mesh.local[-1]
-    smooth = nodal.gap[..., -order:] - far(mesh.nodes[-order:])
-    h = smooth @ to_tail.T + far(xi)
-    tail_weights = tail_weights * mesh.half_widths[-1] * xi**2
-    p = None
+    mesh, d, h_star = nodal.integral.mesh, equations.dilation(y), y[..., at.flux_gap]
+    far, last = equations.far_gap(y), slice(-mesh.order, None)
+    xi, beyond, to_beyond = mesh.beyond
+    h = (nodal.gap[..., last] - far(mesh.nodes[last])) @ to_beyond.T + far(xi)
+    known, p = None, None
     if film.uses_pressure:
-        p = ((nodal.pressure[..., -order:] * t_nodes**-2) @ to_tail.T) * t**2
+        known = nodal.pressure
+        p = ((known[..., last] * mesh.stretch[last]) @ to_beyond.T) / xi**2
     weights = mesh.weights.copy()
-    weights[-order:] = 0.0
-    full = nodal.integral.integrated
+    weights[last] = 0.0
+    one_sided, upstream = nodal.integral.one_sided, slice(0, len(xi) // 2)
     lower, upper = np.zeros((2, *y.shape[:-1]))
-    for gap, pressure, wet, own in (
-        (nodal.gap, nodal.pressure if film.uses_pressure else None, full, weights),
-        (h, p, t < 0 if nodal.integral.one_sided else np.ones_like(t, dtype=bool), tail_weights),
+    for gap, pressure, own, (wet, torn) in (
+        (nodal.gap, known, weights, _parts(nodal.integral)),
+        (h, p, beyond, (upstream, slice(len(xi) // 2, None)) if one_sided else (slice(None), None)),
     ):
-        walls = film.tractions(*_at(wet, gap, pressure), h_star)
+        walls = film.tractions(gap[..., wet], None if pressure is None else pressure[..., wet], h_star)
         lower, upper = lower + walls[0] @ own[wet], upper + walls[1] @ own[wet]
-        if not wet.all():
-            torn = film.cavity_traction(*_at(~wet, gap, pressure), h_star) @ own[~wet]
-            lower, upper = lower + torn, upper + torn
-    scale = friction_scale(load, equations.speed)
-    stretch = np.ones(1) if d is None else d
+        if torn is not None:
+            of_liquid = film.cavity_traction(gap[..., torn], None if pressure is None else pressure[..., torn], h_star)
+            lower, upper = lower + of_liquid @ own[torn], upper + of_liquid @ own[torn]
     # Beyond the panels in x, integrated by parts: there the gap is known better than the pressure.
-    g = film.gradient(*_at(wet, h, p), h_star)
-    leverage = 0.5 * (mesh.edges[-1] ** 2 - xi[wet] ** 2) * tail_weights[wet]
-    inner = slice(0, -order)
+    wet = upstream if one_sided else slice(None)
+    g = film.gradient(h[..., wet], None if p is None else p[..., wet], h_star)
+    leverage = 0.5 * (mesh.edges[-1] ** 2 - xi[wet] ** 2) * beyond[wet]
+    stretch, inner = np.ones(1) if d is None else d, slice(0, -mesh.order)
     moment = nodal.pressure[..., inner] @ (mesh.weights * mesh.nodes)[inner]
     moment = moment + np.ravel(equations.speed * stretch) * (g @ leverage)
     if op.has_exit:
         whole = (nodal.pressure @ nodal.weights)[..., None]
         moment = (stretch * (stretch * moment[..., None] + y[..., at.exit] * whole))[..., 0]
         lower, upper = lower * stretch[..., 0], upper * stretch[..., 0]
-    scale = np.ravel(scale)
+    scale = np.ravel(friction_scale(load, equations.speed))
     upper = scale * upper
     return np.stack([upper - 6 * scale / np.ravel(equations.speed) * moment, scale * lower, upper])
 
 
-def _at(nodes: Flags, gap: Array, pressure: Array | None) -> tuple[Array, Array | None]:
-    """Return gap and pressure at some nodes; unchanged if these are all."""
-    if nodes.all():
-        return gap, pressure
-    return gap[..., nodes], None if pressure is None else pressure[..., nodes]
+def _parts(integral: RunningIntegral) -> tuple[slice | Flags, slice | Flags | None]:
+    """Return the nodes in the film and those in the cavity, on the panels in x at least."""
+    if integral.restart == 0.0:
+        return slice(None), None
+    if integral.one_sided:
+        end = integral.middle * integral.mesh.order
+        return slice(0, end), slice(end, -integral.mesh.order)
+    return integral.integrated, ~integral.integrated
 
 
-def drag_gradients(equations: Equations, y: Array, load: Numbers) -> Array:
-    """Return the derivatives of :func:`viscous_friction` with respect to the unknowns, shape (3, ..., y.shape[-1])."""
+def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes | None) -> Array:
+    """Return the derivatives of :func:`viscous_friction` with respect to the unknowns, shape (3, ..., y.shape[-1]).
+
+    ``slopes`` are those of G at the nodes, see :func:`stribeck.equations.line.slopes_in_film`; None where the pressure is an
+    unknown.
+    """
     op, at, film, d = equations.operators, equations.layout, equations.film, equations.dilation(y)
-    h, h_star, wet = y[..., at.gap], y[..., at.flux_gap], op.wet
+    h, h_star = y[..., at.gap], y[..., at.flux_gap]
     p = y[..., at.pressure] if film.uses_pressure else None
     scale = friction_scale(load, equations.speed)
     stretch = np.ones(1) if d is None else d
     found = np.zeros((3, *y.shape))
     published, lower, upper = found
-    lower_slopes, upper_slopes = film.traction_slopes(h[..., wet], None if p is None else p[..., wet], h_star)
+    wet, dry = (op.wet, ~op.wet) if op.has_exit else (slice(None), None)
     torn = None
-    if not wet.all():
-        torn = film.cavity_traction_slopes(h[..., ~wet], None if p is None else p[..., ~wet], h_star)
-    for row, slopes in ((lower, lower_slopes), (upper, upper_slopes)):
-        by_gap, by_pressure, by_flux = (_joined(k, slopes, torn, wet, h) for k in range(3))
-        row[..., at.gap] = scale * stretch * op.mesh.weights * by_gap
-        row[..., at.flux_gap] = scale * stretch * (by_flux @ op.mesh.weights)[..., None]
+    if dry is not None:
+        torn = film.cavity_traction_slopes(h[..., dry], None if p is None else p[..., dry], h_star)
+    of_walls = film.traction_slopes(h[..., wet], None if p is None else p[..., wet], h_star)
+    weights = scale * stretch * op.mesh.weights
+    for row, (by_gap, by_pressure, by_flux, _) in zip((lower, upper), of_walls, strict=True):
+        row[..., at.gap][..., wet] = by_gap
+        row[..., at.flux_gap] = (by_flux * weights[..., wet]).sum(axis=-1, keepdims=True)
+        if by_pressure is not None:
+            row[..., at.pressure][..., wet] = by_pressure
+        if torn is not None:
+            row[..., at.gap][..., dry] = torn.by_gap
+            row[..., at.flux_gap] += (torn.by_flux * weights[..., dry]).sum(axis=-1, keepdims=True)
+            if torn.by_pressure is not None:
+                row[..., at.pressure][..., dry] = torn.by_pressure
+        row[..., at.gap] *= weights
         if p is not None:
-            row[..., at.pressure] = scale * stretch * op.mesh.weights * by_pressure
-    of_moment = -6 * scale / equations.speed
-    fluid = equations.pressures(y)[1]
-    whole, first = (fluid @ op.weights)[..., None], (fluid @ op.moment)[..., None]
-    x_c = y[..., at.exit] if op.has_exit else 0.0
-    by_fluid = stretch * (stretch * op.moment + x_c * op.weights)
+            row[..., at.pressure] *= weights
+    of_moment, x_c = -6 * scale / equations.speed, y[..., at.exit] if op.has_exit else 0.0
     published[...] = upper
-    if p is not None:
-        published[..., at.pressure] += of_moment * by_fluid
+    if slopes is None:
+        published[..., at.pressure] += of_moment * stretch * (stretch * op.moment + x_c * op.weights)
     else:
-        through = equations.speed * stretch * stretch * (stretch * op.moment_of_gradient + x_c * op.load_of_gradient)
-        slopes = slopes_in_film(film, op.integral, h, None, h_star)
-        published[..., at.gap] += of_moment * through * slopes.by_gap
-        published[..., at.flux_gap] += of_moment * (through * slopes.by_flux).sum(axis=-1, keepdims=True)
+        first = op.moment_of_gradient if d is None else d * op.moment_of_gradient
+        through = of_moment * equations.speed * stretch * stretch
+        through = through * (first if not op.has_exit else first + x_c * op.load_of_gradient)
+        published[..., at.gap] += through * slopes.by_gap
+        published[..., at.flux_gap] += (through * slopes.by_flux).sum(axis=-1, keepdims=True)
     if op.has_exit:
+        fluid = equations.fluid_pressure(y)
+        whole = (fluid @ op.weights)[..., None]
         published[..., at.exit] += of_moment * stretch * whole
-    if d is not None:
-        values = viscous_friction(equations, y, load, Nodal(op.integral, h, fluid, op.weights))
-        published[..., at.dilation] = values[2][..., None] / d + of_moment * (2 * d * first + x_c * whole)
-        lower[..., at.dilation], upper[..., at.dilation] = values[1][..., None] / d, values[2][..., None] / d
-        if p is None:
-            g_part = (fluid - op.cavity_pressure) / d
-            published[..., at.dilation] += of_moment * (g_part * by_fluid).sum(axis=-1, keepdims=True)
-    return found
-
-
-def _joined(k: int, of_film: Slopes, torn: Slopes | None, wet: Flags, like: Array) -> Array:
-    """Return one derivative at all nodes: that of the film, and in the cavity that of its liquid."""
-    slope = of_film[k]
-    found = np.zeros_like(like) if slope is None else scattered(np.broadcast_to(slope, like[..., wet].shape), wet, like)
-    if torn is not None and torn[k] is not None:
-        found[..., ~wet] = torn[k]
+        if d is not None:
+            values = viscous_friction(equations, y, load, Nodal(op.integral, h, fluid, op.weights))[..., None]
+            published[..., at.dilation] = values[2] / d + of_moment * (2 * d * (fluid @ op.moment)[..., None] + x_c * whole)
+            lower[..., at.dilation], upper[..., at.dilation] = values[1] / d, values[2] / d
+            if p is None:
+                by_fluid = stretch * (stretch * op.moment + x_c * op.weights)
+                g_part = (fluid - op.cavity_pressure) / d
+                published[..., at.dilation] += of_moment * (g_part * by_fluid).sum(axis=-1, keepdims=True)
     return found

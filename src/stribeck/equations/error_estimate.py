@@ -255,7 +255,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     own, finer = slice(-coarse.order, None), slice(-mesh.order, None)  # through infinity, where the gap holds a logarithm
     smooth = h[:, own] - far_gap(coarse.nodes[own])
     gap[:, finer] = smooth @ between_orders(coarse.order, mesh.order) + far_gap(mesh.nodes[finer])
-    known = equations.pressures(y)[1] if film.uses_pressure else None
+    known = equations.fluid_pressure(y) if film.uses_pressure else None
     fluid = None if known is None else coarse.to_order(known * coarse.stretch, mesh.order) / mesh.stretch
     flat = (np.abs(h - h_star) < FLAT * h).reshape(len(y), coarse.panels, -1).all(axis=2)
     flat &= not is_thinning(film)  # it turns sharply where the rate is zero
@@ -330,7 +330,7 @@ def _of_ends(states: StackedStates, residual: Array, integral: RunningIntegral, 
     left = slice((op.integral.middle - 1) * coarse.order, op.integral.middle * coarse.order)
     of_fine = slice((integral.middle - 1) * mesh.order, integral.middle * mesh.order)
     h, h_star = y[:, at.gap], y[:, at.flux_gap]
-    fluid = equations.pressures(y)[1] if equations.film.uses_pressure else None
+    fluid = equations.fluid_pressure(y) if equations.film.uses_pressure else None
     by_gap = slopes_in_film(equations.film, op.integral, h, fluid, h_star).by_gap[:, left]
     steep = np.abs(by_gap * h[:, left])[:, -1]
     missed = interpolation_error(np.log(h[:, left] / coarse.far[left]))

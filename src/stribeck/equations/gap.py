@@ -49,11 +49,23 @@ def central_gap(mesh: Mesh, h: Array) -> Array:
     return np.asarray(np.exp(np.log(h[..., nodes] / mesh.far[nodes]) @ reference(mesh.order).left_end) * mesh.scale**2)
 
 
-def log_gap_row(mesh: Mesh, x: float) -> tuple[slice, Array]:
-    """Return the nodes of the panel of a coordinate, and the row that interpolates the logarithm of the gap there."""
+def gap_beside(mesh: Mesh, h: Array, x: float) -> tuple[float, float, slice, Array]:
+    """Return the gap and its slope at a coordinate in the contact, the nodes of its panel, and the row of ln(gap) there."""
     panel, s = mesh.locate(np.array([x]))
-    k = int(panel[0])
-    return slice(k * mesh.order, (k + 1) * mesh.order), reference(mesh.order).interpolation(s)[0]
+    k, rule = int(panel[0]), reference(mesh.order)
+    nodes = slice(k * mesh.order, (k + 1) * mesh.order)
+    logs = np.log(h[nodes] / mesh.far[nodes])
+    row, far = rule.interpolation(s)[0], mesh.scale**2 + x * x
+    value = math.exp(float(row @ logs)) * far
+    slope = float((row @ _slope_at_nodes(mesh.order)) @ logs) / float(mesh.half_widths[k])
+    return value, value * (slope + 2 * x / far), nodes, row
+
+
+@lru_cache(maxsize=32)
+def _slope_at_nodes(order: int) -> Array:
+    """Return the matrix from nodal values to the slope of their polynomial at the nodes."""
+    rule = reference(order)
+    return np.asarray(legendre.legvander(rule.nodes, order - 1) @ rule.derivative @ rule.to_legendre)
 
 
 def minimum_gap(mesh: Mesh, h: Array) -> tuple[float, float]:

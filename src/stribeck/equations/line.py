@@ -154,17 +154,19 @@ class Equations:
 
         return far
 
+    def fluid_pressure(self, y: Array) -> Array:
+        """Return the fluid pressure at the nodes [p_Hz]."""
+        at, op, film, d = self.layout, self.operators, self.film, self.dilation(y)
+        if film.uses_pressure:
+            return y[..., at.pressure]
+        fluid = np.asarray(
+            self.speed * op.integral(gradient_in_film(film, op.integral, y[..., at.gap], None, y[..., at.flux_gap]))
+        )
+        return fluid if d is None else d * fluid + op.cavity_pressure
+
     def pressures(self, y: Array) -> tuple[Array, Array]:
         """Return the contact and the fluid pressure at the nodes [p_Hz]."""
-        at, film, d = self.layout, self.film, self.dilation(y)
-        h = y[..., at.gap]
-        if film.uses_pressure:
-            return self.law.pressure(h), y[..., at.pressure]
-        op = self.operators
-        fluid = np.asarray(self.speed * op.integral(gradient_in_film(film, op.integral, h, None, y[..., at.flux_gap])))
-        if d is not None:
-            fluid = d * fluid + op.cavity_pressure
-        return self.law.pressure(h), fluid
+        return self.law.pressure(y[..., self.layout.gap]), self.fluid_pressure(y)
 
     @cached_property
     def is_sliding(self) -> bool:

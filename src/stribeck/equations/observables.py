@@ -23,19 +23,17 @@ import numpy as np
 from stribeck._types import Array, Numbers
 from stribeck.contacts.friction import Definition
 from stribeck.equations.drag import Nodal, drag_gradients, friction_scale, viscous_friction
-from stribeck.equations.gap import central_gap, far_gap, gap_at, log_gap_row, minimum_gap
+from stribeck.equations.gap import central_gap, far_gap, gap_beside, minimum_gap
 from stribeck.equations.line import LOAD, Equations, slopes_in_film
 from stribeck.fluids import newtonian as reynolds
-from stribeck.numerics.panels import Mesh, reference, towards_infinity
+from stribeck.fluids.fluid import Slopes
+from stribeck.numerics.panels import Mesh, reference
 from stribeck.quantities.outputs import ALL_NAMES, NAMES
 
 __all__ = ["ROW", "Observables", "friction_integrals", "friction_scale", "gradients", "observables"]
 
 ROW = {name: row for row, name in enumerate(ALL_NAMES)}
 """Index of each in such an array."""
-
-PLACE_STEP = 1e-5
-"""Step of the finite difference for the slope of the gap at the centre [a]."""
 
 VISCOUS = ("viscous_published", "viscous_balanced", "viscous_upper")
 
@@ -121,14 +119,17 @@ def _of_any_film(equations: Equations, y: Array, load: Numbers, known: Array) ->
     exit = y[:, at.exit.start] if op.has_exit else np.zeros(len(y))
     friction, fluid = np.zeros((3, len(y))), np.zeros(len(y))
     if equations.is_sliding:
-        pressure = equations.pressures(y)[1]
+        pressure = equations.fluid_pressure(y)
         fluid = stretch * (pressure @ op.weights) / LOAD
         friction = viscous_friction(equations, y, load, Nodal(op.integral, h, pressure, op.weights))
-    central = [float(gap_at(mesh, row, np.array([-x / s]))[0]) for row, x, s in zip(h, exit, stretch, strict=True)]
+    if op.has_exit:
+        central = np.array([gap_beside(mesh, row, -x / s)[0] for row, x, s in zip(h, exit, stretch, strict=True)])
+    else:
+        central = central_gap(mesh, h)
     ends = [exit if op.has_exit else np.full(len(y), math.nan)]
     ends.append(np.full(len(y), math.nan) if d is None else exit + stretch * mesh.restart)
     positions = exit + stretch * positions
-    values = np.stack([stretch * contact, fluid, np.array(central), lowest, positions, flux, offset, *friction, *ends])
+    values = np.stack([stretch * contact, fluid, central, lowest, positions, flux, offset, *friction, *ends])
     return [Observables(*row) for row in values.T.tolist()]
 
 
@@ -163,11 +164,9 @@ def upper_integral(mesh: Mesh, h: Array, h_star: Numbers, far: Callable[[Array],
 
 def beyond_panels(mesh: Mesh, h: Array, far: Callable[[Array], Array]) -> tuple[Array, Array, Array]:
     """Return nodes beyond the panels in ``x``, the weights of integrals there, and the gap at these nodes."""
-    t, weights, to_tail = towards_infinity(mesh.order)
-    t = t * mesh.half_widths[-1]
+    x, weights, to_tail = mesh.beyond
     smooth = h[..., -mesh.order :] - far(mesh.nodes[-mesh.order :])
-    x = 1 / t
-    return x, weights * mesh.half_widths[-1] * x**2, smooth @ to_tail.T + far(x)
+    return x, weights, smooth @ to_tail.T + far(x)
 
 
 def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
@@ -197,9 +196,11 @@ def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
         rows["viscous_balanced"][..., of_gap] = weights * (6 * h_star * u - 4)
         rows["viscous_balanced"][..., flux] = -3 * weights.sum(axis=-1)
     elif equations.is_sliding:
-        for name, row in zip(VISCOUS, drag_gradients(equations, y, load), strict=True):
+        film = equations.film
+        slopes = None if film.uses_pressure else slopes_in_film(film, op.integral, h, None, h_star)
+        for name, row in zip(VISCOUS, drag_gradients(equations, y, load, slopes), strict=True):
             rows[name][...] = row
-        _of_fluid_share(equations, y, rows["fluid_load_share"])
+        _of_fluid_share(equations, y, rows["fluid_load_share"], slopes)
     if op.has_exit:
         _of_frame(equations, y, rows)
     else:
@@ -212,20 +213,18 @@ def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
     return found
 
 
-def _of_fluid_share(equations: Equations, y: Array, row: Array) -> None:
-    """Write the derivatives of the load on the fluid, over the load, into ``row``."""
+def _of_fluid_share(equations: Equations, y: Array, row: Array, slopes: Slopes | None) -> None:
+    """Write the derivatives of the load on the fluid, over the load, into ``row``; ``slopes`` as for drag."""
     op, at, d = equations.operators, equations.layout, equations.dilation(y)
     stretch = np.ones(1) if d is None else d
-    if equations.film.uses_pressure:
+    if slopes is None:
         row[..., at.pressure] = stretch * op.weights / LOAD
     else:
-        h, h_star = y[..., at.gap], y[..., at.flux_gap]
-        slopes = slopes_in_film(equations.film, op.integral, h, None, h_star)
         of_load = equations.speed * stretch * stretch * op.load_of_gradient / LOAD
         row[..., at.gap] = of_load * slopes.by_gap
         row[..., at.flux_gap] = (of_load * slopes.by_flux).sum(axis=-1, keepdims=True)
     if d is not None:
-        fluid = equations.pressures(y)[1]
+        fluid = equations.fluid_pressure(y)
         explicit = fluid if equations.film.uses_pressure else 2 * fluid - op.cavity_pressure
         row[..., at.dilation] = (explicit @ op.weights)[..., None] / LOAD
 
@@ -242,11 +241,9 @@ def _of_frame(equations: Equations, y: Array, rows: dict[str, Array]) -> None:
         rows["reformation_position"][..., at.dilation] = mesh.restart
     central = rows["central_gap"].reshape(-1, at.size)
     for found, own in zip(central, y.reshape(-1, at.size), strict=True):
-        h, stretch = own[at.gap], 1.0 if d is None else float(own[at.dilation.start])
+        stretch = 1.0 if d is None else float(own[at.dilation.start])
         place = -float(own[at.exit.start]) / stretch
-        nodes, row = log_gap_row(mesh, place)
-        middle, ahead, behind = gap_at(mesh, h, np.array([place, place + PLACE_STEP, place - PLACE_STEP]))
-        slope = (ahead - behind) / (2 * PLACE_STEP)
-        found[nodes] = middle * row / h[nodes]
+        middle, slope, nodes, row = gap_beside(mesh, own[at.gap], place)
+        found[nodes] = middle * row / own[nodes]
         found[at.exit] = -slope / stretch
         found[at.dilation] = -slope * place / stretch

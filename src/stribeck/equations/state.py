@@ -198,7 +198,7 @@ class State:
     @cached_property
     def fluid_pressure(self) -> Array:
         """Fluid pressure at the nodes [p_Hz]."""
-        return self.equations.pressures(self.y)[1]
+        return self.equations.fluid_pressure(self.y)
 
     @cached_property
     def _nodal(self) -> Array:

@@ -21,7 +21,7 @@ import numpy as np
 import scipy
 
 from stribeck._types import Array
-from stribeck.fluids.laws import FilmUnits, FlowFactors
+from stribeck.fluids.laws import FilmUnits, FlowFactors, FrictionFactors
 from stribeck.quantities.units import InputError, show, to_si
 
 __all__ = ["FLOOR", "PatirCheng", "lifted", "nominal_separation", "scaled_roughness"]
@@ -203,10 +203,10 @@ class PatirCheng(FlowFactors):
             found[..., :-1] += np.where(ends, gap[..., :-1] * r / LEAST / (1 + LEAST**r / C) * apart, 0.0)
         return found
 
-    def friction(self, gap: Array) -> tuple[tuple[Array, Array], tuple[Array, Array], tuple[Array, Array]]:
+    def friction(self, gap: Array) -> FrictionFactors | None:
         """Return phi_f (of eta s over the mean gap), phi_fs and phi_fp, each with its slope."""
         if not self.friction_factors:
-            return super().friction(gap)
+            return None
         assert self.sigma is not None
         H, by_gap = self._separation(gap)
         inverse, inverse_slope = mean_inverse_width(H)
@@ -220,7 +220,7 @@ class PatirCheng(FlowFactors):
         ratio_slope = 1 / self.sigma / np.maximum(H, LEAST) - np.where(H > LEAST, ratio / np.maximum(H, LEAST) * by_gap, 0.0)
         fp = 1 - 1.4 * np.exp(-0.66 * np.maximum(H, LEAST))
         fp_slope = np.where(H > LEAST, 0.66 * (1 - fp) * by_gap, 0.0)
-        return (
+        return FrictionFactors(
             (width * inverse, inverse / self.sigma + width * inverse_slope * by_gap),
             (fs * ratio, fs_slope * ratio + fs * ratio_slope),
             (fp / ratio, (fp_slope - fp * ratio_slope / ratio) / ratio),

@@ -93,6 +93,14 @@ class DensityLaw(Law, Protocol):
         """Return rho/rho0 and its slope."""
 
 
+class FrictionFactors(NamedTuple):
+    """Factors of the drag: phi_f, phi_fs and phi_fp, each with its slope by the gap."""
+
+    shear: tuple[Array, Array]
+    sliding: tuple[Array, Array]
+    pressure: tuple[Array, Array]
+
+
 @runtime_checkable
 class FlowFactors(Law, Protocol):
     """What roughness does to the flow, as a function of the mean gap."""
@@ -107,10 +115,9 @@ class FlowFactors(Law, Protocol):
         """Return by how much ``h + s S``, over phi_x, jumps between each node and the next one, zero mostly; None if never."""
         return None
 
-    def friction(self, gap: Array) -> tuple[tuple[Array, Array], tuple[Array, Array], tuple[Array, Array]]:
-        """Return phi_f, phi_fs and phi_fp, the factors of the drag, each with its slope; by default those of smooth walls."""
-        one, zero = np.ones_like(gap), np.zeros_like(gap)
-        return (one, zero), (zero, zero), (one, zero)
+    def friction(self, gap: Array) -> FrictionFactors | None:
+        """Return the factors of the drag; None where it is that between smooth walls."""
+        return None
 
 
 @dataclass(frozen=True)

@@ -141,26 +141,37 @@ class Newtonian:
     def tractions(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Array, Array]:
         r"""Return :math:`(\phi_f \pm \phi_{fs}) \eta s/h \pm 3 \phi_{fp} h G`, at the substrate and at the cylinder."""
         rate, pull = self.slide * self._of_pressure(pressure)[0] / gap, 3 * gap * self.gradient(gap, pressure, flux_gap)
-        (f, _), (fs, _), (fp, _) = self.flow.friction(gap)
+        factors = self.flow.friction(gap)
+        if factors is None:
+            return rate + pull, rate - pull
+        (f, _), (fs, _), (fp, _) = factors
         return (f + fs) * rate + fp * pull, (f - fs) * rate - fp * pull
 
     def traction_slopes(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> tuple[Slopes, Slopes]:
         """Return the derivatives of both tractions."""
-        h, s = gap, self.slide
+        h = gap
         eta, eta_slope, _, _ = self._of_pressure(pressure)
-        g, of_g, rate = self.gradient(h, pressure, flux_gap), self.slopes(h, pressure, flux_gap), s * eta / h
-        (f, f_slope), (fs, fs_slope), (fp, fp_slope) = self.flow.friction(h)
-        by_gap = 3 * (fp * (g + h * of_g.by_gap) + fp_slope * h * g)
-        by_flux = 3 * fp * h * of_g.by_flux
-        walls = []
-        for sign in (1.0, -1.0):
-            shear = (f + sign * fs) * rate
-            by_pressure = None
-            if of_g.by_pressure is not None:
-                by_pressure = eta_slope * shear + sign * 3 * fp * h * of_g.by_pressure
-            of_shear = (f_slope + sign * fs_slope) * rate - shear / h
-            walls.append(Slopes(of_shear + sign * by_gap, by_pressure, sign * by_flux))
-        return walls[0], walls[1]
+        of_g, g, rate = self.slopes(h, pressure, flux_gap), self.gradient(h, pressure, flux_gap), self.slide * eta / h
+        pull, by_flux = 3 * (g + h * of_g.by_gap), 3 * h * of_g.by_flux
+        lower_shear = upper_shear = rate
+        by_gap = -rate / h
+        lower, upper = by_gap + pull, by_gap - pull
+        by_pressure = None if of_g.by_pressure is None else 3 * h * of_g.by_pressure
+        factors = self.flow.friction(h)
+        if factors is not None:
+            (f, f_slope), (fs, fs_slope), (fp, fp_slope) = factors
+            pull = fp * pull + 3 * fp_slope * h * g
+            lower_shear, upper_shear = (f + fs) * rate, (f - fs) * rate
+            lower = (f_slope + fs_slope) * rate - lower_shear / h + pull
+            upper = (f_slope - fs_slope) * rate - upper_shear / h - pull
+            by_flux = fp * by_flux
+            by_pressure = None if by_pressure is None else fp * by_pressure
+        if by_pressure is None:
+            return Slopes(lower, None, by_flux), Slopes(upper, None, -by_flux)
+        return (
+            Slopes(lower, eta_slope * lower_shear + by_pressure, by_flux),
+            Slopes(upper, eta_slope * upper_shear - by_pressure, -by_flux),
+        )
 
     def cavity_traction(self, gap: Array, pressure: Array | None, flux_gap: Numbers) -> Array:
         r"""Return :math:`\eta s/h` in the part of the width that is wet, :math:`\min(1, m/(\rho h))`."""

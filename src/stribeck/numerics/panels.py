@@ -172,6 +172,16 @@ class Mesh:
         """Weights of the integral over the whole line, shape (size,)."""
         return np.outer(self.half_widths, reference(self.order).weights).ravel() * self.stretch
 
+    @cached_property
+    def beyond(self) -> tuple[Array, Array, Array]:
+        """Nodes beyond the panels in ``x``, weights of integrals there, and what interpolates to them on the last panel.
+
+        They are those of :func:`towards_infinity`, first all at negative ``x``.
+        """
+        t, weights, to_tail = towards_infinity(self.order)
+        x = 1 / (t * self.half_widths[-1])
+        return x, weights * self.half_widths[-1] * x**2, to_tail
+
     def locate(self, x: Array) -> tuple[Indices, Array]:
         """Return the panel of each point and its coordinate in ``[-1, 1]`` there."""
         panel = np.searchsorted(self.edges, x, side="right") - 1
