@@ -17,6 +17,7 @@ from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
+from stribeck.equations.gap import minimum_gap
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import Equations, Operators
 from stribeck.fluids.cavitation import Cavitation
@@ -159,10 +160,10 @@ class State:
         """Coordinate of the mesh at which the film begins anew; infinite if it does not."""
         return self.mesh.restart
 
-    @property
+    @cached_property
     def minimum_position(self) -> float:
-        """The node where the gap is at its minimum."""
-        return float(self.mesh.nodes[np.argmin(self.gap)])
+        """Where the gap is at its minimum, between the nodes: the lowest node may be on the panel beside."""
+        return minimum_gap(self.mesh, self.gap)[0]
 
     @property
     def outcome(self) -> Outcome:
@@ -397,6 +398,8 @@ def _cavity_on_mesh(guess: Guess) -> float:
 
 def unknowns_of(equations: Equations, guess: Guess) -> Array:
     """Return the unknowns of a guess on the mesh of ``equations``."""
+    if isinstance(guess, State) and guess.equations.operators is equations.operators:
+        return guess.y.copy()
     mesh, at = equations.operators.mesh, equations.layout
     same = guess.restart == mesh.restart
     nodes = mesh.nodes if same else mesh.nodes * (guess.restart / mesh.restart)

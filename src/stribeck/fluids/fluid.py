@@ -26,16 +26,16 @@ Key = tuple[Array | Numbers | None, ...]
 
 def kept(key: Key) -> Key:
     """Return copies of what a film was asked for."""
-    return tuple(None if each is None else np.array(each) for each in key)
+    return tuple(each.copy() if isinstance(each, np.ndarray) else each for each in key)
 
 
 def same(first: Key, second: Key) -> bool:
     """Return whether a film was asked for the same to the bit."""
     for a, b in zip(first, second, strict=True):
-        if a is None or b is None:
-            if a is not b:
+        if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
+            if a.shape != b.shape or not (a == b).all():
                 return False
-        elif np.shape(a) != np.shape(b) or not np.all(a == b):
+        elif a is not b and (a is None or b is None or not np.array_equal(a, b)):
             return False
     return True
 

@@ -25,7 +25,7 @@ class Cells:
     start, width : float
         Where the first cell begins, and the width of each.
     coefficients : ndarray, shape (terms, ..., cells)
-        Of powers of the place in a cell, -1 to 1.
+        Of powers of the place in a cell, 0 to 1.
     """
 
     start: float
@@ -35,9 +35,9 @@ class Cells:
     @classmethod
     def of(cls, function: Callable[[Array], Array], start: float, end: float, cells: int, terms: int) -> Cells:
         """Return ``function(x)``, shape (..., len(x)), interpolated at the Chebyshev points of each cell."""
-        points = np.cos(np.pi * (np.arange(terms) + 0.5) / terms)
+        points = 0.5 * (1 + np.cos(np.pi * (np.arange(terms) + 0.5) / terms))
         width = (end - start) / cells
-        x = start + width * (np.arange(cells) + 0.5 * (1 + points[:, None]))
+        x = start + width * (np.arange(cells) + points[:, None])
         values = np.asarray(function(x.ravel()))
         values = np.moveaxis(values.reshape(*values.shape[:-1], terms, cells), -2, 0)
         flat = np.linalg.solve(np.vander(points, increasing=True), values.reshape(terms, -1))
@@ -52,8 +52,6 @@ class Cells:
         cell = place.astype(np.intp)
         np.minimum(cell, cells - 1, out=cell)
         place -= cell
-        place *= 2.0
-        place -= 1.0
         return cell, place
 
     def __call__(self, x: Array) -> Array:
@@ -70,11 +68,12 @@ class Cells:
         """Return the functions and their derivatives at x."""
         cell, s = self._place(x)
         rows = self.coefficients.take(cell, axis=-1, mode="clip")
-        found, slope = rows[-1], np.zeros_like(rows[-1])
-        for row in rows[-2::-1]:
-            slope *= s
-            slope += found
+        found, slope = rows[-1], rows[-1].copy()
+        for k, row in enumerate(rows[-2::-1]):
+            if k > 0:
+                slope *= s
+                slope += found
             found *= s
             found += row
-        slope *= 2 / self.width
+        slope *= 1 / self.width
         return found, slope
