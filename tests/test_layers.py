@@ -274,3 +274,9 @@ def test_the_mesh_on_a_thick_layer_reaches_where_its_drag_feels_it():
     groups, layer = sb.Groups(3.92e-5, 2.43e-6, 0.0), sb.solids.Layer(33.2, 0.0977)
     found, exact = (sb.solve(groups, rtol=rtol, solid=layer).observables.viscous_published for rtol in (1e-6, 1e-8))
     assert found == pytest.approx(exact, rel=1e-6)
+
+
+def test_the_drag_of_rolling_on_a_layer_feels_it_beyond_its_thickness():
+    """Panels that ended at the thickness left it wrong by 1.3e-5 at a stated 2e-7."""
+    solution = sb.solve(sb.Groups(1e-4, 1e-7, 0.0), slide_to_roll=0.0, solid=sb.solids.Layer(5.0, 0.5))
+    assert solution.viscous_published == pytest.approx(4.92389246e-07, rel=2e-7)

@@ -49,8 +49,18 @@ REACH_OF_LAYER = 24.0
 """Distance in thicknesses beyond which pressures on a layer have no effect."""
 
 DRAG_OF_LAYER = 0.02
-"""Error of the far drag over the central gap and the fourth power of the distance, for a layer thicker than that distance:
-beyond, the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses."""
+"""Error of the far drag over the central gap and the fourth power of the distance, up to a few thicknesses of a layer: there
+the gap turns from that of a half-plane to that of the layer, which a polynomial in the inverse distance misses."""
+
+DRAG_OF_ROLLING, ROLLING_SHARE = 1.2e-4, 5.0
+"""The same over the cube root of the central gap in pure rolling, where there is less drag: so many times the central gap to
+the power 2/3 of that in sliding."""
+
+UNSEEN = 0.2
+"""Part of the tolerance that errors may take of which the estimate knows nothing."""
+
+DIED_AWAY = 6.0
+"""Distance in thicknesses of a layer beyond which the gap is that of the layer."""
 
 BROKEN = 30.0
 """Factor by which a pressure that falls off as a broken power is resolved better at infinity than one that is smooth there."""
@@ -373,8 +383,11 @@ def mesh_for(
     reach = (8 if order < LONG_REACH_ORDER else 16) * scale
     if thickness < math.inf:  # beyond the panels in x a layer is felt only where it is pressed
         carried = 0.5 * math.sqrt(float(groups.speed)) * TAIL_OF_ERROR / tolerance
-        dragged = reach * (DRAG_OF_LAYER * min(1.0, float(central_gap.max())) * (TAIL_OF_ERROR / tolerance) ** 2) ** 0.25
-        reach = max(reach, min(reach + REACH_OF_LAYER * thickness, carried), min(thickness, dragged))
+        allowed = UNSEEN * (tolerance / TAIL_OF_ERROR) ** 2
+        film_gap = min(1.0, float(central_gap.max()))
+        rolling = DRAG_OF_ROLLING * film_gap ** (1 / 3) / (1 + abs(film.slide) / (ROLLING_SHARE * film_gap ** (2 / 3)))
+        dragged = reach * (max(DRAG_OF_LAYER * film_gap, rolling) / allowed) ** 0.25
+        reach = max(reach, min(reach + REACH_OF_LAYER * thickness, carried), min(DIED_AWAY * thickness, dragged))
     if tolerance < COARSE:
         reach = max(reach, plateau, FAR_OFF * scale if broken else 0.0)
     if memories:  # where the panel through infinity begins, all is forgotten
