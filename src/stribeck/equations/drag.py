@@ -78,8 +78,10 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
         walls = film.tractions(gap[..., wet], None if pressure is None else pressure[..., wet], h_star)
         lower, upper = lower + walls[0] @ own[wet], upper + walls[1] @ own[wet]
         if torn is not None:
-            of_liquid = film.cavity_traction(gap[..., torn], None if pressure is None else pressure[..., torn], h_star)
-            lower, upper = lower + of_liquid @ own[torn], upper + of_liquid @ own[torn]
+            liquid = (
+                film.cavity_traction(gap[..., torn], None if pressure is None else pressure[..., torn], h_star) @ own[torn]
+            )
+            lower, upper = lower + liquid, upper + liquid
     # Beyond the panels in x, integrated by parts: there the gap is known better than the pressure.
     wet = upstream if one_sided else slice(None)
     g = film.gradient(h[..., wet], None if p is None else p[..., wet], h_star)
@@ -91,9 +93,9 @@ def viscous_friction(equations: Equations, y: Array, load: Numbers, nodal: Nodal
         whole = (nodal.pressure @ nodal.weights)[..., None]
         moment = (stretch * (stretch * moment[..., None] + y[..., at.exit] * whole))[..., 0]
         lower, upper = lower * stretch[..., 0], upper * stretch[..., 0]
-    scale = np.ravel(friction_scale(load, equations.speed))
-    upper = scale * upper
-    return np.stack([upper - 6 * scale / np.ravel(equations.speed) * moment, scale * lower, upper])
+    found = np.stack([upper - 6 / np.ravel(equations.speed) * moment, lower, upper])
+    found *= np.ravel(friction_scale(load, equations.speed))
+    return found
 
 
 def _parts(integral: RunningIntegral) -> tuple[slice | Flags, slice | Flags | None]:
@@ -119,25 +121,26 @@ def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes
     stretch = np.ones(1) if d is None else d
     found = np.zeros((3, *y.shape))
     published, lower, upper = found
-    wet, dry = (op.wet, ~op.wet) if op.has_exit else (slice(None), None)
+    wet, dry = op.parts if op.has_exit else (slice(None), slice(0, 0))
     torn = None
-    if dry is not None:
+    if op.has_exit:
         torn = film.cavity_traction_slopes(h[..., dry], None if p is None else p[..., dry], h_star)
     of_walls = film.traction_slopes(h[..., wet], None if p is None else p[..., wet], h_star)
-    weights = scale * stretch * op.mesh.weights
+    of_sum, own = scale * stretch, op.mesh.weights
     for row, (by_gap, by_pressure, by_flux, _) in zip((lower, upper), of_walls, strict=True):
         row[..., at.gap][..., wet] = by_gap
-        row[..., at.flux_gap] = (by_flux * weights[..., wet]).sum(axis=-1, keepdims=True)
+        row[..., at.flux_gap] = (by_flux @ own[wet])[..., None]
         if by_pressure is not None:
             row[..., at.pressure][..., wet] = by_pressure
         if torn is not None:
             row[..., at.gap][..., dry] = torn.by_gap
-            row[..., at.flux_gap] += (torn.by_flux * weights[..., dry]).sum(axis=-1, keepdims=True)
+            row[..., at.flux_gap] += (torn.by_flux @ own[dry])[..., None]
             if torn.by_pressure is not None:
                 row[..., at.pressure][..., dry] = torn.by_pressure
-        row[..., at.gap] *= weights
+        row[..., at.flux_gap] *= of_sum
+        row[..., at.gap] *= of_sum * own
         if p is not None:
-            row[..., at.pressure] *= weights
+            row[..., at.pressure] *= of_sum * own
     of_moment, x_c = -6 * scale / equations.speed, y[..., at.exit] if op.has_exit else 0.0
     published[...] = upper
     if slopes is None:

@@ -22,7 +22,7 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
 from stribeck.equations.drag import Nodal, viscous_friction
-from stribeck.equations.line import LOAD, Operators, gradient_in_film, slopes_in_film
+from stribeck.equations.line import LOAD, Operators, gradient_in_film
 from stribeck.equations.observables import ROW, VISCOUS, Observables, friction_integrals, friction_scale, gradients
 from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import StackedStates, is_thinning, jump_of
@@ -329,11 +329,9 @@ def _of_ends(states: StackedStates, residual: Array, integral: RunningIntegral, 
     coarse, mesh, scale = op.mesh, integral.mesh, np.ravel(equations.flux_scale)
     left = slice((op.integral.middle - 1) * coarse.order, op.integral.middle * coarse.order)
     of_fine = slice((integral.middle - 1) * mesh.order, integral.middle * mesh.order)
-    h, h_star = y[:, at.gap], y[:, at.flux_gap]
-    fluid = equations.fluid_pressure(y) if equations.film.uses_pressure else None
-    by_gap = slopes_in_film(equations.film, op.integral, h, fluid, h_star).by_gap[:, left]
-    steep = np.abs(by_gap * h[:, left])[:, -1]
-    missed = interpolation_error(np.log(h[:, left] / coarse.far[left]))
+    h = y[:, at.gap][:, left]
+    steep = np.abs(states.slopes.by_gap[:, left.stop - 1] * h[:, -1])
+    missed = interpolation_error(np.log(h / coarse.far[left]))
     at_edge = slopes[:, of_fine] @ reference(mesh.order).left_end[::-1]
     residual[0][:, at.exit] = (scale * (np.abs(at_edge) + steep * missed))[:, None]
     residual[1:, :, at.exit] = (size * scale * steep)[:, None]
@@ -354,7 +352,7 @@ def interpolation_errors(states: StackedStates, minimum_positions: Array, centra
     if central_positions is None:
         central = np.full_like(lowest, int(np.searchsorted(mesh.edges, 0.0)))
     else:
-        central = mesh.locate(central_positions)[0]
+        central = np.searchsorted(mesh.edges, central_positions, side="right") - 1
     panels = np.stack([central, lowest])
     gap = states.y[:, states.equations.layout.gap].reshape(len(lowest), mesh.panels, -1)[np.arange(len(lowest)), panels]
     return np.asarray(_between_nodes(mesh, gap, panels) * gap.min(axis=2))
@@ -392,7 +390,8 @@ def error_estimates(states: StackedStates, observed: list[Observables], fine: Fi
     """
     values = np.array([one.array(states.equations.operators.is_article) for one in observed])
     changed = perturbations(states, values, fine)
-    rows = gradients(states.equations, states.y, states.load)
+    needed = not (states.equations.operators.is_article or states.equations.film.uses_pressure)
+    rows = gradients(states.equations, states.y, states.load, states.slopes if needed else None)
     effects = np.abs(np.matmul(rows.transpose(1, 0, 2), changed.unknowns.transpose(1, 2, 0)))
     op, positions = states.equations.operators, np.array([one.minimum_position for one in observed])
     centres, stretch = None, np.ones(len(values))

@@ -51,13 +51,17 @@ def central_gap(mesh: Mesh, h: Array) -> Array:
 
 def gap_beside(mesh: Mesh, h: Array, x: float) -> tuple[float, float, slice, Array]:
     """Return the gap and its slope at a coordinate in the contact, the nodes of its panel, and the row of ln(gap) there."""
-    panel, s = mesh.locate(np.array([x]))
-    k, rule = int(panel[0]), reference(mesh.order)
-    nodes = slice(k * mesh.order, (k + 1) * mesh.order)
-    logs = np.log(h[nodes] / mesh.far[nodes])
-    row, far = rule.interpolation(s)[0], mesh.scale**2 + x * x
+    k = min(max(int(np.searchsorted(mesh.edges, x, side="right")) - 1, 0), mesh.panels - 2)
+    width, nodes = float(mesh.half_widths[k]), slice(k * mesh.order, (k + 1) * mesh.order)
+    s, before, last = (x - float(mesh.centres[k])) / width, 0.0, 1.0
+    legendre_of_s = [last]
+    for n in range(mesh.order - 1):
+        before, last = last, ((2 * n + 1) * s * last - n * before) / (n + 1)
+        legendre_of_s.append(last)
+    row = np.array(legendre_of_s) @ reference(mesh.order).to_legendre
+    logs, far = np.log(h[nodes] / mesh.far[nodes]), mesh.scale**2 + x * x
     value = math.exp(float(row @ logs)) * far
-    slope = float((row @ _slope_at_nodes(mesh.order)) @ logs) / float(mesh.half_widths[k])
+    slope = float(row @ (_slope_at_nodes(mesh.order) @ logs)) / width
     return value, value * (slope + 2 * x / far), nodes, row
 
 

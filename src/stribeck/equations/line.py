@@ -28,7 +28,7 @@ from functools import cached_property
 
 import numpy as np
 
-from stribeck._types import Array, Flags, Numbers
+from stribeck._types import Array, Indices, Numbers
 from stribeck.contact_laws.law import ContactLaw
 from stribeck.equations.damping import longest_step
 from stribeck.equations.operators import LOAD, Operators
@@ -53,17 +53,15 @@ def gradient_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array |
     """Return G at the nodes where the film is full, zero in the cavity."""
     if integral.restart == 0.0:
         return film.gradient(h, p, flux_gap)
-    wet = integral.integrated
-    found = np.zeros_like(h)
-    found[..., wet] = film.gradient(h[..., wet], None if p is None else p[..., wet], flux_gap)
-    return found
+    wet = integral.filled
+    return scattered(film.gradient(h[..., wet], None if p is None else p[..., wet], flux_gap), wet, h)
 
 
 def slopes_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | None, flux_gap: Numbers) -> Slopes:
     """Return the derivatives of G at the nodes where the film is full, zero in the cavity."""
     if integral.restart == 0.0:
         return film.slopes(h, p, flux_gap)
-    wet = integral.integrated
+    wet = integral.filled
     by_gap, by_pressure, by_flux, by_speed = film.slopes(h[..., wet], None if p is None else p[..., wet], flux_gap)
     return Slopes(
         scattered(by_gap, wet, h),
@@ -73,9 +71,9 @@ def slopes_in_film(film: Film, integral: RunningIntegral, h: Array, p: Array | N
     )
 
 
-def scattered(values: Array, where: Flags, like: Array) -> Array:
+def scattered(values: Array, where: Indices, like: Array) -> Array:
     """Return nodal values that are ``values`` at some nodes and zero at the others."""
-    found = np.zeros_like(like)
+    found = np.zeros(like.shape)
     found[..., where] = values
     return found
 

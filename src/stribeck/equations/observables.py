@@ -169,13 +169,13 @@ def beyond_panels(mesh: Mesh, h: Array, far: Callable[[Array], Array]) -> tuple[
     return x, weights, smooth @ to_tail.T + far(x)
 
 
-def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
+def gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes | None = None) -> Array:
     """Return the derivatives of the observables with respect to the unknowns, shape (len(ALL_NAMES), ..., y.shape[-1]).
 
     Those of the film of the article are the first alone.  The position of the minimum gap is held, to first order without
     effect.  The projected pressure enters as its moment, ``3 int x**2 g dx = -6 int x A g dx`` without the panel through
     infinity: the two forms respond alike to true changes of the gap, but this one is insensitive to the quadrature error
-    of g.
+    of g.  ``slopes`` are those of G, see :func:`stribeck.equations.line.slopes_in_film`, if they are known.
     """
     op, mesh, speed, at = equations.operators, equations.operators.mesh, equations.speed, equations.layout
     of_gap, flux, offset = at.gap, at.flux_gap.start, at.offset.start
@@ -197,7 +197,10 @@ def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
         rows["viscous_balanced"][..., flux] = -3 * weights.sum(axis=-1)
     elif equations.is_sliding:
         film = equations.film
-        slopes = None if film.uses_pressure else slopes_in_film(film, op.integral, h, None, h_star)
+        if film.uses_pressure:
+            slopes = None
+        elif slopes is None:
+            slopes = slopes_in_film(film, op.integral, h, None, h_star)
         for name, row in zip(VISCOUS, drag_gradients(equations, y, load, slopes), strict=True):
             rows[name][...] = row
         _of_fluid_share(equations, y, rows["fluid_load_share"], slopes)
@@ -207,7 +210,8 @@ def gradients(equations: Equations, y: Array, load: Numbers) -> Array:
         first = int(np.searchsorted(mesh.edges, 0.0)) * mesh.order
         middle = slice(first, first + mesh.order)
         rows["central_gap"][..., middle] = central_gap(mesh, h)[..., None] * reference(mesh.order).left_end / h[..., middle]
-    np.put_along_axis(rows["minimum_gap"], np.argmin(h, axis=-1)[..., None], 1.0, axis=-1)
+    lowest = rows["minimum_gap"].reshape(-1, at.size)
+    lowest[np.arange(len(lowest)), np.ravel(np.argmin(h, axis=-1))] = 1.0
     rows["flux_gap"][..., flux] = 1.0
     rows["offset"][..., offset] = 1.0
     return found

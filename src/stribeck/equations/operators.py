@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stribeck._types import Array, Flags, Numbers
+from stribeck._types import Array, Indices, Numbers
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
@@ -71,15 +71,15 @@ class Operators:
         """Where the integral from plus infinity ends."""
         return self.mesh.restart if self.has_reformation else math.inf if self.has_exit else 0.0
 
-    @property
-    def wet(self) -> Flags:
-        """Whether each node lies in the full film."""
-        return self.integral.outside_gap
+    @cached_property
+    def parts(self) -> tuple[Indices, Indices]:
+        """The nodes in the full film and those in the cavity."""
+        return np.flatnonzero(self.integral.outside_gap), np.flatnonzero(~self.integral.outside_gap)
 
     @cached_property
     def cavity_pressure(self) -> Array:
         """The pressure of the cavity at its nodes, zero at others."""
-        return np.where(self.wet, 0.0, self.model.cavity_pressure)
+        return np.where(self.integral.outside_gap, 0.0, self.model.cavity_pressure)
 
     @cached_property
     def tail(self) -> HalfTail | None:

@@ -19,9 +19,9 @@ from stribeck.contacts.groups import contact_law
 from stribeck.contacts.line import Groups
 from stribeck.equations.gap import minimum_gap
 from stribeck.equations.guess import Guess
-from stribeck.equations.line import Equations, Operators
+from stribeck.equations.line import Equations, Operators, slopes_in_film
 from stribeck.fluids.cavitation import Cavitation
-from stribeck.fluids.fluid import Fall, Film
+from stribeck.fluids.fluid import Fall, Film, Slopes
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
 from stribeck.numerics.panels import Mesh, adapt, graded
 from stribeck.quantities.outcome import Outcome
@@ -107,6 +107,15 @@ class StackedStates:
     y: Array
     load: Numbers
     correction: Callable[[Array], Array]
+
+    @cached_property
+    def slopes(self) -> Slopes:
+        """The derivatives of the pressure gradient at the nodes."""
+        equations, at = self.equations, self.equations.layout
+        pressure = self.y[:, at.pressure] if equations.film.uses_pressure else None
+        return slopes_in_film(
+            equations.film, equations.operators.integral, self.y[:, at.gap], pressure, self.y[:, at.flux_gap]
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,6 +61,11 @@ class RunningIntegral:
         return found
 
     @cached_property
+    def filled(self) -> Indices:
+        """The nodes of :attr:`integrated`."""
+        return np.flatnonzero(self.integrated)
+
+    @cached_property
     def outside_gap(self) -> Flags:
         """Whether each node lies outside the gap, shape (size,)."""
         found = np.ones((self.mesh.panels, self.mesh.order), dtype=bool)
