@@ -15,6 +15,7 @@ from stribeck.contacts.cut_off import far_film
 from stribeck.contacts.friction import DEFINITIONS, Definition, FrictionArray, check_definition
 from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.regime import regime_of
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.quantities.inputs import quantity, refuse_former, unit_of
@@ -130,6 +131,16 @@ class BatchSolution(Exported, Shown, ByValue):
         contact = mu0 * self.contact_load_share
         return FrictionArray(contact, viscous, contact + viscous, error, self._friction)
 
+    @property
+    def regime(self) -> np.ndarray[Any, np.dtype[np.str_]]:
+        """Lubrication regime of each state, as :func:`stribeck.regime_of` tells it; empty text if there is no state."""
+        friction = self.friction
+        with np.errstate(invalid="ignore", divide="ignore"):
+            part = np.where(friction.total > 0, friction.contact / friction.total, 0.0)
+        shares = zip(self.ok.ravel(), self.fluid_load_share.ravel(), part.ravel(), strict=True)
+        names = [regime_of(float(fluid), float(mine)) if ok else "" for ok, fluid, mine in shares]
+        return np.array(names, dtype=np.str_).reshape(self.outcome.shape)
+
     def _each(self, of: Callable[[Any], float]) -> float | Array:
         """Return an input of each contact; of groups alone, that of a contact that has none of its own."""
         if self.contacts is None:
@@ -191,6 +202,7 @@ class BatchSolution(Exported, Shown, ByValue):
         if self.contacts is not None:
             for name, values in self.to_si().items():
                 columns[name] = (self.dims, values, *self.outputs.films[name])
+        columns["regime"] = (self.dims, self.regime.astype(object), "1", "lubrication regime")
         columns["outcome"] = (self.dims, np.vectorize(_name, otypes=[object])(self.outcome), "1", "how the solve ended")
         coords = {}
         for name in self.varied:
@@ -244,6 +256,7 @@ class BatchSolution(Exported, Shown, ByValue):
         rows = [("given", ", ".join(self.varied) or "nothing"), ("converged", f"{int(self.ok.sum())} of {self.ok.size}")]
         if self.ok.any():
             friction = np.asarray(self.friction)[self.ok]
+            rows.append(("regimes", ", ".join(dict.fromkeys(filter(None, self.regime.ravel())))))
             rows.append(("friction", f"{friction.min():.4g} to {friction.max():.4g} (balanced)"))
             rows.append(("estimated error", f"{self.error_estimate[self.ok].max():.1e} (rtol {self.rtol:g})"))
         return Card(shape, rows)

@@ -7,7 +7,13 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
+
+from stribeck.files.datasets import Column, listed, new_dataset
+from stribeck.files.results import Exported
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["OUTSIDE", "Check", "Checks", "Verdict", "number_text", "verdict_of"]
 
@@ -57,7 +63,7 @@ class Check:
 
 
 @dataclass(frozen=True, repr=False)
-class Checks:
+class Checks(Exported):
     """The checks of one contact.
 
     Attributes
@@ -161,6 +167,39 @@ class Checks:
             ``applies``, and under ``checks`` a dictionary of each.
         """
         return {"applies": self.applies, "checks": [asdict(each) for each in self.checks]}
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the checks as an xarray Dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Along ``check``: value, limit, whether larger values are the fine ones, verdict, sentence and unit; needs the
+            extra ``data``.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        words = {
+            "value": "value for this contact, in its unit",
+            "limit": "limit up to which, or from which, it is fine, in its unit",
+            "at_least": "whether larger values than the limit are the fine ones",
+            "verdict": "whether the model applies",
+            "sentence": "what the verdict means",
+            "unit": "unit of value and limit",
+        }
+        columns: dict[str, Column] = {
+            name: ("check", listed([getattr(each, name) for each in self.checks]), "1", said) for name, said in words.items()
+        }
+        names: dict[str, Column] = {"check": ("check", listed([each.name for each in self.checks]), "1", "what is checked")}
+        return new_dataset(columns, names, {"title": "Whether the model applies", "headline": self.headline})
+
+    def _draw(self, path: Any, **options: Any) -> Any:
+        from stribeck.checks.plot import plot_checks
+
+        return plot_checks(self, path, **options)
 
     def __str__(self) -> str:
         """Return headline and table as text."""

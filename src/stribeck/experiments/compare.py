@@ -8,7 +8,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from stribeck.cases.case import Case, load_case
 from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings
@@ -16,6 +18,8 @@ from stribeck.contact_laws.finite_surface import FiniteSurface, has_endless_tail
 from stribeck.contact_laws.greenwood import GreenwoodTripp, GreenwoodWilliamson
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
+from stribeck.files.datasets import Column, listed, new_dataset
+from stribeck.files.results import Exported
 from stribeck.files.writing import PathLike
 from stribeck.fits.fit import fit
 from stribeck.fits.measurements import Measurements, read_measurements
@@ -26,6 +30,9 @@ from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Card, Shown
 from stribeck.quantities.units import InputError, format_percent, show
 from stribeck.solver.solve import SolveError
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["CAVEATS", "Candidate", "Comparison", "compare"]
 
@@ -66,7 +73,7 @@ class Candidate:
 
 
 @dataclass(frozen=True, repr=False)
-class Comparison(Shown):
+class Comparison(Exported, Shown):
     """Laws or models fitted to the same data, the preferred first.
 
     Attributes
@@ -129,6 +136,36 @@ class Comparison(Shown):
             for each in self.candidates
         ]
         return {"laws": laws, "failed": self.failed, "sentence": self.sentence, "caveats": list(CAVEATS)}
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the laws with their criteria as an xarray Dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Along ``law``, the preferred first: criterion, difference, weight and noise; the sentence and what could not be
+            fitted as attributes; needs the extra ``data``.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        values = {
+            "aicc": ("corrected information criterion of Akaike", [each.aicc for each in self.candidates]),
+            "difference": ("excess over the smallest", [each.difference for each in self.candidates]),
+            "weight": ("relative probability among what is compared", [each.weight for each in self.candidates]),
+            "noise": ("scatter of the data about the fit", [each.fit.noise for each in self.candidates]),
+        }
+        columns: dict[str, Column] = {name: ("law", np.array(row), "1", words) for name, (words, row) in values.items()}
+        names: dict[str, Column] = {"law": ("law", listed([each.name for each in self.candidates]), "1", "law or model")}
+        failed = "\n".join(f"{name}: {why}" for name, why in self.failed.items())
+        return new_dataset(columns, names, {"title": "Comparison of fits", "sentence": self.sentence, "failed": failed})
+
+    def _draw(self, path: Any, **options: Any) -> Any:
+        from stribeck.experiments.plot import plot_comparison
+
+        return plot_comparison(self, path, **options)
 
 
 @answers_typos

@@ -20,17 +20,30 @@ from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction_rules import RULES
 from stribeck.curves.sensitivities import friction_sensitivities
+from stribeck.files.datasets import Column, listed, new_dataset
+from stribeck.files.results import Exported
 from stribeck.fits.result import Fit
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import quantity
 from stribeck.quantities.results import Card, Shown
-from stribeck.quantities.units import InputError, format_percent, format_si, show
+from stribeck.quantities.units import DIMENSIONS, InputError, format_percent, format_si, show
 from stribeck.solver.solve import SolveError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    import xarray
 
 __all__ = ["NextRun", "Plan", "next_runs"]
+
+WORDS = {
+    "curve": "curve whose contact it is",
+    "speed": "sum of the surface speeds",
+    "load": "load",
+    "viscosity": "viscosity",
+    "friction": "friction coefficient to expect",
+    "gain": "growth of half the logarithm of the determinant of the information",
+    "cost": "cost",
+}
+"""What is listed of a run."""
 
 SPEEDS, BEYOND = 17, 3.0
 """Candidate speeds: from the slowest measured over this factor to the fastest times it."""
@@ -79,7 +92,7 @@ class NextRun:
 
 
 @dataclass(frozen=True, repr=False)
-class Plan(Shown):
+class Plan(Exported, Shown):
     """Runs worth measuring, the best first.
 
     Attributes
@@ -134,39 +147,36 @@ class Plan(Shown):
         """
         return {"runs": [asdict(each) for each in self.runs], "errors_before": self.before, "noise": self.noise}
 
-    def plot(self, path: Any = None, *, force: bool = False) -> Figure:
-        """Draw the gain of a first run over the speed, a line for each load and viscosity, the chosen runs marked.
-
-        Parameters
-        ----------
-        path : path-like, optional
-            Image to write as well.
-        force : bool
-            Whether an existing file is replaced.
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the runs as an xarray Dataset.
 
         Returns
         -------
-        matplotlib.figure.Figure
-            The figure; needs the extra ``plot``.
-        """
-        from stribeck.files.pictures import CONTACT, FLUID, INK, MARK, add_legend, finish_figure, make_logarithmic, new_figure
+        xarray.Dataset
+            Along ``run``, the best first: curve, speed, load, viscosity, friction to expect, gain, cost, and the standard
+            error of the logarithm of each fitted input after it; needs the extra ``data``.
 
-        figure, [axes] = new_figure((7.0, 4.4), [], columns=1, top=0.6, title="What to measure next")
-        colours = (INK, CONTACT, FLUID, "#009e73", "#e69f00")
-        keys = list(dict.fromkeys((each.load, each.viscosity) for each in self.scanned))
-        for i, (load, viscosity) in enumerate(keys):
-            mine = [each for each in self.scanned if (each.load, each.viscosity) == (load, viscosity)]
-            label = f"{format_si(load, self.load_dimension)}, {format_si(viscosity, 'viscosity').replace('*', '·')}"
-            axes.plot([e.speed for e in mine], [e.gain for e in mine], color=colours[i % 5], lw=1.8, label=label)
-        for i, each in enumerate(self.runs, 1):
-            axes.axvline(each.speed, color=MARK, lw=1, ls=(0, (4, 2)))
-            axes.annotate(str(i), (each.speed, 1.0), xycoords=("data", "axes fraction"), color=MARK, ha="center", va="bottom")
-        make_logarithmic(axes, "x", np.array([each.speed for each in self.scanned]))
-        axes.set_xlabel("speed $U$ (m/s)")
-        axes.set_ylabel("gain of information")
-        axes.set_ylim(bottom=0)
-        add_legend(figure, [axes], columns=2)
-        return finish_figure(figure, path, force)
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        units = {"speed": "m s-1", "load": DIMENSIONS[self.load_dimension].unit, "viscosity": "Pa s"}
+        columns: dict[str, Column] = {
+            name: ("run", listed([getattr(each, name) for each in self.runs]), units.get(name, "1"), words)
+            for name, words in WORDS.items()
+        }
+        for name in self.before:
+            after = np.array([each.errors[name] for each in self.runs])
+            columns[f"error_{name}"] = ("run", after, "1", f"standard error of the logarithm of {name} after the run")
+        number: dict[str, Column] = {"run": ("run", np.arange(1, len(self.runs) + 1), "1", "number of the run")}
+        before = {f"error_before_{name}": error for name, error in self.before.items()}
+        return new_dataset(columns, number, {"title": "What to measure next", "noise": self.noise, **before})
+
+    def _draw(self, path: Any, **options: Any) -> Any:
+        from stribeck.experiments.plot import plot_plan
+
+        return plot_plan(self, path, **options)
 
 
 @one_blas_thread

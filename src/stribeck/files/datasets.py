@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-__all__ = ["CSV", "DATA", "NETCDF", "new_dataset", "write_csv", "write_data", "write_netcdf"]
+__all__ = ["CSV", "DATA", "NETCDF", "listed", "new_dataset", "write_csv", "write_data", "write_netcdf"]
 
 Column = tuple[str | Sequence[str], Any, str, str]
 """Dimensions, values, unit and long name of a variable."""
@@ -62,6 +62,12 @@ def new_dataset(columns: Mapping[str, Column], coords: Mapping[str, Column], att
 
     source = {"source": f"stribeck {version('stribeck')}"}
     return xarray.Dataset(described(columns), described(coords), source | dict(attributes))
+
+
+def listed(values: Sequence[Any]) -> Any:
+    """Return values as an array for a dataset: numbers and truth values as such, text as objects, which NetCDF keeps."""
+    text = any(isinstance(each, str) for each in values)
+    return np.array([str(each) for each in values] if text else values, dtype=object if text else None)
 
 
 def write_netcdf(dataset: xarray.Dataset, path: PathLike, *, force: bool = False) -> None:

@@ -71,8 +71,10 @@ def new_figure(
     columns: int = 1,
     rows: int = 1,
     top: float = 0.6,
+    left: float = 0.8,
+    right: float = 0.25,
 ) -> tuple[Figure, list[Axes]]:
-    """Return an empty figure in house style, with title and footer, and its axes."""
+    """Return an empty figure in house style, with title and footer, and its axes, between margins in inches."""
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
@@ -87,7 +89,7 @@ def new_figure(
     low = (LINE * len(footer) + LEGEND + 0.72) / height
     high = 1 - top / height
     grid = figure.add_gridspec(
-        rows, columns, left=0.8 / width, right=1 - 0.25 / width, bottom=low, top=high, wspace=0.2, hspace=0.08
+        rows, columns, left=left / width, right=1 - right / width, bottom=low, top=high, wspace=0.2, hspace=0.08
     )
     axes = [figure.add_subplot(grid[i, j]) for i in range(rows) for j in range(columns)]
     for ax in axes:

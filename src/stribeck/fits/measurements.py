@@ -10,12 +10,14 @@ import os
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.cases.fit_settings import FitSettings
+from stribeck.files.datasets import Column, new_dataset
+from stribeck.files.results import Exported
 from stribeck.files.text_table import MISSING, TextTable, header_words, is_called, number_of, read_table, split_header
 from stribeck.fits.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, Row, average_repeats, prepared
 from stribeck.quantities.inputs import ROWS, quantity
@@ -23,11 +25,16 @@ from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Shown
 from stribeck.quantities.units import InputError, show, to_si
 
+if TYPE_CHECKING:
+    import xarray
+
 __all__ = ["Measurements", "read_measurements"]
 
 Abscissa = Literal["speed", "speed_viscosity", "hersey_number"]
 
 ABSCISSAS: tuple[Abscissa, ...] = ("speed", "speed_viscosity", "hersey_number")
+
+UNITS = {"speed": "m s-1", "speed_viscosity": "Pa m", "hersey_number": "1"}
 
 DIMENSION = {"speed": "speed", "speed_viscosity": "drag", "hersey_number": "number", "friction": "number", "error": "number"}
 
@@ -59,7 +66,7 @@ _FORCE = re.compile(r"force|kraft|\(m?N\)|\[m?N\]", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Measurements(Shown):
+class Measurements(Exported, Shown):
     """Measured friction in SI units, each curve in order of increasing speed.
 
     Attributes
@@ -106,6 +113,46 @@ class Measurements(Shown):
     def __len__(self) -> int:
         """Return the number of rows."""
         return len(self.friction)
+
+    def columns(self) -> dict[str, Column]:
+        """Return curve, abscissa, friction and its error along ``row``, as columns of a dataset.
+
+        Returns
+        -------
+        dict of str to tuple
+            Dimension, values, unit and long name of each, as of :func:`stribeck.files.datasets.new_dataset`.
+        """
+        names = np.array(self.curves, dtype=object)
+        found: dict[str, Column] = {
+            "curve": ("row", names[self.curve], "1", "name of the curve"),
+            self.abscissa: ("row", self.values, UNITS[self.abscissa], self.abscissa.replace("_", " ")),
+            "friction": ("row", self.friction, "1", "measured friction coefficient"),
+        }
+        if self.error is not None:
+            found["error"] = ("row", self.error, "1", "standard error of the measured friction coefficient")
+        return found
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the rows as an xarray Dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Along ``row`` of the file: curve, abscissa, friction, and its error where the file gives one; needs the extra
+            ``data``.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        rows: dict[str, Column] = {"row": ("row", self.rows, "1", "row of the file")}
+        return new_dataset(self.columns(), rows, {"title": "Measured friction", "file": self.path})
+
+    def _draw(self, path: Any, **options: Any) -> Any:
+        from stribeck.fits.plot import plot_measurements
+
+        return plot_measurements(self, path, **options)
 
 
 @answers_typos

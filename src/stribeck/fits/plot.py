@@ -1,4 +1,4 @@
-"""Picture of a fit: measured friction with the fitted curves and their 95 % bands, and the residuals below.
+"""Pictures of measured friction, and of a fit: with the fitted curves and their 95 % bands, and the residuals below.
 
 matplotlib comes with the extra ``plot`` and is imported on first use.
 """
@@ -26,13 +26,15 @@ from stribeck.files.pictures import (
 )
 from stribeck.files.writing import PathLike
 from stribeck.fits.case_file import format_interval, format_value
+from stribeck.fits.measurements import Measurements
 from stribeck.fits.result import Fit
+from stribeck.quantities.units import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["plot_fit"]
+__all__ = ["plot_fit", "plot_measurements"]
 
 POINTS = 121
 
@@ -66,16 +68,12 @@ def plot_fit(
         figure, (above, below) = new_figure((8.5, 6.2), _footer(fit), rows=2, title=title or "Fit to measured friction")
     else:
         figure, above, below = figure_of(ax), ax, None
-    make_logarithmic(above, "x", data.values)
-    make_logarithmic(above, "y", data.friction)
     bars: Any = fit._minimum.objective.sigma
-    for k, name in enumerate(data.curves):
+    bars = None if bars is None else bars * (data.friction if fit.logarithmic else 1.0)
+    styles = _draw_measured(above, data, bars)
+    for k, style in enumerate(styles):
         rows = data.curve == k
-        colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
-        style: dict[str, Any] = {"color": colour, "ls": "none", "marker": marker, "ms": 4.0, "mfc": "white", "mew": 1.1}
-        label = "measured" if len(data.curves) == 1 else f"measured: {name}"
-        error = None if bars is None else (bars[rows] * (data.friction[rows] if fit.logarithmic else 1.0))
-        above.errorbar(data.values[rows], data.friction[rows], error, lw=0.9, zorder=4, label=label, **style)
+        colour = style["color"]
         x = np.geomspace(data.values[rows].min(), data.values[rows].max(), POINTS)
         friction, low, high = fit.band(k, x)
         above.plot(x, friction, color=colour, lw=1.6, zorder=3, label="fitted" if k == 0 else None)
@@ -84,7 +82,6 @@ def plot_fit(
         )
         if below is not None:
             below.plot(data.values[rows], fit.residuals[rows], zorder=3, **style)
-    above.set_ylabel(r"friction coefficient $\mu$")
     if below is None:
         above.set_xlabel(LABELS[data.abscissa])
         above.legend(frameon=False, fontsize=8.5)
@@ -100,6 +97,46 @@ def plot_fit(
     below.set_xlabel(LABELS[data.abscissa])
     add_legend(figure, (above, below))
     return finish_figure(figure, path, force)
+
+
+@picture("there are no rows")
+def plot_measurements(
+    data: Measurements, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+) -> Figure:
+    """Draw measured friction, with its standard errors where they are known.
+
+    Parameters
+    ----------
+    data : Measurements
+        The rows.
+    """
+    if not len(data):
+        raise InputError("there are no rows, so that there is nothing to draw.")
+    if ax is None:
+        figure, (ax,) = new_figure((7.5, 4.6), [], title=title or "Measured friction")
+    else:
+        figure = figure_of(ax)
+    _draw_measured(ax, data, data.error)
+    ax.set_xlabel(LABELS[data.abscissa])
+    ax.legend(frameon=False, fontsize=8.5)
+    return finish_figure(figure, path, force)
+
+
+def _draw_measured(axes: Axes, data: Measurements, bars: Any) -> list[dict[str, Any]]:
+    """Draw each measured curve with error bars, if there are any, and return the styles."""
+    make_logarithmic(axes, "x", data.values)
+    make_logarithmic(axes, "y", data.friction)
+    axes.set_ylabel(r"friction coefficient $\mu$")
+    styles = []
+    for k, name in enumerate(data.curves):
+        rows = data.curve == k
+        colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
+        style: dict[str, Any] = {"color": colour, "ls": "none", "marker": marker, "ms": 4.0, "mfc": "white", "mew": 1.1}
+        label = "measured" if len(data.curves) == 1 else f"measured: {name}"
+        error = None if bars is None else bars[rows]
+        axes.errorbar(data.values[rows], data.friction[rows], error, lw=0.9, zorder=4, label=label, **style)
+        styles.append(style)
+    return styles
 
 
 def _footer(fit: Fit) -> list[tuple[str, str]]:

@@ -315,12 +315,7 @@ class Fit(Exported, Shown, ByValue):
         MissingExtraError
             If xarray is not installed.
         """
-        units = {"speed": "m s-1", "speed_viscosity": "Pa m", "hersey_number": "1"}
-        abscissa, names = self.data.abscissa, np.array(self.data.curves, dtype=object)
-        columns: dict[str, Column] = {
-            "curve": ("row", names[self.data.curve], "1", "name of the curve"),
-            abscissa: ("row", self.data.values, units[abscissa], abscissa.replace("_", " ")),
-            "friction": ("row", self.data.friction, "1", "measured friction coefficient"),
+        columns = self.data.columns() | {
             "fitted_friction": ("row", self.friction, "1", "fitted friction coefficient"),
             "residual": ("row", self.residuals, "1", "fitted less measured friction over the standard error of the row"),
         }

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from stribeck.contacts.friction import DEFINITIONS, Definition, Friction, check_
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.regime import Regime, regime_of
 from stribeck.contacts.with_parts import part_attributes
+from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
 from stribeck.quantities.inputs import refuse_former
 from stribeck.quantities.outcome import Outcome
@@ -24,11 +26,17 @@ from stribeck.quantities.outputs import HERTZ, OUTPUT_TABLES, OutputTable
 from stribeck.quantities.results import ByValue, Card, Shown
 from stribeck.quantities.units import format_si
 
-__all__ = ["BaseSolution", "Profile", "si_films"]
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["UNITS", "BaseSolution", "Profile", "columns_of", "si_films"]
+
+UNITS = {"Hertz": ("a", "u_Hz", "p_Hz"), "SI": ("m", "m", "Pa")}
+"""Units of positions, gaps and pressures."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Profile(Shown, ByValue):
+class Profile(Exported, Shown, ByValue):
     """Fields along the contact.
 
     Attributes
@@ -53,6 +61,39 @@ class Profile(Shown, ByValue):
     def pressure(self) -> Array:
         """Total pressure, contact and fluid."""
         return self.contact_pressure + self.fluid_pressure
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the fields as an xarray Dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Along ``x``: gap, contact pressure and fluid pressure, in the units of the profile; needs the extra ``data``.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        x: dict[str, Column] = {
+            "x": ("x", self.x, UNITS[self.unit][0], "position along the contact; fluid enters from the left")
+        }
+        return new_dataset(columns_of(self, "x"), x, {"title": "Fields along a lubricated rough contact"})
+
+    def _draw(self, path: Any, **options: Any) -> Any:
+        from stribeck.solver.plot import plot_fields
+
+        return plot_fields(self, path, **options)
+
+
+def columns_of(fields: Any, dims: str | Sequence[str]) -> dict[str, Column]:
+    """Return gap and pressures of a profile, or of a field, as columns of a dataset."""
+    _, gap, pressure = UNITS[fields.unit]
+    return {
+        "gap": (dims, fields.gap, gap, "gap"),
+        "contact_pressure": (dims, fields.contact_pressure, pressure, "pressure of the asperities"),
+        "fluid_pressure": (dims, fields.fluid_pressure, pressure, "pressure of the fluid"),
+    }
 
 
 class BaseSolution(Exported, Shown, ByValue, ABC):

@@ -5,6 +5,7 @@ matplotlib comes with the extra ``plot`` and is imported on first use.
 
 from __future__ import annotations
 
+import math
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
@@ -28,8 +29,8 @@ from stribeck.files.pictures import (
 )
 from stribeck.files.writing import PathLike
 from stribeck.quantities.inputs import SYMBOLS
-from stribeck.quantities.units import DIMENSIONS, format_si
-from stribeck.solver.base_solution import BaseSolution
+from stribeck.quantities.units import DIMENSIONS, InputError, format_si
+from stribeck.solver.base_solution import BaseSolution, Profile
 from stribeck.solver.solution import Solution
 
 if TYPE_CHECKING:
@@ -38,7 +39,17 @@ if TYPE_CHECKING:
 
     from stribeck.solver.point.solution import PointSolution
 
-__all__ = ["axis_in_si", "draw_gap", "footer_of", "law_text", "plot_profile"]
+__all__ = [
+    "axis_in_si",
+    "draw_gap",
+    "draw_pressures",
+    "footer_of",
+    "law_text",
+    "mark_failure",
+    "plot_fields",
+    "plot_profile",
+    "scales_of",
+]
 
 
 @picture()
@@ -83,21 +94,8 @@ def plot_profile(
         to_pressure = axis_in_si(scales.pressure, "pressure", "pressure")
     if above is not None:
         draw_gap(above, solution, x * to_x[0], fields.gap, to_gap)
-    hertz = np.sqrt(np.clip(1 - x**2, 0, None))
-    curves: list[tuple[Array, dict[str, Any]]] = [
-        (hertz, {"color": GREY, "lw": 1.0, "ls": (0, (2, 2)), "label": "dry smooth contact (Hertz)"}),
-        (fields.pressure, {"color": INK, "lw": 1.8, "label": "total pressure"}),
-        (
-            fields.contact_pressure,
-            {"color": CONTACT, "lw": 1.6, "ls": (0, (6, 2)), "label": "from asperities"},
-        ),
-        (fields.fluid_pressure, {"color": FLUID, "lw": 1.6, "ls": "-.", "label": "from the fluid"}),
-    ]
-    for values, style in curves:
-        below.plot(x * to_x[0], values * to_pressure[0], **style)
-    below.axhline(0.0, color=GREY, lw=0.6, zorder=1)
+    draw_pressures(below, fields, x * to_x[0], to_pressure, np.sqrt(np.clip(1 - x**2, 0, None)))
     below.set_xlabel(f"{to_x[1]}; fluid enters from the left")
-    below.set_ylabel(to_pressure[1])
     below.set_xlim(x[0] * to_x[0], x[-1] * to_x[0])
     if above is None:
         below.legend(frameon=False, fontsize=8.5)
@@ -106,6 +104,70 @@ def plot_profile(
         add_legend(figure, (above, below), columns=3)
     mark_failure(solution, below, above)
     return finish_figure(figure, path, force)
+
+
+@picture("there are fewer than two positions")
+def plot_fields(
+    fields: Profile, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+) -> Figure:
+    """Draw gap and pressures of a profile, in its units, as far as the pressures reach.
+
+    Parameters
+    ----------
+    fields : Profile
+        The profile.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw the pressures into, instead of a new figure.
+    """
+    if len(fields.x) < 2:
+        raise InputError(f"the profile has {len(fields.x)} positions; a picture needs two at least.")
+    above: Axes | None
+    if ax is None:
+        figure, (above, below) = new_figure((7.5, 6.0), [], rows=2, title=title or "Gap and pressure")
+    else:
+        figure, above, below = figure_of(ax), None, ax
+    size = np.abs(fields.contact_pressure) + np.abs(fields.fluid_pressure)
+    reach = 1.6 * float(np.abs(fields.x[size > 0.02 * size.max()]).max(initial=0.0)) or math.inf
+    near = np.abs(fields.x) <= reach
+    drawn = Profile(fields.x[near], fields.gap[near], fields.contact_pressure[near], fields.fluid_pressure[near], fields.unit)
+    to_x, to_gap, to_pressure = scales_of(drawn, drawn.x, "position $x$")
+    if above is not None:
+        draw_gap(above, None, drawn.x * to_x[0], drawn.gap, to_gap)
+    draw_pressures(below, drawn, drawn.x * to_x[0], to_pressure)
+    below.set_xlabel(f"{to_x[1]}; fluid enters from the left")
+    if above is None:
+        below.legend(frameon=False, fontsize=8.5)
+    else:
+        above.set_xlim(below.get_xlim())
+        add_legend(figure, (above, below), columns=3)
+    return finish_figure(figure, path, force)
+
+
+def scales_of(fields: Any, x: Array, name: str) -> tuple[tuple[float, str], ...]:
+    """Return factor and label of position, gap and pressure of a profile or a field, in units with readable numbers."""
+    if fields.unit == "Hertz":
+        return (1.0, f"{name[:-1]}/a$"), (1.0, r"gap $h/u_\mathrm{Hz}$"), (1.0, r"pressure $p/p_\mathrm{Hz}$")
+    largest = [float(np.abs(values).max()) or 1.0 for values in (x, fields.gap, fields.pressure)]
+    return (
+        axis_in_si(1.0, "length", name, largest[0]),
+        axis_in_si(1.0, "length", "gap $h$", largest[1]),
+        axis_in_si(1.0, "pressure", "pressure", largest[2]),
+    )
+
+
+def draw_pressures(axes: Axes, fields: Profile, x: Array, to_pressure: tuple[float, str], hertz: Array | None = None) -> None:
+    """Draw the pressures along the contact, and that of Hertz if given."""
+    curves: list[tuple[Array, dict[str, Any]]] = [
+        (fields.pressure, {"color": INK, "lw": 1.8, "label": "total pressure"}),
+        (fields.contact_pressure, {"color": CONTACT, "lw": 1.6, "ls": (0, (6, 2)), "label": "from asperities"}),
+        (fields.fluid_pressure, {"color": FLUID, "lw": 1.6, "ls": "-.", "label": "from the fluid"}),
+    ]
+    if hertz is not None:
+        curves.insert(0, (hertz, {"color": GREY, "lw": 1.0, "ls": (0, (2, 2)), "label": "dry smooth contact (Hertz)"}))
+    for values, style in curves:
+        axes.plot(x, values * to_pressure[0], **style)
+    axes.axhline(0.0, color=GREY, lw=0.6, zorder=1)
+    axes.set_ylabel(to_pressure[1])
 
 
 def mark_failure(solution: BaseSolution, *drawn: Axes | None) -> None:
@@ -118,15 +180,15 @@ def mark_failure(solution: BaseSolution, *drawn: Axes | None) -> None:
             axes.text(0.5, 0.5, "not converged", transform=axes.transAxes, **style)
 
 
-def draw_gap(axes: Axes, solution: BaseSolution, x: Array, gap: Array, to_gap: tuple[float, str]) -> None:
-    """Draw the gap, and the roughness if it is visible beside it."""
+def draw_gap(axes: Axes, solution: BaseSolution | None, x: Array, gap: Array, to_gap: tuple[float, str]) -> None:
+    """Draw the gap, and the roughness of a solution if it is visible beside it."""
     axes.plot(x, gap * to_gap[0], color=INK, lw=1.8, label="gap")
     drawn = gap
-    alpha = 1.0 if solution.contact is None else solution.contact.alpha
-    rms = alpha * float(solution.groups.relative_roughness)
+    contact = None if solution is None else solution.contact
+    rms = 0.0 if solution is None else (1.0 if contact is None else contact.alpha) * float(solution.groups.relative_roughness)
     if rms > 0 and rms > 0.03 * gap.min():
         drawn = np.append(drawn, rms)
-        name = r"$h_\mathrm{rms}/\alpha$" if solution.contact is None else SYMBOLS["roughness"]
+        name = r"$h_\mathrm{rms}/\alpha$" if contact is None else SYMBOLS["roughness"]
         axes.axhline(rms * to_gap[0], color=GREY, lw=1.0, ls=(0, (5, 3)), label=f"roughness {name}")
     if gap.min() > 0:
         make_logarithmic(axes, "y", drawn * to_gap[0])

@@ -279,22 +279,10 @@ class Solution(BaseSolution):
         MissingExtraError
             If xarray is not installed.
         """
-        from stribeck.files.datasets import new_dataset
-
-        fields_, units = (
-            (Profile(self.x, self.gap, self.contact_pressure, self.fluid_pressure), ("a", "u_Hz", "p_Hz"))
-            if self.contact is None
-            else (self.to_si(), ("m", "m", "Pa"))
-        )
-        columns = {
-            "gap": ("x", fields_.gap, units[1], "gap"),
-            "contact_pressure": ("x", fields_.contact_pressure, units[2], "pressure of the asperities"),
-            "fluid_pressure": ("x", fields_.fluid_pressure, units[2], "pressure of the fluid"),
-        }
+        own = Profile(self.x, self.gap, self.contact_pressure, self.fluid_pressure)
         numbers = {name: value for name, value in self.to_dict().items() if isinstance(value, float | int | str)}
         numbers |= {f"friction_{each}": self.friction(definition=each).total for each in DEFINITIONS}
-        x = {"x": ("x", fields_.x, units[0], "position along the contact; fluid enters from the left")}
-        return new_dataset(columns, x, {"title": "Fields along a lubricated rough contact"} | numbers)
+        return (own if self.contact is None else self.to_si()).to_dataset().assign_attrs(numbers)
 
     def _draw(self, path: Any, **options: Any) -> Any:
         from stribeck.solver.plot import plot_profile

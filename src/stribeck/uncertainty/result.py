@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import html
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from stribeck.contacts.contact import Contact
-from stribeck.quantities.units import format_percent, format_share, format_si
+from stribeck.files.datasets import Column, listed, new_dataset
+from stribeck.files.results import Exported
+from stribeck.quantities.units import DIMENSIONS, format_percent, format_share, format_si
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["Spread", "Uncertainty"]
 
@@ -65,7 +72,7 @@ class Spread:
 
 
 @dataclass(frozen=True, repr=False)
-class Uncertainty:
+class Uncertainty(Exported):
     """A state with the propagated errors of its inputs.
 
     Attributes
@@ -119,6 +126,53 @@ class Uncertainty:
             "contributions": self.contributions,
             "method": self.method,
         }
+
+    def to_si(self) -> dict[str, float]:
+        """Return the values for the inputs as given in SI units.
+
+        Returns
+        -------
+        dict of str to float
+            By the name of each quantity.
+        """
+        return {each.name: each.value for each in self.spreads}
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the spreads as an xarray Dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Along ``quantity``: value, median, ends of the intervals and the SI unit; the probability of each regime, the
+            standard error and the share of each input as attributes; needs the extra ``data``.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        numbers = {
+            "value": ("value for the inputs as given", [each.value for each in self.spreads]),
+            "median": ("median", [each.median for each in self.spreads]),
+        }
+        for percent in (68, 95):
+            ends = [getattr(each, f"interval_{percent}") for each in self.spreads]
+            for end, name in enumerate(("low", "high")):
+                numbers[f"{name}_{percent}"] = (f"{name} end of the {percent} % interval", [each[end] for each in ends])
+        columns: dict[str, Column] = {
+            name: ("quantity", np.array(values), "SI, see unit", words) for name, (words, values) in numbers.items()
+        }
+        columns["unit"] = ("quantity", listed([DIMENSIONS[each.dimension].unit for each in self.spreads]), "1", "SI unit")
+        names: dict[str, Column] = {"quantity": ("quantity", listed([each.name for each in self.spreads]), "1", "quantity")}
+        about = {f"probability_{name}": part for name, part in self.regimes.items()}
+        about |= {f"error_{name}": error for name, error in self.errors.items()}
+        about |= {f"share_{name}": part for name, part in self.contributions.items()}
+        return new_dataset(columns, names, {"title": "Propagated errors of a state", "method": self.method, **about})
+
+    def _draw(self, path: Any, **options: Any) -> Any:
+        from stribeck.uncertainty.plot import plot_uncertainty
+
+        return plot_uncertainty(self, path, **options)
 
     def __str__(self) -> str:
         """Return the table as text."""

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.contact_laws.law import law_attributes
-from stribeck.files.writing import MissingExtraError
 from stribeck.quantities.inputs import unit_of
 from stribeck.quantities.outputs import GROUPS
 from stribeck.quantities.units import InputError, show
@@ -28,34 +27,11 @@ def field_dataset(solution: PointSolution, points: int, reach: float) -> xarray.
         raise InputError(f"points = {show(points)}; it must be a whole number from 2 to {MOST_POINTS}.")
     if isinstance(reach, bool) or not isinstance(reach, int | float) or not (reach > 0 and math.isfinite(reach)):
         raise InputError(f"reach = {show(reach)}; it must be a positive number of Hertz radii.")
-    try:
-        import xarray
-    except ImportError:
-        raise MissingExtraError("a dataset", "data", "xarray") from None
-
     along = np.linspace(-reach, reach, points)
-    found = solution.field(along, along[:, None])
-    contact = solution.contact
-    hertz = None if contact is None else contact.hertz
-    length, gap, pressure = (1.0, 1.0, 1.0) if hertz is None else (hertz.half_width, hertz.indentation, hertz.pressure)
-    metre, pascal = ("1", "1") if hertz is None else ("m", "Pa")
-    unit = "" if hertz is not None else ", in Hertz units"
-
-    def plane(values: Any, units: str, name: str) -> tuple[tuple[str, str], Any, dict[str, str]]:
-        return ("y", "x"), values, {"units": units, "long_name": name + unit}
-
-    return xarray.Dataset(
-        {
-            "gap": plane(found.gap * gap, metre, "gap"),
-            "contact_pressure": plane(found.contact_pressure * pressure, pascal, "contact pressure"),
-            "fluid_pressure": plane(found.fluid_pressure * pressure, pascal, "fluid pressure"),
-        },
-        coords={
-            "x": ("x", along * length, {"units": metre, "long_name": "position along the motion, inlet at x < 0" + unit}),
-            "y": ("y", along * length, {"units": metre, "long_name": "position across the motion" + unit}),
-        },
-        attrs=_attributes(solution),
-    )
+    if solution.contact is not None:
+        along = along * solution.contact.hertz.half_width
+    found = solution.field if solution.contact is None else solution.to_si
+    return found(along, along[:, None]).to_dataset().assign_attrs(_attributes(solution))
 
 
 def _attributes(solution: PointSolution) -> dict[str, Any]:

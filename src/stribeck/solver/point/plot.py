@@ -17,8 +17,6 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.files.pictures import (
-    CONTACT,
-    FLUID,
     GREY,
     INK,
     MARK,
@@ -30,15 +28,15 @@ from stribeck.files.pictures import (
 )
 from stribeck.files.writing import PathLike
 from stribeck.quantities.units import InputError, show
-from stribeck.solver.plot import axis_in_si, draw_gap, footer_of, mark_failure
+from stribeck.solver.plot import axis_in_si, draw_gap, draw_pressures, footer_of, mark_failure, scales_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from stribeck.solver.point.solution import PointSolution
+    from stribeck.solver.point.solution import Field, PointSolution
 
-__all__ = ["interference", "plot_point_solution"]
+__all__ = ["interference", "plot_field", "plot_point_solution"]
 
 Colours = Literal["film", "interference"]
 
@@ -142,6 +140,40 @@ def plot_point_solution(
     return finish_figure(figure, path, force)
 
 
+@picture("the points are no grid")
+def plot_field(
+    field: Field, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+) -> Figure:
+    """Draw film and pressure on the plane, in the units of the field.
+
+    Parameters
+    ----------
+    field : Field
+        The field on evenly spaced positions, as of ``solution.field(x, x[:, None])``.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw the film into, instead of a new figure.
+    """
+    if field.grid is None or not all(len(each) > 1 and np.ptp(np.diff(each)) < 1e-6 * np.ptp(each) for each in field.grid):
+        raise InputError("this field is not on an evenly spaced grid; a picture needs one, as of field(x, x[:, None]).")
+    others: list[Axes] = []
+    if ax is None:
+        figure, (film, *others) = new_figure((10.5, 4.6), [], columns=2, title=title or "Film and pressure")
+    else:
+        figure, film = figure_of(ax), ax
+    to_x, to_gap, to_pressure = scales_of(field, np.stack([np.abs(each).max() for each in field.grid]), "$x$")
+    half = [0.5 * to_x[0] * (each[1] - each[0]) for each in field.grid]
+    x, y = (each * to_x[0] for each in field.grid)
+    extent = (x[0] - half[0], x[-1] + half[0], y[0] - half[1], y[-1] + half[1])
+    _film_map(figure, film, field.gap * to_gap[0], extent, to_gap[1])
+    if others:
+        _pressure_map(figure, others[0], field.pressure * to_pressure[0], extent, to_pressure[1])
+    for axes in (film, *others):
+        axes.set_xlabel(f"{to_x[1]}; fluid enters from the left")
+        axes.set_ylabel(to_x[1].replace("x", "y", 1) if axes is film else "")
+        axes.set_aspect("equal")
+    return finish_figure(figure, path, force)
+
+
 def _scales(solution: PointSolution, largest: float) -> tuple[tuple[float, str], ...]:
     """Return factor and label of position, gap and pressure."""
     if solution.contact is None:
@@ -199,17 +231,7 @@ def _cut(
     cut = solution.profile(x)
     draw_gap(gap, solution, x * to_x[0], cut.gap, to_gap)
     gap.tick_params(labelbottom=True)
-    hertz = np.sqrt(np.clip(1 - x**2, 0, None))
-    curves: list[tuple[Array, dict[str, Any]]] = [
-        (hertz, {"color": GREY, "lw": 1.0, "ls": (0, (2, 2)), "label": "dry smooth contact (Hertz)"}),
-        (cut.pressure, {"color": INK, "lw": 1.8, "label": "total pressure"}),
-        (cut.contact_pressure, {"color": CONTACT, "lw": 1.6, "ls": (0, (6, 2)), "label": "from asperities"}),
-        (cut.fluid_pressure, {"color": FLUID, "lw": 1.6, "ls": "-.", "label": "from the fluid"}),
-    ]
-    for values, style in curves:
-        pressure.plot(x * to_x[0], values * to_pressure[0], **style)
-    pressure.axhline(0.0, color=GREY, lw=0.6, zorder=1)
-    pressure.set_ylabel(to_pressure[1])
+    draw_pressures(pressure, cut, x * to_x[0], to_pressure, np.sqrt(np.clip(1 - x**2, 0, None)))
     for axes in (gap, pressure):
         axes.set_xlabel(f"{to_x[1]} on the middle line; fluid enters from the left")
         axes.set_xlim(x[0] * to_x[0], x[-1] * to_x[0])

@@ -14,11 +14,13 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.groups import Groups, contact_law
 from stribeck.equations.point.observables import OBSERVABLES
+from stribeck.files.datasets import Column, new_dataset
+from stribeck.files.results import Exported
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, Shown
 from stribeck.quantities.units import InputError, real_array, show
-from stribeck.solver.base_solution import BaseSolution, Profile
+from stribeck.solver.base_solution import UNITS, BaseSolution, Profile, columns_of
 from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
 from stribeck.solver.point.state import PointObservables, PointState
 from stribeck.solver.solve import SolveError, describe
@@ -46,7 +48,7 @@ CAVITY = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Field(Shown, ByValue):
+class Field(Exported, Shown, ByValue):
     """Fields on the plane of the contact.
 
     Attributes
@@ -72,6 +74,43 @@ class Field(Shown, ByValue):
     def pressure(self) -> Array:
         """Total pressure, contact and fluid."""
         return self.contact_pressure + self.fluid_pressure
+
+    @cached_property
+    def grid(self) -> tuple[Array, Array] | None:
+        """Ascending positions along and across the motion if the points are a grid, gap[i, j] at y[i] and x[j]; else None."""
+        if self.gap.ndim != 2 or not self.gap.size:
+            return None
+        x, y = (np.broadcast_to(each, self.gap.shape) for each in (self.x, self.y))
+        is_grid = (x == x[0]).all() and (y.T == y[:, 0]).all() and (np.diff(x[0]) > 0).all() and (np.diff(y[:, 0]) > 0).all()
+        return (x[0], y[:, 0]) if is_grid else None
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the fields as an xarray Dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Gap, contact pressure and fluid pressure over ``y`` and ``x`` if the points are a grid, else over the dimensions
+            of the arrays, in the units of the field; needs the extra ``data``.
+
+        Raises
+        ------
+        MissingExtraError
+            If xarray is not installed.
+        """
+        dims = ("y", "x") if self.grid is not None else tuple(f"dim_{i}" for i in range(self.gap.ndim))
+        places = self.grid or np.broadcast_arrays(self.x, self.y)
+        words = "position along the motion; fluid enters from the left", "position across the motion"
+        coords: dict[str, Column] = {
+            name: (name if self.grid else dims, place, UNITS[self.unit][0], said)
+            for name, place, said in zip("xy", places, words, strict=True)
+        }
+        return new_dataset(columns_of(self, dims), coords, {"title": "Fields on the plane of a lubricated rough contact"})
+
+    def _draw(self, path: Any, **options: Any) -> Any:
+        from stribeck.solver.point.plot import plot_field
+
+        return plot_field(self, path, **options)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

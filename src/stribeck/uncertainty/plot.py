@@ -1,0 +1,61 @@
+"""The picture of propagated errors: intervals over the values for the inputs as given.
+
+matplotlib comes with the extra ``plot`` and is imported on first use.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stribeck.files.pictures import GREY, INK, figure_of, finish_figure, make_logarithmic, new_figure, picture
+from stribeck.files.writing import PathLike
+from stribeck.quantities.units import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from stribeck.uncertainty.result import Uncertainty
+
+__all__ = ["plot_uncertainty"]
+
+LEAST = 1e-3
+"""Smallest end of an interval that is drawn, over the value as given; and its inverse the largest."""
+
+
+@picture("no value is positive")
+def plot_uncertainty(
+    found: Uncertainty, path: PathLike | None = None, *, ax: Axes | None = None, force: bool = False, title: str = ""
+) -> Figure:
+    """Draw the 68 and 95 % intervals of a state over its values for the inputs as given.
+
+    Parameters
+    ----------
+    found : Uncertainty
+        The propagated errors.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw the intervals into, instead of a new figure.
+    """
+    shown = [each for each in found.spreads if each.value > 0 and np.isfinite(each.value)]
+    if not shown:
+        raise InputError("no value of this state is positive, so that there is no interval to draw.")
+    if ax is None:
+        footer = [(line, GREY) for line in (f"Regime: {found.probabilities}.", *found.sources)]
+        figure, (ax,) = new_figure((8.5, 1.2 + 0.28 * len(shown)), footer, title=title or "Uncertainty of a state", left=3.4)
+    else:
+        figure = figure_of(ax)
+    ends = np.clip([[*each.interval_95, *each.interval_68, each.median] for each in shown], 0.0, None)
+    ends = np.clip(ends / np.array([[each.value] for each in shown]), LEAST, 1 / LEAST)
+    rows = np.arange(len(shown))
+    ax.hlines(rows, ends[:, 0], ends[:, 1], color=INK, lw=1.2, label="95 %")
+    ax.hlines(rows, ends[:, 2], ends[:, 3], color=INK, lw=4.5, label="68 %")
+    ax.plot(ends[:, 4], rows, color=INK, ls="", marker="o", ms=5.5, mfc="white", mew=1.3, label="median")
+    ax.axvline(1.0, color=GREY, lw=0.8, ls=(0, (5, 3)), zorder=0)
+    ax.set_yticks(rows, [each.label for each in shown])
+    ax.set_ylim(len(shown) - 0.4, -0.6)
+    make_logarithmic(ax, "x", ends)
+    ax.set_xlabel("times the value for the inputs as given")
+    ax.legend(frameon=False, fontsize=8, loc="best")
+    return finish_figure(figure, path, force)

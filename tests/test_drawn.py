@@ -1,0 +1,100 @@
+"""What every result does alike: it draws itself, into axes too, and becomes a dataset that files keep."""
+
+import numpy as np
+import pytest
+from command_line import EXAMPLES
+from matplotlib.figure import Figure
+
+import stribeck as sb
+from stribeck.experiments.compare import Candidate
+from stribeck.experiments.next_runs import NextRun
+
+ALONG = np.linspace(-2.0, 2.0, 41)
+
+
+@pytest.fixture(scope="module")
+def results():
+    contact = sb.load_case(EXAMPLES / "pdms_cylinder.toml").contact
+    ball = sb.solve(sb.load_case(EXAMPLES / "rubber_ball.toml").contact, rtol=1e-2)
+    data = sb.read_measurements(EXAMPLES / "pdms_measured.csv")
+    fit = sb.fit(data, contact, free=("boundary_friction", "roughness"), intervals=False)
+    run, other = (NextRun(data.curves[0], speed, 50.0, 0.05, 0.2, 1.5, 1.0, {"roughness": 0.1}) for speed in (0.01, 0.1))
+    state = sb.solve(contact)
+    return {
+        "solution": state,
+        "profile in SI units": state.to_si(),
+        "profile in Hertz units": state.profile(ALONG),
+        "ball": ball,
+        "field in Hertz units": ball.field(ALONG, ALONG[:, None]),
+        "field in SI units": ball.to_si(1e-3 * ALONG, 1e-3 * ALONG[:30, None]),
+        "curve": sb.stribeck_curve(contact, points=5, rtol=1e-4),
+        "batch": sb.solve_batch(contact, speed=[1e-4, 1e-2, 1.0]),
+        "checks": sb.check(contact),
+        "uncertainty": sb.propagate(contact, {"roughness": 0.2}),
+        "measurements": data,
+        "fit": fit,
+        "comparison": sb.Comparison(
+            (Candidate("one", fit, 1.0, 0.0, 0.9), Candidate("two", fit, 5.5, 4.5, 0.1)), {"no": "why"}
+        ),
+        "plan": sb.Plan((run,), {"roughness": 0.3}, 0.05, (run, other)),
+    }
+
+
+KINDS = (
+    "solution",
+    "profile in SI units",
+    "profile in Hertz units",
+    "ball",
+    "field in Hertz units",
+    "field in SI units",
+    "curve",
+    "batch",
+    "checks",
+    "uncertainty",
+    "measurements",
+    "fit",
+    "comparison",
+    "plan",
+)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_result_draws_itself_also_into_given_axes(results, kind, tmp_path):
+    found = results[kind]
+    assert found.plot(tmp_path / "one.svg").axes
+    axes = Figure().subplots()
+    assert found.plot(ax=axes) is axes.figure
+    assert axes.has_data() and axes.get_xlabel()
+    with pytest.raises(sb.InputError, match="is no axes of matplotlib"):
+        found.plot(ax="here")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_result_becomes_a_dataset_that_a_file_keeps(results, kind, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    found = results[kind].to_dataset()
+    assert found.sizes and found.attrs["title"]
+    assert all(each.attrs["long_name"] for each in found.variables.values() if each.dims)
+    results[kind].to_netcdf(tmp_path / "one.nc")
+    with xarray.open_dataset(tmp_path / "one.nc") as kept:
+        assert dict(kept.sizes) == dict(found.sizes)
+        for name, values in found.data_vars.items():
+            np.testing.assert_array_equal(kept[name].values, values.values)
+
+
+def test_a_field_over_other_points_than_an_even_grid_is_not_drawn_and_keeps_its_places(results):
+    field = results["ball"].field([0.0, 0.5, 2.0], [[0.0], [1.0]])
+    with pytest.raises(sb.InputError, match="evenly spaced grid"):
+        field.plot()
+    assert dict(field.to_dataset().sizes) == {"y": 2, "x": 3}
+    scattered = results["ball"].field([0.5, 0.1], [0.3, 0.2])
+    found = scattered.to_dataset()
+    assert list(found["x"].values) == [0.5, 0.1] and found["gap"].dims == found["y"].dims == ("dim_0",)
+    with pytest.raises(sb.InputError, match="evenly spaced grid"):
+        scattered.plot()
+
+
+def test_a_batch_tells_the_regime_of_each_state_as_single_solves_do(results):
+    batch = results["batch"]
+    assert batch.regime.tolist() == [sb.solve(contact).regime for contact in batch.contacts]
+    assert set(batch.regime.tolist()) == {"boundary", "mixed", "hydrodynamic"}
