@@ -6,13 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from ball_data import BALL
-from test_point_fit import measured
+from test_point_fit import made_up, measured
 
 import stribeck as sb
 from stribeck.batches.kept import KeptStates, between
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.model import Model
-from stribeck.fits.friction_parts import kept_balls
+from stribeck.fits import friction_parts
+from stribeck.fits.friction_parts import Between, Ways, kept_balls
 from stribeck.fits.model import FrictionModel, free_inputs
 from stribeck.fluids.rheology.rate_laws import Carreau
 from stribeck.fluids.shear_thinning import ShearThinning
@@ -57,6 +58,44 @@ def test_a_state_that_was_solved_is_not_solved_again(monkeypatch):
     first = states.at(groups, {}, 0.1, math.inf)
     monkeypatch.setattr("stribeck.batches.kept.next_state", None)
     np.testing.assert_array_equal(states.at(replace(groups), {}, 0.1, math.inf)[0], first[0])
+
+
+@pytest.mark.quick
+def test_curves_are_read_between_the_inputs_at_which_they_were_solved_and_fits_solve_few(monkeypatch):
+    free, inputs = ("boundary_friction", "roughness", "viscosity"), ({}, {"load": 2 * BALL.load})
+    data, solve, solved = measured(np.ones(8), SPEEDS, inputs=inputs), made_up("balanced"), []
+
+    def counted(*of):
+        solved.append(len(of[0].speed))
+        return solve(*of)
+
+    model = FrictionModel(BALL, data, free_inputs(BALL, data, free, FitSettings(geometry="point")))
+    exact = model.predict(np.array([0.2, 0.05, -0.1]), solve)
+    read = Between(counted, 0.03)
+    for theta in np.array([[0.3, 0.0, 0.0], [0.2, 0.2, -0.2], [0.2, 0.05, -0.1]]):
+        found = model.predict(theta, read)
+    assert solved == [4] * 4  # two places of each curve
+    np.testing.assert_allclose(found.friction, exact.friction, rtol=1e-2)
+    np.testing.assert_allclose(found.jacobian, exact.jacobian, atol=0.03 * exact.friction.max())
+    assert (found.error > exact.error).all()
+
+    solved.clear()
+    quick = Between(counted, friction_parts.FAR_DOUBT)
+    ways = Ways(quick, replace(quick, doubt=friction_parts.NEAR_DOUBT))
+    monkeypatch.setitem(friction_parts.WAYS, "point", lambda *_: ways)
+    noise = np.exp(0.02 * np.random.default_rng(1).standard_normal(8))
+    rows = measured(exact.friction * noise, SPEEDS, inputs=inputs)
+    fit = sb.fit(rows, BALL, free=["boundary_friction", "viscosity"])
+    drawn = fit.band(1, np.geomspace(SPEEDS[0], SPEEDS[-1], 30))  # between the measured speeds, without a state more
+    assert len(solved) <= 2 * 12
+    monkeypatch.setitem(friction_parts.WAYS, "point", lambda *_: Ways(solve, solve))
+    alone = sb.fit(rows, BALL, free=["boundary_friction", "viscosity"])
+    assert fit.converged
+    for one, other in zip(fit.inputs, alone.inputs, strict=True):
+        assert one.value == pytest.approx(other.value, rel=0.02 * other.standard_error)
+        np.testing.assert_allclose(np.log(one.interval_95), np.log(other.interval_95), atol=0.05 * other.standard_error)
+    for one, other in zip(drawn, alone.band(1, np.geomspace(SPEEDS[0], SPEEDS[-1], 30)), strict=True):
+        np.testing.assert_allclose(one, other, rtol=0.01)
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import partial
 from typing import Any
@@ -55,7 +55,12 @@ class KeptStates:
     _last: tuple[Array, PointState] | None = None
 
     def at(
-        self, groups: Groups, changes: Mapping[str, tuple[Model, Model, float]], slope: float, wetted: float
+        self,
+        groups: Groups,
+        changes: Mapping[str, tuple[Model, Model, float]],
+        slope: float,
+        wetted: float,
+        by: Sequence[str] = GROUPS,
     ) -> tuple[Array, Array, Array]:
         """Return :data:`stribeck.batches.lattice.PARTS` of one state, their derivatives and their errors.
 
@@ -67,6 +72,8 @@ class KeptStates:
             Two models around that of the groups, and the distance of the logarithm between them, by a name for messages.
         slope, wetted : float
             a/R, and radius of the liquid [a]: up to there a fluid counts that thins far out.
+        by : sequence of str
+            Groups with respect to which derivatives are wanted; the others are zero.
 
         Returns
         -------
@@ -85,9 +92,11 @@ class KeptStates:
         state = self._solved(groups)
         values = np.array([state.values[name] for name in PARTS])
         errors = np.array([state.errors[name] for name in PARTS])
-        by_groups = state_derivatives(state)
-        along = derivatives_along(state, {name: partial(_moved, groups, *ends) for name, ends in changes.items()})
-        slopes = np.array([np.append(by_groups[name], along.get(name, np.zeros(0))) for name in PARTS])
+        by_groups = state_derivatives(state, by)
+        slopes = np.array([by_groups[name] for name in PARTS])
+        if changes:
+            along = derivatives_along(state, {name: partial(_moved, groups, *ends) for name, ends in changes.items()})
+            slopes = np.append(slopes, [along[name] for name in PARTS], axis=1)
         if groups.model.film.uses_speed and isinstance(state.work, Pair):
             fine = state.work.fine
             within = FrictionWithin.of(fine.equations, fine.unknowns, {name: float(v) for name, v in state.values.items()})

@@ -23,7 +23,7 @@ from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.fits.case_file import load_fit_case
-from stribeck.fits.friction_parts import in_atlas, ways_of
+from stribeck.fits.friction_parts import Between, PartsOf, in_atlas, ways_of
 from stribeck.fits.identifiability import Unidentifiable, undetermined
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.model import FreeInput, FrictionModel, free_inputs
@@ -49,6 +49,9 @@ FIRST_NOISE = 0.1
 
 RESTARTS = 4
 """Better minima on profiles that are followed before the fit counts as lost."""
+
+ROUNDS = 8
+"""Minima at which states that are read are solved before the fit counts as lost."""
 
 NOTHING = 1e-13
 """Eigenvalue of the information, over the largest, below which it is rounding."""
@@ -132,23 +135,22 @@ def fit(
     model = FrictionModel(contact, data, wanted)
     _check_enough(data, wanted)
     report = on_step or (lambda what, count: None)
-    quick, solved = ways_of(model, definition, problem.rtol)
+    quick, solved = ways_of(model, definition, problem.rtol, lambda n: report("states", n))
     goal = objective(model, quick, settings, settings.robust)
 
     found = _search(goal, definition, report)
-    fine = (
-        found
-        if quick is solved
-        else _brought_back(settle(replace(found.objective, parts_of=solved), found.theta, lambda n: report("solving", n)))
-    )
+    reads = isinstance(quick, Between)
+    fine = found if quick is solved else _solved(found, solved, report)
+    if reads:  # what was solved is read from now on
+        found = replace(fine, objective=replace(fine.objective, parts_of=quick))
     covariance, quantiles, inflation = _covariance(fine)
     ends, found = _intervals(found, covariance, quantiles, inflation, intervals, report)
     if quick is not solved and fine.value > found.value + 0.1:  # a profile led to a better fit
-        fine = _brought_back(settle(replace(found.objective, parts_of=solved), found.theta, lambda n: report("solving", n)))
+        fine = _solved(found, solved, report)
         covariance, quantiles, inflation = _covariance(fine)
     shift = fine.theta - found.theta
     ends = [[Ends(e.low + d, e.high + d) for e in each] for each, d in zip(ends, shift.tolist(), strict=True)]
-    return _result(fine, ends, covariance, quantiles, problem, shift if quick is not solved else None)
+    return _result(fine, ends, covariance, quantiles, problem, None if reads or quick is solved else shift)
 
 
 @dataclass(frozen=True)
@@ -194,6 +196,22 @@ def _search(goal: Objective, definition: Definition, report: Step) -> Minimum:
             best = found
     assert best is not None
     return _brought_back(settle(best.objective, best.theta, lambda n: report("fitting", n)))
+
+
+def _solved(found: Minimum, solved: PartsOf | Between, report: Step) -> Minimum:
+    """Return the minimum on solved states, from that on states that were read.
+
+    What is read is solved at the minimum, and the minimum found anew, until the solved states say that it is there.
+    """
+    if not isinstance(solved, Between):
+        return _brought_back(settle(replace(found.objective, parts_of=solved), found.theta, lambda n: report("solving", n)))
+    for n in range(1, ROUNDS + 1):
+        fine = minimise(replace(found.objective, parts_of=solved), found.theta, near=math.inf)
+        report("solving", n)
+        if fine.converged:
+            break
+        found = _brought_back(settle(found.objective, found.theta))
+    return fine
 
 
 def _brought_back(found: Minimum) -> Minimum:

@@ -6,15 +6,16 @@ state to state: :mod:`stribeck.contacts.friction_rules` puts them together.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from stribeck import atlas
-from stribeck._types import Array
+from stribeck._types import Array, Indices
 from stribeck.atlas.tables import table_for
 from stribeck.batches.chain import CHAIN_STEPS
 from stribeck.batches.kept import KeptStates
@@ -26,18 +27,21 @@ from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.observables import ROW
 from stribeck.equations.sensitivity import log_derivatives
 from stribeck.numerics.continuation import march
+from stribeck.numerics.scattered import Scattered
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.outputs import NAMES
 from stribeck.quantities.units import InputError
 from stribeck.solver.corrector import Corrector
 from stribeck.solver.nearby import WarmStartSolver
+from stribeck.solver.point.sensitivity import GROUPS
 from stribeck.solver.solve import SolveError, minimum_estimate
 
 if TYPE_CHECKING:
     from stribeck.fits.model import FrictionModel
 
 __all__ = [
+    "Between",
     "FrictionParts",
     "ModelChange",
     "PartsOf",
@@ -67,6 +71,9 @@ LATTICE_ERROR = 3e-3
 
 FINE_STEPS = (0.3, 1.0, 1.0)
 """Steps of solved curves of balls: of ln(speed), and none that count of ln(load) and ln(relative roughness)."""
+
+FAR_DOUBT, NEAR_DOUBT = 1e-2, 3e-4
+"""Doubt of curves read between solved ones, see :mod:`stribeck.numerics.scattered`, in the search and at its end."""
 
 CLOSE = 0.01
 """Logarithm of a load or a roughness up to which a solved curve of a ball serves, to first order."""
@@ -115,6 +122,9 @@ class ModelChange(NamedTuple):
 
 PartsOf = Callable[[Groups, Sequence[ModelChange]], FrictionParts]
 """What gives the parts of the friction of states in a row, with their derivatives along changes of the model."""
+
+
+OnState = Callable[[int], object]
 
 
 def atlas_parts(definition: Definition) -> PartsOf:
@@ -262,20 +272,87 @@ def _along(
     return values, slopes, errors
 
 
+@dataclass(eq=False)
+class Between:
+    """Reads curves between the inputs at which they were solved, and solves them where that leaves doubt.
+
+    Parameters
+    ----------
+    solve : callable
+        What solves the states.
+    doubt : float
+        Largest doubt with which a curve is read.
+    known : dict
+        What was solved of each curve; may be shared.
+    """
+
+    solve: PartsOf
+    doubt: float
+    known: dict[int, tuple[Scattered, list[FrictionParts]]] = field(default_factory=dict)
+
+    def at(self, curve: int, place: Array, solved: Callable[[], FrictionParts], moving: Indices) -> FrictionParts:
+        """Return the parts of one curve.
+
+        Parameters
+        ----------
+        curve : int
+            Number of the curve.
+        place : ndarray, shape (m,)
+            The inputs that move its states.
+        solved : callable
+            Solves the curve there; its slopes are along all free inputs.
+        moving : ndarray of int, shape (m,)
+            Rows of those inputs in the slopes.
+
+        Returns
+        -------
+        FrictionParts
+            With the slopes along the free inputs.
+        """
+        if curve not in self.known:
+            first = solved()
+            self.known[curve] = Scattered(_lengths(first, moving)), [first]
+            self.known[curve][0].add(place, first.values.ravel(), _rows(first, moving))
+        scattered, all_solved = self.known[curve]
+        doubt = scattered.doubt(place)
+        if doubt > self.doubt:
+            all_solved.append(solved())
+            scattered.add(place, all_solved[-1].values.ravel(), _rows(all_solved[-1], moving))
+            doubt = scattered.doubt(place)
+        near = all_solved[scattered.nearest(place)]
+        values, by = scattered.at(place)
+        slopes = np.zeros_like(near.slopes)
+        slopes[:, moving] = by.reshape(len(moving), *near.values.shape).swapaxes(0, 1)
+        return FrictionParts(values.reshape(near.values.shape), slopes, near.errors + doubt, near.definition)
+
+
+def _rows(parts: FrictionParts, moving: Indices) -> Array:
+    """Return the slopes along moving inputs, shape (m, parts * rows)."""
+    return np.asarray(parts.slopes[:, moving].swapaxes(0, 1).reshape(len(moving), parts.values.size))
+
+
+def _lengths(parts: FrictionParts, moving: Indices) -> Array:
+    """Return how far the logarithms of inputs move until a state changes by its own size, at most one."""
+    size = np.ones_like(parts.values)
+    size[1:] = np.abs(parts.values[1:]).max(axis=0)
+    largest = (np.abs(parts.slopes[:, moving]) / size[:, None]).max(axis=(0, 2), initial=0.0)
+    return np.asarray(1.0 / np.maximum(1.0, largest))
+
+
 class Ways(NamedTuple):
     """How the states of a fit are obtained.
 
     Attributes
     ----------
-    quick, solved : callable
+    quick, solved : callable or Between
         For the search, and for the values that the fit returns.
     """
 
-    quick: PartsOf
-    solved: PartsOf
+    quick: PartsOf | Between
+    solved: PartsOf | Between
 
 
-def ways_of(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
+def ways_of(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
     """Return how the states of a fit are obtained: from atlas and solver, or for a ball from a lattice of solved states.
 
     Parameters
@@ -286,13 +363,15 @@ def ways_of(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
         Definition of the viscous friction.
     rtol : float
         Relative tolerance of solved states.
+    on_state : callable
+        Called with the number of states so far after each one that takes long to solve.
 
     Returns
     -------
     Ways
         The functions.
     """
-    return WAYS[model.contact.groups.geometry](model, definition, rtol)
+    return WAYS[model.contact.groups.geometry](model, definition, rtol, on_state)
 
 
 def in_atlas(model: FrictionModel) -> bool:
@@ -301,7 +380,7 @@ def in_atlas(model: FrictionModel) -> bool:
     return len(kinds) == 1 and not any(model.moving) and atlas.for_groups(model.contact.groups) is not None
 
 
-def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
+def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
     if in_atlas(model):
         solved = solved_parts(definition, rtol)
         return Ways(atlas_or(solved, definition), solved)
@@ -309,22 +388,26 @@ def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float) -> W
     return Ways(kept, kept)
 
 
-def _of_ball(model: FrictionModel, definition: Definition, rtol: float) -> Ways:
+def _of_ball(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
     if any(each.groups.model != ARTICLE for each in model.contacts):  # lattices know one model
-        kept = kept_balls(model, definition, max(rtol, KEPT_RTOL))
-        return Ways(atlas_or(kept, definition) if in_atlas(model) else kept, kept)
+        kept = kept_balls(model, definition, max(rtol, KEPT_RTOL), on_state)
+        if in_atlas(model):
+            return Ways(atlas_or(kept, definition), kept)
+        quick = Between(kept, FAR_DOUBT)
+        return Ways(quick, replace(quick, doubt=NEAR_DOUBT))
     logs, varies = model.start()
     lattice, solved = lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL))
     return Ways(atlas_or(lattice, definition) if in_atlas(model) else lattice, solved)
 
 
-def kept_balls(model: FrictionModel, definition: Definition, rtol: float) -> PartsOf:
+def kept_balls(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState = lambda n: None) -> PartsOf:
     """Return the function that solves balls with other fluids and bodies, each from the nearest state of those before.
 
     A fluid that thins far out counts up to the edge of the liquid of the contact as the fit begins.
     """
-    states = KeptStates(rtol)
+    states, count = KeptStates(rtol), itertools.count(1)
     others = model.rule.of_contact(model.contact)
+    by = [name for name, moves in zip(GROUPS, np.abs(model.exponents[:, :, :3]).max(axis=(0, 1)) > 0, strict=True) if moves]
 
     def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
         rows = np.stack(np.broadcast_arrays(groups.speed, groups.load, groups.roughness), axis=1)
@@ -334,13 +417,14 @@ def kept_balls(model: FrictionModel, definition: Definition, rtol: float) -> Par
         for i in np.lexsort((-rows[:, 0], rows[:, 2], rows[:, 1])).tolist():
             here = Groups(*rows[i].tolist(), **groups.physics)
             slope = float(here.slope(others["beta"]))
-            values[:, i], slopes[:, :, i], errors[:, i] = states.at(here, ends, slope, others["wetted_radius"])
+            values[:, i], slopes[:, :, i], errors[:, i] = states.at(here, ends, slope, others["wetted_radius"], by)
+            on_state(next(count))
         return FrictionParts(values[names], slopes[names], errors[names], definition)
 
     return one_blas_thread(parts)
 
 
-WAYS: dict[str, Callable[[FrictionModel, Definition, float], Ways]] = {"line": _of_cylinder, "point": _of_ball}
+WAYS: dict[str, Callable[[FrictionModel, Definition, float, OnState], Ways]] = {"line": _of_cylinder, "point": _of_ball}
 """The ways by geometry."""
 
 

@@ -33,7 +33,7 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.with_parts import STEP, check_solid, models_beside
-from stribeck.fits.friction_parts import FrictionParts, ModelChange, PartsOf
+from stribeck.fits.friction_parts import Between, FrictionParts, ModelChange, PartsOf
 from stribeck.fits.measurements import Measurements
 from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
 from stribeck.quantities.units import InputError, format_si
@@ -269,12 +269,24 @@ class FrictionModel:
             slopes[:, :3] = each.slopes[:, :3, at]
             slopes[:, [3 + change.input for change in changes]] = each.slopes[:, 3:, at]
             found.append((rows, replace(each, values=each.values[:, at], slopes=slopes, errors=each.errors[:, at])))
-        order = np.argsort(np.concatenate([rows for rows, _ in found]))
-        values, slopes, errors = (
-            np.concatenate([getattr(each, name) for _, each in found], axis=-1)[..., order]
-            for name in ("values", "slopes", "errors")
-        )
-        return FrictionParts(values, slopes, errors, found[0][1].definition)
+        return _together(found)
+
+    def _read(self, theta: Array, x: Array, known: Between) -> FrictionParts:
+        """Return the parts of all measured rows, with slopes along the inputs alone, read between curves that are solved."""
+        found = []
+        for c, A in enumerate(self.exponents[..., :3]):
+            rows = np.nonzero(self.data.curve == c)[0]
+            moves = np.abs(A).max(axis=1, initial=0.0) > 0
+            moves[list(self.moving[c])] = True
+
+            def solved(A: Array = A, rows: Indices = rows) -> FrictionParts:
+                each = self._parts(theta, x[rows], self.data.curve[rows], self.data.values[rows], known.solve)
+                return replace(each, slopes=np.einsum("kd,pdn->pkn", A, each.slopes[:, :3]) + each.slopes[:, 3:])
+
+            each = known.at(c, theta[moves], solved, np.nonzero(moves)[0])
+            none = np.zeros((len(each.values), 3, len(rows)))
+            found.append((rows, replace(each, slopes=np.concatenate([none, each.slopes], axis=1))))
+        return _together(found)
 
     def _exponents(self, curve: int) -> list[list[float]]:
         """Return the exponents with which each free input enters the groups, boundary_friction and what else there is."""
@@ -374,7 +386,7 @@ class FrictionModel:
             found[inside] = x[..., 3] * contact + viscous
         return found
 
-    def predict(self, theta: Array, parts_of: PartsOf, at: tuple[Indices, Array] | None = None) -> Prediction:
+    def predict(self, theta: Array, parts_of: PartsOf | Between, at: tuple[Indices, Array] | None = None) -> Prediction:
         """Return the friction at logarithms of factors.
 
         Parameters
@@ -394,7 +406,10 @@ class FrictionModel:
         curve, values, logs = (self.data.curve, self.data.values, self.logs) if at is None else (*at, self.logs_at(*at))
         A = self.exponents[curve]
         x = np.exp(logs + np.einsum("p,npk->nk", theta, A))
-        found = self._parts(theta, x, curve, values, parts_of)
+        if isinstance(parts_of, Between):
+            found = self._read(theta, x, parts_of) if at is None else self._parts(theta, x, curve, values, parts_of.solve)
+        else:
+            found = self._parts(theta, x, curve, values, parts_of)
         names = self.rule.parts(found.definition)
         parts, inputs = dict(zip(names, found.values[1:], strict=True)), dict(zip(self.rule.inputs, x[:, 4:].T, strict=True))
         fixed = {"far": far_film(self.model)}
@@ -414,7 +429,7 @@ class FrictionModel:
             for d in range(3)
         ]
         by_model = np.zeros((len(x), len(self.free)))
-        for k in {k for moving in self.moving for k in moving}:
+        for k in np.nonzero(np.any(found.slopes[:, 3:], axis=(0, 2)))[0].tolist():
             through = viscous(step * found.slopes[1:, 3 + k], no_group, no_input).imag / IMAGINARY
             by_model[:, k] = x[:, 3] * found.slopes[0, 3 + k] + through
         by_inputs = [viscous(still, no_group, step * row).imag / IMAGINARY for row in np.eye(len(inputs))]
@@ -428,3 +443,13 @@ class FrictionModel:
             error=np.abs(x[:, 3]) * found.errors[0]
             + self.rule.viscous_error(parts, errors, x[:, 0], x[:, 1], {**inputs, **fixed}, found.definition),
         )
+
+
+def _together(found: Sequence[tuple[Indices, FrictionParts]]) -> FrictionParts:
+    """Return the parts of all rows by those of some of them each."""
+    order = np.argsort(np.concatenate([rows for rows, _ in found]))
+    values, slopes, errors = (
+        np.concatenate([getattr(each, name) for _, each in found], axis=-1)[..., order]
+        for name in ("values", "slopes", "errors")
+    )
+    return FrictionParts(values, slopes, errors, found[0][1].definition)

@@ -19,7 +19,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.fits.friction_parts import PartsOf
+from stribeck.fits.friction_parts import Between, PartsOf
 from stribeck.fits.model import FrictionModel, Prediction
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve import SolveError
@@ -73,7 +73,7 @@ class Objective:
     """
 
     model: FrictionModel
-    parts_of: PartsOf
+    parts_of: PartsOf | Between
     sigma: Array | None
     logarithmic: bool
     robust: bool
@@ -129,7 +129,7 @@ class Objective:
         return float(self.loss(r).sum() + ((rows @ theta - means) ** 2).sum())
 
 
-def objective(model: FrictionModel, parts_of: PartsOf, settings: FitSettings, robust: bool) -> Objective:
+def objective(model: FrictionModel, parts_of: PartsOf | Between, settings: FitSettings, robust: bool) -> Objective:
     """Return the objective that the data and the settings ask for.
 
     Parameters

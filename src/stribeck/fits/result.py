@@ -15,6 +15,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.files.datasets import Column, new_dataset
 from stribeck.files.results import Exported
+from stribeck.fits.friction_parts import Between
 from stribeck.fits.identifiability import Unidentifiable
 from stribeck.fits.measurements import Measurements
 from stribeck.fits.residuals import Quality
@@ -222,15 +223,29 @@ class Fit(Exported, Shown, ByValue):
 
         Notes
         -----
-        The band is of the curve, not of single measurements, and normal in the logarithm.
+        The band is of the curve, not of single measurements, and normal in the logarithm.  Balls with other fluids and bodies
+        than those of the article are solved at the measured speeds alone, and between these it is interpolated.
         """
         at = self._minimum
         values = np.asarray(values, dtype=float)
-        found = at.objective.model.predict(at.theta, at.objective.parts_of, (np.full(len(values), curve), values))
-        slopes = found.jacobian / found.friction[:, None]
-        variance = np.einsum("np,pq,nq->n", slopes, np.nan_to_num(self.covariance), slopes)
+        model, parts_of = at.objective.model, at.objective.parts_of
+        rows = np.nonzero(model.data.curve == curve)[0]
+        places, first = np.unique(model.data.values[rows], return_index=True)
+        inside = values.size > 0 and places[0] <= values.min() * (1 + 1e-12) and values.max() <= places[-1] * (1 + 1e-12)
+        if isinstance(parts_of, Between) and len(places) > 1 and inside:
+            # Imported here because it takes longer than the rest of the package.
+            from scipy.interpolate import pchip_interpolate
+
+            both = np.column_stack([at.prediction.friction, at.prediction.jacobian])[rows[first]]
+            friction, *slopes = pchip_interpolate(np.log(places), both, np.log(values)).T
+            jacobian = np.reshape(slopes, (-1, len(values))).T
+        else:
+            found = model.predict(at.theta, parts_of, (np.full(len(values), curve), values))
+            friction, jacobian = found.friction, found.jacobian
+        relative = jacobian / friction[:, None]
+        variance = np.einsum("np,pq,nq->n", relative, np.nan_to_num(self.covariance), relative)
         half = np.sqrt(self._threshold * np.maximum(variance, 0.0))
-        return found.friction, found.friction * np.exp(-half), found.friction * np.exp(half)
+        return friction, friction * np.exp(-half), friction * np.exp(half)
 
     def to_dict(self) -> dict[str, Any]:
         """Return values, intervals, tests, rows and outcome under their names, ready for JSON.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -26,13 +26,15 @@ __all__ = ["GROUPS", "derivatives_along", "state_derivatives"]
 GROUPS = ("speed", "load", "roughness")
 
 
-def state_derivatives(state: PointState) -> dict[str, Array]:
+def state_derivatives(state: PointState, by: Sequence[str] = GROUPS) -> dict[str, Array]:
     """Return the derivatives of all observables with respect to ln(speed), ln(load) and ln(roughness).
 
     Parameters
     ----------
     state : PointState
         A converged state of positive speed, as the solver returned it.
+    by : sequence of str
+        The groups that are wanted; the derivatives with respect to the others are zero.
 
     Returns
     -------
@@ -40,7 +42,9 @@ def state_derivatives(state: PointState) -> dict[str, Array]:
         By the names of the observables, the other two groups and the model held; zero with respect to a group that is zero.
     """
     groups = state.groups
-    alive = {name: partial(_moved, groups, name) for name in GROUPS if float(getattr(groups, name)) > 0}
+    alive = {name: partial(_moved, groups, name) for name in GROUPS if name in by and float(getattr(groups, name)) > 0}
+    if not alive:
+        return {name: np.zeros(len(GROUPS)) for name in state.values}
     found = derivatives_along(state, alive)
     zero = np.array([name not in alive for name in GROUPS])
     columns = np.cumsum(~zero) - 1
