@@ -90,7 +90,10 @@ def test_a_preset_gives_the_viscosity_too():
     assert case.contact.viscosity == sb.fluids.glycerol_water(0.8, 20).viscosity
     [said] = case.conversions
     assert said.startswith("viscosity = ") and "weight_fraction = 0.8 and temperature = '20 degC': Cheng 2008" in said
+    assert case.facts == {"thinning_rate": pytest.approx(3e7 / case.contact.viscosity)}  # glycerol thins at 3e7 Pa
+    assert case_of(contact, fluid=liquid, check={"thinning_rate": "5e4 1/s"}).facts == {"thinning_rate": 5e4}
     thinning = case_of(contact, fluid={"preset": "xanthan"}).contact
+    assert case_of(contact, fluid={"preset": "xanthan"}).facts == {}
     assert thinning.fluid == sb.fluids.PRESETS["xanthan"]().fluid
     with pytest.raises(sb.InputError, match=r"\[fluid\] preset = 'water' and viscosity = .* are both given"):
         case_of(fluid={"preset": "water"})

@@ -132,6 +132,12 @@ def test_the_film_is_checked_against_supply_molecules_and_thinning():
 
     rate = TRUE.speed / minimum
     assert [verdict("shear rate", thinning_rate=rate * f) for f in (1.1, 0.9, 0.09)] == ORDER
+    for viscosity, usual, size in ((TRUE.viscosity, 1e6, 1e-9), (1e-3, 1e9, 3e-10)):  # water thins a thousand times later
+        for factor, expected in ((0.9, "fine"), (1.1, "doubtful"), (100, "doubtful")):
+            contact = TRUE.replace(viscosity=viscosity, speed=factor * usual * minimum)
+            assert checks_of(Subject(contact, solved=state), "state")["shear rate"].verdict == expected
+        found = checks_of(Subject(TRUE.replace(viscosity=viscosity), solved=state), "state")["film against molecules"]
+        assert found.limit == pytest.approx(10 * size)
     assert [verdict("supply h*/(2 supply)", supply_film=flux * f) for f in (1.1, 0.9, 0.4)] == ORDER
     assert [verdict("film against molecules", molecular_size=minimum / f) for f in (11, 9, 2)] == ORDER
 

@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 
 from stribeck.cases.fit_settings import FitSettings, check_fit_table
 from stribeck.cases.law import ASPERITIES, FROM_TABLES, LAWS, SURFACE, TABLE, Law, law_of_file
-from stribeck.cases.model_parts import preset_said, take_parts
+from stribeck.cases.model_parts import preset_facts, preset_said, take_parts
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import CONTACTS, check_geometry
 from stribeck.contacts.groups import Geometry
@@ -224,7 +224,7 @@ def check_case(tables: dict[str, Any], path: Path) -> Case:
         title=checked["title"],
         notes=checked["notes"],
         fit=fit,
-        facts=facts,
+        facts={**preset_facts(tables), **facts},
         errors=errors,
         conversions=(*conversions, *preset_said(tables, contact.viscosity)),
         tables=tables,

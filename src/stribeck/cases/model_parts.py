@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from stribeck.fluids.description import Fluid
 from stribeck.fluids.effective_medium import EffectiveMedium
 from stribeck.fluids.flow_factors import PatirCheng
-from stribeck.fluids.presets import PRESETS
+from stribeck.fluids.presets import PRESETS, Liquid
 from stribeck.fluids.rheology.eyring import Eyring
 from stribeck.fluids.rheology.rate_laws import Carreau, Cross, PowerLaw
 from stribeck.fluids.rheology.viscosity import Barus, DowsonHigginson, Roelands
@@ -22,7 +22,7 @@ from stribeck.quantities.units import InputError, format_si, show
 from stribeck.solids.layer import Layer
 from stribeck.solids.viscoelastic import Prony, StandardLinearSolid
 
-__all__ = ["KEYS", "preset_said", "take_parts"]
+__all__ = ["KEYS", "preset_facts", "preset_said", "take_parts"]
 
 
 class Part(NamedTuple):
@@ -201,7 +201,7 @@ def _law(table: dict[str, Any], kind: str) -> Any:
 def _preset(table: dict[str, Any], contact: Any) -> dict[str, Any]:
     name = _one_of(table, "preset", tuple(PRESETS), "")
     _only(table, ("preset", *CONDITIONS), "a preset")
-    liquid = PRESETS[name](**{key: table[key] for key in CONDITIONS if key in table})
+    liquid = _liquid(table)
     if isinstance(contact, dict):
         if "viscosity" in contact:
             raise InputError(
@@ -210,6 +210,28 @@ def _preset(table: dict[str, Any], contact: Any) -> dict[str, Any]:
             )
         contact["viscosity"] = liquid.viscosity
     return {"fluid": liquid.fluid}
+
+
+def _liquid(table: dict[str, Any]) -> Liquid:
+    return PRESETS[table["preset"]](**{key: table[key] for key in CONDITIONS if key in table})
+
+
+def preset_facts(tables: dict[str, Any]) -> dict[str, float]:
+    """Return the facts for checks that a preset holds, in SI units.
+
+    Parameters
+    ----------
+    tables : dict
+        The tables of a file as written.
+
+    Returns
+    -------
+    dict of str to float
+        By the names of :data:`stribeck.quantities.facts.FACTS`.
+    """
+    table = tables.get("fluid")
+    rate = _liquid(table).thinning_rate if isinstance(table, dict) and "preset" in table else None
+    return {} if rate is None else {"thinning_rate": rate}
 
 
 def preset_said(tables: dict[str, Any], viscosity: float) -> tuple[str, ...]:

@@ -9,8 +9,12 @@ from stribeck.checks.subject import Subject
 from stribeck.quantities.units import format_percent
 from stribeck.solver.notes import ATMOSPHERE, cavitation_notes
 
-USUAL_THINNING = 1e6
-"""Shear rate up to which base oils, water and glycerol keep their viscosity [1/s]; polymers thin earlier."""
+USUAL_THINNING, WATERY_THINNING = 1e6, 1e9
+"""Shear rate up to which oils without improvers and liquids as thin as water keep their viscosity [1/s]."""
+
+WATERY = 1.5e-3
+"""Viscosity up to which a liquid is one of small molecules, as water and saline are: of what it has of polymers it cannot lose
+more than a third [Pa s].  By kT for each molecule, 1e7 Pa or more, it keeps its viscosity up to 7e9 1/s."""
 
 THINNED = 10.0
 """Multiple of the rate at which a fluid begins to thin, beyond which its viscosity is unknown."""
@@ -18,8 +22,8 @@ THINNED = 10.0
 FINE_SUPPLY, STARVED = 0.5, 1.0
 """Film that passes, h*/2, over the film that arrives: flooded below the first, starved above the second."""
 
-USUAL_MOLECULE = 1e-9
-"""Size of an oil's molecules [m]."""
+USUAL_MOLECULE, WATERY_MOLECULE = 1e-9, 3e-10
+"""Size of the molecules of oils and of water [m]."""
 
 FINE_LAYERS, LAYERS = 10.0, 3.0
 """Molecules across the thinnest film: enough for a continuum, and too few."""
@@ -63,16 +67,18 @@ def shear_rate(subject: Subject) -> Check:
     contact, film = subject.contact, _minimum_film(subject)
     rate = contact.speed / film if film > 0 else math.inf
     given = subject.fact("thinning_rate")
-    limit = USUAL_THINNING if given is None else given
+    usual = USUAL_THINNING if contact.viscosity > WATERY else WATERY_THINNING
+    limit = usual if given is None else given
     if getattr(getattr(contact, "fluid", None), "rheology", None) is not None:
         return Check("shear rate", rate, math.inf, "fine", f"Thinning is modelled ({subject.models('fluid')}).", "1/s")
     outside = math.inf if given is None else THINNED * limit
     verdict = verdict_of(rate, limit, outside)
     about = f"The shear rate at the minimum film is {rate:.2g} 1/s"
     if verdict == "fine":
-        sentence = (
-            f"{about}, below {limit:.2g} 1/s at which {'oils may begin to thin' if given is None else 'the fluid thins'}."
+        who = (
+            "the fluid thins" if given is not None else "oils may begin to thin" if usual < WATERY_THINNING else "water thins"
         )
+        sentence = f"{about}, below {limit:.2g} 1/s at which {who}."
     else:
         who = "oils with improvers and all polymer solutions are thinner" if given is None else "the fluid is thinner"
         sentence = (
@@ -103,7 +109,8 @@ def supply(subject: Subject) -> Check | None:
 def molecules(subject: Subject) -> Check:
     """Return the check of the thinnest film against the size of molecules."""
     given = subject.fact("molecular_size")
-    size = USUAL_MOLECULE if given is None else given
+    usual = USUAL_MOLECULE if subject.contact.viscosity > WATERY else WATERY_MOLECULE
+    size = usual if given is None else given
     film = _minimum_film(subject)
     limit = FINE_LAYERS * size
     verdict: Verdict = "fine" if film >= limit else "doubtful" if film >= LAYERS * size else "outside"

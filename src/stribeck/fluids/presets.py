@@ -13,6 +13,9 @@ for glycerol in water, C the part of glycerol in the weight and T the temperatur
     \eta_g = 12100 \exp\frac{(-1233 + T) T}{9900 + 70 T} \text{ mPa s}
 
 Source: [Cheng 2008], within 3.5 % of the 80 viscosities from 0 to 40 degrees in Dow's table (``test_presets.py``).
+
+Small molecules turn too fast for the flow to order them until the stress is an energy kT for each, :math:`\varrho R T/M`: the
+shear rate at which a liquid of them thins is that over its viscosity (rotation time of Debye, within a factor of some).
 """
 
 from __future__ import annotations
@@ -33,6 +36,9 @@ __all__ = ["PRESETS", "Liquid", "Preset", "celsius", "glycerol_water", "water"]
 
 _TEMPERATURE = re.compile(r"\s*([+-]?[0-9]+(?:\.[0-9]*)?)\s*(degC|°C|deg C|C|K)\s*")
 
+WATER_STRESS, GLYCEROL_STRESS, OIL_STRESS = 1e8, 3e7, 3e6
+"""kT for each molecule of water, of glycerol and of PAO 10 (0.63 kg/mol), rounded down [Pa]."""
+
 
 @dataclass(frozen=True)
 class Liquid:
@@ -48,6 +54,8 @@ class Liquid:
         How it depends on pressure and shear rate.
     source : str
         Where the numbers are from.
+    thinning_rate : float or None
+        Shear rate at which it begins to thin, where that is known of a liquid that has no law of thinning [1/s].
 
     Examples
     --------
@@ -61,6 +69,7 @@ class Liquid:
     viscosity: float
     fluid: Fluid
     source: str
+    thinning_rate: float | None = None
 
     @property
     def inputs(self) -> dict[str, Any]:
@@ -134,7 +143,8 @@ def water(temperature: str | float = 25.0) -> Liquid:
         Where the temperature is impossible.
     """
     T = _between(celsius(temperature), 0, 100)
-    return Liquid(f"water at {T:g} degC", _water(T), Fluid(), "Cheng 2008")
+    viscosity = _water(T)
+    return Liquid(f"water at {T:g} degC", viscosity, Fluid(), "Cheng 2008", WATER_STRESS / viscosity)
 
 
 def glycerol_water(weight_fraction: float = 0.5, temperature: str | float = 25.0) -> Liquid:
@@ -164,7 +174,8 @@ def glycerol_water(weight_fraction: float = 0.5, temperature: str | float = 25.0
     a = 0.705 - 0.0017 * T
     b = (4.9 + 0.036 * T) * a**2.5
     w = 1 - C + a * b * C * (1 - C) / (a * C + b * (1 - C))
-    return Liquid(f"{100 * C:g} % glycerol in water at {T:g} degC", _water(T) ** w * eta_g ** (1 - w), Fluid(), "Cheng 2008")
+    viscosity, name = _water(T) ** w * eta_g ** (1 - w), f"{100 * C:g} % glycerol in water at {T:g} degC"
+    return Liquid(name, viscosity, Fluid(), "Cheng 2008", GLYCEROL_STRESS / viscosity)
 
 
 def _water(T: float) -> float:
@@ -185,8 +196,8 @@ def _silicone(grade: float) -> Liquid:
     return Liquid(f"silicone oil {grade:g} cSt at 25 degC", 1e-6 * grade * density, Fluid(), _SILICONE)
 
 
-def _fixed(name: str, viscosity: float, fluid: Fluid, source: str) -> Callable[[], Liquid]:
-    liquid = Liquid(name, viscosity, fluid, source)
+def _fixed(name: str, viscosity: float, fluid: Fluid, source: str, stress: float | None = None) -> Callable[[], Liquid]:
+    liquid = Liquid(name, viscosity, fluid, source, None if stress is None else stress / viscosity)
     return lambda: liquid
 
 
@@ -215,7 +226,7 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
         "pao-10": Preset(
             "PAO 10 at 40 degC",
             {},
-            _fixed("PAO 10 at 40 degC", 61.0e-6 * 821, Fluid(viscosity=Roelands(1.7e-8)), _OIL),
+            _fixed("PAO 10 at 40 degC", 61.0e-6 * 821, Fluid(viscosity=Roelands(1.7e-8)), _OIL, OIL_STRESS),
             _OIL,
             "40 degC, to 0.5 GPa",
         ),
