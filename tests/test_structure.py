@@ -213,8 +213,9 @@ def test_public_names_are_loaded_on_first_use_and_alone_are_listed():
         stribeck.__getattr__("stribek_curve")
 
 
-def test_the_stub_of_the_package_has_the_names_of_the_package():
-    tree = ast.parse((PACKAGE / "__init__.pyi").read_text())
+@pytest.mark.parametrize("package", [stribeck, stribeck.fluids, stribeck.solids], ids=lambda each: each.__name__)
+def test_the_stub_of_a_package_has_its_names(package):
+    tree = ast.parse(Path(package.__file__).with_suffix(".pyi").read_text())
     stub = {
         alias.name: getattr(importlib.import_module(node.module), alias.name)
         for node in tree.body
@@ -222,9 +223,9 @@ def test_the_stub_of_the_package_has_the_names_of_the_package():
         for alias in node.names
         if node.module != "stribeck" or importlib.import_module(f"stribeck.{alias.name}")
     }
-    assert stub == {name: getattr(stribeck, name) for name in stribeck.__all__}
+    assert stub == {name: getattr(package, name) for name in package.__all__}
     [names] = [ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign)]
-    assert sorted(names) == stribeck.__all__
+    assert sorted(names) == package.__all__
 
 
 # --- docstrings ---

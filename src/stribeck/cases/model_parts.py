@@ -189,7 +189,8 @@ def _law(table: dict[str, Any], kind: str) -> Any:
     part = laws[name]
     for key in dict.fromkeys(key for other in laws.values() for key in other.keys):
         if key in table and key not in part.keys:
-            raise InputError(f"{key} = {show(table[key])} is given, but {kind} = {name!r} has no such key; remove it.")
+            instead = f"it has {', '.join(part.keys)}" if part.keys else "remove it"
+            raise InputError(f"{key} = {show(table[key])} is given, but {kind} = {name!r} has no such key; {instead}.")
     for key, example in part.needed.items():
         if key not in table:
             raise InputError(f"{key} is missing, which {kind} = {name!r} needs; add {key} = {example}.")
