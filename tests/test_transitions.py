@@ -46,6 +46,13 @@ def test_our_contact_share_and_friction_know_outlet_and_thickened_film(film_rati
     assert mixed.contact_load_share(groups, "central") < mixed.contact_load_share(groups, "large")
 
 
+@pytest.mark.parametrize(("film_ratio", "kappa"), [(10 - 1e-6, 0.035), (C * 2**0.6 / 0.1, 0.1)])
+def test_the_contact_share_is_least_good_where_thick_films_end_its_range(film_ratio, kappa):
+    groups = state(film_ratio, kappa, 1e-3)
+    error = mixed.contact_load_share.function(groups) / sb.solve(groups).contact_load_share - 1
+    assert 0.1 < abs(error) < mixed.contact_load_share.worst
+
+
 def test_the_film_with_asperities_is_the_law_of_the_paper_where_both_are_small():
     # Neither outlet nor inlet count for a thin, strong film, but both vanish slowly.
     thin = sb.Groups(1e-22, 0.5, 0.5 * C * 1e-22**0.6 / 14)

@@ -39,19 +39,29 @@ def coefficient(name: str, value: Any) -> float:
     return float(found)
 
 
+def _check_option(name: str, value: Any, default: Any) -> None:
+    """Refuse a switch that is neither on nor off, and several options at once."""
+    if isinstance(default, bool) and not isinstance(value, bool | np.bool_):
+        raise InputError(f"{name} = {show(value)}; it must be True or False.")
+    if isinstance(default, int | str) and isinstance(value, np.ndarray):
+        raise InputError(f"{name} = {show(value)}; it must be one value for all states.")
+
+
 class OutOfRangeWarning(UserWarning):
     """A formula was used outside its range, or has no value there."""
 
 
-def _inverse(value: Value) -> Value:
-    with np.errstate(divide="ignore"):
-        return np.divide(1.0, value)
-
-
 def _ratio(numerator: Value, denominator: Value) -> Value:
     """Return a quotient, infinite where the denominator is zero."""
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         return np.where(np.equal(denominator, 0), np.inf, np.divide(numerator, denominator))
+
+
+def fluid_number(groups: Groups) -> Value:
+    """Return lambda/kappa**2, in an order that does not overflow: inf without roughness, nan if at rest too."""
+    kappa = groups.relative_roughness
+    with np.errstate(all="ignore"):
+        return np.divide(np.divide(groups.speed, kappa), kappa)
 
 
 def _film_ratio(groups: Groups) -> Value:
@@ -62,26 +72,24 @@ def _film_ratio(groups: Groups) -> Value:
 
 def _slow_share(groups: Groups) -> Value:
     """Return an estimate of the load share of the fluid under a slow ball, infinite from load 1 on."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        number = _ratio(groups.speed, np.square(groups.relative_roughness))
-        A = np.maximum(-np.log(groups.load), 0) / 3
-        return _ratio(0.016 * np.square(number), (A * (1 + 0.73 * A)) ** 3)
+    A = np.maximum(-np.log(groups.load), 0) / 3
+    with np.errstate(all="ignore"):
+        return _ratio(0.016 * np.square(fluid_number(groups)), (A * (1 + 0.73 * A)) ** 3)
 
 
 def _paper_fluid_share(groups: Groups) -> Value:
     """Return the load share of the fluid as estimated in [BP], infinite from load 1 on."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        number = _ratio(groups.speed, np.square(groups.relative_roughness))
-        return _ratio(0.5 * np.square(number), np.maximum(-np.log(groups.load), 0) ** 5)
+    with np.errstate(all="ignore"):
+        return _ratio(0.5 * np.square(fluid_number(groups)), np.maximum(-np.log(groups.load), 0) ** 5)
 
 
 PARAMETERS: dict[str, Callable[[Groups], Value]] = {
     "speed": lambda g: g.speed,
     "load": lambda g: g.load,
     "relative_roughness": lambda g: g.relative_roughness,
-    "1/speed": lambda g: _inverse(g.speed),
-    "1/relative_roughness": lambda g: _inverse(g.relative_roughness),
-    "fluid_number": lambda g: _ratio(g.speed, np.square(g.relative_roughness)),
+    "1/speed": lambda g: _ratio(1.0, g.speed),
+    "1/relative_roughness": lambda g: _ratio(1.0, g.relative_roughness),
+    "fluid_number": fluid_number,
     "paper_fluid_share": _paper_fluid_share,
     "film_ratio": _film_ratio,
     "slow_share": _slow_share,
@@ -227,6 +235,8 @@ class Formula(Generic[Arguments]):
                 call.arguments[name] = coefficient(name, value)
             elif name in ("x", "share"):
                 call.arguments[name] = real_array(name, value)[()]
+            else:
+                _check_option(name, value, self._signature.parameters[name].default)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
             value = self.function(*call.args, **call.kwargs)
         given = {name: call.arguments[name] for name in ("boundary_friction", "beta") if name in call.arguments}

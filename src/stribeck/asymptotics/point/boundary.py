@@ -19,10 +19,10 @@ from typing import Literal
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, formula
+from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, fluid_number, formula
 from stribeck.asymptotics.point.logarithm import far_integral
 from stribeck.asymptotics.point.rest import CATALAN
-from stribeck.asymptotics.point.slow_contact import of_load
+from stribeck.asymptotics.point.slow_contact import of_gap
 from stribeck.contacts.cut_off import POISEUILLE
 from stribeck.contacts.friction import Definition, check_definition
 from stribeck.contacts.line import Groups
@@ -45,16 +45,23 @@ at loads 1e-4 to 0.5 and kappa 1e-5 to 0.03, whose errors have that power."""
 SLOW = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 0.03), Limit("slow_share", 0, 1e-3))
 
 
-def phi_of(load: Value, form: PhiForm = "quadrature") -> Array:
-    """Return :func:`phi` without its warning for loads of one or more; formulas have a warning of their own."""
+def gap_at_rest(load: Value, kappa: Value = 0.0) -> Array:
+    """Return A, the gap in the middle of the contact at rest over kappa; nan from load 1 on."""
+    bounded = np.where(np.less(load, 1), load, np.nan)
+    return np.asarray(-np.log(bounded) / 3 + (0.5 + CATALAN) * np.asarray(kappa))
+
+
+def phi_of(A: Array, form: PhiForm = "quadrature") -> Array:
+    """Return :func:`phi` of a contact by its gap at rest."""
     if form == "quadrature":
-        return of_load(load, lambda contact: contact.share)
+        return of_gap(A, lambda contact: contact.share)
     if form != "closed":
         raise InputError(f"form = {show(form)}; it must be 'quadrature' or 'closed'.")
     b1, b2, a1, a2 = CLOSED
     a3 = b2 * (HEAVY / LIGHT) ** (1 / 3)
-    A = -np.log(np.where(np.less(load, 1), load, np.nan)) / 3
-    return np.asarray(HEAVY * ((1 + A * (b1 + A * b2)) / (A * (1 + A * (a1 + A * (a2 + A * a3))))) ** 3)
+    # In 1/A, which does not overflow for very rough contacts.
+    a = 1 / A
+    return np.asarray(HEAVY * (a * a * (a * (a + b1) + b2) / (a * (a * (a + a1) + a2) + a3)) ** 3)
 
 
 def phi(load: Value, form: PhiForm = "quadrature") -> Value:
@@ -95,15 +102,13 @@ def phi(load: Value, form: PhiForm = "quadrature") -> Value:
     if np.any(np.greater_equal(values, 1)):
         message = "phi is undefined (nan) at load groups of 1 or more, where the static contact has no positive gap."
         warnings.warn(message, OutOfRangeWarning, stacklevel=2)
-    return phi_of(values, form)[()]
+    return phi_of(gap_at_rest(values), form)[()]
 
 
-def edges(load: Value, kappa: Value, coefficients: tuple[float, float, float]) -> tuple[Array, Array]:
-    """Return the load whose contact at rest has the true central gap, and the factor of the edges on an integral over it."""
-    A = -np.log(load) / 3
-    below = np.multiply(load, np.exp(-3 * (0.5 + CATALAN) * np.asarray(kappa)))
-    factor = 1 + np.polynomial.polynomial.polyval(A, coefficients) * np.power(kappa, 2 / 3)
-    return np.asarray(below, dtype=float), np.asarray(factor, dtype=float)
+def edge_factor(load: Value, kappa: Value, coefficients: tuple[float, float, float]) -> Array:
+    """Return the factor of the edges on an integral over the contact."""
+    A = gap_at_rest(load)
+    return np.asarray(1 + np.polynomial.polynomial.polyval(A, coefficients) * np.power(kappa, 2 / 3))
 
 
 @formula(
@@ -138,11 +143,11 @@ def fluid_load_share(groups: Groups, with_edges: bool = True, form: PhiForm = "q
 
     Source: this module; the coefficients are fitted.
     """
-    number = np.divide(groups.speed, np.square(groups.relative_roughness))
+    number = fluid_number(groups)
     if not with_edges:
-        return np.square(number) * phi_of(groups.load, form)
-    below, factor = edges(groups.load, groups.relative_roughness, SHARE_EDGES)
-    return np.square(number) * phi_of(below, form) * factor
+        return np.square(number) * phi_of(gap_at_rest(groups.load), form)
+    F, kappa = groups.load, groups.relative_roughness
+    return np.square(number) * phi_of(gap_at_rest(F, kappa), form) * edge_factor(F, kappa, SHARE_EDGES)
 
 
 @formula(
@@ -212,16 +217,15 @@ def viscous_friction(
     definition = check_definition(definition)
     if beta == 0:
         return np.zeros(groups.shape)[()]
-    below, factor = edges(F, kappa, SHEAR_EDGES)
-    J = lambda_ / kappa * factor * of_load(below, lambda contact: contact.shear)
+    A = gap_at_rest(F, kappa)
+    J = lambda_ / kappa * edge_factor(F, kappa, SHEAR_EDGES) * of_gap(A, lambda contact: contact.shear)
     J = J + lambda_ * far_integral(groups.slope(beta), wetted_radius)
     if definition == "published":
-        below, factor = edges(F, kappa, MOMENT_EDGES)
         # A disc of liquid ends with a pressure at its rim.
         J = (
             J
             + (0.0 if wetted_radius is None else POISEUILLE) * lambda_
-            - lambda_ / kappa**2 * factor * of_load(below, lambda contact: contact.moment)
+            - fluid_number(groups) * edge_factor(F, kappa, MOMENT_EDGES) * of_gap(A, lambda contact: contact.moment)
         )
     return (0.75 * beta * np.power(F, 1 / 3) * J)[()]
 

@@ -132,10 +132,11 @@ def film_of(speed: Value) -> Value:
     """Return the gap in the middle of a smooth ball at a speed group."""
     d1, d2, d3, d4, n2, n3, n4 = BRIDGE
     K = (GAP / BALL_FILM_CONSTANT) ** 2
-    u = np.power(speed, 0.2)
+    # Beyond, the ratio is its limit, K u**2, to all digits; its powers would overflow.
+    u, beyond = np.minimum(np.power(speed, 0.2), 1e30), np.maximum(np.power(speed, 0.2) / 1e30, 1.0)
     above = 1 + u * (d1 - LEAKAGE + u * (n2 + u * (n3 + u * (n4 + u * K * (d3 + d4 * u)))))
     below = 1 + u * (d1 + u * (d2 + u * (d3 + u * d4)))
-    found: Value = BALL_FILM_CONSTANT * np.power(speed, 0.6) * np.sqrt(above / below)
+    found: Value = BALL_FILM_CONSTANT * np.power(speed, 0.6) * np.sqrt(above / below) * beyond
     return found
 
 

@@ -106,4 +106,5 @@ def fluid_pressure(groups: Groups, x: Value) -> Value:
     Source: ours, see the module; far away it is :math:`-\tfrac45 \lambda x/r^4`.
     """
     x = np.asarray(x, dtype=float)
-    return np.asarray(-groups.speed / 5 * x / np.square(gap_of(groups) + np.square(x) / 2))[()]
+    gap = gap_of(groups) + np.square(x) / 2
+    return np.asarray(-groups.speed / 5 / gap * (x / gap))[()]

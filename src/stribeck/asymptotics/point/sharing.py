@@ -46,6 +46,9 @@ NODES = 48
 TABLE = (math.log(1e-18), math.log(1e9), 6000)
 """Gauss nodes across the film; ends and number of the logarithms of speeds at which the film is inverted."""
 
+LARGEST_ROUGHNESS = 100.0
+"""Relative roughness beyond which the fits mean nothing and the film across cannot be integrated: there is no value."""
+
 STEPS = 70
 """Most steps of the inversions; 10 are usual."""
 
@@ -66,7 +69,7 @@ def contact_load_share(groups: Groups) -> Value:
     Returns
     -------
     float or ndarray
-        S [-]; 1 at rest, 0 without roughness, nan from load 1 on.
+        S [-]; 1 at rest, 0 without roughness, nan from load 1 on and at relative roughness above 100.
 
     Notes
     -----
@@ -92,7 +95,7 @@ def speed_of_share(groups: Groups, share: Value = 0.5) -> Value:
     Returns
     -------
     float or ndarray
-        Speed group [-]; nan from load 1 on, and without roughness.
+        Speed group [-]; nan from load 1 on, without roughness, and at relative roughness above 100.
 
     Raises
     ------
@@ -104,16 +107,17 @@ def speed_of_share(groups: Groups, share: Value = 0.5) -> Value:
         raise InputError(f"share = {show(share)}; a fraction of the load lies between 0 and 1, both excluded.")
     odds, F, kappa = np.broadcast_arrays(np.log(wanted / (1 - wanted)), groups.load, groups.relative_roughness)
     found = np.full(odds.shape, math.nan)
-    inside = (F < 1) & (kappa > 0)
+    inside = (F < 1) & (kappa > 0) & (kappa <= LARGEST_ROUGHNESS)
     found[inside] = np.exp(_log_speed(odds[inside], F[inside], kappa[inside])[0])
     return found[()]
 
 
 def log_odds(groups: Groups) -> Array:
-    """Return ln X, fluid over contact share: -inf at rest, inf without roughness, nan from load 1 on."""
+    """Return ln X, fluid over contact share: -inf at rest, inf without roughness, nan where the law has no value."""
     lambda_, F, kappa = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
-    found = np.where(F < 1, np.where(lambda_ > 0, math.inf, -math.inf), math.nan)
-    inside = (lambda_ > 0) & (kappa > 0) & (F < 1)
+    has_value = (F < 1) & ((lambda_ == 0) | (kappa <= LARGEST_ROUGHNESS))
+    found = np.where(has_value, np.where(lambda_ > 0, math.inf, -math.inf), math.nan)
+    inside = has_value & (lambda_ > 0) & (kappa > 0)
     wanted, F, kappa = np.log(lambda_[inside]), F[inside], kappa[inside]
     low, high = np.full(F.shape, -120.0), np.full(F.shape, 120.0)
     for _ in range(STEPS):
@@ -142,7 +146,7 @@ def _log_speed(odds: Array, F: Array, kappa: Array) -> tuple[Array, Array]:
     G = A + more
     H = G + math.log(1.5)
     edges = 1 + np.polynomial.polynomial.polyval(A_0, SHARE_EDGES) * kappa ** (2 / 3)
-    at_rest = -0.5 * np.log(phi_of(np.exp(-3 * A), "closed") * np.maximum(edges, 0.02)) - math.log(w1) - w2 * np.log(A)
+    at_rest = -0.5 * np.log(phi_of(A, "closed") * np.maximum(edges, 0.02)) - math.log(w1) - w2 * np.log(A)
     wedge = 2 * np.log(kappa) + 0.5 * (odds + more) + math.log(w1) + w2 * np.log(G)
     wedge = wedge + at_rest * np.exp(-(w3 + w4 * A_0 + w5 * np.sqrt(kappa)) * more)
     log_y, log_H = np.log(kappa * H), np.log(H)

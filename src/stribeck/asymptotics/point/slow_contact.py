@@ -32,6 +32,10 @@ REACH = 19.0
 """Length in artanh(r): what is left out is 1e-16 of the whole."""
 
 
+LARGEST_GAP = 1e50
+"""A up to which powers of the gap stay in double precision; beyond it the integrals are zero."""
+
+
 @dataclass(frozen=True)
 class Slow:
     """The contact from its middle to its edge at the nodes of the elements, shape (elements, nodes).
@@ -96,12 +100,12 @@ def slow_contact(A: float) -> Slow:
     return Slow(r, H, p_0, local, slope, weights)
 
 
-def of_load(load: Value, number: Callable[[Slow], float]) -> Array:
-    """Return a number for each load from its contact, equal loads once; nan from load 1 on."""
-    loads = np.asarray(load, dtype=float)
-    different, where = np.unique(loads, return_inverse=True)
-    found = [number(slow_contact(-np.log(each) / 3)) if each < 1 else np.nan for each in different.tolist()]
-    return np.asarray(np.array(found)[where.reshape(loads.shape)])
+def of_gap(A: Value, number: Callable[[Slow], float]) -> Array:
+    """Return a number for each A from its contact, equal ones once; nan where A is no finite positive number."""
+    gaps = np.asarray(A, dtype=float)
+    different, where = np.unique(gaps, return_inverse=True)
+    found = [number(slow_contact(each)) if 0 < each < LARGEST_GAP else np.nan for each in different.tolist()]
+    return np.asarray(np.array(found)[where.reshape(gaps.shape)])
 
 
 @cache

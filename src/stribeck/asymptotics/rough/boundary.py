@@ -21,7 +21,7 @@ from stribeck.asymptotics.dry.rest import (
     offset,
     offset_small_indentation,
 )
-from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.formula import Limit, Value, fluid_number, formula
 from stribeck.asymptotics.rough.perturbation import PhiForm, phi_of, pressure_moment, shear
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, show
@@ -90,8 +90,7 @@ def fluid_load_share(groups: Groups, form: PhiForm = "quadrature", printed: bool
 
     Source: [BP] Eqs. (fluid-normal), (fluid-normal-dl).
     """
-    number: Value = groups.speed / np.square(groups.relative_roughness)
-    share = np.square(number) * phi_of(groups.load, form)
+    share = np.square(fluid_number(groups)) * phi_of(groups.load, form)
     if printed:
         lacking = 1.0 if form == "printed" else math.pi / 2
         share = math.pi**2 * lacking * share
@@ -173,7 +172,7 @@ def viscous_friction(groups: Groups, beta: float = 1.0, viscous: Viscous = "publ
         return np.zeros(groups.shape)
     friction: Value = 2 * beta * F**0.5 / (3 * math.pi) * groups.speed / kappa * shear(F)
     if viscous == "published":
-        friction = friction + 4 * beta * F**0.5 / math.pi * groups.speed / np.square(kappa) * pressure_moment(F)
+        friction = friction + 4 * beta * F**0.5 / math.pi * fluid_number(groups) * pressure_moment(F)
     return friction
 
 

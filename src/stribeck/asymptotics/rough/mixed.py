@@ -43,7 +43,7 @@ BOX = (Limit("film_ratio", 3.0), Limit("relative_roughness", 1e-4, 0.1), Limit("
     predicts="contact_load_share",
     plane="mixed",
     limits=(Limit("film_ratio", 3.0, 10.0), *BOX[1:], Limit("speed", 0.0, 2.0)),
-    worst=0.09,
+    worst=0.115,
     source="ours; [BP] Eq. (contact_pressure_integral)",
 )
 def contact_load_share(groups: Groups, film: Film = "uniform", *, printed: bool = False) -> Value:
@@ -69,9 +69,10 @@ def contact_load_share(groups: Groups, film: Film = "uniform", *, printed: bool 
     Notes
     -----
     b = 0.45 and n = 1.85; the terms in the bracket are the outlet, from quadratures over smooth films.  Against the solver, in
-    the range: ``"uniform"`` within 8.5 %, 1.5 % in the median; ``"large"`` from 10 % below to 300 % above, 14 % in the median,
-    and above where asperities thicken the film, at light loads and film ratios near 3; ``"central"`` from 86 % below to 300 %
-    above, 25 % in the median: without the outlet the better central film is of no use.
+    the range: ``"uniform"`` within 11.2 %, 1.5 % in the median, worst at film ratio 10 and relative roughness 0.035;
+    ``"large"`` from 10 % below to 300 % above, 14 % in the median, and above where asperities thicken the film, at light
+    loads and film ratios near 3; ``"central"`` from 86 % below to 300 % above, 25 % in the median: without the outlet the
+    better central film is of no use.
 
     Source: [BP] Eqs. (contact_pressure_integral) and (friction_hydro-mixed_transition_dl); ours for ``"uniform"``.
     """

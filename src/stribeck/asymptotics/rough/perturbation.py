@@ -23,7 +23,7 @@ from typing import Literal
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, formula
+from stribeck.asymptotics.formula import Limit, OutOfRangeWarning, Value, fluid_number, formula
 from stribeck.asymptotics.rough.slow_contact import half_logarithm, of_load, outward
 from stribeck.contacts.line import Groups
 from stribeck.quantities.units import InputError, show
@@ -217,7 +217,7 @@ def fluid_pressure_first(groups: Groups, x: Value, printed: bool = False) -> Val
     -----
     Source: [BP] Eqs. (first-order_thin-film) and (pf1), which lack the cube that Appendix D has.
     """
-    scale = groups.speed if printed else groups.speed / np.square(groups.relative_roughness)
+    scale = groups.speed if printed else fluid_number(groups)
     return scale * _first_pressure(groups.load, x, 1 if printed else 3)
 
 
@@ -295,7 +295,7 @@ def fluid_pressure_second(groups: Groups, x: Value) -> Value:
 
     Source: [BP] Eqs. (pf1), with cubed denominator, and (p2).
     """
-    number: Value = groups.speed / np.square(groups.relative_roughness)
+    number = fluid_number(groups)
     A, x = half_logarithm(groups.load), np.asarray(x, dtype=float)
     inside = np.abs(x) < 1
     contact = outward(A, np.where(inside, x, 0.0))

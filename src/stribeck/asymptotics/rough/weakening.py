@@ -34,6 +34,9 @@ LARGEST_WEAKENING = (3 * math.e) ** (-1 / 3)
 FILM_RATIOS = (1.5, 60.0)
 """Film ratios c lambda**(3/5)/kappa between which the minimum of the uniform law is looked for."""
 
+FINITE_SPEEDS = 1e-170, 1e170
+"""Relative roughness between which the speed of the minimum stays in double precision."""
+
 SEARCH_POINTS = 121
 BISECTIONS = 30
 STEP = 1e-4
@@ -216,11 +219,12 @@ def _uniform_slopes(load: Value, kappa: Value, boundary_friction: float, beta: f
 
 def film_ratio_at_minimum(groups: Groups, boundary_friction: float, beta: float) -> Value:
     """Return the film ratio at which the uniform law has its minimum, nan where it has none."""
-    load, kappa = np.broadcast_arrays(groups.load, groups.relative_roughness)
+    load, given = np.broadcast_arrays(groups.load, groups.relative_roughness)
+    kappa = np.clip(given, *FINITE_SPEEDS)
     ratios = np.linspace(math.log(FILM_RATIOS[0]), math.log(FILM_RATIOS[1]), SEARCH_POINTS).reshape(-1, *(1,) * load.ndim)
     falling = _uniform_slopes(load, kappa, boundary_friction, beta, ratios) < 0
     last = SEARCH_POINTS - 1 - np.argmax(falling[::-1], axis=0)
-    found = falling.any(axis=0) & (last < SEARCH_POINTS - 1) & (kappa > 0)
+    found = falling.any(axis=0) & (last < SEARCH_POINTS - 1) & (kappa == given)
     low = ratios.ravel()[np.minimum(last, SEARCH_POINTS - 2)]
     high = ratios.ravel()[np.minimum(last, SEARCH_POINTS - 2) + 1]
     for _ in range(BISECTIONS):

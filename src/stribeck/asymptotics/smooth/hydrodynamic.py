@@ -53,6 +53,9 @@ FLUX_GAP_FIT = (-0.882, 0.574, 0.127, -0.442)
 FRICTION_FIT = (3.69, 2.09, -1.10)
 """Free coefficients of the laws for every speed, by smallest maximum error on 241 speeds from 1e-12 to 1e8."""
 
+LARGEST_U = 1e50
+"""u up to which the laws are taken in powers of u, which overflow from 1e77 on."""
+
 
 @formula(
     predicts="central_gap",
@@ -171,7 +174,9 @@ def friction_uniform(groups: Groups, beta: float = 1.0) -> Value:
 def _bridge(u: Value, far: float, fit: tuple[float, float, float, float]) -> Value:
     """Return the sixth root of a rational function that tends to 1 + 6 s u at small u and to ``far`` u at large u."""
     d1, d2, d3, b2 = fit
+    # Beyond, the ratio is its limit to all digits.
+    u, beyond = np.minimum(u, LARGEST_U), np.maximum(np.divide(u, LARGEST_U), 1.0)
     below = 1 + u * (d1 + u * (d2 + u * d3))
     above = 1 + u * (6 * GAP_SLOPE + d1 + u * (b2 + far * u * (d2 + u * d3)))
-    root: Value = (above / below) ** (1 / 6)
+    root: Value = (above / below * beyond) ** (1 / 6)
     return root

@@ -133,7 +133,8 @@ def pressure_small(groups: Groups, x: float | Array) -> Value:
 
     Source: [BP] Eq. (fields_small_deformation); 6 eta U a/(p_Hz u_Hz**2) is lambda.
     """
-    return -groups.speed / 3 * x / gap_small.function(groups, x) ** 2
+    gap = gap_small.function(groups, x)
+    return -groups.speed / 3 / gap * (x / gap)
 
 
 @formula(

@@ -23,7 +23,7 @@ from functools import lru_cache
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.formula import Limit, Value, fluid_number, formula
 from stribeck.contacts.line import Groups
 from stribeck.numerics.newton import Dense, StepControl, root_find
 from stribeck.numerics.panels import reference
@@ -102,7 +102,7 @@ def wedge(load: float, fluid_number: float) -> Wedge:
     at_rest = -0.5 * math.log(load) - np.log(p_0)
     y = np.append(at_rest, (weights @ at_rest**-2) / (weights @ at_rest**-3))
     first = FIRST_NUMBER * float(at_rest.min()) ** 3
-    steps = max(0, math.ceil(math.log(fluid_number / first) / STEP)) if fluid_number > 0 else 0
+    steps = max(0, math.ceil(math.log(fluid_number / first) / STEP)) if fluid_number > first else 0
     for n in [*np.geomspace(first, fluid_number, steps + 1)[1:]] if steps else [fluid_number]:
         y = _corrected(y, float(n), load, p_0, weights, integral)
     H = y[:-1]
@@ -135,8 +135,8 @@ def contact_load_share(groups: Groups) -> Value:
     -----
     Source: this module.
     """
-    lambda_, F, kappa = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
-    number = np.where(lambda_ > 0, lambda_ / kappa**2, 0.0)
+    lambda_, F, _ = np.broadcast_arrays(groups.speed, groups.load, groups.relative_roughness)
+    number = np.where(lambda_ > 0, np.broadcast_to(fluid_number(groups), groups.shape), 0.0)
     states = zip(F.ravel().tolist(), number.ravel().tolist(), strict=True)
     found = [wedge(load, n).contact_load_share if load < 1 and n <= LARGEST_NUMBER else math.nan for load, n in states]
     return np.array(found).reshape(F.shape)[()]
