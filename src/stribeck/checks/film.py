@@ -65,7 +65,8 @@ def suction(subject: Subject) -> Check:
 def shear_rate(subject: Subject) -> Check:
     """Return the check of the shear rate at the minimum film against that at which the fluid thins."""
     contact, film = subject.contact, _minimum_film(subject)
-    rate = contact.speed / film if film > 0 else math.inf
+    # Where surfaces roll, the pressure shears the film at a rate of this order.
+    rate = max(contact.speed, _sliding_speed(subject)) / film if film > 0 else math.inf
     given = subject.fact("thinning_rate")
     usual = USUAL_THINNING if contact.viscosity > WATERY else WATERY_THINNING
     limit = usual if given is None else given
@@ -124,12 +125,12 @@ def molecules(subject: Subject) -> Check:
 
 
 def heating(subject: Subject) -> Check:
-    r"""Return the check of shear heating: the viscosity lost, :math:`\beta_T \eta U^2/(8 k)`."""
+    r"""Return the check of shear heating: the viscosity lost, :math:`\beta_T \eta (u_1 - u_2)^2/(8 k)`."""
     contact = subject.contact
     k = subject.fact("thermal_conductivity") or USUAL_CONDUCTIVITY
     slope = subject.fact("thermal_thinning")
     slope = USUAL_THERMAL_THINNING if slope is None else slope
-    kelvin = contact.viscosity * contact.speed**2 / (8 * k)
+    kelvin = contact.viscosity * _sliding_speed(subject) ** 2 / (8 * k)
     lost = slope * kelvin
     verdict = verdict_of(lost, FINE_HEATING, HEATING)
     sentence = f"Shear heats the film by up to {kelvin:.2g} K, which costs {format_percent(lost)} of its viscosity" + (
@@ -151,6 +152,10 @@ def inertia(subject: Subject) -> Check:
         else "Reynolds' equation neglects inertia, which matters here"
     )
     return Check("inertia", number, FINE_INERTIA, verdict, f"The reduced Reynolds number is {number:.2g}: {meaning}.")
+
+
+def _sliding_speed(subject: Subject) -> float:
+    return 0.5 * abs(subject.contact.slide_to_roll) * subject.contact.speed
 
 
 def _minimum_film(subject: Subject) -> float:
