@@ -36,6 +36,10 @@ ROUNDING = 1e-9
 LONG_REACH_ORDER = 14
 """Nodes per panel from which the panel through infinity begins twice as far out: the logarithm in the gap limits its order."""
 
+CENTRE_PART, FINEST_CENTRE = 0.1, 3e-8
+"""Part of its tolerance to which the gap is resolved on the panel that begins at zero, of which the central gap is read, and
+the tolerance below which it is not resolved further: as the speed changes this panel is the first to lose the gap."""
+
 END_GAIN = 5.0
 """Factor by which the error of the end of a film falls when the panels beside it are halved, at least."""
 
@@ -326,6 +330,7 @@ def mesh_for(
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
+    of_centre = min(gap_tolerance, max(CENTRE_PART * gap_tolerance, FINEST_CENTRE))
 
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
@@ -350,10 +355,14 @@ def mesh_for(
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
         at_centre = np.abs(centres - centre) <= (1 + ROUNDING) * half_widths
-        read_off = at_centre | (np.abs(centres - minimum_position) <= half_widths + spread)
-        read_off &= stretch[:, 0] == 1.0
+        if not ends:
+            at_centre &= centres > 0
         weight = max(0.1, tolerance / profile_tolerance)
-        shape = shape * np.where(read_off, max(weight, tolerance / gap_tolerance), weight)[..., None]
+        weights = np.where(at_centre, max(weight, tolerance / (gap_tolerance if ends else of_centre)), weight)
+        lowest = np.abs(centres - minimum_position) <= half_widths + spread
+        weights[lowest] = np.maximum(weights[lowest], tolerance / gap_tolerance)
+        weights[stretch[:, 0] != 1.0] = weight
+        shape = shape * weights[..., None]
         shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
         fields = [stretch * pressures.reshape(2, *nodal), shape[None], shear[None]]
         if broken and stretch[0, 0] != 1.0:
