@@ -109,11 +109,12 @@ def test_another_unit_keeps_the_value():
             "70",
             "boundary_friction = 70 is above 10, the largest the explorer takes; write 0.7 for 70 %.",
         ),
-        ("radius", "", "radius = '' does not begin with a number;"),
-        ("beta", "x", "beta = 'x' is text, but a number is expected; write a bare number"),
+        ("radius", "", "radius is empty; type a number, or press Escape for the one before."),
+        ("speed_group", " ", "speed_group is empty;"),
+        ("beta", "x", "beta = 'x' is not a number; write it as 0.001 or 1e-3."),
         ("alpha", "0", "alpha = 0.0 must be positive."),
         ("speed_group", "-1", "speed = -1.0 must be finite and zero or positive."),
-        ("load_group", "lots", "load = 'lots' is not a number; write it as 0.001 or 1e-3."),
+        ("load_group", "lots", "load_group = 'lots' is not a number; write it as 0.001 or 1e-3."),
         ("beta", "1e-300", "leave the range of double precision"),
     ],
 )
@@ -612,6 +613,14 @@ def test_outside_the_atlas_the_curve_is_solved_at_rest_and_the_last_one_is_marke
     assert layered.curve.stale and layered.diagram.stale and not light.curve.stale
     assert np.array_equal(layered.curve.speed, light.curve.speed)
     assert charts.friction_chart(heavier, [], [], LIGHT)["series"][0]["opacity"] < 1
+
+
+def test_a_contact_at_the_end_of_double_precision_has_no_curve_and_says_why():
+    now = inputs.typed(START, "load_group", "1e-300")  # at 1 m/s its groups would leave that range
+    model = Answerer()
+    assert model.settle(now, always)
+    assert model.why_no_curve(now)
+    assert curves.hersey_scale(now.contact) > 0
 
 
 @pytest.mark.slow

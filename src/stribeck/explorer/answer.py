@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -338,14 +338,14 @@ class Answerer:
         return found
 
 
-def _key(contact: Contact) -> tuple[Any, ...]:
-    """Return all inputs but the speed."""
-    return (contact.replace(speed=1.0), contact.law)
+def _key(contact: Contact, *without: str) -> tuple[Any, ...]:
+    """Return all inputs, law and parts of a contact but the speed, and but what else is named."""
+    return tuple(getattr(contact, each.name) for each in fields(contact) if each.name not in ("speed", *without))
 
 
 def _diagram_key(contact: Contact, definition: Definition, speeds: tuple[float, float]) -> tuple[Any, ...]:
     """Return what a diagram depends on: all but speed and roughness, and its axes."""
-    return ("diagram", contact.replace(speed=1.0, roughness=1.0), definition, speeds, decade_of_roughness(contact))
+    return ("diagram", _key(contact, "roughness"), definition, speeds, decade_of_roughness(contact))
 
 
 def round_up(value: float) -> float:

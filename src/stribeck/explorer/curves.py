@@ -156,12 +156,14 @@ class Diagram:
 
 def hersey_scale(contact: Contact) -> float:
     """Return the Hersey number at 1 m/s."""
-    return contact.replace(speed=1.0).hersey_number
+    return 1.0 / RULES[contact.groups.geometry].hersey(contact)
 
 
-def _speed_group(contact: Contact) -> float:
-    """Return the speed group at 1 m/s."""
-    return float(contact.replace(speed=1.0).groups.speed)
+def _group_per_unit(contact: Contact, name: str) -> float:
+    """Return the speed or roughness group at 1 m/s or 1 m."""
+    value = getattr(contact, name)
+    groups = contact.groups if value else contact.replace(**{name: 1.0}).groups
+    return float(getattr(groups, name)) / (value or 1.0)
 
 
 def in_atlas(contact: Contact) -> bool:
@@ -173,7 +175,7 @@ def transition_marks(contact: Contact, definition: Definition) -> tuple[Transiti
     """Return the transitions along the speed, ascending, from the atlas."""
     if contact.roughness == 0 or contact.boundary_friction == 0:
         return ()
-    groups, unit = contact.groups, _speed_group(contact)
+    groups, unit = contact.groups, _group_per_unit(contact, "speed")
     boundary_friction, beta = contact.boundary_friction, contact.beta
     found = transition_speeds(groups, boundary_friction, beta, definition, **RULES[groups.geometry].motion(contact))
     marks = [
@@ -188,7 +190,7 @@ def axis_speeds(contact: Contact, marks: Sequence[Transition], measured: Sequenc
 
     As far as the table holds them [m/s].
     """
-    unit = _speed_group(contact)
+    unit = _group_per_unit(contact, "speed")
     places = [mark.speed for mark in marks] or [1e-8 / unit, 1.0 / unit]
     places += [contact.speed] if contact.speed > 0 else []
     low, high = 10.0 ** math.floor(math.log10(min(places)) - 0.7), 10.0 ** math.ceil(math.log10(max(places)) + 0.7)
@@ -204,7 +206,7 @@ def axis_speeds(contact: Contact, marks: Sequence[Transition], measured: Sequenc
 
 def curve_from_atlas(contact: Contact, speeds: tuple[float, float], marks: tuple[Transition, ...]) -> Curve:
     """Return a curve read off the atlas."""
-    groups, unit, boundary_friction = contact.groups, _speed_group(contact), contact.boundary_friction
+    groups, unit, boundary_friction = contact.groups, _group_per_unit(contact, "speed"), contact.boundary_friction
     speed = np.geomspace(*speeds, POINTS)
     row = table_for(groups)
     along = Groups(np.clip(speed * unit, *row.speeds(groups)), groups.load, groups.roughness, **groups.physics)
@@ -360,8 +362,8 @@ def decade_of_roughness(contact: Contact) -> int:
 def diagram_from_atlas(contact: Contact, definition: Definition, speeds: tuple[float, float], decade: int) -> Diagram:
     """Return the diagram at the load of a contact over three decades of roughness, off the atlas."""
     roughness = np.geomspace(10.0**decade, 10.0 ** (decade + 3), ROWS)
-    groups, unit, row = contact.groups, _speed_group(contact), table_for(contact.groups)
-    h = roughness * float(contact.replace(roughness=1.0).groups.roughness)
+    groups, unit, row = contact.groups, _group_per_unit(contact, "speed"), table_for(contact.groups)
+    h = roughness * _group_per_unit(contact, "roughness")
     low, high = row.box["relative_roughness"]
     scale = float(groups.load) ** groups.scaling.roughness_exponent
     inside = np.clip(h, low * scale, high * scale)

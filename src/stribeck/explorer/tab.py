@@ -476,6 +476,8 @@ class Tab:
                     await self.refresh(now)
             except Superseded:
                 return
+            except Exception as problem:  # else what is being updated would say so for ever
+                self.page.say(f"Internal error ({problem!r}).", bad=True)
 
     def checks(self, now: Inputs) -> bool:
         """Make the slow checks, unless the contact is no longer shown; return whether they say something new."""

@@ -274,7 +274,7 @@ def typed(inputs: Inputs, name: str, text: str) -> Inputs:
         The sentence that the command line prints for such a value.
     """
     if name in GROUP_FIELDS:
-        return _with_group(inputs, name, read_number(name.removesuffix("_group"), _with_point(name, text.strip())))
+        return _with_group(inputs, name, read_number(name, _with_point(name, _present(name, text))))
     value, unit = read_field(inputs, name, text)
     units = {**inputs.units, name: unit} if unit else inputs.units
     return replace(inputs, contact=inputs.contact.replace(**{name: value}), units=units)
@@ -307,8 +307,9 @@ def read_field(inputs: Inputs, name: str, text: str) -> tuple[float | None, str]
     text, shown, table = _with_point(name, text.strip()), inputs.fields[name], inputs.table
     if not text and shown.optional:
         return table.quantities[name].default, inputs.units.get(name, "")
+    _present(name, text)
     if not shown.units:
-        value = quantity(name, _bare(text), table)
+        value = quantity(name, read_number(name, text), table)
         if name == FRICTION:
             check_friction(name, value)
         return value, ""
@@ -399,6 +400,13 @@ def _with_point(name: str, text: str) -> str:
         number = f"{whole}{part}"
         raise InputError(f"{name} = {show(text)} may be {whole}.{part} or {number}; write one of them, without a comma.")
     return f"{whole or 0}.{part}{rest}"
+
+
+def _present(name: str, text: str) -> str:
+    """Return the text of a field that must hold a number."""
+    if not text.strip():
+        raise InputError(f"{name} is empty; type a number, or press Escape for the one before.")
+    return text.strip()
 
 
 def _bare(text: str) -> float | str:
