@@ -147,6 +147,15 @@ def test_json_knows_no_nan_and_no_infinity(capsys, groups, missing):
     assert strict_json(call(capsys, "solve", "--groups", *groups, "--json").out)[missing] is None
 
 
+@pytest.mark.quick
+def test_friction_of_groups_alone_says_for_which_dry_friction_and_beta(capsys):
+    assert "boundary_friction = 1 and beta = 1:" in call(capsys, "solve", *GROUPS).out
+    assert (
+        "boundary_friction = 0.4 and beta = 0.05:"
+        in call(capsys, "solve", *GROUPS, "--boundary-friction", "0.4", "--beta", "0.05").out
+    )
+
+
 def test_coefficients_given_with_groups_scale_friction_and_hersey_number(capsys):
     plain = strict_json(call(capsys, "solve", *GROUPS, "--json").out)
     scaled = strict_json(call(capsys, "solve", *GROUPS, "--boundary-friction", "0.5", "--beta", "0.1", "--json").out)

@@ -59,6 +59,9 @@ def print_solution(
         Those of its contact.
     """
     print_head(console, title, solution.contact, solution.groups, checks=checks)
+    if solution.contact is None:
+        dry, slope = (1.0 if value is None else value for value in (boundary_friction, beta))
+        say(console, f"Friction is for boundary_friction = {dry:g} and beta = {slope:g}: --boundary-friction, --beta.")
     columns = (0, 1, 3) if solution.contact is None else (0, 1, 2, 3)
     table = table_of(*(("quantity", "value", "in SI", "error")[i] for i in columns))
     for row in _solution_rows(solution, boundary_friction, beta):
