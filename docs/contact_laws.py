@@ -166,7 +166,7 @@ def minimum_of(problem: sb.Groups | sb.LineContact, **settings: object) -> tuple
         raise RuntimeError("no minimum")
     state = curve.minimum.solution
     friction = state.friction(curve.boundary_friction, curve.beta, "balanced")
-    return curve.minimum.value, curve.minimum.friction, state.central_separation, friction.contact / friction.total
+    return curve.minimum.value, curve.minimum.friction, state.central_separation, friction.contact_share
 
 
 def minima() -> str:

@@ -86,8 +86,7 @@ def range_at_minimum(subject: Subject) -> Check | None:
     if contact.roughness == 0 or subject.minimum is None:
         return None
     state = subject.minimum.solution
-    friction = state.friction(definition=subject.definition)
-    share = friction.contact / friction.total if friction.total > 0 else 0.0
+    share = state.friction(definition=subject.definition).contact_share
     ratio = _ratio(subject, state)
     where = f"speed {format_si(subject.minimum.value, 'speed')}"
     note = minimum_note(state.groups, state.contact, state.observables, share, where)

@@ -55,6 +55,8 @@ class Friction(float):
     >>> friction = Friction(contact=0.3, viscous=0.1, total=0.4, error=1e-7)
     >>> friction + 1, friction.contact
     (1.4, 0.3)
+    >>> round(friction.contact_share, 6)
+    0.75
     """
 
     contact: float
@@ -80,6 +82,11 @@ class Friction(float):
         if _other is not None:
             made._other = _other
         return made
+
+    @property
+    def contact_share(self) -> float:
+        """Part of the friction that asperities cause [-]; zero without friction."""
+        return self.contact / self.total if self.total > 0 else 0.0
 
     @property
     def total(self) -> float:

@@ -133,8 +133,7 @@ class PointCurve(StribeckCurve):
         return solution.friction(self.boundary_friction, self.beta, self.definition).total
 
     def _contact_share(self, solution: PointSolution) -> float:
-        friction = solution.friction(self.boundary_friction, self.beta, self.definition)
-        return friction.contact / friction.total if friction.total > 0 else 0.0
+        return solution.friction(self.boundary_friction, self.beta, self.definition).contact_share
 
     def _mark(self, name: Transition, s: float) -> Landmark:
         solution = self._at(s)
@@ -385,8 +384,7 @@ def point_speeds(groups: Groups, boundary_friction: float, beta: float, definiti
     high = low
 
     def contact_part(state: PointState) -> float:
-        friction = solution_of(state, None).friction(boundary_friction, beta, definition)
-        return friction.contact / friction.total if friction.total > 0 else 0.0
+        return solution_of(state, None).friction(boundary_friction, beta, definition).contact_share
 
     while low > SLOWEST:
         state = solver(math.log(low))

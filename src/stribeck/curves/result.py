@@ -380,14 +380,8 @@ class StribeckCurve(Exported, Shown, ByValue):
         if self.minimum is None:
             return ()
         state = self.minimum.solution
-        friction = state.friction(self.boundary_friction, self.beta, self.definition)
-        note = minimum_note(
-            state.groups,
-            state.contact,
-            state.observables,
-            friction.contact / friction.total if friction.total > 0 else 0.0,
-            self._where(self.minimum.value),
-        )
+        share = state.friction(self.boundary_friction, self.beta, self.definition).contact_share
+        note = minimum_note(state.groups, state.contact, state.observables, share, self._where(self.minimum.value))
         return (note,) if note else ()
 
     def _where(self, *values: float) -> str:

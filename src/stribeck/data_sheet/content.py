@@ -221,7 +221,7 @@ def _sources(path: Path) -> dict[str, str]:
 
 def _sentences(case: Case, solution: Solution, curve: StribeckCurve, found: Uncertainty | None) -> tuple[str, ...]:
     friction = solution.friction(definition=case.definition)
-    share = friction.contact / friction.total if friction.total > 0 else 0.0
+    share = friction.contact_share
     regime = regime_of(solution.fluid_load_share, share)
     first = (
         f"{regime.capitalize()} lubrication at {format_si(case.contact.speed, 'speed')}: friction {friction.total:.3g} "

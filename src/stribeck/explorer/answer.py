@@ -170,7 +170,6 @@ class Answerer:
         contact, definition = inputs.contact, inputs.definition
         solution = self._state(inputs)
         friction = solution.friction(definition=definition)
-        part = friction.contact / friction.total if friction.total > 0 else 0.0
         curve, speeds = self._curve_now(contact, definition, measured)
         reach = profile_reach(solution)
         x = np.linspace(-reach, reach, 241)
@@ -183,7 +182,7 @@ class Answerer:
         return Answer(
             inputs=inputs,
             solution=solution,
-            regime=regime_of(solution.fluid_load_share, part),
+            regime=regime_of(solution.fluid_load_share, friction.contact_share),
             outside=self._keep(("checks", contact, inputs.rest), lambda: self._checks(inputs, solution)),
             curve=curve,
             diagram=self._diagram_now(contact, definition, speeds),

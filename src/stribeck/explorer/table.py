@@ -72,8 +72,9 @@ def numbers(answer: Answer) -> list[Row]:
         rows.append(_row(f"friction_{definition}", name, friction.total, friction.error))
     chosen = solution.friction(definition=answer.inputs.definition)
     if chosen.total > 0:
-        part = chosen.contact / chosen.total
-        rows.append(_share("contact_friction_share", "Friction from asperities", part, chosen.error / chosen.total))
+        rows.append(
+            _share("contact_friction_share", "Friction from asperities", chosen.contact_share, chosen.error / chosen.total)
+        )
     observed = solution.outputs.rows
     for each in (each for each in observed[::-1] if each.error == "absolute"):
         rows.append(_share(each.name, each.label.capitalize(), getattr(solution, each.name), errors[each.name]))
@@ -237,8 +238,7 @@ def _film(state: BaseSolution, gap: float) -> str:
 
 
 def _regime(state: BaseSolution, definition: Definition) -> str:
-    friction = state.friction(definition=definition)
-    return regime_of(state.fluid_load_share, friction.contact / friction.total if friction.total > 0 else 0.0)
+    return regime_of(state.fluid_load_share, state.friction(definition=definition).contact_share)
 
 
 COMPARED: dict[str, Callable[[BaseSolution, Definition], str]] = {

@@ -337,8 +337,7 @@ def _at_threshold(mark: Crossing) -> bool:
 
 
 def _regime(solution: Solution, definition: Definition) -> Regime:
-    friction = solution.friction(definition=definition)
-    return regime_of(solution.fluid_load_share, friction.contact / friction.total if friction.total > 0 else 0.0)
+    return regime_of(solution.fluid_load_share, solution.friction(definition=definition).contact_share)
 
 
 @dataclass

@@ -187,12 +187,11 @@ def _fill_rest(diagram: Diagram, problem: Contact | Groups, place: tuple[int, in
 
 def _enter(diagram: Diagram, place: tuple[int, int, int], solution: Solution) -> None:
     friction = solution.friction(diagram.boundary_friction, diagram.beta, diagram.definition)
-    contact = friction.contact / friction.total if friction.total > 0 else 0.0
-    shares = solution.fluid_load_share, contact
+    shares = solution.fluid_load_share, friction.contact_share
     films = solution.central_gap, solution.lambda_ratio
     for name, value in zip(FIELDS, (friction.total, friction.error, *shares, *films, solution.error_estimate), strict=True):
         diagram.fields[name][place] = value
-    diagram.regime[place] = REGIMES.index(regime_of(solution.fluid_load_share, contact))
+    diagram.regime[place] = REGIMES.index(regime_of(*shares))
     diagram.outcomes[place] = solution.outcome.name
 
 

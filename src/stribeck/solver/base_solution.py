@@ -265,8 +265,7 @@ class BaseSolution(Exported, Shown, ByValue, ABC):
     @property
     def regime(self) -> Regime:
         """Lubrication regime: ``"boundary"``, ``"mixed"`` or ``"hydrodynamic"``, see :func:`stribeck.regime_of`."""
-        friction = self.friction
-        return regime_of(self.fluid_load_share, friction.contact / friction.total if friction.total > 0 else 0.0)
+        return regime_of(self.fluid_load_share, self.friction.contact_share)
 
     def _card(self) -> Card:
         friction = self.friction

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stribeck.checks.check import Checks
-from stribeck.cli.reports.words import Sensitivities, contact_part, hersey_of, part_error, regime_now, strongest
+from stribeck.cli.reports.words import Sensitivities, hersey_of, part_error, regime_now, strongest
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.with_parts import part_attributes
@@ -185,7 +185,7 @@ def regimes_json(
         "unit": unit_of("speed"),
         "fluid_load_share": solution.fluid_load_share,
         "fluid_load_share_error": solution.errors["fluid_load_share"],
-        "contact_friction_share": contact_part(friction),
+        "contact_friction_share": friction.contact_share,
         "contact_friction_share_error": part_error(friction),
         "friction": friction.total,
         "friction_error": friction.error,

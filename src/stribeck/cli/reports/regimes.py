@@ -8,7 +8,6 @@ from stribeck.checks.check import Checks
 from stribeck.cli.exits import say
 from stribeck.cli.reports.words import (
     Sensitivities,
-    contact_part,
     mark_texts,
     part_error,
     print_head,
@@ -70,7 +69,7 @@ def print_regimes(
     say(
         console,
         f"{regime_now(solution, curve.definition).capitalize()} lubrication at {speed}: friction {friction.total:.4g} "
-        f"({format_share(contact_part(friction), part_error(friction))} from asperities); the fluid carries "
+        f"({format_share(friction.contact_share, part_error(friction))} from asperities); the fluid carries "
         f"{format_share(solution.fluid_load_share, solution.errors['fluid_load_share'])} of the load.",
     )
     for line in ways_to(margins):

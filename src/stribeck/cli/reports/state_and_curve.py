@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from stribeck.checks.check import Checks
 from stribeck.cli.exits import say
 from stribeck.cli.reports.words import (
-    contact_part,
     digits,
     error_text,
     hersey_of,
@@ -111,7 +110,7 @@ def _solution_rows(
     if not math.isnan(solution.central_area_fraction):
         area, error = solution.central_area_fraction, solution.central_area_fraction_error
         yield "real contact area at x = 0", part(area, error), "", error_text(error / area) if area > 0 else ""
-    regime = regime_of(solution.fluid_load_share, contact_part(solution.friction(boundary_friction, beta)))
+    regime = regime_of(solution.fluid_load_share, solution.friction(boundary_friction, beta).contact_share)
     yield "Hersey number", f"{hersey_of(solution, beta):.4g}", "", ""
     yield "regime", regime, "", ""
 

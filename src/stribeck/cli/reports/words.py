@@ -48,11 +48,6 @@ WIDTH = 100
 Sensitivities = dict[str, float]
 
 
-def contact_part(friction: Friction) -> float:
-    """Return the part of friction that asperities cause."""
-    return friction.contact / friction.total if friction.total > 0 else 0.0
-
-
 def part_error(friction: Friction) -> float:
     """Return the absolute error of that part."""
     return friction.error / friction.total if friction.total > 0 else 0.0
@@ -60,7 +55,7 @@ def part_error(friction: Friction) -> float:
 
 def regime_now(solution: BaseSolution, definition: Definition) -> str:
     """Return the regime of a state."""
-    return regime_of(solution.fluid_load_share, contact_part(solution.friction(definition=definition)))
+    return regime_of(solution.fluid_load_share, solution.friction(definition=definition).contact_share)
 
 
 def hersey_of(solution: BaseSolution, beta: float | None) -> float:
