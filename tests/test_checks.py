@@ -85,10 +85,8 @@ def test_a_verdict_turns_at_its_limits(name, fact, values):
 
 @pytest.mark.quick
 def test_only_what_slides_heats_the_film_and_shears_it_faster_than_its_flow():
-    names = ("viscous heating", "shear rate")
-    slides, rolls, against = (
-        [checks_of(Subject(TRUE.replace(slide_to_roll=ratio)), "state")[name].value for name in names] for ratio in (2, 0.5, -6)
-    )
+    found = [checks_of(Subject(TRUE.replace(slide_to_roll=ratio)), "state") for ratio in (2, 0.5, -6)]
+    slides, rolls, against = ([each[name].value for name in ("viscous heating", "shear rate")] for each in found)
     assert rolls == pytest.approx([slides[0] / 16, slides[1]])
     assert against == pytest.approx([9 * slides[0], 3 * slides[1]], rel=1e-3)
 
