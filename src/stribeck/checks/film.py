@@ -6,6 +6,7 @@ import math
 
 from stribeck.checks.check import Check, Verdict, number_text, verdict_of
 from stribeck.checks.subject import Subject
+from stribeck.contacts.friction_rules import slide_to_roll
 from stribeck.quantities.units import format_percent
 from stribeck.solver.notes import ATMOSPHERE, cavitation_notes
 
@@ -155,7 +156,7 @@ def inertia(subject: Subject) -> Check:
 
 
 def _sliding_speed(subject: Subject) -> float:
-    return 0.5 * abs(subject.contact.slide_to_roll) * subject.contact.speed
+    return 0.5 * abs(slide_to_roll(subject.contact)) * subject.contact.speed
 
 
 def _minimum_film(subject: Subject) -> float:

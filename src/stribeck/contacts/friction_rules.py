@@ -146,7 +146,8 @@ def _beta(contact: Contact | None) -> float:
     return 1.0 if contact is None else contact.beta
 
 
-def _slide(contact: Contact | None) -> float:
+def slide_to_roll(contact: Contact | None) -> float:
+    """Return the slide-to-roll ratio of a contact, 2 without one."""
     return float(getattr(contact, "slide_to_roll", PURE_SLIDING))
 
 
@@ -175,7 +176,7 @@ RULES: dict[Geometry, FrictionRule] = {
     "point": FrictionRule(
         inputs={
             "beta": _beta,
-            "slide_to_roll": _slide,
+            "slide_to_roll": slide_to_roll,
             "wetted_radius": _wetted,
         },
         exponents={"wetted_radius": {"radius": -1 / 3, "modulus": 1 / 3, "load": -1 / 3}},

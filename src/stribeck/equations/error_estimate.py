@@ -22,7 +22,7 @@ from numpy.polynomial import legendre
 
 from stribeck._types import Array, Indices
 from stribeck.equations.drag import Nodal, viscous_friction
-from stribeck.equations.line import LOAD, Operators, gradient_in_film
+from stribeck.equations.line import LOAD, Operators, gradient_in_film, slopes_in_film
 from stribeck.equations.observables import ROW, VISCOUS, Observables, friction_integrals, friction_scale, gradients
 from stribeck.equations.position_error import position_errors
 from stribeck.equations.state import StackedStates, is_thinning, jump_of
@@ -266,7 +266,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
         if getattr(film, "is_plain", False):
             smooth = coarse.to_order(smooth, mesh.order)
         else:  # what conducts is no such difference, and may turn sharply
-            conducted = slopes_in_film(film, op.integral, h, known, h_star).by_flux
+            conducted = states.slopes.by_flux
             finer_conducted = slopes_in_film(film, integral, gap, fluid, h_star).by_flux
             missing = np.divide(smooth, conducted, out=np.zeros_like(smooth), where=conducted != 0)
             smooth = coarse.to_order(missing, mesh.order) * finer_conducted

@@ -48,7 +48,9 @@ class _Column(NamedTuple):
     @property
     def as_row(self) -> _Column:
         """The same of a single row of nodes."""
-        slopes = None if self.slopes is None else Slopes(*(None if each is None else each[None] for each in self.slopes))
+        slopes = self.slopes
+        if slopes is not None:
+            slopes = slopes._replace(by_gap=slopes.by_gap[None], by_flux=slopes.by_flux[None])
         return _Column(self.key, self.gradient[None], slopes)
 
 
