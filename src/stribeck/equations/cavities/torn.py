@@ -19,7 +19,7 @@ Source: [Hintermueller, Ito and Kunisch 2002] SIAM J. Optim. 13, 865, for the ac
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -417,6 +417,8 @@ def iterate_cavitated(
                 return ended(Outcome.STALLED)
             size = step_size(law, y.gap, step.gap)
             y = y.moved(step, part)
+            if part == 1.0:  # what GMRES leaves of a pressure in the cavity would break or heal nodes that hardly flow
+                y = replace(y, fluid=np.where(torn, least, y.fluid))
             steps += 1
             if solved.steps > -WORN * math.log10(wanted):
                 kept = None

@@ -33,8 +33,9 @@ from stribeck.solver.point.level import PROBLEMS, Level, extrapolated, moved, so
 from stribeck.solver.point.refinement import CENTRAL, Pair, centre_tails, scales_of
 from stribeck.solver.point.state import LOOSE_WHERE_TORN, WITHOUT_TOLERANCE
 
-LADDER = ((5, 10), (10, 20), (15, 30), (20, 45), (30, 65), (45, 95))
-"""Numbers of angles of the two meshes whose difference gives the error."""
+LADDER = ((5, 10, 8), (10, 20, 8), (15, 30, 8), (20, 45, 10), (30, 65, 10), (45, 95, 10))
+"""Numbers of angles of the two meshes whose difference gives the error, and the degree of the first, that of the other being
+two higher: on many angles the nodes of the radius leave most of the error."""
 
 ROUGH_FRICTION = 10.0
 """Stated error of friction over the tolerance above which the first of these do not serve: it falls slower than others."""
@@ -50,8 +51,9 @@ angles: as the line of rupture walks from node to node, errors change sign by ch
 ALONE = 10.0
 """Smallest error of the minimum film and its place over the largest of all; the tolerance does not limit them."""
 
-DEGREE = 10
-"""Degree of the panels of all but the finer of these, which has two more."""
+NO_GAIN, WIDE = 0.7, 0.2
+"""Error over that on fewer angles from which panels are halved that the line of rupture crosses in the contact, as it lies
+too far between their nodes; and the width from which they are [a]."""
 
 RIGID = 2.0
 """Speed from which a rigid ball is nearer to the state than that of the full film."""
@@ -125,12 +127,14 @@ def refine_cavitated(
             if speed >= RIGID and model.cavitation is Cavitation.EXIT:
                 mesh = operators_of(base).mesh
                 start = rigid(mesh, speed)
-        for angles in rungs:
-            found = _pair(base, angles, speed, law, start, mesh)
+        for rung in rungs:
+            found = _pair(base, rung, speed, law, start, mesh)
             if isinstance(found, Outcome):
-                if best is None and angles == LADDER[0]:
+                if best is None and rung == LADDER[0]:
                     continue
                 return found if best is None else replace(best, outcome=found)
+            if best is not None and held(found) > NO_GAIN * held(best):
+                base = replace(base, splits=tuple(sorted({*base.splits, *_crossed(found.fine)})))
             best, start, mesh = found, found.fine.unknowns, found.fine.mesh
             if holds_torn(found, rtol):
                 return found
@@ -141,13 +145,22 @@ def refine_cavitated(
 
 def _base(speed: float, law: ContactLaw, guess: Level, model: Model) -> Resolution:
     """Return the first resolution of a state of which a level is a guess."""
-    base = resolution(speed, law, DEGREE, LADDER[0][0], model)
+    few, _, degree = LADDER[0]
+    base = resolution(speed, law, degree, few, model)
     if isinstance(guess.equations, TornEquations):  # its line of rupture is no edge of the contact
         mesh = base.mesh
         contact = law.pressure(moved(guess.unknowns, guess.mesh, mesh, guess.equations.least).gap)
         return split_where_poor(base, mesh, np.zeros_like(contact), contact)
     found = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
     return replace(base, splits=found.splits if base.doublings == found.doublings else ())
+
+
+def _crossed(level: Level) -> list[float]:
+    """Return the middles of wide panels in the contact that the line of rupture crosses."""
+    mesh, radii = level.mesh, level.mesh.edges[: level.mesh.log_from + 1]
+    torn = (level.unknowns.fluid <= level.equations.least)[:, mesh.of_panel[: radii.size - 1]]
+    crossed = torn.any(axis=(0, 2)) & ~torn.all(axis=(0, 2)) & (np.diff(radii) > WIDE)
+    return [0.5 * (a + b) for a, b, wide in zip(radii, radii[1:], crossed, strict=False) if wide and b < 1.0]
 
 
 def rigid(mesh: PolarMesh, speed: float) -> Unknowns:
@@ -165,18 +178,18 @@ def _first_rung(rtol: float, model: Model) -> int:
 
 def _rung(pair: Pair) -> int:
     """Return the place on the ladder of a pair."""
-    return [many for _, many in LADDER].index(pair.fine.mesh.modes)
+    return [many for _, many, _ in LADDER].index(pair.fine.mesh.modes)
 
 
 def _pair(
-    base: Resolution, angles: tuple[int, int], speed: float, law: ContactLaw, start: Unknowns, mesh: PolarMesh
+    base: Resolution, rung: tuple[int, int, int], speed: float, law: ContactLaw, start: Unknowns, mesh: PolarMesh
 ) -> Pair | Outcome:
     """Return a state on two meshes of a resolution, with few and with many angles, or the outcome of the failure."""
-    few, many = angles
-    coarse = solve_level(replace(base, modes=few, degree=DEGREE), speed, law, start, mesh, TOLERANCE, max_steps=FROM_FAR)
+    few, many, degree = rung
+    coarse = solve_level(replace(base, modes=few, degree=degree), speed, law, start, mesh, TOLERANCE, max_steps=FROM_FAR)
     if not coarse.outcome.ok:
         return coarse.outcome
-    finer = replace(base, modes=many, degree=DEGREE + 2)
+    finer = replace(base, modes=many, degree=degree + 2)
     fine = solve_level(finer, speed, law, coarse.unknowns, coarse.mesh, TOLERANCE, max_steps=FROM_FAR)
     return pair_of(coarse, fine) if fine.outcome.ok else fine.outcome
 

@@ -66,13 +66,17 @@ THINNED, LITTLE = 8, 0.8
 """Band where a fluid thins, and the speed of a Newtonian film as thick over that of the film from which it does so little."""
 
 
+TORN = 3
+"""By how much the band of a film that breaks is narrower: steps of GMRES are as many, as the torn nodes take most of them."""
+
+
 def band_for(speed: float, law: ContactLaw, model: Model = ARTICLE) -> int:
     """Return the band of modes that the preconditioner keeps: thin films of smooth contacts couple more of them."""
     like = film_speed(speed, model)
-    least = 5 if like > LITTLE * speed else THINNED
-    if float(np.max(law.decay_length)) > like**0.6 or like >= 1e-3:
-        return least
-    return max(least, int(min(WIDEST, round(5.0 * (1e-3 / like) ** 0.17))))
+    band = 5 if like > LITTLE * speed else THINNED
+    if float(np.max(law.decay_length)) <= like**0.6 and like < 1e-3:
+        band = max(band, int(min(WIDEST, round(5.0 * (1e-3 / like) ** 0.17))))
+    return band if model.cavitation is Cavitation.NONE else band - TORN
 
 
 def moved(y: Unknowns, old: PolarMesh, new: PolarMesh, least: float = -math.inf) -> Unknowns:
