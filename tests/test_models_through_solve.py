@@ -1,6 +1,7 @@
 """Fluids, layers and cavities through `solve`, against an independent solver and against each other's limits."""
 
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,9 @@ from stribeck.contacts.model import Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.newtonian import Newtonian
 from stribeck.fluids.rheology.viscosity import Barus
+from stribeck.quantities.outcome import Outcome
 from stribeck.solids.layer import Layer
+from stribeck.solver.refinement import RefinedState
 
 REFERENCE = json.loads((Path(__file__).parent / "data" / "fluids.json").read_text())
 BARUS = [(Newtonian(Barus(row["a_bar"])), row) for row in REFERENCE["b_d_e"] if row["case"] == "barus"]
@@ -142,3 +145,19 @@ def test_the_states_of_a_curve_are_those_of_single_solves_with_the_same_model():
         for k in (3, 15, 22):
             single = sb.solve(curve.solutions[k].groups)
             assert curve.solutions[k].central_gap == pytest.approx(single.central_gap, rel=1e-6)
+
+
+def test_a_film_that_the_fluid_thins_a_thousand_times_is_found_from_a_faster_one():
+    """From the Newtonian film coarse meshes led to states that were none."""
+    groups = sb.Groups(0.146405, 6.78481e-4, 1.41017e-8)
+    state = sb.solve(groups, fluid=sb.fluids.Eyring(0.0301836), slide_to_roll=2.455293, cavitation="exit")
+    assert state.central_gap == pytest.approx(2.16156472e-4, rel=1e-6)
+    assert state.viscous_balanced == pytest.approx(2.160110687e-3, rel=1e-6)
+
+
+def test_a_reforming_film_whose_full_film_is_not_reached_says_so(monkeypatch):
+    solver = sys.modules["stribeck.solver.solve"]
+    monkeypatch.setattr(solver, "_refined", lambda base, *_: RefinedState(base, None, None, None, Outcome.STEP_LIMIT))
+    with pytest.raises(sb.SolveError) as caught:
+        sb.solve(sb.Groups(1e-3, 0.1, 1e-4), cavitation="reform", cavity_pressure=-0.01)
+    assert caught.value.outcome is Outcome.STEP_LIMIT

@@ -9,7 +9,7 @@ The formulas here only start Newton's iteration: no result depends on them.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,7 +27,7 @@ from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.units import InputError
-from stribeck.solver.models.towards import path_to_model
+from stribeck.solver.models.towards import paths_to_model
 
 RIGID_SPEED = 30.0
 """Speed group above which the rigid film starts Newton's iteration safely."""
@@ -180,10 +180,19 @@ def cold_start(groups: Groups) -> Path[State]:
 
 
 def first_path(groups: Groups) -> Path[State]:
-    """Return the path from cold to ``groups``: :func:`cold_start`, or :func:`start_by_exponential` if that fails."""
+    """Return the first path from cold that arrives at ``groups``, or the last that does not."""
+    for path in first_paths(groups):
+        if path.outcome.ok:
+            break
+    return path
+
+
+def first_paths(groups: Groups) -> Iterator[Path[State]]:
+    """Yield paths from cold to ``groups``: with the model of the article one, with others by several ways."""
     if groups.model != ARTICLE:
-        return path_to_model(groups, path_of_article)
-    return path_of_article(groups)
+        yield from paths_to_model(groups, path_of_article)
+    else:
+        yield path_of_article(groups)
 
 
 def path_of_article(groups: Groups) -> Path[State]:

@@ -30,7 +30,7 @@ from stribeck.solids import hertz
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solver.at_rest import with_positive_gap
 from stribeck.solver.base_solution import BaseSolution
-from stribeck.solver.cold_start import first_path
+from stribeck.solver.cold_start import first_paths
 from stribeck.solver.models.towards import ruptured
 from stribeck.solver.notes import cavitation_notes, law_notes, shape_notes
 from stribeck.solver.refinement import RefinedState, converge, order_for
@@ -218,15 +218,27 @@ def solved_point(groups: Groups, rtol: float) -> RefinedState:
 
 def _refined(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedState:
     """Return the refined state of ``groups`` from the cold start of ``base``; raise if no path leads there."""
-    path = first_path(base)
-    if not path.outcome.ok:
-        raise SolveError(path.outcome, None, f"{describe(groups)}: {path.outcome.value}{spiked(groups)}{far}")
-    guess = path.states[-1]
+    point, outcome = None, Outcome.PATH_LOST
+    for path in first_paths(base):
+        if not path.outcome.ok:
+            outcome = path.outcome
+            continue
+        point = _converged(path.states[-1], groups, rtol)
+        if point.state is not None:
+            return point
+    if point is None:
+        raise SolveError(outcome, None, f"{describe(groups)}: {outcome.value}{spiked(groups)}{far}")
+    return point
+
+
+def _converged(start: State, groups: Groups, rtol: float) -> RefinedState:
+    """Return the refined state of ``groups`` from a coarse one, by larger tolerances if need be."""
+    guess = start
     point = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
     for coarse in COARSER if point.state is None else ():
         if coarse > rtol and (found := converge(guess, groups, coarse).state) is not None:
             guess = found
-    return point if guess is path.states[-1] else converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
+    return point if guess is start else converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
 
 
 def _reforming(groups: Groups, rtol: float) -> RefinedState:
@@ -240,7 +252,8 @@ def _reforming(groups: Groups, rtol: float) -> RefinedState:
         return replace(_refined(ending, ending, rtol, far), groups=groups)
     full = replace(groups, model=replace(model, cavitation=Cavitation.NONE, cavity_pressure=0.0))
     point = _refined(full, full, rtol, far)
-    assert point.state is not None
+    if point.state is None:
+        return replace(point, groups=groups)
     if float(point.state.equations.pressures(point.state.y)[1].min()) >= model.cavity_pressure:
         return replace(point, groups=groups)
     guess = ruptured(groups, point.state)

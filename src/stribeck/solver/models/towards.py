@@ -2,7 +2,7 @@ r"""Cold start of models other than the article's: from its state, one part of t
 
 The path of loads has the solid of the model, if it reaches the state with it.  First the film ends: where the pressure of the
 full film falls to zero, or as under a rigid parabola.  Then the fluid of the model replaces the Newtonian one, and its solid
-the half-plane if need be, in one step if Newton's iteration converges, else along
+the half-plane if need be, in one step if Newton's iteration converges, else down from a larger speed, or along
 
 .. math::
 
@@ -16,7 +16,7 @@ full film of the fluid shows where it ruptures, see :func:`ruptured`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
@@ -36,10 +36,11 @@ from stribeck.fluids.newtonian import Newtonian
 from stribeck.numerics.continuation import Path, Steps, march
 from stribeck.numerics.panels import Mesh, MeshTooLargeError
 from stribeck.quantities.outcome import Outcome
+from stribeck.quantities.units import InputError
 from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.solid import Lengths, Solid, lengths_of
 
-__all__ = ["path_to_model", "ruptured"]
+__all__ = ["paths_to_model", "ruptured"]
 
 ORDER = 10
 MESH_TOLERANCE = 1e-3
@@ -79,6 +80,22 @@ BEFORE_LOWEST = 0.03
 
 DEEPENING = Steps(0.5, 1.0, 1e-3)
 SLOWING = Steps(0.7, 2.0, 1e-3)
+
+FASTER = (1e2, 1e4)
+"""Factors of the speed from which a state is looked for that changing the fluid does not reach: in thicker films the laws of
+a fluid and the roughness change less."""
+
+SLOWED = (12, 1e-4)
+"""Nodes per panel and tolerance of the meshes on the way down from there: on coarse ones states were found that are none."""
+
+MOST_WORK, UNIT_SIZE = 1000.0, 300.0
+"""Newton steps of so many unknowns after which a path is given up."""
+
+Correct = Callable[[float, Sequence[tuple[float, State]]], State | None]
+"""What :func:`march` asks for a state."""
+
+Way = tuple[Callable[[Film, float], Film], int, float]
+"""How a fluid changes into another with its part, nodes per panel and tolerance of the mesh."""
 
 
 @dataclass(frozen=True)
@@ -223,8 +240,20 @@ class BlendedSolid:
         return (1 - self.part) * self.plain.far_gap(x) + self.part * self.solid.far_gap(x)
 
 
-def path_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> Path[State]:
-    """Return a path whose last state is a first, coarse one of the groups and their model.
+def _blend(film: Film, part: float) -> Film:
+    return cast(Film, BlendedFilm(film, part))
+
+
+def _milder(film: Film, part: float) -> Film:
+    return film.milder(part)
+
+
+WAYS: tuple[Way, ...] = ((_blend, ORDER, MESH_TOLERANCE), (_milder, ORDER, MESH_TOLERANCE), (_milder, *FINER))
+"""In the order in which they are tried."""
+
+
+def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> Iterator[Path[State]]:
+    """Yield paths whose last state, where they arrive, is a first, coarse one of the groups and their model.
 
     Parameters
     ----------
@@ -236,9 +265,30 @@ def path_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> P
     model = groups.model
     if model.cavitation is Cavitation.REFORM:
         ending = replace(model, cavitation=Cavitation.EXIT, cavity_pressure=0.0)
-        path = path_to_model(replace(groups, model=ending), article)
-        return _reforming(groups, path) if path.outcome.ok else path
-    solid = model.solid
+        for path in paths_to_model(replace(groups, model=ending), article):
+            yield _reforming(groups, path) if path.outcome.ok else path
+        return
+    yield _changed(groups, article, WAYS[:1])
+    if groups.speed > 0 and model.film != Newtonian():
+        yield from (path for factor in FASTER if (path := _slowed(groups, article, factor)) is not None)
+    yield _changed(groups, article, WAYS[1:])
+
+
+def _slowed(groups: Groups, article: Callable[[Groups], Path[State]], factor: float) -> Path[State] | None:
+    """Return the path down from a speed larger by a factor, if that is reached and leads to the groups."""
+    try:
+        above = replace(groups, speed=factor * groups.speed)
+    except InputError:  # beyond the range of groups
+        return None
+    begun = _changed(above, article, WAYS[:1])
+    first = _settled(above, begun.states[-1], *SLOWED) if begun.outcome.ok else None
+    path = None if first is None else _along(above, groups, first, *SLOWED)
+    return path if path is not None and path.outcome.ok else None
+
+
+def _changed(groups: Groups, article: Callable[[Groups], Path[State]], ways: Sequence[Way]) -> Path[State]:
+    """Return the path from the state of the article's model by the first of some ways to change the fluid that arrives."""
+    model, solid = groups.model, groups.model.solid
     path = article(replace(groups, model=Model(solid=solid)))
     if not path.outcome.ok and not isinstance(solid, HalfPlane):
         solid = ARTICLE.solid
@@ -253,7 +303,7 @@ def path_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> P
         state = found
     if model.film == Newtonian() and model.solid == solid:
         return _extended(path, state)
-    return _blended(groups, path, state)
+    return _blended(groups, path, state, ways)
 
 
 def ruptured(groups: Groups, full: State) -> State | None:
@@ -320,12 +370,12 @@ def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float =
     return solve_state(groups, Operators(mesh, groups.model), guess, NEWTON_TOLERANCE, MOST_STEPS)
 
 
-def _settled(groups: Groups, guess: Guess) -> State | None:
+def _settled(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
     """Return a coarse state on a mesh made for it, or None."""
-    state = _coarse(groups, guess)
+    state = _coarse(groups, guess, order, tolerance)
     if state is None or not state.outcome.ok:
         return None
-    again = _coarse(groups, state)
+    again = _coarse(groups, state, order, tolerance)
     return again if again is not None and again.outcome.ok else None
 
 
@@ -348,7 +398,7 @@ def _ended(groups: Groups, full: Path[State]) -> State | None:
     return None
 
 
-def _along(start: Groups, end: Groups, first: State) -> Path[State]:
+def _along(start: Groups, end: Groups, first: State, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> Path[State]:
     """Return the path of states between two groups, straight in their logarithms."""
     names = ("speed", "load", "roughness")
     ends = [(float(getattr(start, name)), float(getattr(end, name))) for name in names]
@@ -358,9 +408,9 @@ def _along(start: Groups, end: Groups, first: State) -> Path[State]:
         t = s / length
         speed, load, roughness = (a ** (1 - t) * b**t if a > 0 else 0.0 for a, b in ends)
         here = end if s == length else replace(end, speed=speed, load=load, roughness=roughness)
-        return _coarse(here, extrapolate(history, s))
+        return _coarse(here, extrapolate(history, s), order, tolerance)
 
-    return march(correct, 0.0, length, SLOWING, history=[(0.0, first)])
+    return march(_within(correct), 0.0, length, SLOWING, history=[(0.0, first)])
 
 
 def _seen_from_exit(state: State) -> SeenFrom:
@@ -377,34 +427,43 @@ def _seen_from_exit(state: State) -> SeenFrom:
     return SeenFrom(state, max(float(end[np.argmax(state.fields(end)[1] <= 0)]), NEAREST_EXIT * width))
 
 
-def _blended(groups: Groups, path: Path[State], start: State) -> Path[State]:
-    """Return the path on which fluid and solid change into those of the groups, the fastest that arrives."""
+def _blended(groups: Groups, path: Path[State], start: State, ways: Sequence[Way]) -> Path[State]:
+    """Return the path on which fluid and solid change into those of the groups, by the first way that arrives."""
     own, plain = groups.model, start.groups.model
-
-    def blend(part: float) -> Film:
-        return cast(Film, BlendedFilm(own.film, part)) if own.film != plain.film else own.film
-
-    ways = [(blend, ORDER, MESH_TOLERANCE), (own.film.milder, ORDER, MESH_TOLERANCE), (own.film.milder, *FINER)]
     found = path
     for film_at, order, tolerance in ways:
 
         def correct(
             part: float,
             history: Sequence[tuple[float, State]],
-            film_at: Callable[[float], Film] = film_at,
+            film_at: Callable[[Film, float], Film] = film_at,
             order: int = order,
             tolerance: float = tolerance,
         ) -> State | None:
             film: Film = own.film
             solid: Solid = own.solid
             if part < 1.0:
-                film = film_at(part)
+                film = film_at(film, part) if film != plain.film else film
                 solid = cast(Solid, BlendedSolid(own.solid, part)) if own.solid != plain.solid else solid
             here = replace(groups, model=replace(plain, film=film, solid=solid))
             return _coarse(here, extrapolate(history, part) if history else start, order, tolerance)
 
-        found = march(correct, 0.0, 1.0, BLENDING, history=[(0.0, start)])
+        found = march(_within(correct), 0.0, 1.0, BLENDING, history=[(0.0, start)])
         if found.outcome.ok:
             settled = _settled(found.states[-1].groups, found.states[-1])
             return found if settled is None else _extended(found, settled)
     return found
+
+
+def _within(correct: Correct) -> Correct:
+    """Return a corrector that gives up when all its solves together have taken :data:`MOST_WORK`."""
+    spent = 0.0
+
+    def limited(s: float, history: Sequence[tuple[float, State]]) -> State | None:
+        nonlocal spent
+        state = correct(s, history) if spent < MOST_WORK else None
+        if state is not None:
+            spent += state.root.steps * (state.y.size / UNIT_SIZE) ** 2
+        return state
+
+    return limited
