@@ -11,7 +11,7 @@ the fluxes and their derivatives only, whatever the law.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
@@ -79,7 +79,7 @@ class FluxSlopes(NamedTuple):
 class Beyond(Protocol):
     """What a film beyond the rim has more than one of constant viscosity."""
 
-    is_all: bool
+    is_all: ClassVar[bool]
     """Whether it is the whole film, but for the logarithms of friction."""
 
     @property

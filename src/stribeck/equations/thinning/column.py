@@ -183,6 +183,13 @@ def column(law: RateLaw, slope: Array, slip: Array, start: Array | None = None) 
     return _solved(law, flow_curve(cast("Hashable", law)), slope, slip, start)
 
 
+def pull(flow: Column, along: Array, slide: float) -> Array:
+    """Return the mean stress along the motion over the slide, shape (n,); over the slip where the walls roll."""
+    if slide:
+        return np.asarray(-(flow.mean * along).sum(axis=0) / slide)
+    return np.asarray((_times(flow.ease, along) * along).sum(axis=0))
+
+
 def _solved(law: RateLaw, curve: FlowCurve, slope: Array, slip: Array, start: Array | None = None) -> Column:
     n = slope.shape[1]
     found = np.full((14, n), np.nan)

@@ -23,7 +23,8 @@ from typing import NamedTuple
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.equations.thinning.column import column
+from stribeck.equations.thinning.beyond import BeyondRim, Waves
+from stribeck.equations.thinning.column import column, pull
 from stribeck.fluids.laws import RateLaw
 from stribeck.numerics.fourier_panels import radau
 
@@ -78,28 +79,21 @@ class _Film(NamedTuple):
     drag: Array
 
 
-class FarThinned:
-    """The film of a ball beyond a rim, less that of a fluid that does not thin.
+class FarThinned(BeyondRim):
+    """The film of a ball beyond a rim, less that of a fluid that does not thin."""
 
-    Parameters
-    ----------
-    law : RateLaw
-        The law, its time in Hertz units at this speed.
-    slide : float
-        Half the slide-to-roll ratio.
-    speed, rim : float
-        Speed group, and radius of the rim [a].
-    """
+    @cached_property
+    def lost(self) -> float:
+        """The lost part of the viscosity at the rim."""
+        return lost(self.law, far_rate(self.law, self.slide, self.speed, self.rim))
 
-    is_all = False
-
-    def __init__(self, law: RateLaw, slide: float, speed: float, rim: float) -> None:
-        self.law, self.slide, self.speed, self.rim = law, slide, speed, rim
-        rate = far_rate(law, slide, speed, rim)
-        self.lost = lost(law, rate)
-        while lost(law, rate) > FIRST_ORDER:
+    @cached_property
+    def power(self) -> float:
+        """The power of the rate with which it falls."""
+        rate = far_rate(self.law, self.slide, self.speed, self.rim)
+        while lost(self.law, rate) > FIRST_ORDER:
             rate *= 0.1
-        self.power = math.log2(lost(law, 2.0 * rate) / lost(law, rate)) if self.lost > LEAST else 2.0
+        return math.log2(lost(self.law, 2.0 * rate) / lost(self.law, rate)) if self.lost > LEAST else 2.0
 
     @cached_property
     def degree(self) -> int:
@@ -118,25 +112,13 @@ class FarThinned:
         """Return an estimate of the error of the friction, as the gap is more than r**2/2 by the offset."""
         return OFFSET * self.speed * self.lost * max(1.0, abs(offset)) / self.rim**2
 
-    def beyond(self, radius: float) -> FarThinned:
-        """Return the film beyond another radius."""
-        return FarThinned(self.law, self.slide, self.speed, radius)
-
-    def first(self, offset: float) -> float:
-        """Return the factor of cos(theta) in the pressure at the rim."""
-        del offset
-        return float(self._film.pressure[-1, 1]) / self.rim**3
-
-    def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array]:
-        """Return pressure, its radial derivative, and the flux along the radius that is lost, and by the offset."""
+    @cached_property
+    def at_rim_by_offset(self) -> tuple[Waves, Waves]:
+        """The waves at the rim; those by the offset are not known."""
         film, rim = self._film, self.rim
-        cosines = np.cos(np.multiply.outer(angles, np.arange(min(modes, ANGLES))))
-        pressure, slope, flux = (
-            cosines @ each[: cosines.shape[1]]
-            for each in (film.pressure[-1], film.steepness - 3.0 * film.pressure[-1], film.flux[-1])
-        )
-        found = np.stack([pressure / rim**3, slope / rim**4, flux * rim**2])
-        return found, np.zeros_like(found)
+        at_rim = film.pressure[-1] / rim**3, (film.steepness - 3.0 * film.pressure[-1]) / rim**4, film.flux[-1] * rim**2
+        found = Waves(*(each[1::2] for each in at_rim))
+        return found, Waves(*(np.zeros_like(each) for each in found))
 
     def tails(self, offset: float) -> tuple[float, float, float]:
         """Return the parts of shear, pressure flow and moment beyond the rim."""
@@ -177,12 +159,8 @@ class FarThinned:
             found[:, odd] = -8.0 * np.matmul(inverse, leaving.T[odd, :, None])[:, :, 0].T
             if np.abs(found - before).max() <= ALIKE * speed:
                 break
-        if self.slide:
-            mean = flow.mean.reshape(gradient.shape)
-            shear = -(mean * along).sum(axis=0) * 0.5 * scale / (law.time * speed * self.slide)
-        else:
-            ease = flow.ease.reshape(3, *gradient.shape[1:])
-            shear = ease[0] * along[0] ** 2 + 2.0 * ease[1] * along[0] * along[1] + ease[2] * along[1] ** 2
+        shear = pull(flow, along.reshape(2, -1), self.slide).reshape(gradient.shape[1:])
+        shear *= 0.5 * scale / (law.time * speed) if self.slide else 1.0
         drag = (shear - 1.0).sum(axis=1) * (2.0 * math.pi / ANGLES)
         return _Film(found, radial, (along_r @ found)[-1], drag)
 

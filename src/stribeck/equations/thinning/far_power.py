@@ -20,13 +20,14 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple, cast
+from typing import Any, ClassVar, NamedTuple, cast
 
 import numpy as np
 
 from stribeck._types import Array, Indices
 from stribeck.contacts.cut_off import FULL
-from stribeck.equations.thinning.column import Column, column
+from stribeck.equations.thinning.beyond import BeyondRim, Waves
+from stribeck.equations.thinning.column import Column, column, pull
 from stribeck.fluids.laws import RateLaw
 
 ANGLES, STEPS, ALIKE = 64, 40, 1e-11
@@ -104,13 +105,7 @@ def _solved(law: RateLaw, slide: float, start: Array, base: _Similar | None, par
         if np.abs(left).max() <= ALIKE:
             break
     _, radial, flow = equations(found[None])
-    along = np.stack([np.cos(theta), -np.sin(theta)])
-    if slide:
-        shear = -(flow.mean * along).sum(axis=0) / slide
-    else:
-        shear = (flow.ease[0] * along[0] ** 2 + 2.0 * flow.ease[1] * along[0] * along[1] + flow.ease[2] * along[1] ** 2) / (
-            1.0 + part
-        )
+    shear = pull(flow, np.stack([np.cos(theta), -np.sin(theta)]), slide) / (1.0 if slide else 1.0 + part)
     return _Similar(found, radial[0], float(shear.mean()) * 2.0 * math.pi)
 
 
@@ -129,26 +124,20 @@ def similar(law: Any, slide: float, angles: int = ANGLES) -> tuple[_Similar, _Si
     return found, _Similar(pressure, flux, (above.shear - below.shear) / double)
 
 
-class FarPower:
-    """The film of a ball beyond a rim.
+class FarPower(BeyondRim):
+    """The film of a ball beyond a rim, of a power law."""
 
-    Parameters
-    ----------
-    law : RateLaw
-        A power law, its time in Hertz units at this speed.
-    slide : float
-        Half the slide-to-roll ratio.
-    speed, rim : float
-        Speed group, and radius of the rim [a].
-    """
+    is_all: ClassVar[bool] = True
 
-    is_all = True
+    @property
+    def exponent(self) -> float:
+        """N."""
+        return float(cast("Any", self.law).exponent)
 
-    def __init__(self, law: RateLaw, slide: float, speed: float, rim: float) -> None:
-        self.law, self.slide, self.speed, self.rim = law, slide, speed, rim
-        self.exponent: float = cast("Any", law).exponent
-        self.ratio = rim / math.sqrt(2.0 * law.time * speed)
+    @property
+    def ratio(self) -> float:
         """The rim over the radius where the rate is one over the relaxation time."""
+        return self.rim / math.sqrt(2.0 * self.law.time * self.speed)
 
     def _film_by(self, angles: int) -> tuple[_Similar, _Similar]:
         return similar(replace(cast("Any", self.law), relaxation_time=1.0), self.slide, angles)
@@ -177,10 +166,6 @@ class FarPower:
         """Return an estimate of the error of the friction."""
         return self.drag * (self._known + SECOND * (2.0 * max(1.0, abs(offset)) / self.rim**2) ** 2)
 
-    def beyond(self, radius: float) -> FarPower:
-        """Return the film beyond another radius."""
-        return FarPower(self.law, self.slide, self.speed, radius)
-
     @property
     def _unit(self) -> float:
         """Unit of the pressure at the rim times the rim to the power three."""
@@ -189,26 +174,24 @@ class FarPower:
     def _parts(self, offset: float) -> float:
         return 2.0 * offset / self.rim**2
 
-    def first(self, offset: float) -> float:
-        """Return the factor of cos(theta) in the pressure at the rim."""
-        base, change = self._film
-        return self._unit * float(base.pressure[0] + self._parts(offset) * change.pressure[0]) / self.rim**3
-
-    def at_rim(self, angles: Array, modes: int) -> tuple[Array, Array]:
-        """Return pressure, its radial derivative, and flux along the radius more than that of its slope, and by the offset."""
-        odd = np.arange(1, min(modes, ANGLES), 2)
-        cosines, rim = np.cos(np.multiply.outer(angles, odd)), self.rim
-        found = []
-        for film, power in zip(self._film, (1.0, 3.0), strict=True):
-            pressure, flux = (cosines @ each[: cosines.shape[1]] for each in (film.pressure, film.flux))
-            slope = -(power + 2.0 * self.exponent) * pressure
-            found.append((self._unit / rim**3 * pressure, self._unit / rim**4 * slope, self.speed * rim**2 * flux))
-        (pressure, slope, flux), more = found
-        by_offset = np.stack(more) * self._parts(1.0)
+    @cached_property
+    def at_rim_by_offset(self) -> tuple[Waves, Waves]:
+        """The waves at the rim, and by the offset to first order."""
+        rim, gap = self.rim, 0.5 * self.rim**2
+        base, change = (
+            Waves(
+                self._unit / rim**3 * film.pressure,
+                -(power + 2.0 * self.exponent) * self._unit / rim**4 * film.pressure,
+                self.speed * rim**2 * film.flux,
+            )
+            for film, power in zip(self._film, (1.0, 3.0), strict=True)
+        )
+        part, carried = self._parts(1.0), np.zeros_like(base.flux)
+        carried[0] = self.speed
+        change = Waves(*(part * each for each in change))
         # What the walls carry, and what the slope moves in the gap of a fluid that does not thin, is counted elsewhere.
-        gap, carried = 0.5 * rim**2, self.speed * np.cos(angles)
-        by_offset[2] += carried - gap**3 * by_offset[1] - 3.0 * gap**2 * slope
-        return np.stack([pressure, slope, flux + gap * carried - gap**3 * slope]), by_offset
+        by_offset = change.flux + carried - gap**3 * change.slope - 3.0 * gap**2 * base.slope
+        return base._replace(flux=base.flux + gap * carried - gap**3 * base.slope), change._replace(flux=by_offset)
 
     def tails(self, offset: float) -> tuple[float, float, float]:
         """Return the parts of shear, pressure flow and moment beyond the rim, and Newtonian logarithms up to it."""

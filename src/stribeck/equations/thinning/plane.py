@@ -21,7 +21,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.equations.point.films import Beyond, Fluxes, FluxSlopes, weights_of
-from stribeck.equations.thinning.column import NEAR, Column, column, has_viscosity_at_rest
+from stribeck.equations.thinning.column import NEAR, Column, column, has_viscosity_at_rest, pull
 from stribeck.equations.thinning.far import LEAST, FarThinned
 from stribeck.equations.thinning.far_power import FarPower
 from stribeck.fluids.shear_thinning import ShearThinning
@@ -111,10 +111,8 @@ class ThinningPlane:
     def shear(self, mesh: PolarMesh, speed: float, gap: Array, pressure: Array) -> Array:
         """Return the mean of the stresses at both walls over that of a fluid that does not thin."""
         at = self._local(mesh, speed, gap, pressure)
-        if self.film.slide:
-            found = -(at.flow.mean * at.along).sum(axis=0) * at.gap / (self.film.law.time * speed * self.film.slide)
-        else:
-            found = at.eta * (_symmetric(at.flow.ease, at.along) * at.along).sum(axis=0)
+        unit = at.gap / (self.film.law.time * speed) if self.film.slide else at.eta
+        found = unit * pull(at.flow, at.along, self.film.slide)
         weights = mesh.local_weights
         return mesh.gathered(weights * found.reshape(-1, *weights.shape)) / mesh.ring_weights
 
