@@ -135,7 +135,7 @@ def fit(
     model = FrictionModel(contact, data, wanted)
     _check_enough(data, wanted)
     report = on_step or (lambda what, count: None)
-    quick, solved = ways_of(model, definition, problem.rtol, lambda n: report("states", n))
+    quick, solved = ways_of(model, definition, problem.rtol, lambda n: report("solving states", n))
     goal = objective(model, quick, settings, settings.robust)
 
     found = _search(goal, definition, report)

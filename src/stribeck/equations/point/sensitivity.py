@@ -118,4 +118,6 @@ def beside(equations: Equations, here: Groups) -> Equations:
         operators = Operators(operators.mesh, solid)
     least = here.model.cavity_pressure if math.isfinite(equations.least) else equations.least
     film = plane_of(here.model.film.at(speed))
+    if film == equations.film and speed == equations.speed:
+        film = equations.film  # which keeps its last local solutions
     return replace(equations, operators=operators, speed=speed, law=contact_law(here), film=film, least=least)
