@@ -88,14 +88,6 @@ def is_exponential(law: AsperityLaw | None) -> bool:
     return law is None or isinstance(law, SpectralExponential)
 
 
-def has_constant_decay(law: AsperityLaw | None) -> bool:
-    """Return whether the pressure falls by the same factor over the same length at every gap.
-
-    Then a load at rest only shifts the gap.
-    """
-    return is_exponential(law)
-
-
 def largest_load(law: AsperityLaw | None) -> float:
     """Return the load group from which asperities cannot carry the load at a positive gap; infinite if there is none."""
     return 1.0 if is_exponential(law) else math.inf

@@ -13,7 +13,7 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.contact_laws.exponential import ExponentialLaw, NoContact
-from stribeck.contact_laws.law import AsperityLaw, ContactLaw, check_law, has_constant_decay
+from stribeck.contact_laws.law import AsperityLaw, ContactLaw, check_law, is_exponential
 from stribeck.contact_laws.scaled import ScaledLaw
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.scaling import SCALINGS, Geometry, Scaling
@@ -253,7 +253,7 @@ def contact_law(groups: Groups) -> ContactLaw:
     """
     if not np.any(groups.roughness):
         return NoContact()
-    if groups.law is None or has_constant_decay(groups.law):
+    if groups.law is None or is_exponential(groups.law):
         return ExponentialLaw(groups.load, groups.relative_roughness, groups.scaling.pressure_exponent)
     return ScaledLaw(groups.law, groups.load, groups.relative_roughness, groups.scaling.pressure_exponent)
 

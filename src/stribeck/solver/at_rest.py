@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.contact_laws.law import AsperityLaw, has_constant_decay
+from stribeck.contact_laws.law import AsperityLaw, is_exponential
 from stribeck.contact_laws.scaled import ShiftedLaw
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE, Model
@@ -49,7 +49,7 @@ def with_positive_gap(groups: Groups) -> tuple[Groups, float]:
     if groups.model != ARTICLE:  # at rest neither the fluid nor the end of its film matters
         groups = replace(groups, model=Model(solid=groups.model.solid))
     shape = groups.law
-    if shape is None or has_constant_decay(shape):
+    if shape is None or is_exponential(shape):
         if groups.load <= STATIC_LOAD:
             return groups, 0.0
         exponents = groups.scaling
