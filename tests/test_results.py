@@ -1,6 +1,7 @@
 """What results have in common: they show themselves in a screen, are equal by value, draw into axes, have one friction."""
 
 import pickle
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -79,7 +80,15 @@ def test_curves_and_laws_equal_themselves_after_pickling(curve):
     assert pickle.loads(pickle.dumps(contact)) == contact != CONTACT.replace(law=law.scaled(2e-6))
 
 
+@dataclass
+class Holder:
+    """What a result may hold beside numbers."""
+
+    values: np.ndarray
+
+
 def test_nan_equals_nan_and_no_number():
+    assert same(Holder(np.ones(2)), Holder(np.ones(2))) and not same(Holder(np.ones(2)), Holder(np.zeros(2)))
     assert same(np.array([1.0, np.nan]), np.array([1.0, np.nan])) and same(float("nan"), float("nan"))
     assert not same(np.array([1.0, np.nan]), np.array([1.0, 2.0])) and not same(float("nan"), 1.0)
     assert same({"a": (1, [np.nan])}, {"a": (1, [np.nan])}) and not same({"a": 1}, {"b": 1})

@@ -29,6 +29,9 @@ DEFINITIONS: tuple[Definition, ...] = ("balanced", "published")
 """Definitions of the viscous friction: the force on the substrate, and Eq. (friction) of [BP] (theory.md, section 6)."""
 
 
+PURE_SLIDING = 2.0
+"""Slide-to-roll ratio with one surface at rest."""
+
 STICKING = 0.01
 """Slide-to-roll ratio from which asperities slide fully."""
 

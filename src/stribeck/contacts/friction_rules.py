@@ -21,7 +21,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import FULL, friction_integral
-from stribeck.contacts.friction import Definition, sliding_part
+from stribeck.contacts.friction import PURE_SLIDING, Definition, sliding_part
 from stribeck.contacts.groups import Geometry, Groups
 from stribeck.contacts.model import Model
 from stribeck.contacts.scaling import SCALINGS
@@ -33,9 +33,6 @@ Values = Mapping[str, Any]
 
 IMAGINARY = 1e-30
 """Step along the imaginary axis, whose derivatives are exact."""
-
-PURE_SLIDING = 2.0
-"""Slide-to-roll ratio with one surface at rest."""
 
 
 class FrictionRule(NamedTuple):

@@ -13,6 +13,7 @@ from typing import Any, Self
 
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
+from stribeck.contacts.friction import PURE_SLIDING
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.description import Fluid, as_flow_factors, as_fluid
@@ -23,9 +24,6 @@ from stribeck.solids.half_plane import HalfPlane
 from stribeck.solids.solid import Solid
 
 __all__ = ["DEFAULT", "NAMES", "Parts", "WithParts", "signature_with_parts"]
-
-PURE_SLIDING = 2.0
-"""Slide-to-roll ratio of one surface at rest."""
 
 LARGEST_RATIO = 100.0
 """Largest slide-to-roll ratio: beyond it the surfaces move against each other and entrain hardly any fluid."""

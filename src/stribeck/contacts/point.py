@@ -14,6 +14,7 @@ from typing import Any, ClassVar, NamedTuple, Self
 
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import HertzScales
+from stribeck.contacts.friction import PURE_SLIDING
 from stribeck.contacts.groups import Groups
 from stribeck.contacts.model import ARTICLE, Model
 from stribeck.contacts.parts import DEFAULT, Parts, WithParts, signature_with_parts
@@ -21,9 +22,6 @@ from stribeck.quantities.inputs import POINT, InputTable, quantity, refuse_forme
 from stribeck.quantities.units import InputError, format_si, show
 
 __all__ = ["HamrockDowsonNumbers", "PointContact"]
-
-PURE_SLIDING = 2.0
-"""Slide-to-roll ratio with one surface at rest."""
 
 
 class HamrockDowsonNumbers(NamedTuple):

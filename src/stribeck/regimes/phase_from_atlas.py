@@ -12,8 +12,8 @@ from stribeck import atlas
 from stribeck._types import Array
 from stribeck.atlas.tables import table_for
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition
-from stribeck.contacts.friction_rules import PURE_SLIDING, RULES
+from stribeck.contacts.friction import PURE_SLIDING, Definition
+from stribeck.contacts.friction_rules import RULES
 from stribeck.contacts.groups import Groups
 from stribeck.curves.atlas_curve import AtlasCurve
 from stribeck.curves.regime import BOUNDARY_FLUID_SHARE, HYDRODYNAMIC_CONTACT_SHARE

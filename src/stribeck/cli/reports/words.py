@@ -13,9 +13,8 @@ from stribeck.checks.check import Checks
 from stribeck.cli.exits import say
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
-from stribeck.contacts.friction import Definition, Friction
+from stribeck.contacts.friction import PURE_SLIDING, Definition, Friction
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.parts import PURE_SLIDING
 from stribeck.contacts.with_parts import part_attributes
 from stribeck.curves.regime import regime_of
 from stribeck.quantities.inputs import ROWS

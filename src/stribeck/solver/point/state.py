@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 from stribeck._types import Array
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.cut_off import far_film, friction_integral, log_cut_offs
-from stribeck.contacts.friction import Definition
+from stribeck.contacts.friction import PURE_SLIDING, Definition
 from stribeck.contacts.groups import Groups
-from stribeck.contacts.point import PURE_SLIDING, PointContact
+from stribeck.contacts.point import PointContact
 from stribeck.equations.point.observables import MINIMA, OBSERVABLES, FrictionWithin
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.quantities.outcome import Outcome
