@@ -26,7 +26,7 @@ STATES = {
     "heavy": (1e-3, 3.0, 0.3),
     "smooth": (1e-6, 0.1, 0.0),
 }
-UNRESOLVED = [(6, 3e-3), (8, 1e-2), (10, 3e-3), (10, 1e-3), (14, 1e-3)]
+UNRESOLVED = [(6, 3e-3), (8, 1e-2), (10, 1e-2), (10, 3e-3), (10, 1e-3), (14, 1e-3)]
 
 
 def state_on(groups, order, tolerance, newton=1e-11):
@@ -99,7 +99,7 @@ def test_the_defect_sees_a_contact_pressure_that_dies_away_on_wide_panels(load, 
 @pytest.mark.parametrize("speed", [1e-12, 1e-11])
 def test_rounding_is_not_below_the_scatter_of_equivalent_meshes(speed):
     groups = sb.Groups(speed, 0.1, 0.0)
-    found = [judged(state_on(groups, order, 1e-7)) for order in (12, 14, 16)]
+    found = [judged(state_on(groups, order, 1e-8)) for order in (12, 14, 16)]
     values = np.array([values for values, _, _ in found])
     rounding = np.max([parts["rounding"] for _, parts, _ in found], axis=0)
     scatter = 0.5 * np.ptp(values, axis=0) / found[0][2].scales
@@ -177,7 +177,7 @@ def test_more_nodes_a_panel_lower_the_error_exponentially_until_1e_10(name, solv
     groups = sb.Groups(*STATES[name])
     exact = np.array([getattr(solved(*STATES[name], rtol=1e-11).observables, n) for n in NAMES])
     guess = cold_start(groups).states[-1]
-    panels = mesh_for(guess, groups, guess.equations.law, 10, 1e-4).edges
+    panels = mesh_for(guess, groups, guess.equations.law, 10, 1e-5).edges
     far = panels[-1] * 2.0 ** np.arange(1, 4)  # the logarithm in the far gap is not what is measured here
     edges = np.concatenate([-far[::-1], panels, far])
     orders = np.arange(6, 13, 2)

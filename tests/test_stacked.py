@@ -11,12 +11,8 @@ from stribeck.equations.observables import gradients, observables, observables_o
 from stribeck.equations.state import StackedStates
 from stribeck.numerics.panels import Mesh, base_edges
 from stribeck.solids.half_plane import (
-    Blocks,
-    _beside_panel,
     deflection_operator,
-    near_panels,
     nodal_deflection,
-    nodes_on_panel,
 )
 from stribeck.solver.cold_start import cold_start
 from stribeck.solver.refinement import converge, verify
@@ -64,16 +60,6 @@ def test_the_deflection_from_known_blocks_is_that_of_the_points(order):
     mesh = Mesh(edges, order, 0.25)
     exact = deflection_operator(mesh, mesh.nodes)
     assert np.abs(nodal_deflection(mesh) - exact).max() < 1e-14 * np.abs(exact).max()
-
-
-def test_a_block_is_to_the_bit_the_same_whatever_else_is_computed_with_it():
-    order = 12
-    places = near_panels(Mesh(np.array([-16.0, -8, -4, -2, -1, -0.5, -0.25, -0.125, 0, 0.5, 1, 4, 8, 16]), order))[2]
-    together, alone = Blocks(nodes_on_panel, _beside_panel), Blocks(nodes_on_panel, _beside_panel)
-    whole = together.at(places, order)
-    assert len(together.known) > 15
-    for place, block in zip(places, whole, strict=True):
-        np.testing.assert_array_equal(alone.at([place], order)[0], block)
 
 
 def test_a_mesh_reads_off_the_gaps_where_its_estimate_says_so():

@@ -30,7 +30,7 @@ from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, 
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.quantities.outputs import ABSOLUTE, ENDS, NAMES
 from stribeck.solids.half_plane import (
-    Blocks,
+    blocks,
     log_moments,
     near_distance,
     near_infinity,
@@ -89,11 +89,6 @@ def _seen_from_infinity(centre: Array, half_width: Array, nodes: Array) -> Array
     return np.asarray(1 / (centre + half_width * nodes))
 
 
-_ON_PANELS = Blocks(nodes_on_panel, _by_highest)
-_AT_INFINITY = Blocks(nodes_at_infinity, _by_highest)
-_OF_INFINITY = Blocks(_seen_from_infinity, _by_highest)
-
-
 @dataclass(frozen=True, eq=False)
 class FineOperators:
     """The panels of a mesh with more nodes, and the deflection that pressures there cause at the nodes of the mesh.
@@ -129,10 +124,10 @@ class FineOperators:
         mesh, m = self.coarse, self.coarse.order
         found = np.zeros((mesh.panels, m, mesh.panels, EXTRA_NODES))
         target, source, places = near_panels(mesh)
-        found[target, :, source] = _ON_PANELS.at(places, m)
+        found[target, :, source] = blocks(nodes_on_panel, _by_highest, places, m)
         outermost, places = np.flatnonzero(near_infinity(mesh)), panels_from_infinity(mesh)
-        found[-1, :, outermost] = _AT_INFINITY.at([places[k] for k in outermost], m)
-        found[:-1, :, -1] = _OF_INFINITY.at(places, m)
+        found[-1, :, outermost] = blocks(nodes_at_infinity, _by_highest, places[outermost], m)
+        found[:-1, :, -1] = blocks(_seen_from_infinity, _by_highest, places, m)
         found[-1, :, -1] = _by_highest(reference(m).nodes, m)
         found *= mesh.half_widths[:, None] / -np.pi
         return found.reshape(mesh.size, -1)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.polynomial import legendre
 
 from stribeck._types import Array, Numbers
 from stribeck.contact_laws.law import ContactLaw
@@ -23,7 +24,7 @@ from stribeck.equations.line import Equations, Operators, slopes_in_film
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Fall, Film, Slopes
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
-from stribeck.numerics.panels import Mesh, adapt, graded
+from stribeck.numerics.panels import Mesh, adapt, graded, reference
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
 
@@ -35,10 +36,6 @@ ROUNDING = 1e-9
 
 LONG_REACH_ORDER = 14
 """Nodes per panel from which the panel through infinity begins twice as far out: the logarithm in the gap limits its order."""
-
-CENTRE_PART, FINEST_CENTRE = 0.1, 3e-8
-"""Part of its tolerance to which the gap is resolved on the panel that begins at zero, of which the central gap is read, and
-the tolerance below which it is not resolved further: as the speed changes this panel is the first to lose the gap."""
 
 END_GAIN = 5.0
 """Factor by which the error of the end of a film falls when the panels beside it are halved, at least."""
@@ -72,6 +69,13 @@ BROKEN = 30.0
 FAR_OFF = 512.0
 """Distance, over the scale of the mesh, up to which panels resolve such a power."""
 
+NEAR_MINIMUM, AS_IT_MOVES = 0.1, 30.0
+"""Distance from a minimum gap that moves within which the gap is resolved better, and how much better: the change of the gap
+along the path is steeper there than the gap."""
+
+NODAL_NOISE = 2.0**-48
+"""Rounding of a nodal gap, over that gap: no mesh resolves less."""
+
 WIDEST_FAR = 0.5
 """Half-width over the distance of panels on which a broken power is resolved."""
 
@@ -86,6 +90,9 @@ TAIL_OF_ERROR = 0.2
 
 SAME_FRAME = 1.5
 """Factor up to which the dilation may differ from one before a mesh with another length of the cavity is made."""
+
+BETWEEN = 3
+"""Places over nodes at which the lowest pressure is sought."""
 
 PREDICTION_GOAL = 0.5
 """Relative error of the predicted gap at which the step of a path is kept."""
@@ -224,6 +231,11 @@ class State:
         """Fluid pressure at the nodes [p_Hz]."""
         return self.equations.fluid_pressure(self.y)
 
+    @property
+    def lowest_pressure(self) -> float:
+        """Lowest fluid pressure, also between the nodes [p_Hz]."""
+        return float(self.mesh.to_order(self.fluid_pressure, BETWEEN * self.mesh.order).min())
+
     @cached_property
     def _nodal(self) -> Array:
         """Nodal fields of this state as a guess for others: :attr:`shape` and fluid pressure."""
@@ -326,11 +338,19 @@ def mesh_for(
     width = np.sqrt(1.0 + central_gap)
     scale = 2.0 ** round(float(np.log2(width).mean()))
     minimum_position = guess.minimum_position / to_guess
+    strict = gap_tolerance
+    if spread > 0:
+        strict = max(gap_tolerance / AS_IT_MOVES, min(gap_tolerance, NODAL_NOISE / float(central_gap.min())))
     lift = 1.0
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
+    highest = legendre.legval(reference(order).nodes, np.eye(order)[-1])
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
-    of_centre = min(gap_tolerance, max(CENTRE_PART * gap_tolerance, FINEST_CENTRE))
+
+    def asked(lengths: Array) -> Array:
+        """Return a field that panels resolve if they are not longer than allowed: ``lengths`` over that."""
+        size = tolerance * np.minimum(lengths, 2.0) ** (order - 1)
+        return np.asarray((size[:, None] * highest)[None])
 
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
@@ -355,43 +375,38 @@ def mesh_for(
         shape = (found[0] - np.log(scale**2 + flat * flat)).reshape(nodal)
         centres = x.mean(axis=1)
         at_centre = np.abs(centres - centre) <= (1 + ROUNDING) * half_widths
-        if not ends:
-            at_centre &= centres > 0
+        read_off = at_centre | (np.abs(centres - minimum_position) <= half_widths + spread)
+        read_off &= stretch[:, 0] == 1.0
+        moving = read_off & (np.abs(centres - minimum_position) <= half_widths + min(spread, NEAR_MINIMUM))
         weight = max(0.1, tolerance / profile_tolerance)
-        weights = np.where(at_centre, max(weight, tolerance / (gap_tolerance if ends else of_centre)), weight)
-        lowest = np.abs(centres - minimum_position) <= half_widths + spread
-        weights[lowest] = np.maximum(weights[lowest], tolerance / gap_tolerance)
-        weights[stretch[:, 0] != 1.0] = weight
-        shape = shape * weights[..., None]
+        parts = tolerance / np.where(moving, strict, gap_tolerance)
+        shape = shape * np.where(read_off, np.maximum(weight, parts), weight)[..., None]
         shear = (np.exp(-found[0]) * central_gap).reshape(nodal)
         fields = [stretch * pressures.reshape(2, *nodal), shape[None], shear[None]]
         if broken and stretch[0, 0] != 1.0:
             fields[0] *= BROKEN
         if broken and tolerance < COARSE and stretch[0, 0] == 1.0:  # the drag far away counts as that in the contact
-            far_apart = (half_widths > WIDEST_FAR * np.abs(centres)) & (half_widths > 2 * scale)
-            fields.append(np.where(far_apart[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
+            fields.append(asked(np.minimum(half_widths / (WIDEST_FAR * np.abs(centres)), half_widths / (2 * scale))))
         if thickness < math.inf and stretch[0, 0] == 1.0:
             pressure = np.abs(np.stack([law.pressure(gap), fluid])).sum(axis=0)
             felt = groups.speed * (np.abs(flat) + np.repeat(half_widths, x.shape[1])) / gap**3
             wrong = (felt + np.abs(law.slope(gap, law.pressure(gap)))) * pressure
             stiff = 1 / central_gap + 1 / np.where(law.decay_length > 0, law.decay_length, np.inf)
             wrong = wrong + pressure * np.exp(-np.abs(flat - centre) / thickness) * stiff
-            wide = half_widths * np.where(half_widths > FINEST_OF_LAYER * thickness, wrong.reshape(x.shape).max(axis=1), 0.0)
-            missed = wide > (tolerance / TAIL_OF_ERROR) ** 2
-            fields.append(np.where(missed[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
+            wide = half_widths * wrong.reshape(x.shape).max(axis=1) / (tolerance / TAIL_OF_ERROR) ** 2
+            fields.append(asked(np.minimum(wide, half_widths / (FINEST_OF_LAYER * thickness))))
         jumps = jump(gap, fluid) if jump is not None and stretch[0, 0] == 1.0 else None
         if jumps is not None:
             wrong = groups.speed * half_widths * jumps.reshape(x.shape)[:, :-1].max(axis=1) / x.shape[1]
             wrong /= np.fmax(np.abs(fluid).max(), 1e-300)
-            missed = wrong > (tolerance / TAIL_OF_ERROR) ** 2
-            fields.append(np.where(missed[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
+            fields.append(asked(wrong / (tolerance / TAIL_OF_ERROR) ** 2))
         if ends and jump is not None and stretch[0, 0] == 1.0:  # the liquid behind the exit fills the gap up to a kink
             h = gap.reshape(x.shape)
             partly = (x[:, 0] > 0) & (h.min(axis=1) < guess.flux_gap) & (h.max(axis=1) > guess.flux_gap)
             kink = np.ptp(h, axis=1) / (2 * half_widths * guess.flux_gap**2)
             drag = math.pi * math.sqrt(2 / float(central_gap.max()))
-            missed = partly & (kink * (2 * half_widths / x.shape[1]) ** 2 > 12 * drag * (tolerance / TAIL_OF_ERROR) ** 2)
-            fields.append(np.where(missed[:, None], (-1.0) ** np.arange(x.shape[1]), 0.0)[None])
+            wrong = partly * kink * (2 * half_widths / x.shape[1]) ** 2 / (12 * drag * (tolerance / TAIL_OF_ERROR) ** 2)
+            fields.append(asked(np.sqrt(wrong)))
         if memories and stretch[0, 0] == 1.0:  # what the solid remembers behind the contact decays where nothing presses
             behind = x - (centre + float(width.mean()))
             fading = [min(1 / de, de) ** 0.5 * np.exp(-np.maximum(behind, 0.0) / de) for de in memories]

@@ -18,7 +18,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.polynomial import legendre
 
-from stribeck._types import Array, Flags, Indices
+from stribeck._types import Array, Indices
 
 MAX_PANELS = 128
 """Largest number of panels that :func:`adapt` makes; 128 panels of 16 nodes fill 34 MB per operator."""
@@ -27,8 +27,8 @@ MAX_PANELS = 128
 TAIL_HALVINGS = 12
 """Panels on each side of infinity on which integrands that hold a logarithm there are summed."""
 
-MIN_PART = 0.19
-"""Part of two panels together that the smaller must be for them to become one: the nodes of both see less too little."""
+MARGIN, SHORTEST_PART = 1.05, 0.25
+"""Number of panels over that which just resolves the fields, and least part of a longer panel that one becomes."""
 
 
 class MeshTooLargeError(Exception):
@@ -287,7 +287,10 @@ def adapt(
     tolerance: float,
     start: Mesh | None = None,
 ) -> Mesh:
-    """Return the coarsest dyadic mesh that resolves the given fields.
+    """Return a mesh of few panels that resolves the given fields.
+
+    Panels are halved until each resolves them; then they are laid anew, as long as the tails that halving left allow.  The
+    fields are not looked at again: they are often known by polynomials on other panels, with kinks where these end.
 
     Parameters
     ----------
@@ -301,14 +304,14 @@ def adapt(
     order : int
         Nodes on each panel.
     tolerance : float
-        Largest Legendre tail left on any panel.
+        Legendre tail of the fields that halved panels have at most, and panels laid anew about.
     start : Mesh, optional
-        Panels to begin with, instead of the coarsest; those of another ``scale`` are not used.
+        Panels to begin with, instead of the coarsest.
 
     Returns
     -------
     Mesh
-        Panels halved where the tail of a field exceeds ``tolerance``.
+        Its panels.
 
     Raises
     ------
@@ -317,11 +320,11 @@ def adapt(
     """
     nodes = reference(order).nodes
 
-    def unresolved(edges: Array) -> Flags:
+    def tails(edges: Array) -> Array:
         half = 0.5 * (edges[:, 1] - edges[:, 0])
         x = edges.mean(axis=1)[:, None] + half[:, None] * nodes
-        tails = legendre_tail(fields(x, half, np.ones_like(x)).reshape(-1, x.size), order)
-        return np.asarray(tails.max(axis=0) > tolerance)
+        found = legendre_tail(fields(x, half, np.ones_like(x)).reshape(-1, x.size), order)
+        return np.asarray(found.max(axis=0) / tolerance)
 
     while True:
         x = reach / nodes[None, :]
@@ -330,25 +333,40 @@ def adapt(
             break
         reach *= 2.0
     edges = base_edges(scale, reach)
-    if start is not None and start.scale == scale:
-        inside = start.edges[np.abs(start.edges) <= reach]
+    if start is not None:
+        reach = float(edges[-1])
+        inside = start.edges[np.abs(start.edges) < reach]
         edges = np.unique(np.concatenate([inside, [-reach, reach], edges[np.abs(edges) > np.abs(inside).max()]]))
     open_panels = np.column_stack([edges[:-1], edges[1:]])
-    done = []
+    done, sizes = [], []
     count = 0
     smallest = 2.0**-44 * scale
     while len(open_panels):
-        split = unresolved(open_panels) & (open_panels[:, 1] - open_panels[:, 0] > smallest)
+        size = tails(open_panels)
+        split = (size > 1) & (open_panels[:, 1] - open_panels[:, 0] > smallest)
         done.append(open_panels[~split])
+        sizes.append(size[~split])
         count += int((~split).sum())
         if count + 2 * int(split.sum()) > MAX_PANELS:
             raise MeshTooLargeError
         left, right = open_panels[split].T
         middle = 0.5 * (left + right)
         open_panels = np.concatenate([np.column_stack([left, middle]), np.column_stack([middle, right])])
-    panels = np.concatenate(done)
-    edges = np.append(np.sort(panels[:, 0]), panels[:, 1].max())
-    return Mesh(_merged(edges, unresolved, 2 if start is not None else 4), order, scale)
+    panels, size = np.concatenate(done), np.concatenate(sizes)
+    ascending = np.argsort(panels[:, 0])
+    edges = np.append(panels[ascending, 0], panels[:, 1].max())
+    return Mesh(_evened(edges, size[ascending], order), order, scale)
+
+
+def _evened(edges: Array, tails: Array, order: int) -> Array:
+    """Return edges of as few panels as have tails of about one; a tail goes with the power ``order - 1`` of the length."""
+    counts = np.fmin(1.0, np.fmax(SHORTEST_PART, MARGIN * tails ** (1 / (order - 1))))
+    middle = int(np.searchsorted(edges, 0.0))
+    found = []
+    for part, own in ((edges[: middle + 1], counts[:middle]), (edges[middle:], counts[middle:])):
+        total = np.append(0.0, np.cumsum(own))
+        found.append(np.interp(np.linspace(0.0, total[-1], math.ceil(total[-1]) + 1), total, part))
+    return np.append(found[0][:-1], found[1])
 
 
 def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
@@ -360,16 +378,3 @@ def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
         at = int(np.searchsorted(edges, place))
         added += [place + (edges[at + side] - place) * halvings for side in (-1, 1)]
     return replace(mesh, edges=np.unique(np.concatenate(added)))
-
-
-def _merged(edges: Array, unresolved: Callable[[Array], Flags], passes: int) -> Array:
-    """Return the edges without those whose two panels are resolved as one: halving leaves more than are needed."""
-    for trial in range(passes):
-        inner = np.arange(1 + trial % 2, len(edges) - 1, 2)
-        inner = inner[edges[inner] != 0.0]
-        left, right = edges[inner] - edges[inner - 1], edges[inner + 1] - edges[inner]
-        inner = inner[np.minimum(left, right) > MIN_PART * (left + right)]
-        unions = np.column_stack([edges[inner - 1], edges[inner + 1]])
-        if len(unions):
-            edges = np.delete(edges, inner[~unresolved(unions)])
-    return edges

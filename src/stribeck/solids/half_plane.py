@@ -13,7 +13,8 @@ integration), with
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -29,27 +30,33 @@ FAR_ACCURACY = 4e-13
 
 LOST_DIGITS = 1e5
 """Amplification of rounding that the upward recurrence of Q_n may have outside a panel: it falls on the highest degrees, whose
-coefficients are small.  Beyond, the downward recurrence takes over."""
+coefficients are small.  Beyond, a finer Gauss rule takes over."""
 
-
-MOST_BLOCKS = 20_000
-"""Blocks of integrals that are kept, of 1 to 2 kB each."""
+EXACT = 1e-16
+"""Error of that rule."""
 
 
 def log_moments(points: Array, order: int) -> Array:
     r"""Return :math:`\int_{-1}^{1} P_n(t) \ln|s - t| dt` for ``n < order`` at ``points`` s, shape (len(points), order)."""
     s = np.asarray(points, dtype=float)
+    near = np.abs(s) <= np.cosh(np.log(LOST_DIGITS) / (2 * order))
+    moments = np.empty((len(s), order))
+    moments[near] = _by_recurrence(s[near], order)
+    if not near.all():
+        nodes, values = _rule_outside(order)
+        moments[~near] = np.log(np.abs(s[~near, None] - nodes)) @ values
+    return moments
+
+
+def _by_recurrence(s: Array, order: int) -> Array:
+    """Return the moments by upward recurrence of the Legendre functions of the second kind."""
     # At the ends the singularities of the Q_n cancel; one unit in the last place away they do so in floating point.
     s = np.where(np.abs(s) == 1.0, s * (1 - 2.0**-53), s)
     q = np.empty((order + 1, len(s)))
     q[0] = 0.5 * np.log(np.abs((s + 1) / (s - 1)))
     q[1] = s * q[0] - 1
-    nearest = float(np.cosh(np.log(LOST_DIGITS) / (2 * order)))
-    near = np.abs(s) <= nearest
     for n in range(1, order):
         q[n + 1] = ((2 * n + 1) * s * q[n] - n * q[n - 1]) / (n + 1)
-    if not near.all():
-        q[:, ~near] = _second_kind_outside(s[~near], nearest, order)
     moments = np.empty((len(s), order))
     moments[:, 0] = (s + 1) * np.log(np.abs(s + 1)) - (s - 1) * np.log(np.abs(s - 1)) - 2
     degree = np.arange(1, order)
@@ -57,17 +64,12 @@ def log_moments(points: Array, order: int) -> Array:
     return moments
 
 
-def _second_kind_outside(s: Array, nearest: float, order: int) -> Array:
-    """Legendre functions of the second kind up to ``order``, ``nearest`` or farther, by downward recurrence (Miller)."""
-    decay = np.log(nearest + np.sqrt(nearest**2 - 1))
-    top = order + int(np.ceil(19.0 / decay))
-    q = np.empty((order + 1, len(s)))
-    above, here = np.zeros_like(s), np.full_like(s, 1e-280)
-    for n in range(top, -1, -1):
-        if n <= order:
-            q[n] = here
-        above, here = here, ((2 * n + 1) * s * here - (n + 1) * above) / max(n, 1)
-    return np.asarray(q * (0.5 * np.log(np.abs((s + 1) / (s - 1))) / q[0]))
+@lru_cache(maxsize=32)
+def _rule_outside(order: int) -> tuple[Array, Array]:
+    """Nodes of a rule that integrates the logarithm where no upward recurrence does, and weights times polynomials there."""
+    log_rho = np.log(LOST_DIGITS) / (2 * order)
+    nodes, weights = legendre.leggauss(math.ceil(0.5 * (order - np.log(EXACT) / log_rho)))
+    return nodes, weights[:, None] * legendre.legvander(nodes, order - 1)
 
 
 @lru_cache(maxsize=32)
@@ -79,8 +81,8 @@ def _from_moments(order: int) -> Array:
 
 
 def _log_integrals(s: Array, order: int) -> Array:
-    """Log integrals of the nodal basis at ``s``; to the bit, each whatever the others are, which BLAS does not promise."""
-    return np.asarray(np.einsum("sn,nj->sj", log_moments(s, order), _from_moments(order)))
+    """Log integrals of the nodal basis at ``s``."""
+    return np.asarray(log_moments(s, order) @ _from_moments(order))
 
 
 def near_distance(order: int) -> float:
@@ -89,14 +91,10 @@ def near_distance(order: int) -> float:
     return 0.5 * (rho + 1 / rho)
 
 
-Pair = tuple[float, float]
-"""Place of a panel seen from another, in half-widths of that one: its centre and its half-width."""
-
-
-class Blocks:
-    """What panels do at the nodes of others, for each relative place computed once.
-
-    Panels are dyadic: the same few places come again on every mesh.
+def blocks(
+    targets: Callable[[Array, Array, Array], Array], compute: Callable[[Array, int], Array], places: Array, order: int
+) -> Array:
+    """Return what panels do at the nodes of others, shape (pairs, order, columns).
 
     Parameters
     ----------
@@ -104,33 +102,22 @@ class Blocks:
         ``targets(centres, half_widths, nodes)`` returns where the nodes are, in half-widths of the panel that acts.
     compute : callable
         ``compute(s, order)`` with targets s, shape (n,), returns what is done there, shape (n, columns).
+    places : ndarray, shape (pairs, 2)
+        Centre and half-width of each panel seen from the one that acts, in half-widths of that.
+    order : int
+        Nodes of a panel.
     """
-
-    def __init__(self, targets: Callable[[Array, Array, Array], Array], compute: Callable[[Array, int], Array]) -> None:
-        self.targets = targets
-        self.compute = compute
-        self.known: dict[tuple[Pair, int], Array] = {}
-
-    def at(self, pairs: Sequence[Pair], order: int) -> Array:
-        """Return the blocks of panels with ``order`` nodes, shape (pairs, order, columns)."""
-        missing = list({pair for pair in pairs if (pair, order) not in self.known})
-        if missing:
-            if len(self.known) > MOST_BLOCKS:
-                self.known.clear()
-                missing = list(set(pairs))
-            centres, half_widths = np.array(missing).T[:, :, None]
-            found = self.compute(self.targets(centres, half_widths, reference(order).nodes).ravel(), order)
-            for pair, block in zip(missing, found.reshape(len(missing), order, -1), strict=True):
-                self.known[pair, order] = block
-        return np.stack([self.known[pair, order] for pair in pairs])
+    centres, half_widths = places.T[:, :, None]
+    found = compute(targets(centres, half_widths, reference(order).nodes).ravel(), order)
+    return found.reshape(len(places), order, -1)
 
 
-def near_panels(mesh: Mesh) -> tuple[Indices, Indices, list[Pair]]:
+def near_panels(mesh: Mesh) -> tuple[Indices, Indices, Array]:
     """Return targets and sources of all pairs of panels in ``x`` of which the source acts on a near node, and their places."""
     c, d = mesh.centres[:-1], mesh.half_widths[:-1]
     offset, ratio = (c[:, None] - c) / d, d[:, None] / d
     target, source = np.nonzero(np.abs(offset) - ratio < near_distance(mesh.order))
-    return target, source, list(zip(offset[target, source].tolist(), ratio[target, source].tolist(), strict=True))
+    return target, source, np.stack([offset[target, source], ratio[target, source]], axis=1)
 
 
 def near_infinity(mesh: Mesh) -> Flags:
@@ -139,10 +126,10 @@ def near_infinity(mesh: Mesh) -> Flags:
     return np.asarray(outermost > mesh.edges[-1])
 
 
-def panels_from_infinity(mesh: Mesh) -> list[Pair]:
+def panels_from_infinity(mesh: Mesh) -> Array:
     """Return the places of the panels in ``x`` in units of the edge of the panel through infinity."""
     edge = mesh.edges[-1]
-    return list(zip((mesh.centres[:-1] / edge).tolist(), (mesh.half_widths[:-1] / edge).tolist(), strict=True))
+    return np.stack([mesh.centres[:-1] / edge, mesh.half_widths[:-1] / edge], axis=1)
 
 
 def _beside_panel(s: Array, order: int) -> Array:
@@ -178,11 +165,6 @@ def nodes_at_infinity(centre: Array, half_width: Array, nodes: Array) -> Array:
     return np.asarray((1 / nodes - centre) / half_width)
 
 
-_ON_PANELS = Blocks(nodes_on_panel, _beside_panel)
-_OF_INFINITY = Blocks(nodes_on_panel, _beside_infinity)
-_AT_INFINITY = Blocks(nodes_at_infinity, _beside_panel)
-
-
 def nodal_deflection(mesh: Mesh) -> Array:
     """Return :func:`deflection_operator` at the nodes of the mesh, shape (size, size), in Fortran order."""
     order, panels = mesh.order, mesh.panels
@@ -195,14 +177,17 @@ def nodal_deflection(mesh: Mesh) -> Array:
     np.multiply(np.log(distance, out=distance), mesh.weights[:-order, None], out=columns[:-order])
     target, source, places = near_panels(mesh)
     half = mesh.half_widths[source]
-    near = _ON_PANELS.at(places, order).transpose(0, 2, 1) + (np.log(half)[:, None] * rule.weights)[:, :, None]
+    near = (
+        blocks(nodes_on_panel, _beside_panel, places, order).transpose(0, 2, 1)
+        + (np.log(half)[:, None] * rule.weights)[:, :, None]
+    )
     kernel[source, :, target, :] = half[:, None, None] * near
     outermost = np.flatnonzero(near_infinity(mesh))
     places = panels_from_infinity(mesh)
     half = mesh.half_widths[outermost]
-    near = _AT_INFINITY.at([places[k] for k in outermost], order).transpose(0, 2, 1)
+    near = blocks(nodes_at_infinity, _beside_panel, places[outermost], order).transpose(0, 2, 1)
     kernel[outermost, :, -1, :] = half[:, None, None] * (near + (np.log(half)[:, None] * rule.weights)[:, :, None])
-    tail = _OF_INFINITY.at(places, order).reshape(-1, order)
+    tail = blocks(nodes_on_panel, _beside_infinity, places, order).reshape(-1, order)
     own = _beside_infinity(mesh.nodes[-order:] * mesh.half_widths[-1], order)
     at_infinity = log_moments(np.zeros(1), order) @ _from_moments(order) + np.log(mesh.half_widths[-1]) * rule.weights
     factor = mesh.half_widths[-1] * mesh.stretch[-order:]

@@ -39,6 +39,8 @@ WORTH_COARSENING = 0.85
 RELAX = 3.0
 """Factor by which mesh tolerances are raised again after they had to be lowered."""
 
+FIRST_SPREAD = 0.1
+"""Distance from its minimum up to which the gap of a first state is resolved: it moves to the next one."""
 
 MOVING = 0.5
 """Part of the tolerances of a mesh that moves with the end of a film: the contact passes through its panels."""
@@ -75,7 +77,7 @@ class Corrector:
         path = first_path(with_positive_gap(groups)[0])
         if path.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
-        return self._adopt(converge(path.states[-1], groups, self.rtol)) if path.outcome.ok else None
+        return self._adopt(converge(path.states[-1], groups, self.rtol, spread=FIRST_SPREAD)) if path.outcome.ok else None
 
     def solve(self, guess: Guess, groups: Groups, spread: float = 0.0) -> RefinedState:
         """Return the state of ``groups`` from a guess; ``spread`` as for :func:`stribeck.equations.state.mesh_for`."""
@@ -186,7 +188,7 @@ def keeps_cavity(point: RefinedState, groups: Groups) -> bool:
     state = point.state
     if state is None or state.groups.model.cavitation is not Cavitation.NONE:
         return True
-    return bool(state.equations.pressures(state.y)[1].min() >= groups.model.cavity_pressure)
+    return state.lowest_pressure >= groups.model.cavity_pressure
 
 
 def from_cold(groups: Groups, rtol: float) -> RefinedState:

@@ -64,7 +64,7 @@ MOST_TRIALS = 4
 GAP_PART = 0.1
 """Part of the usual tolerance to which a mesh resolves the gap where it is read off, for neighbouring states too."""
 
-SPREAD = 1.6
+SPREAD = 1.0
 """Distance from the minimum gap up to which a mesh resolves the gap, over the shift of that minimum since the last state."""
 
 BETWEEN_MESHES = 0.2

@@ -254,7 +254,7 @@ def _reforming(groups: Groups, rtol: float) -> RefinedState:
     point = _refined(full, full, rtol, far)
     if point.state is None:
         return replace(point, groups=groups)
-    if float(point.state.equations.pressures(point.state.y)[1].min()) >= model.cavity_pressure:
+    if point.state.lowest_pressure >= model.cavity_pressure:
         return replace(point, groups=groups)
     guess = ruptured(groups, point.state)
     if guess is not None:
