@@ -48,9 +48,10 @@ class _Column(NamedTuple):
     @property
     def as_row(self) -> _Column:
         """The same of a single row of nodes."""
-        slopes = self.slopes
-        if slopes is not None:
-            slopes = slopes._replace(by_gap=slopes.by_gap[None], by_flux=slopes.by_flux[None])
+        if self.slopes is None:
+            return _Column(self.key, self.gradient[None], None)
+        by_gap, by_pressure, by_flux, _ = self.slopes
+        slopes = Slopes(by_gap[None], None if by_pressure is None else by_pressure[None], by_flux[None])
         return _Column(self.key, self.gradient[None], slopes)
 
 

@@ -41,7 +41,7 @@ class Cells:
         values = np.asarray(function(x.ravel()))
         values = np.moveaxis(values.reshape(*values.shape[:-1], terms, cells), -2, 0)
         flat = np.linalg.solve(np.vander(points, increasing=True), values.reshape(terms, -1))
-        return cls(start, width, np.asarray(flat.reshape(values.shape)))
+        return cls(start, width, np.asarray(flat.reshape(values.shape), dtype=np.float64))
 
     def _place(self, x: Array) -> tuple[Indices, Array]:
         """Return the cell of each number and its place there."""
