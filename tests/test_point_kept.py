@@ -80,9 +80,7 @@ def test_curves_are_read_between_the_inputs_at_which_they_were_solved_and_fits_s
     assert (found.error > exact.error).all()
 
     solved.clear()
-    quick = Between(counted, friction_parts.FAR_DOUBT)
-    ways = Ways(quick, replace(quick, doubt=friction_parts.NEAR_DOUBT))
-    monkeypatch.setitem(friction_parts.WAYS, "point", lambda *_: ways)
+    monkeypatch.setitem(friction_parts.WAYS, "point", lambda *_: friction_parts.between(counted))
     noise = np.exp(0.02 * np.random.default_rng(1).standard_normal(8))
     rows = measured(exact.friction * noise, SPEEDS, inputs=inputs)
     fit = sb.fit(rows, BALL, free=["boundary_friction", "viscosity"])

@@ -253,7 +253,7 @@ def test_a_fit_shows_itself_and_is_a_dataset():
     np.testing.assert_array_equal(data.fitted_friction, found.friction)
     ax = figures.Figure().subplots()
     found.plot(ax=ax)
-    assert ax.get_legend() and ax.get_xlabel() == "sliding speed $U$ (m/s)"
+    assert ax.get_legend() and ax.get_xlabel() == "speed $U$, sum of both surfaces (m/s)"
 
 
 def test_a_sweep_shows_itself_and_draws(tmp_path):

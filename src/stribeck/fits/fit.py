@@ -1,8 +1,9 @@
 """Inputs of a contact from measured friction curves: values, intervals, and what the data cannot determine.
 
 Least squares on the logarithms of the inputs with analytic derivatives.  With a law that it holds they run on
-:mod:`stribeck.atlas` and are then finished on solved states; with other laws all states are solved.  Those of balls run on a
-lattice of solved states, made where the search goes, and are finished on solved curves.
+:mod:`stribeck.atlas` and are then finished on solved states; with other laws, fluids and solids curves are read between the
+inputs at which they were solved.  Those of other balls run on a lattice of solved states, made where the search goes, and are
+finished on solved curves.
 """
 
 from __future__ import annotations
@@ -50,8 +51,8 @@ FIRST_NOISE = 0.1
 RESTARTS = 4
 """Better minima on profiles that are followed before the fit counts as lost."""
 
-ROUNDS = 8
-"""Minima at which states that are read are solved before the fit counts as lost."""
+ROUNDS = 6
+"""Minima at which states that are read are solved, before all are solved along the rest of the way."""
 
 NOTHING = 1e-13
 """Eigenvalue of the information, over the largest, below which it is rounding."""
@@ -203,15 +204,13 @@ def _solved(found: Minimum, solved: PartsOf | Between, report: Step) -> Minimum:
 
     What is read is solved at the minimum, and the minimum found anew, until the solved states say that it is there.
     """
-    if not isinstance(solved, Between):
-        return _brought_back(settle(replace(found.objective, parts_of=solved), found.theta, lambda n: report("solving", n)))
-    for n in range(1, ROUNDS + 1):
+    for n in range(1, ROUNDS + 1) if isinstance(solved, Between) else ():
         fine = minimise(replace(found.objective, parts_of=solved), found.theta, near=math.inf)
         report("solving", n)
         if fine.converged:
-            break
+            return fine
         found = _brought_back(settle(found.objective, found.theta))
-    return fine
+    return _brought_back(settle(replace(found.objective, parts_of=solved), found.theta, lambda n: report("solving", n)))
 
 
 def _brought_back(found: Minimum) -> Minimum:

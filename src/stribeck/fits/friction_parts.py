@@ -72,8 +72,8 @@ LATTICE_ERROR = 3e-3
 FINE_STEPS = (0.3, 1.0, 1.0)
 """Steps of solved curves of balls: of ln(speed), and none that count of ln(load) and ln(relative roughness)."""
 
-FAR_DOUBT, NEAR_DOUBT = 1e-2, 3e-4
-"""Doubt of curves read between solved ones, see :mod:`stribeck.numerics.scattered`, in the search and at its end."""
+FAR_DOUBT = 1e-2
+"""Doubt up to which curves are read between solved ones, see :mod:`stribeck.numerics.scattered`."""
 
 CLOSE = 0.01
 """Logarithm of a load or a roughness up to which a solved curve of a ball serves, to first order."""
@@ -281,7 +281,7 @@ class Between:
     solve : callable
         What solves the states.
     doubt : float
-        Largest doubt with which a curve is read.
+        Largest doubt with which a curve is read; at 0 all are solved.
     known : dict
         What was solved of each curve; may be shared.
     """
@@ -309,16 +309,14 @@ class Between:
         FrictionParts
             With the slopes along the free inputs.
         """
-        if curve not in self.known:
-            first = solved()
-            self.known[curve] = Scattered(_lengths(first, moving)), [first]
-            self.known[curve][0].add(place, first.values.ravel(), _rows(first, moving))
-        scattered, all_solved = self.known[curve]
-        doubt = scattered.doubt(place)
+        doubt = self.known[curve][0].doubt(place) if curve in self.known else math.inf
         if doubt > self.doubt:
-            all_solved.append(solved())
-            scattered.add(place, all_solved[-1].values.ravel(), _rows(all_solved[-1], moving))
-            doubt = scattered.doubt(place)
+            here = solved()
+            scattered, all_solved = self.known.setdefault(curve, (Scattered(_lengths(here, moving)), []))
+            scattered.add(place, here.values.ravel(), _rows(here, moving))
+            all_solved.append(here)
+            return here
+        scattered, all_solved = self.known[curve]
         near = all_solved[scattered.nearest(place)]
         values, by = scattered.at(place)
         slopes = np.zeros_like(near.slopes)
@@ -350,6 +348,12 @@ class Ways(NamedTuple):
 
     quick: PartsOf | Between
     solved: PartsOf | Between
+
+
+def between(solve: PartsOf) -> Ways:
+    """Return how to search on curves that are read between solved ones, and end on solved ones."""
+    quick = Between(solve, FAR_DOUBT)
+    return Ways(quick, replace(quick, doubt=0.0))
 
 
 def ways_of(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
@@ -384,8 +388,7 @@ def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float, on_s
     if in_atlas(model):
         solved = solved_parts(definition, rtol)
         return Ways(atlas_or(solved, definition), solved)
-    kept = kept_parts(definition, rtol)
-    return Ways(kept, kept)
+    return between(kept_parts(definition, rtol))
 
 
 def _of_ball(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
@@ -393,8 +396,7 @@ def _of_ball(model: FrictionModel, definition: Definition, rtol: float, on_state
         kept = kept_balls(model, definition, max(rtol, KEPT_RTOL), on_state)
         if in_atlas(model):
             return Ways(atlas_or(kept, definition), kept)
-        quick = Between(kept, FAR_DOUBT)
-        return Ways(quick, replace(quick, doubt=NEAR_DOUBT))
+        return between(kept)
     logs, varies = model.start()
     lattice, solved = lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL))
     return Ways(atlas_or(lattice, definition) if in_atlas(model) else lattice, solved)

@@ -43,7 +43,7 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 """Of the curves, in turn."""
 
 LABELS = {
-    "speed": "sliding speed $U$ (m/s)",
+    "speed": "speed $U$, sum of both surfaces (m/s)",
     "speed_viscosity": r"viscosity times speed $\eta U$ (Pa m)",
     "hersey_number": r"Hersey number $\eta U/F_N$",
 }
