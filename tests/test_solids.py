@@ -41,6 +41,17 @@ def test_the_memory_is_the_exponential_mean_of_what_has_passed(deborah):
 
 
 @pytest.mark.quick
+def test_memory_of_a_pressure_that_reaches_to_infinity():
+    deborah = 1.0
+    found = memory(FINE, deborah) @ (1 / (1 + FINE.nodes**2))
+    age, weights = np.polynomial.legendre.leggauss(2000)
+    age, weights = 20 * (1 + age) * deborah, 20 * weights
+    past = 1 / (1 + (FINE.nodes[:, None] - age) ** 2)
+    expected = past @ (weights * np.exp(-age / deborah))
+    np.testing.assert_allclose(found * (1 + FINE.nodes**2), expected * (1 + FINE.nodes**2), rtol=0, atol=1e-6)
+
+
+@pytest.mark.quick
 def test_the_hysteresis_friction_is_parsevals_integral():
     deborah, ratio, width = 0.5, 3.0, 0.4
     found = hysteresis_friction(FINE, StandardLinearSolid(deborah, ratio), bump(FINE.nodes, width))

@@ -107,9 +107,7 @@ def _nodes(spectrum: Spectrum) -> tuple[Array, Array]:
         tau = (0.5 * np.diff(edges)[:, None] * (t + 1) + edges[:-1, None]).ravel()
         step = (0.5 * np.diff(edges)[:, None] * w).ravel()
         log_q, rate = (width * tau**2, 2 * width * tau) if i == 0 else (width * tau, np.full_like(tau, width))
-        z = power[i] * log_q
-        small = np.abs(z) < 1e-9
-        rise = log_q * np.where(small, 1 + z / 2, np.expm1(z) / np.where(small, 1.0, z))
+        rise = log_q * scipy.special.exprel(power[i] * log_q)
         G = np.sqrt(below[i] + math.pi * C[i] * q[i] ** 4 * rise)
         density = C[i] * np.exp(-spectrum.exponent[i] * log_q)
         wavenumber = q[i] * np.exp(log_q)

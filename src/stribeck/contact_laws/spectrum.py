@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import scipy
 
 from stribeck._types import Array
 from stribeck.quantities.results import ByValue
@@ -305,9 +306,7 @@ class SelfAffine:
 
 def _growth(power: Array, width: Array) -> Array:
     """Return the integral of exp(power t) over t from 0 to ``width``, also where the power vanishes."""
-    z = power * width
-    small = np.abs(z) < 1e-9
-    return np.asarray(width * np.where(small, 1 + z / 2, np.expm1(z) / np.where(small, 1.0, z)))
+    return np.asarray(width * scipy.special.exprel(power * width))
 
 
 def table_of(roughness: object) -> Spectrum:
