@@ -270,7 +270,8 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
         return
     yield _changed(groups, article, WAYS[:1])
     if groups.speed > 0 and model.film != Newtonian():
-        yield from (path for factor in FASTER if (path := _slowed(groups, article, factor)) is not None)
+        slowed = (_slowed(groups, article, factor) for factor in FASTER)
+        yield from (found for found in slowed if found is not None)
     yield _changed(groups, article, WAYS[1:])
 
 
