@@ -29,7 +29,7 @@ from stribeck.contacts.model import ARTICLE, Model
 from stribeck.equations.guess import Guess
 from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.prediction import SeenFrom, extrapolate
-from stribeck.equations.state import BETWEEN, State, mesh_for, solve_state
+from stribeck.equations.state import State, mesh_for, solve_state
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Film, Slopes
 from stribeck.fluids.newtonian import Newtonian
@@ -270,8 +270,7 @@ def paths_to_model(groups: Groups, article: Callable[[Groups], Path[State]]) -> 
         return
     yield _changed(groups, article, WAYS[:1])
     if groups.speed > 0 and model.film != Newtonian():
-        slowed = (_slowed(groups, article, factor) for factor in FASTER)
-        yield from (found for found in slowed if found is not None)
+        yield from (slowed for factor in FASTER if (slowed := _slowed(groups, article, factor)) is not None)
     yield _changed(groups, article, WAYS[1:])
 
 
@@ -313,7 +312,7 @@ def ruptured(groups: Groups, full: State) -> State | None:
     The cavity may be very short: the shorter it is, the nearer the full film, and the better the guess.
     """
     pressure = groups.model.cavity_pressure
-    x = np.sort(full.mesh.refined(BETWEEN * full.mesh.order).nodes)
+    x = np.sort(full.mesh.nodes)
     below = np.flatnonzero(full.fields(x)[1] < pressure)
     if not len(below):
         return None
