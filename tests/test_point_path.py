@@ -9,6 +9,7 @@ from stribeck.solver.point import refinement
 from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.refinement import PATH_SLACK, follow, meshes_for, next_meshes
 from stribeck.solver.point.solve import solve_cold, solve_from
+from stribeck.surfaces import SelfAffine, persson_law
 
 RTOL = 1e-4
 
@@ -77,3 +78,19 @@ def test_refinement_ends_where_no_mesh_is_finer(state, monkeypatch):
     pair = refinement.refine(1e-2, contact_law(ball(1e-2)), state.work.fine, 1e-8)
     assert not pair.outcome.ok
     assert len(asked) == 1
+
+
+def test_where_an_edge_in_the_contact_moves_panels_are_halved_and_meshes_do_not_grow():
+    # A contact nearly full in its middle, on rougher and rougher surfaces: more angles and higher degrees went to 54 and 13.
+    law = persson_law(SelfAffine(h_rms=21e-9, q0=6.3e5, q1=6.3e7, hurst=0.8), 0.45)
+    load, speed, rtol = 1531.0, 1.126e-6, 1.5e-3
+
+    def lens(kappa):
+        return Groups(speed, load, kappa * load ** (2 / 3), law=law, geometry="point")
+
+    first = found = solve_cold(lens(0.0441), rtol)
+    for kappa in (0.0577, 0.0716, 0.0798, 0.0889, 0.108):
+        found = solve_from(found, lens(kappa), rtol)
+        assert found.outcome.ok
+    assert (found.mesh.degree, found.mesh.modes) == (first.mesh.degree, first.mesh.modes)
+    agree(found, solve_cold(lens(0.108), rtol))

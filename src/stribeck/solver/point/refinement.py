@@ -273,7 +273,10 @@ def refine(speed: float, law: ContactLaw, guess: Level, rtol: float, known: Pair
             guess = split(guess, speed, law)
             wanted = first_resolution(guess, rtol, band, slack)
         else:
-            wanted, coarse = next_meshes(known, rtol, band, slack)
+            # An edge within the contact may have moved to a wide panel, where more of all else would be needed.
+            wanted, guess = better_split(known.fine), known.fine
+            if wanted == known.fine.resolution:
+                wanted, coarse = next_meshes(known, rtol, band, slack)
         for _ in range(MOST_ROUNDS):
             if coarse is None:
                 coarse = solve_level(wanted.coarser(), speed, law, guess.unknowns, guess.mesh, tolerance)
@@ -312,10 +315,15 @@ def bare(level: Level) -> Level:
     return replace(level, iterated=replace(level.iterated, preconditioner=None))
 
 
+def better_split(level: Level) -> Resolution:
+    """Return the resolution of a state with the panels halved that resolve its pressures poorly."""
+    return split_where_poor(level.resolution, level.mesh, level.unknowns.fluid, level.contact_pressure)
+
+
 def split(guess: Level, speed: float, law: ContactLaw) -> Level:
     """Return a state on panels, halved where they resolve its pressures poorly."""
     for _ in range(MOST_ROUNDS):
-        better = split_where_poor(guess.resolution, guess.mesh, guess.unknowns.fluid, guess.contact_pressure)
+        better = better_split(guess)
         if better == guess.resolution:
             break
         on_more = solve_level(better, speed, law, guess.unknowns, guess.mesh, 1e-4)
