@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 
-from stribeck.numerics.panels import MAX_PANELS, Mesh, MeshTooLargeError, adapt, base_edges, legendre_tail, reference
+from stribeck.numerics.panels import MAX_PANELS, Mesh, MeshTooLargeError, adapt, base_edges, legendre_tail, reference, ungraded
+from stribeck.numerics.panels import graded as halved_towards
 from stribeck.numerics.running_integral import RunningIntegral
 
 pytestmark = pytest.mark.quick
@@ -268,3 +269,10 @@ def test_a_step_is_not_chased_beyond_double_precision():
     mesh = adapt(lambda x, *_: np.sign(x - 0.3)[None] * (np.abs(x) < 4), 1.0, 8.0, 10, 1e-6)
     assert mesh.panels <= MAX_PANELS
     assert np.diff(mesh.edges).min() >= 2.0**-45
+
+
+def test_panels_that_halve_towards_a_place_are_taken_out_again():
+    edges = np.array([-7.0, -4.0, -1.5, 0.0, 0.9, 2.0, 3.1, 7.0])
+    found = halved_towards(Mesh(edges, 10), [0.0, 2.0], 9)
+    assert found.panels == len(edges) + 36
+    np.testing.assert_array_equal(ungraded(found.edges, [0.0, 2.0]), edges)

@@ -446,7 +446,7 @@ def test_slow_friction_ends_in_the_law_of_the_uniform_film(slow_films):
 
 
 def test_smooth_states_depend_on_speed_alone_but_for_the_scale_of_friction(solved):
-    light, heavy = solved(0.02, 1e-6, 0.0, 1e-9), solved(0.02, 5.0, 0.0, 1e-9)
+    light, heavy = solved(0.02, 1e-6, 0.0, rtol=1e-9), solved(0.02, 5.0, 0.0, rtol=1e-9)
     assert light.central_gap == pytest.approx(heavy.central_gap, rel=1e-9)
     assert viscous(heavy) / viscous(light) == pytest.approx(math.sqrt(5e6), rel=1e-9)
 

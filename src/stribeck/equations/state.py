@@ -24,7 +24,7 @@ from stribeck.equations.line import Equations, Operators, slopes_in_film
 from stribeck.fluids.cavitation import Cavitation
 from stribeck.fluids.fluid import Fall, Film, Slopes
 from stribeck.numerics.newton import Inverse, Root, StepControl, root_find
-from stribeck.numerics.panels import Mesh, adapt, graded, reference
+from stribeck.numerics.panels import Mesh, adapt, graded, reference, ungraded
 from stribeck.quantities.outcome import Outcome
 from stribeck.solids.solid import Lengths
 
@@ -69,7 +69,7 @@ BROKEN = 30.0
 FAR_OFF = 512.0
 """Distance, over the scale of the mesh, up to which panels resolve such a power."""
 
-NEAR_MINIMUM, AS_IT_MOVES = 0.1, 30.0
+NEAR_MINIMUM, AS_IT_MOVES = 0.1, 100.0
 """Distance from a minimum gap that moves within which the gap is resolved better, and how much better: the change of the gap
 along the path is steeper there than the gap."""
 
@@ -427,11 +427,14 @@ def mesh_for(
         reach = max(reach, FORGOTTEN * max(memories))
     if not ends:
         return adapt(fields, scale, reach, order, tolerance, guess.mesh if isinstance(guess, State) else None)
+    places = [0.0] if restart == math.inf else [0.0, restart]
     if restart < math.inf:
         reach = max(reach, restart)
-    mesh = adapt(fields, scale, 2 * reach, order, tolerance)
+    start = None
+    if isinstance(guess, State):
+        start = replace(guess.mesh, edges=ungraded(guess.mesh.edges, [x * to_guess for x in places]) / to_guess)
+    mesh = adapt(fields, scale, 2 * reach, order, tolerance, start)
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))
-    places = [0.0] if restart == math.inf else [0.0, restart]
     return replace(graded(mesh, places, levels), restart=restart)
 
 

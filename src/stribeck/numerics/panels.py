@@ -378,3 +378,17 @@ def graded(mesh: Mesh, places: Sequence[float], levels: int) -> Mesh:
         at = int(np.searchsorted(edges, place))
         added += [place + (edges[at + side] - place) * halvings for side in (-1, 1)]
     return replace(mesh, edges=np.unique(np.concatenate(added)))
+
+
+def ungraded(edges: Array, places: Sequence[float]) -> Array:
+    """Return edges without those by which panels halve towards each of ``places``."""
+    for place in places:
+        for side in (-1.0, 1.0):
+            distance = side * (edges - place)
+            beyond = np.sort(distance[distance > 0])
+            ratios = beyond[1:] / beyond[:-1]
+            halving = np.abs(ratios - 2) < 1e-9
+            count = len(halving) if halving.all() else int(np.argmin(halving))
+            if count:
+                edges = edges[(distance <= 0) | (distance >= beyond[count])]
+    return edges
