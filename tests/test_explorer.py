@@ -84,6 +84,10 @@ def test_a_slider_stops_at_its_ends_and_a_value_beyond_stands_there():
     assert inputs.position(inputs.typed(START, "speed", "0"), "speed") == math.log10(inputs.FIELDS["line"]["speed"].low)
 
 
+def test_a_unit_typed_without_its_greek_letter_is_that_of_the_list():
+    assert inputs.typed(START, "roughness", "2 um").units["roughness"] == "µm"
+
+
 def test_a_unit_that_is_typed_becomes_that_of_the_field():
     typed = inputs.typed(START, "load", "1.5 kN/m")
     assert typed.contact.load == 1500
@@ -353,6 +357,12 @@ def test_a_group_of_a_ball_moves_alone(name):
         assert inputs.value_of(moved, other) == pytest.approx(wanted, rel=5e-3 if other == name else 1e-12)
 
 
+def test_a_headline_does_not_name_the_geometry_before():
+    ball = choices.choose(START, "geometry", "point")
+    assert START.title and not ball.title
+    assert choices.choose(START, "geometry", "line").title == START.title
+
+
 def test_what_a_ball_may_do_without_is_an_empty_field():
     wet = inputs.typed(BALL, "wetted_radius", "30")
     assert wet.contact.wetted_radius == 0.03 and inputs.number_text(wet, "wetted_radius") == "30"
@@ -542,6 +552,12 @@ def test_dry_friction_changes_no_film_of_a_ball(monkeypatch):
     found = model(drier).solution
     assert found.contact == drier.contact
     assert found.friction().total == pytest.approx(sb.solve(drier.contact, rtol=1e-4).friction().total, rel=1e-4)
+
+
+def test_the_colours_of_a_film_are_those_of_its_picture():
+    matplotlib = pytest.importorskip("matplotlib")
+    scale = matplotlib.colormaps["viridis"]
+    assert [matplotlib.colors.to_hex(scale(part)) for part in (0.0, 1.0)] == [charts.FILM_COLOURS[0], charts.FILM_COLOURS[-1]]
 
 
 def test_the_scale_of_a_films_map_begins_at_the_minimum_film():
@@ -960,6 +976,13 @@ def test_a_file_of_heights_becomes_the_surface_of_the_contact():
     separation = np.array([0.1, 1.0, 3.0])
     np.testing.assert_allclose(after.contact.law.log_pressure(separation), law.log_pressure(separation), rtol=1e-5)
     assert url.decode(parse_qsl(url.encode(after)), START).inputs.contact == after.contact
+
+
+def test_a_surface_without_unit_is_told_what_the_page_can_do():
+    heights = "\n".join(f"{x} {y} {(x * y) % 7}" for x in range(8) for y in range(8))
+    with pytest.raises(sb.InputError) as problem:
+        read_scan("s.xyz", heights.encode())
+    assert "write it in the header as in" in str(problem.value) and "--" not in str(problem.value)
 
 
 def test_a_file_that_holds_neither_friction_nor_heights_is_refused_with_both_reasons():

@@ -83,14 +83,20 @@ function lengthOf(metres) {
   return `${short(metres / unit, 3)} ${name}`;
 }
 
+// Corners of the symbols of points that are no circles, in halves of their size.
+const CORNERS = { diamond: [[0, -1], [1, 0], [0, 1], [-1, 0]], triangle: [[0, -1], [1, 0.8], [-1, 0.8]] };
+
 const PAINT = {
-  bands({ data, grey }, { brush, x, box }) {
-    brush.textAlign = "center";
-    for (const [low, high, colour, name] of data) {
+  bands({ data }, { brush, x, box }) {
+    for (const [low, high, colour] of data) {
       brush.fillStyle = colour;
       brush.fillRect(x(low), box.top, x(high) - x(low), box.height);
-      brush.fillStyle = grey;
-      brush.font = `italic 12px ${FONT}`;
+    }
+  },
+  // After the grid, which would cross the letters.
+  names({ data, grey }, { brush, x, box }) {
+    [brush.textAlign, brush.fillStyle, brush.font] = ["center", grey, `italic 12px ${FONT}`];
+    for (const [low, high, , name] of data) {
       if (brush.measureText(name).width < x(high) - x(low)) brush.fillText(name, 0.5 * (x(low) + x(high)), box.top + 12);
     }
   },
@@ -127,9 +133,7 @@ const PAINT = {
       const [across, up, r] = [x(one), y(two), 0.5 * size];
       brush.beginPath();
       if (symbol === "circle") brush.arc(across, up, r, 0, 2 * Math.PI);
-      else for (const [i, j] of symbol === "diamond" ? [[0, -1], [1, 0], [0, 1], [-1, 0]] : [[0, -1], [1, 0.8], [-1, 0.8]]) {
-        brush.lineTo(across + i * r, up + j * r);
-      }
+      else for (const [i, j] of CORNERS[symbol]) brush.lineTo(across + i * r, up + j * r);
       brush.closePath();
       brush.fill();
       brush.stroke();
@@ -151,12 +155,14 @@ export default {
         <button v-for="each in legend" :key="each.name" type="button" :aria-pressed="String(!hidden.includes(each.name))"
           :title="(hidden.includes(each.name) ? 'Show ' : 'Hide ') + each.name" @click="toggle(each.name)">
           <svg viewBox="0 0 22 10" aria-hidden="true">
-            <circle v-if="each.edge" cx="11" cy="5" r="3.5" fill="none" :stroke="each.edge" stroke-width="1.6"/>
+            <circle v-if="each.symbol === 'circle'" cx="11" cy="5" r="3.5" fill="none" :stroke="each.edge" stroke-width="1.6"/>
+            <polygon v-else-if="each.symbol" :points="corners(each.symbol)" fill="none" :stroke="each.edge" stroke-width="1.6"/>
             <path v-else d="M 0 5 H 22" :stroke="each.color" :stroke-width="each.width" :stroke-dasharray="each.dash.join(' ')"/>
           </svg>{{ each.name }}</button>
       </div>
-      <canvas ref="canvas" role="img" :aria-label="label" @pointermove="move" @pointerdown="move" @pointerleave="leave"></canvas>
-      <div class="tip" ref="tip" hidden></div>
+      <canvas ref="canvas" role="img" :aria-label="label + '; arrow keys read its values'" tabindex="0"
+        @pointermove="move" @pointerdown="move" @pointerleave="leave" @keydown="walk" @blur="leave"></canvas>
+      <div class="tip" ref="tip" role="status" hidden></div>
     </div>`,
   data() {
     return { legend: [], hidden: [] };
@@ -174,18 +180,33 @@ export default {
     });
     this.observer.observe(this.$refs.canvas);
     document.fonts.ready.then(() => this.paint());
+    this.followScreen();
   },
   beforeUnmount() {
     this.observer.disconnect();
+    this.unfollow();
   },
   methods: {
+    // Another screen has other pixels, which no change of size tells.
+    followScreen() {
+      const screen = matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`);
+      const changed = () => {
+        this.paint();
+        this.followScreen();
+      };
+      screen.addEventListener("change", changed, { once: true });
+      this.unfollow = () => screen.removeEventListener("change", changed);
+    },
+    corners(symbol) {
+      return CORNERS[symbol].map(([i, j]) => `${11 + 4 * i},${5 + 4 * j}`).join(" ");
+    },
     // Takes what has changed: whole series hold their type, others their new data or nothing.
     show(change) {
       const before = Object.fromEntries(this.options.series.map((each) => [each.id, each]));
       const series = (change.series ?? this.options.series).map((each) => (each.type ? each : { ...before[each.id], ...each }));
       this.options = { ...this.options, ...change, series };
       const legend = this.options.legend.map((name) => series.find((each) => each.name === name));
-      const look = ({ name, color, width, dash, edge }) => ({ name, color, width, dash, edge });
+      const look = ({ name, color, width, dash, edge, symbol }) => ({ name, color, width, dash, edge, symbol });
       if (JSON.stringify(legend.map(look)) !== JSON.stringify(this.legend)) this.legend = legend.map(look);
       this.paint();
     },
@@ -210,20 +231,23 @@ export default {
         brush, box, x: scaleOf(this.options.x, box.left, box.left + box.width), y: scaleOf(this.options.y, box.top + box.height, box.top),
       };
       this.on = on;
-      const part = (series) => {
+      const part = (series, what = series.type) => {
         brush.save();
         brush.beginPath();
         // The mark of the present point may stand half outside.
         const room = series.type === "points" ? 0.5 * series.size + 1 : 0;
         brush.rect(box.left - room, box.top - room, box.width + 2 * room, box.height + 2 * room);
         brush.clip();
-        PAINT[series.type]({ ...series, grey: this.options.grey }, on);
+        PAINT[what]({ ...series, grey: this.options.grey }, on);
         brush.restore();
       };
       const shown = this.shown();
-      shown.filter((each) => BEHIND.includes(each.type)).forEach(part);
+      for (const each of shown) if (BEHIND.includes(each.type)) part(each);
       this.paintAxes(on);
-      shown.filter((each) => !BEHIND.includes(each.type)).forEach(part);
+      for (const each of shown) {
+        if (each.type === "bands") part(each, "names");
+        else if (!BEHIND.includes(each.type)) part(each);
+      }
       if (this.options.scale) this.paintScale(on, height);
       if (this.pointer) this.tell();
     },
@@ -287,6 +311,16 @@ export default {
     },
     move(event) {
       this.pointer = [event.offsetX, event.offsetY];
+      this.paint();
+    },
+    // A readout by keyboard: arrow keys move it, with Shift faster, Escape removes it.
+    walk(event) {
+      const step = (event.shiftKey ? 40 : 8) * { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+      if (event.key === "Escape") this.leave();
+      if (!step || !this.on) return;
+      event.preventDefault();
+      const { left, width, top, height } = this.on.box, [across, up] = this.pointer ?? [left + 0.5 * width, top + 0.5 * height];
+      this.pointer = [Math.min(Math.max(across + step, left), left + width), up];
       this.paint();
     },
     leave() {

@@ -394,9 +394,8 @@ def _rows_words(answer: Answer) -> str:
     return "" if diagram.part == 1 else f": {100 * diagram.part:.0f} % solved"
 
 
-def button(label: str, icon: str, tooltip: str) -> ui.button:
-    """Return a quiet button."""
+def button(label: str, icon: str, title: str) -> ui.button:
+    """Return a quiet button with a title, which names it where it has no label."""
     made = ui.button(label, icon=icon, color=None).props("flat dense no-caps")
-    with made:
-        ui.tooltip(tooltip)
+    made.props["title"] = title
     return made

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 import tomllib
 from dataclasses import dataclass
@@ -67,13 +68,18 @@ def read_scan(name: str, content: bytes) -> Scan:
         try:
             surface = analyse(read_topography(path))
         except InputError as problem:
-            raise InputError(str(problem).replace(str(path), shown)) from None
+            raise InputError(_without_options(str(problem).replace(str(path), shown))) from None
     alpha, beta = surface.fit.exponential_limit(surface.gamma)
     notes = f" {' '.join(surface.notes)}" if surface.notes else ""
     height = format_si(surface.roughness.h_rms, "length")
     limit = f"alpha {alpha.value:.3g} ({alpha.interval}), beta {beta.value:.3g} ({beta.interval}), at 95 %"
     words = f"Surface of {shown}: rms height {height}, {limit}.{notes}"
     return Scan(tomllib.loads(surface_table(surface))["surface"], words.replace(str(path), shown))
+
+
+def _without_options(sentence: str) -> str:
+    """Return a sentence without advice on options of the command line, which the page does not have."""
+    return re.sub(r"add --[^;]*?, or write it", "write it", sentence)
 
 
 def with_scan(now: Inputs, scan: Scan) -> Inputs:

@@ -229,6 +229,8 @@ class Tab:
 
     def change(self, changed: Inputs) -> None:
         """Take new inputs and ask for their answer."""
+        if changed.title != self.inputs.title:
+            self.page.show_title(changed)
         self.inputs = changed
         self.page.show_choices(changed)
         self.ask()
@@ -237,8 +239,6 @@ class Tab:
         """Undo or redo."""
         found = self.history.step(way, self.inputs)
         if found is not None:
-            if found.title != self.inputs.title:
-                self.page.show_title(found)
             self.change(found)
         self.page.show_ways(self.history.ways)
 
@@ -299,18 +299,20 @@ class Tab:
         """Show the inputs of a case."""
         self.start = found
         self.change(replace(found, abscissa=self.inputs.abscissa))
-        self.page.show_title(self.inputs)
 
     async def take_file(self, name: str, content: bytes) -> None:
         """Take a case, a measured curve or a surface that the browser sent."""
         kinds = {".toml": "case"} | dict.fromkeys(ENDINGS, "scan")
         kind = kinds.get(PurePath(name.lower()).suffix, "measured")
+        self.page.say(f"Reading {name} ...")
         try:
             found = await self.run(FILES, read_file, kind, name, content, self.inputs.contact)
         except InputError as problem:
+            self.page.say("")
             self.page.complain(str(problem))
             return
         with self.page.client:
+            self.page.say("")
             if kind == "case":
                 self.begin(found)
             elif isinstance(found, Scan):

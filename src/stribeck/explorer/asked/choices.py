@@ -276,9 +276,10 @@ def choose(now: Inputs, name: str, value: str) -> Inputs:
             return _of_surface(now, tables | {"law": value})
         return _with(now, {**tables, "law": value})
     if name == "geometry":
-        # Of a ball the slide-to-roll ratio is one of its inputs; its states take longer.
+        # Of a ball the slide-to-roll ratio is one of its inputs; its states take longer. A headline may name the other one.
         motion = tables.pop("motion", {})
-        return replace(_with(now, {**tables, name: value}, **motion), rtol=RTOL[value])
+        title = now.title if value == old else ""
+        return replace(_with(now, {**tables, name: value}, **motion), rtol=RTOL[value], title=title)
     table = dict(tables.get(where, {}))
     for key in (*choice.options[old][1][0], *choice.options[old][1][1]):
         table.pop(key, None)

@@ -324,7 +324,8 @@ def read_field(inputs: Inputs, name: str, text: str) -> tuple[float | None, str]
         if said.endswith(f"or a bare number in {si}."):
             said = f"{said.removesuffix(f'{si}.')}{unit}."
         raise InputError(said) from None
-    return value, re.sub(r"^[-+\N{MINUS SIGN}0-9.]+([eE][-+]?[0-9]+)?\s*", "", text)
+    unit = re.sub(r"^[-+\N{MINUS SIGN}0-9.]+([eE][-+]?[0-9]+)?\s*", "", text)
+    return value, next((known for known in shown.units if known.replace("µ", "u") == unit), unit)
 
 
 def slid(inputs: Inputs, name: str, place: float) -> Inputs:

@@ -178,8 +178,8 @@ def plane_chart(plane: Field, answer: Answer, palette: Palette) -> Options:
     return made | {"scale": scale, "square": True, "margin": {"left": 50, "bottom": 84}}
 
 
-FILM_COLOURS = ["#fde725", "#5ec962", "#21918c", "#3b528b", "#440154"]
-"""Of the film of a ball, from thin to thick."""
+FILM_COLOURS = ["#440154", "#3b528b", "#21918c", "#5ec962", "#fde725"]
+"""Of the film of a ball, from thin to thick, as in pictures."""
 
 
 def diagram_chart(answer: Answer, palette: Palette) -> Options:
