@@ -238,7 +238,7 @@ function stribeckState(mode, v) {
     return made;
   }
 
-  const WIDTH = 640, HEIGHT = 400, LEFT = 52, RIGHT = 12, TOP = 12, BOTTOM = 44;
+  const WIDTH = 640, HEIGHT = 400, LEFT = 70, RIGHT = 12, TOP = 12, BOTTOM = 44;
   const chart = element("svg", {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img"});
   const said = element("p", {class: "live-said", role: "status"});
   const modes = element("fieldset", {class: "live-modes"}, element("legend", {}, "Inputs"));
