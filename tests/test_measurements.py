@@ -164,7 +164,7 @@ def test_curves_are_told_apart_by_name_or_input(read):
     assert found.values.tolist() == [1, 2, 3, 1, 2, 3]
     unnamed = "\n".join(row.partition(";")[2] for row in rows.splitlines())
     found = read("viscosity [mPa*s];speed [m/s];friction\n" + unnamed)
-    assert found.curves == ("viscosity 0.05", "viscosity 0.001")
+    assert found.curves == ("viscosity 50 mPa*s", "viscosity 1 mPa*s")
 
 
 def test_curves_may_stand_side_by_side(read):

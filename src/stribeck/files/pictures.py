@@ -133,24 +133,28 @@ def make_logarithmic(axes: Axes, which: str, values: Array) -> None:
 
 
 def add_legend(figure: Figure, axes: Sequence[Axes], columns: int = 4) -> None:
-    """Put one legend for all axes under them, where it covers nothing."""
+    """Put one legend for all axes under them, where it covers nothing, in as many columns as the figure is wide for."""
     found: dict[str, Any] = {}
     for ax in axes:
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
             found.setdefault(label, handle)
     bottom = axes[-1].get_position().y0 - 0.52 / figure.get_figheight()
-    figure.legend(
-        list(found.values()),
-        list(found),
-        loc="upper left",
-        bbox_to_anchor=(0.7 / figure.get_figwidth(), bottom),
-        ncols=columns,
-        frameon=False,
-        fontsize=8.5,
-        labelcolor=INK,
-        handlelength=2.6,
-        columnspacing=2.0,
-    )
+    for ncols in range(columns, 0, -1):
+        legend = figure.legend(
+            list(found.values()),
+            list(found),
+            loc="upper left",
+            bbox_to_anchor=(0.7 / figure.get_figwidth(), bottom),
+            ncols=ncols,
+            frameon=False,
+            fontsize=8.5,
+            labelcolor=INK,
+            handlelength=2.6,
+            columnspacing=2.0,
+        )
+        if legend.get_window_extent().x1 <= figure.bbox.x1 or ncols == 1:
+            return
+        legend.remove()
 
 
 def finish_figure(figure: Figure, path: PathLike | None, force: bool) -> Figure:

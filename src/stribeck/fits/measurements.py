@@ -23,7 +23,7 @@ from stribeck.fits.rig import MADE_RATIO, MADE_SPEED, PATTERNS, RIG, Row, averag
 from stribeck.quantities.inputs import ROWS, quantity
 from stribeck.quantities.keywords import answers_typos
 from stribeck.quantities.results import Shown
-from stribeck.quantities.units import InputError, show, to_si
+from stribeck.quantities.units import InputError, format_si, show, to_si
 
 if TYPE_CHECKING:
     import xarray
@@ -377,13 +377,12 @@ def _curves(
 ) -> tuple[tuple[str, ...], list[int], tuple[dict[str, float], ...]]:
     """Return names of the curves, the curve of each row, and the inputs of each curve."""
     keys: dict[Any, int] = {}
-    of_row, first, labels = [], [], []
+    of_row, first = list[int](), list[tuple[int, dict[str, float]]]()
     for name, number, _, _, _, inputs in rows:
         key: Any = name if named else tuple(inputs.items())
         if key not in keys:
             keys[key] = len(keys)
             first.append((number, inputs))
-            labels.append(name if named else ", ".join(f"{k} {v:.4g}" for k, v in inputs.items()) or "data")
         at = keys[key]
         for quantity_name, value in inputs.items():
             if first[at][1][quantity_name] != value:
@@ -392,14 +391,20 @@ def _curves(
                     f"{show(name)}, has {first[at][1][quantity_name]:g} (SI); give them different names."
                 )
         of_row.append(at)
-    if len(labels) == 1 and not named:
-        labels = ["data"]
+    labels = list(keys) if named else [_label(each, [inputs for _, inputs in first], settings) for _, each in first]
     unknown = [name for name in settings.curves if name not in labels]
     if unknown:
         known = ", ".join(labels)
         raise InputError(f"{path}: no curve is called {show(unknown[0])}, as [fit.curves] has it; there are {known}.")
     inputs_of = tuple({**first[i][1], **settings.curves.get(label, {})} for i, label in enumerate(labels))
     return tuple(labels), of_row, inputs_of
+
+
+def _label(inputs: dict[str, float], of_all: list[dict[str, float]], settings: FitSettings) -> str:
+    """Return what the inputs of a curve are in which the curves differ, with units."""
+    rows = settings.inputs.quantities
+    differing = [name for name in inputs if len({each.get(name) for each in of_all}) > 1]
+    return ", ".join(f"{rows[name].label} {format_si(inputs[name], rows[name].dimension, 4)}" for name in differing) or "data"
 
 
 def _has(table: TextTable, settings: FitSettings, meaning: str) -> bool:
