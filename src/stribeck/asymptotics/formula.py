@@ -47,6 +47,13 @@ def _check_option(name: str, value: Any, default: Any) -> None:
         raise InputError(f"{name} = {show(value)}; it must be one value for all states.")
 
 
+def second(terms: int) -> int:
+    """Return 1 if the second term is asked for, else 0."""
+    if terms not in (1, 2):
+        raise InputError(f"terms = {show(terms)}; it must be 1 or 2.")
+    return int(terms) - 1
+
+
 class OutOfRangeWarning(UserWarning):
     """A formula was used outside its range, or has no value there."""
 

@@ -12,9 +12,8 @@ import math
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.formula import Limit, Value, formula, second
 from stribeck.contacts.line import Groups
-from stribeck.quantities.units import InputError, show
 from stribeck.solids import hertz
 
 LARGE_INDENTATION = (Limit("load", 1e-4, 0.5), Limit("relative_roughness", 0, 1e-2))
@@ -67,7 +66,7 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
     """
     kappa, below = groups.relative_roughness, _below(x)
     leading: Array = -0.5 * kappa * np.log(groups.load * below)
-    return leading + _second(terms) * np.square(kappa) / below
+    return leading + second(terms) * np.square(kappa) / below
 
 
 @formula(
@@ -128,7 +127,7 @@ def offset(groups: Groups, terms: int = 1) -> Value:
     """
     kappa = groups.relative_roughness
     leading: Array = hertz.OFFSET + kappa * (math.log(2) - 0.5 * np.log(groups.load))
-    return leading + _second(terms) * np.square(kappa) / 3
+    return leading + second(terms) * np.square(kappa) / 3
 
 
 @formula(
@@ -185,7 +184,7 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
     """
     kappa = np.asarray(groups.relative_roughness)
     leading: Array = -0.5 * kappa * np.log(math.pi * groups.load / (8 * kappa))
-    return leading + _second(terms) * math.log(2) / 4
+    return leading + second(terms) * math.log(2) / 4
 
 
 @formula(
@@ -259,10 +258,3 @@ def _below(x: Value) -> Array:
     """Return 1 - x**2, nan outside the contact."""
     x = np.asarray(x, dtype=float)
     return np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)
-
-
-def _second(terms: int) -> int:
-    """Return 1 if the second term is asked for, else 0."""
-    if terms not in (1, 2):
-        raise InputError(f"terms = {show(terms)}; it must be 1 or 2.")
-    return int(terms) - 1

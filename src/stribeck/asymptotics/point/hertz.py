@@ -12,6 +12,7 @@ import numpy as np
 from stribeck._types import Array
 from stribeck.asymptotics.formula import Limit, Value, formula
 from stribeck.contacts.line import Groups
+from stribeck.solids import hertz
 
 OFFSET = -1.0
 """Offset of the dry smooth contact [u_Hz]: the ball has come closer by the indentation."""
@@ -61,8 +62,7 @@ def pressure(groups: Groups, x: Value) -> Value:
 
     Source: Hertz (1882).
     """
-    x = np.asarray(x, dtype=float)
-    return np.sqrt(np.maximum(0.0, (1 - x) * (1 + x))) + np.zeros(groups.shape)
+    return hertz.pressure(np.asarray(x, dtype=float)) + np.zeros(groups.shape)
 
 
 @formula(

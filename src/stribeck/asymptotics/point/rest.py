@@ -26,10 +26,9 @@ import math
 import numpy as np
 
 from stribeck._types import Array
-from stribeck.asymptotics.formula import Limit, Value, formula
+from stribeck.asymptotics.formula import Limit, Value, formula, second
 from stribeck.asymptotics.smooth.edge_layer import layer
 from stribeck.contacts.line import Groups
-from stribeck.quantities.units import InputError, show
 
 CATALAN = 0.915965594177219
 """Catalan's constant."""
@@ -106,7 +105,7 @@ def gap(groups: Groups, x: Value, terms: int = 1) -> Value:
     below = np.where(np.abs(x) < 1, (1 - x) * (1 + x), np.nan)
     kappa = np.asarray(groups.relative_roughness)
     leading: Array = -kappa * (np.log(groups.load) / 3 + 0.5 * np.log(below))
-    if _second(terms) == 0:
+    if second(terms) == 0:
         return leading
     inside = np.where(np.abs(x) < 1, x, 0.0)
     return np.asarray(leading - kappa**2 * pressure_correction(inside) / np.sqrt(below))
@@ -138,7 +137,7 @@ def central_gap(groups: Groups, terms: int = 1) -> Value:
     """
     kappa = np.asarray(groups.relative_roughness)
     leading: Array = -kappa * np.log(groups.load) / 3
-    found: Value = (leading + _second(terms) * (0.5 + CATALAN) * np.square(kappa))[()]
+    found: Value = (leading + second(terms) * (0.5 + CATALAN) * np.square(kappa))[()]
     return found
 
 
@@ -172,7 +171,7 @@ def offset(groups: Groups, terms: int = 1) -> Value:
     """
     kappa = np.asarray(groups.relative_roughness)
     leading: Array = -1 + kappa * (1 - np.log(groups.load) / 3)
-    if _second(terms) == 0:
+    if second(terms) == 0:
         return leading[()]
     logarithm = np.log(np.where(kappa > 0, kappa, 1.0))
     found: Value = (leading + np.square(kappa) * (OFFSET_CONSTANT - math.pi**2 / 48 * logarithm))[()]
@@ -282,7 +281,7 @@ def central_gap_small_indentation(groups: Groups, terms: int = 1) -> Value:
     """
     kappa = np.asarray(groups.relative_roughness)
     leading: Array = kappa * np.log(3 * kappa * np.power(groups.load, -1 / 3))
-    return (leading + _second(terms) * (4 - 2 * math.sqrt(2)) / (3 * np.sqrt(2 * math.pi * kappa)))[()]
+    return (leading + second(terms) * (4 - 2 * math.sqrt(2)) / (3 * np.sqrt(2 * math.pi * kappa)))[()]
 
 
 @formula(
@@ -328,10 +327,3 @@ def pressure_correction(r: Array) -> Array:
 def _coordinate(kappa: Value, x: Value) -> Array:
     """Return the distance from the edge in widths of its layer."""
     return np.divide(np.abs(x) - 1 + kappa, np.power(math.pi / 4 * np.asarray(kappa), 2 / 3))
-
-
-def _second(terms: int) -> int:
-    """Return 1 if the second term is asked for, else 0."""
-    if terms not in (1, 2):
-        raise InputError(f"terms = {show(terms)}; it must be 1 or 2.")
-    return int(terms) - 1
