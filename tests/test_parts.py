@@ -130,7 +130,7 @@ def test_every_preset_is_a_fluid_of_a_contact_with_its_source(name):
     liquid = preset()
     assert liquid.source == preset.source
     c = sb.LineContact(**{**CONTACT, **liquid.inputs})
-    assert c.viscosity == liquid.viscosity
+    assert c.viscosity == liquid.viscosity and c.fluid == liquid.fluid
     _ = c.groups
     with pytest.raises(sb.InputError, match="no condition"):
         preset(pressure=1.0)
