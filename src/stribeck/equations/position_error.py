@@ -50,7 +50,8 @@ def position_errors(mesh: Mesh, gap: Array, changes: Array, positions: Array, de
     width = mesh.half_widths[panel]
     s = (positions - mesh.centres[panel]) / width
     nodes = panel[:, None] * order + np.arange(order)
-    own, far = np.take_along_axis(gap, nodes, axis=1), mesh.far[nodes]
+    rows = np.arange(len(gap))[:, None]
+    own, far = gap[rows, nodes], mesh.far[nodes]
     logarithm = np.log(own / far)
     first = rule.derivative @ rule.to_legendre
     basis = np.polynomial.legendre.legvander(s, order - 1)
@@ -59,7 +60,7 @@ def position_errors(mesh: Mesh, gap: Array, changes: Array, positions: Array, de
     slope = (slope_of * logarithm).sum(axis=1) + 2 * width * positions / growth
     curvature = (curvature_of * logarithm).sum(axis=1) + 2 * width**2 * (mesh.scale**2 - positions**2) / growth**2
 
-    at_nodes = np.stack([np.take_along_axis(change, nodes, axis=1) for change in changes]) / own
+    at_nodes = changes[:, rows, nodes] / own
     moved = np.abs((slope_of * at_nodes).sum(axis=2))
     inside = np.maximum(1 - s**2, 1e-300)
     steepest = np.minimum(order * (order + 1) / 2, np.sqrt(2 * order / np.pi) / inside**0.75)
