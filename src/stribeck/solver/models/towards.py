@@ -88,8 +88,11 @@ a fluid and the roughness change less."""
 SLOWED = (12, 1e-4)
 """Nodes per panel and tolerance of the meshes on the way down from there: on coarse ones states were found that are none."""
 
-MOST_WORK, UNIT_SIZE = 1000.0, 300.0
-"""Newton steps of so many unknowns after which a path is given up."""
+MOST_WORK, UNIT_SIZE = 3000.0, 300.0
+"""Newton steps of so many unknowns after which a path is given up; one of 200 random states takes 2100, most below 100."""
+
+WORK_FASTER = 1000.0
+"""The same for the way by a faster film."""
 
 Correct = Callable[[float, Sequence[tuple[float, State]]], State | None]
 """What :func:`march` asks for a state."""
@@ -280,13 +283,15 @@ def _slowed(groups: Groups, article: Callable[[Groups], Path[State]], factor: fl
         above = replace(groups, speed=factor * groups.speed)
     except InputError:  # beyond the range of groups
         return None
-    begun = _changed(above, article, WAYS[:1])
+    begun = _changed(above, article, WAYS[:1], WORK_FASTER)
     first = _settled(above, begun.states[-1], *SLOWED) if begun.outcome.ok else None
-    path = None if first is None else _along(above, groups, first, *SLOWED)
+    path = None if first is None else _along(above, groups, first, *SLOWED, WORK_FASTER)
     return path if path is not None and path.outcome.ok else None
 
 
-def _changed(groups: Groups, article: Callable[[Groups], Path[State]], ways: Sequence[Way]) -> Path[State]:
+def _changed(
+    groups: Groups, article: Callable[[Groups], Path[State]], ways: Sequence[Way], work: float = MOST_WORK
+) -> Path[State]:
     """Return the path from the state of the article's model by the first of some ways to change the fluid that arrives."""
     model, solid = groups.model, groups.model.solid
     path = article(replace(groups, model=Model(solid=solid)))
@@ -303,7 +308,7 @@ def _changed(groups: Groups, article: Callable[[Groups], Path[State]], ways: Seq
         state = found
     if model.film == Newtonian() and model.solid == solid:
         return _extended(path, state)
-    return _blended(groups, path, state, ways)
+    return _blended(groups, path, state, ways, work)
 
 
 def ruptured(groups: Groups, full: State) -> State | None:
@@ -398,7 +403,14 @@ def _ended(groups: Groups, full: Path[State]) -> State | None:
     return None
 
 
-def _along(start: Groups, end: Groups, first: State, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> Path[State]:
+def _along(
+    start: Groups,
+    end: Groups,
+    first: State,
+    order: int = ORDER,
+    tolerance: float = MESH_TOLERANCE,
+    work: float = MOST_WORK,
+) -> Path[State]:
     """Return the path of states between two groups, straight in their logarithms."""
     names = ("speed", "load", "roughness")
     ends = [(float(getattr(start, name)), float(getattr(end, name))) for name in names]
@@ -410,7 +422,7 @@ def _along(start: Groups, end: Groups, first: State, order: int = ORDER, toleran
         here = end if s == length else replace(end, speed=speed, load=load, roughness=roughness)
         return _coarse(here, extrapolate(history, s), order, tolerance)
 
-    return march(_within(correct), 0.0, length, SLOWING, history=[(0.0, first)])
+    return march(_within(correct, work), 0.0, length, SLOWING, history=[(0.0, first)])
 
 
 def _seen_from_exit(state: State) -> SeenFrom:
@@ -427,7 +439,7 @@ def _seen_from_exit(state: State) -> SeenFrom:
     return SeenFrom(state, max(float(end[np.argmax(state.fields(end)[1] <= 0)]), NEAREST_EXIT * width))
 
 
-def _blended(groups: Groups, path: Path[State], start: State, ways: Sequence[Way]) -> Path[State]:
+def _blended(groups: Groups, path: Path[State], start: State, ways: Sequence[Way], work: float) -> Path[State]:
     """Return the path on which fluid and solid change into those of the groups, by the first way that arrives."""
     own, plain = groups.model, start.groups.model
     found = path
@@ -448,20 +460,20 @@ def _blended(groups: Groups, path: Path[State], start: State, ways: Sequence[Way
             here = replace(groups, model=replace(plain, film=film, solid=solid))
             return _coarse(here, extrapolate(history, part) if history else start, order, tolerance)
 
-        found = march(_within(correct), 0.0, 1.0, BLENDING, history=[(0.0, start)])
+        found = march(_within(correct, work), 0.0, 1.0, BLENDING, history=[(0.0, start)])
         if found.outcome.ok:
             settled = _settled(found.states[-1].groups, found.states[-1])
             return found if settled is None else _extended(found, settled)
     return found
 
 
-def _within(correct: Correct) -> Correct:
-    """Return a corrector that gives up when all its solves together have taken :data:`MOST_WORK`."""
+def _within(correct: Correct, most: float) -> Correct:
+    """Return a corrector that gives up when all its solves together have taken that much work."""
     spent = 0.0
 
     def limited(s: float, history: Sequence[tuple[float, State]]) -> State | None:
         nonlocal spent
-        state = correct(s, history) if spent < MOST_WORK else None
+        state = correct(s, history) if spent < most else None
         if state is not None:
             spent += state.root.steps * (state.y.size / UNIT_SIZE) ** 2
         return state
