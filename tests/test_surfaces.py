@@ -386,3 +386,25 @@ def test_the_picture_shows_heights_spectrum_and_law(points):
     expected = surface.law.beta * np.exp(surface.law.log_pressure(surface.law.alpha * u))
     assert p == pytest.approx(expected, rel=1e-9, abs=0)
     assert p[0] > exponential.get_data()[1][0]
+
+
+def test_a_steep_line_is_fitted_in_a_bounded_number_of_steps(monkeypatch):
+    """Its exponent is at its bound, towards which one of eight fits crept for 164 steps."""
+    from scipy import optimize
+
+    steps, least_squares = [], optimize.least_squares
+
+    def counted(*arguments, **settings):
+        found = least_squares(*arguments, **settings)
+        steps.append(found.nfev)
+        return found
+
+    monkeypatch.setattr(optimize, "least_squares", counted)
+    x, heights = 1e-6 * np.arange(4096), np.random.default_rng(1).normal(size=(3, 4096))[2]
+    for _ in range(3):
+        heights = np.cumsum(heights)
+        heights -= np.polyval(np.polyfit(x, heights, 1), x)
+    surface = analyse(Topography(1e-7 * heights / heights.std(), (1e-6,)))
+    assert len(steps) == 8
+    assert max(steps) <= 60
+    assert surface.roughness.hurst > 0.99
