@@ -15,6 +15,7 @@ from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups
+from stribeck.contacts.regime import HYDRODYNAMIC_CONTACT_SHARE
 from stribeck.curves.coordinate import Coordinate
 from stribeck.curves.function import CurveValues, Progress
 from stribeck.curves.landmarks import Landmark, places_of
@@ -182,11 +183,11 @@ class PointCurve(StribeckCurve):
 
     def _lowest_of_points(self) -> Landmark | None:
         """Return the minimum on a polynomial through solved states around it."""
-        i = int(np.argmin(self.friction)) if len(self) > 2 else 0
-        if not 0 < i < len(self) - 1:
-            return None
-        low, middle, high = np.log(self.values[i - 1 : i + 2]).tolist()
         try:
+            around = self._around_the_lowest()
+            if around is None:
+                return None
+            low, middle, high = around
             while high - low > MINIMUM_WIDTH:
                 new = 0.5 * (low + middle) if middle - low > high - middle else 0.5 * (middle + high)
                 first, second = sorted((middle, new))
@@ -201,9 +202,28 @@ class PointCurve(StribeckCurve):
             roots = [root.real for root in polynomial.deriv().roots() if abs(root.imag) < 1e-9 and abs(root.real) <= 1]
             if not roots:
                 return None
-            return self._mark(Transition.MINIMUM, centre + half * min(roots, key=lambda root: float(polynomial(root))))
+            lowest = float(min(roots, key=lambda root: float(polynomial(root))))
+            return self._mark(Transition.MINIMUM, centre + half * lowest)
         except SolveError:
             return None
+
+    def _around_the_lowest(self) -> tuple[float, float, float] | None:
+        """Return three places of which the middle one has the least friction.
+
+        Where the fluid causes the friction of the lowest point, and that is the last, the minimum may hide before it.
+        """
+        total, i, places = np.asarray(self.friction), int(np.argmin(self.friction)), np.log(self.values).tolist()
+        if 0 < i < len(self) - 1:
+            return places[i - 1], places[i], places[i + 1]
+        if len(self) < 2 or self.friction_contact[i] > HYDRODYNAMIC_CONTACT_SHARE * float(total[i]):
+            return None
+        end, inner = places[i], places[1 if i == 0 else -2]
+        while abs(end - inner) > MINIMUM_WIDTH:
+            middle = 0.5 * (inner + end)
+            if self._total(self._at(middle)) < total[i]:
+                return min(inner, end), middle, max(inner, end)
+            inner = middle
+        return None
 
     def landmark(self, name: str, rtol: float | None = None) -> Landmark | None:
         """Return one transition, or None where the curve does not hold it; it is read off the curve, without the others."""
