@@ -80,6 +80,16 @@ def read_case(
     return sb.load_case(path)
 
 
+def data_and_case(command: str, data: Path | None, case: Path | None) -> tuple[Path, sb.Case]:
+    """Return the file of measured friction and the case of a command that fits, or say which of them is missing."""
+    if data is None or case is None:
+        missing, example = ("DATA", "measured.csv case.toml") if data is None else ("CASE", f"{data} case.toml")
+        raise InputError(f"{missing} is missing; give measured friction and a case file, as in: stribeck {command} {example}.")
+    from stribeck.fits.case_file import load_fit_case
+
+    return data, load_fit_case(data, case)
+
+
 def model_parts(
     slide_to_roll: str | None, cavitation: str | None, cavity_pressure: str | None, flow_factors: str | None
 ) -> dict[str, Any]:

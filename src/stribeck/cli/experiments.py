@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
 import stribeck as sb
-from stribeck.cli.arguments import CaseFile, File, Flag, Number, Word, as_whole, check_pictures
+from stribeck.cli.arguments import CaseFile, File, Flag, Number, Word, as_whole, check_pictures, data_and_case
 from stribeck.cli.exits import say, stdout_console
 from stribeck.cli.progress import interruptible
-from stribeck.quantities.units import InputError
-
-if TYPE_CHECKING:
-    from stribeck.cases.case import Case
 
 DataFile = Annotated[Path | None, Parameter(name="DATA", show_default=False)]
 Values = Annotated[list[str] | None, Parameter(negative="", consume_multiple=True, show_default=False)]
@@ -60,7 +56,7 @@ def next_command(
     force
         Replace an existing file.
     """
-    data, loaded = _given("next", data, case)
+    data, loaded = data_and_case("next", data, case)
     number = 3 if count is None else as_whole("count", count)
     pictures = check_pictures(plot, force)
     with interruptible() as progress:
@@ -97,7 +93,7 @@ def compare_command(data: DataFile = None, case: CaseFile = None, /, *, models: 
     json
         Print JSON.
     """
-    data, loaded = _given("compare", data, case)
+    data, loaded = data_and_case("compare", data, case)
     with interruptible() as progress:
         found = sb.compare(data, loaded, models=models, on_step=lambda what, n: progress(n, n + 1, what))
     if json:
@@ -107,16 +103,6 @@ def compare_command(data: DataFile = None, case: CaseFile = None, /, *, models: 
         return 0
     _say(found.candidates[0].fit.checks.first_line, str(found))
     return 0
-
-
-def _given(command: str, data: Path | None, case: Path | None) -> tuple[Path, Case]:
-    if data is None or case is None:
-        missing = "DATA" if data is None else "CASE"
-        example = f"stribeck {command} measured.csv case.toml"
-        raise InputError(f"{missing} is missing; give measured friction and a case file, as in: {example}.")
-    from stribeck.fits.case_file import load_fit_case
-
-    return data, load_fit_case(data, case)
 
 
 def _say(*texts: str) -> None:

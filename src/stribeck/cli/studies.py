@@ -9,7 +9,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from stribeck.cli.arguments import CaseFile, File, Flag, Number, Word, as_number, as_whole, check_pictures, need_extra
+from stribeck.cli.arguments import (
+    CaseFile,
+    File,
+    Flag,
+    Number,
+    Word,
+    as_number,
+    as_whole,
+    check_pictures,
+    data_and_case,
+    need_extra,
+)
 from stribeck.cli.exits import FAILED, INTERRUPTED, complain, stdout_console
 from stribeck.cli.progress import interruptible
 from stribeck.files.writing import check_writable
@@ -141,12 +152,7 @@ def fit_command(
     force
         Replace existing files.
     """
-    if data is None or case is None:
-        missing, example = ("DATA", "measured.csv case.toml") if data is None else ("CASE", f"{data} case.toml")
-        raise InputError(f"{missing} is missing; give measured friction and a case file, as in: stribeck fit {example}.")
-    from stribeck.fits.case_file import load_fit_case
-
-    loaded = load_fit_case(data, case)
+    data, loaded = data_and_case("fit", data, case)
     pictures = check_pictures(plot, force)
     if out is not None:
         check_writable(out, (".toml",), force=force)
