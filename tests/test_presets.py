@@ -42,3 +42,5 @@ def test_every_liquid_has_a_source_and_a_range(name):
 def test_an_oil_has_the_kinematic_viscosity_of_its_data_sheet():
     """61.0 cSt at 40 degC, Synfluid PAO 10 cSt; PAO has 810 to 835 kg/m3 there."""
     assert 61.0e-6 * 810 < sb.fluids.PRESETS["pao-10"]().viscosity < 61.0e-6 * 835
+    # PAO have 12 to 20 1/GPa there.
+    assert 1.2e-8 < sb.fluids.PRESETS["pao-10"]().fluid.viscosity.pressure_coefficient < 2.0e-8
