@@ -25,7 +25,7 @@ from stribeck.equations.drag import Nodal, viscous_friction
 from stribeck.equations.line import LOAD, Operators, gradient_in_film, slopes_in_film
 from stribeck.equations.observables import ROW, VISCOUS, Observables, friction_integrals, friction_scale, gradients
 from stribeck.equations.position_error import position_errors
-from stribeck.equations.state import StackedStates, is_thinning, jump_of
+from stribeck.equations.state import StackedStates, is_rough, is_thinning, jump_of
 from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, reference
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.quantities.outputs import ABSOLUTE, ENDS, NAMES
@@ -258,7 +258,7 @@ def perturbations(states: StackedStates, observed: Array, fine: FineOperators) -
     slopes = gradient_in_film(film, integral, gap, fluid, h_star)
     if flat.any():
         smooth = gradient_in_film(film, op.integral, h, known, h_star)
-        if getattr(film, "is_plain", False):
+        if not is_rough(film):
             smooth = coarse.to_order(smooth, mesh.order)
         else:  # what conducts is no such difference, and may turn sharply
             conducted = states.slopes.by_flux
