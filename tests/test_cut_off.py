@@ -2,12 +2,16 @@
 
 import math
 
+import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 import stribeck as sb
 from stribeck.asymptotics.point.logarithm import LOGARITHM, far_integral
 from stribeck.contacts import cut_off
+from stribeck.equations.point.observables import FrictionWithin
 from stribeck.evidence import sphere_along_wall
+from stribeck.solver.point.solve import solve_cold
 
 
 def test_a_sphere_along_a_wall_has_the_constants_of_stokes_flow():
@@ -34,3 +38,17 @@ def test_the_logarithm_joins_the_lubrication_film_to_the_whole_ball():
 def test_a_wetted_radius_in_the_contact_is_refused():
     with pytest.raises(sb.InputError, match="wetted_radius = 0.9; .*exceed 1"):
         far_integral(0.1, 0.9)
+
+
+def test_the_shear_within_a_radius_is_its_integral():
+    state = solve_cold(sb.Groups(1e-2, 1e-3, 1e-4, geometry="point"), 1e-5)
+    fine = state.work.fine
+    within = FrictionWithin.of(fine.equations, fine.unknowns, state.values)
+    r, of_r = np.polynomial.legendre.leggauss(200)
+    angle = np.linspace(0.0, np.pi, 201)
+    for radius in (1.5, 6.0):
+        x, y = (0.5 * radius * (1 + r) * function(angle)[:, None] for function in (np.cos, np.sin))
+        inverse = trapezoid(1 / state.fields(x, y).gap, angle, axis=0)  # of half the disc
+        found = 2 * 1e-2 / 6 * float(inverse * (0.5 * radius) ** 2 * (1 + r) @ of_r)
+        stated = state.values["J_couette"] + within.far.couette * 1e-2 * np.log(radius) + within(0, np.log(radius))
+        assert stated == pytest.approx(found, rel=1e-4)
