@@ -52,8 +52,8 @@ __all__ = [
 
 SHIFTED = [ROW["central_gap"], ROW["offset"]]
 
-GAP_POWERS = np.array([1.0, -1.0, -2.0, -3.0, 1.0])
-"""Powers of the gap in film and friction, and that of the separation."""
+GAP_POWERS = np.array([1.0, -2.0, -3.0])[:, None]
+"""Powers of the gap in film and contact."""
 
 REFINED = 2
 """Orders that are corrected once more with their residual: the rounding of thin films shows in the first ones."""
@@ -115,6 +115,7 @@ class _Contact:
         assert isinstance(law, ExponentialLaw | ScaledLaw)
         of = ContinuedLaw.exponential if isinstance(law, ExponentialLaw) else lambda s: ContinuedLaw.of(law.shape, s)
         self.near = of(gap / kappa)
+        self.by_gap = along(-self.rate, order) / kappa
         self.by_load = -law.pressure_exponent * direction[1]
         log_pressure = law.log_pressure(gap)
         self.top = float(log_pressure.max())
@@ -123,23 +124,23 @@ class _Contact:
         self.powers = np.zeros((len(self.near.coefficients), order + 1, gap.size))
         self.powers[:, 0] = self.near.coefficients
 
-    def extend(self, k: int, separation: Array) -> None:
-        """Find order k from the separation, as if the logarithm of the gap had no coefficient of this order."""
+    def extend(self, k: int, gap: Array) -> None:
+        """Find order k from the series of the gap up to k, as if its logarithm had no coefficient of this order."""
         if not self.exists:
             return
         if not self.near.logarithmic:
-            self.place[k] = separation / self.near.reach
+            self.place[k] = self.by_gap[k::-1] @ gap / self.near.reach
         elif k == 1:
             self.place[k] = -self.rate / self.near.reach
         self.powers[:-1, k] = np.einsum("mjn,jn->mn", self.powers[1:, :k], self.place[k:0:-1])
         self.of_pressure[k] = k * self.powers[0, k] + (self.by_load if k == 1 else 0.0)
         self.pressure[k] = exponential_term(self.of_pressure, self.pressure, k)
 
-    def add(self, k: int, change: Array, of_separation: Array) -> None:
-        """Add the effect of that coefficient, by itself and through the separation."""
+    def add(self, k: int, change: Array, of_gap: Array) -> None:
+        """Add the effect of that coefficient, by itself and through the gap."""
         if not self.exists:
             return
-        of_place = (change if self.near.logarithmic else of_separation) / self.near.reach
+        of_place = (change if self.near.logarithmic else self.by_gap[0] * of_gap) / self.near.reach
         self.place[k] += of_place
         self.powers[:-1, k] += self.powers[1:, 0] * of_place
         of_log = self.powers[1, 0] * of_place
@@ -189,37 +190,33 @@ def expand_article(
     w[0] = start
     speed = float(equations.speed) * along(direction[0], order)
     contact = _Contact(groups, y[at.gap], direction, order)
-    slopes, powers = np.zeros((2, order + 1, len(GAP_POWERS), op.mesh.size))
-    powers[0] = np.exp(GAP_POWERS[:, None] * start[at.gap])
-    if contact.exists:
-        powers[0, -1] /= float(groups.relative_roughness)
-        slopes[1, -1] = -contact.rate
-    gradient, flow = np.zeros((2, order + 1, op.mesh.size))
-    gradient[0] = powers[0, 2] - powers[0, 3] * start[at.flux_gap]
+    slopes, gradient, flow = np.zeros((3, order + 1, op.mesh.size))
+    gap, square, cube = powers = np.zeros((len(GAP_POWERS), order + 1, op.mesh.size))
+    powers[:, 0] = np.exp(GAP_POWERS * start[at.gap])
+    gradient[0] = square[0] - cube[0] * start[at.flux_gap]
     flow[0] = speed[0] * gradient[0]
     flux, top, weights = w[:, at.flux_gap.start], np.exp(contact.top), op.mesh.weights
     for k in range(1, order + 1):
-        powers[k] = exponential_term(slopes, powers, k)
-        contact.extend(k, powers[k, -1])
-        gradient[k] = powers[k, 2] - flux[k::-1] @ powers[: k + 1, 3]
+        powers[:, k] = GAP_POWERS * np.einsum("jn,mjn->mn", slopes[1 : k + 1], powers[:, k - 1 :: -1]) / k
+        contact.extend(k, gap[: k + 1])
+        gradient[k] = square[k] - flux[k::-1] @ cube[: k + 1]
         if equations.is_sliding:
             flow[k] = speed[k::-1][: k + 1] @ gradient[: k + 1]
         for _ in range(2 if k <= REFINED else 1):
             r, pressure = np.zeros(at.size), top * contact.pressure[k]
             if equations.is_sliding:
                 pressure += op.integral(flow[k])
-            r[at.gap] = powers[k, 0] - w[k, at.offset] - op.deflection @ pressure
+            r[at.gap] = gap[k] - w[k, at.offset] - op.deflection @ pressure
             r[at.offset] = weights @ pressure
             r[at.flux_gap] = equations.flux_scale * (weights @ gradient[k])
             step = units * inverse(r)
             w[k] += step
             change = step[at.gap]
-            of_logs = GAP_POWERS[:, None] * change
-            slopes[k] += k * of_logs
-            of_powers = of_logs * powers[0]
-            powers[k] += of_powers
-            contact.add(k, change, of_powers[-1])
-            of_gradient = of_powers[2] - of_powers[3] * flux[0] - powers[0, 3] * step[at.flux_gap]
+            slopes[k] += k * change
+            of_powers = GAP_POWERS * change * powers[:, 0]
+            powers[:, k] += of_powers
+            contact.add(k, change, of_powers[0])
+            of_gradient = of_powers[1] - of_powers[2] * flux[0] - cube[0] * step[at.flux_gap]
             gradient[k] += of_gradient
             flow[k] += speed[0] * of_gradient
     found, found_logs = np.zeros((2, order + 1, len(ALL_NAMES)))
@@ -233,11 +230,11 @@ def expand_article(
     found[:, ROW["offset"]] = w[:, at.offset.start]
     if equations.is_sliding:
         scale = friction_scale(float(groups.load), float(equations.speed)) * along(direction[0] + 0.5 * direction[1], order)
-        for name, integral in zip(VISCOUS, _friction_integrals(equations, powers, gradient, flux), strict=True):
+        for name, integral in zip(VISCOUS, _friction_integrals(equations, gap, square, gradient, flux), strict=True):
             found[:, ROW[name]] = product(scale, integral)
     else:
         found[:, SHIFTED] += shifts[:, None]
-        found[:, ROW["flux_gap"]] = _flux_gap(powers[:, 0] + shifts[:, None], weights)
+        found[:, ROW["flux_gap"]] = _flux_gap(gap + shifts[:, None], weights)
         found[:, ROW["minimum_gap"]] = found[:, ROW["central_gap"]]
     return Expanded(w, found, found_logs)
 
@@ -260,20 +257,22 @@ def _flux_gap(gap: Array, weights: Array) -> Array:
     return product(square @ weights, reciprocal(product(square, u) @ weights))
 
 
-def _friction_integrals(equations: Equations, powers: Array, gradient: Array, flux: Array) -> tuple[Array, Array, Array]:
+def _friction_integrals(
+    equations: Equations, gap: Array, square: Array, gradient: Array, flux: Array
+) -> tuple[Array, Array, Array]:
     """Return the series of the integrals of :func:`stribeck.equations.observables.friction_integrands`, and of the upper wall.
 
-    Inside they follow from the ``powers`` of the gap at the nodes; beyond the panels in x the gap is interpolated first.
+    Inside they follow from the gap and one over its ``square`` at the nodes; beyond the panels in x the gap is interpolated.
     """
     op = equations.operators
     mesh, inner = op.mesh, slice(0, -op.mesh.order)
-    x, weights, gap = beyond_panels(mesh, powers[:1, 0], op.model.solid.far_gap)
-    u = reciprocal(np.concatenate([gap, beyond_panels(mesh, powers[1:, 0], np.zeros_like)[2]]))
-    square, own, projected = product(u, u), mesh.weights[inner], 3 * x**2 * weights
-    first = powers[:, 1, inner] @ own + u @ weights
-    second = product(3 * flux, powers[:, 2, inner] @ own + square @ weights)
-    moment = gradient[:, inner] @ (3 * mesh.nodes[inner] ** 2 * own) + square @ projected
-    moment -= product(flux, integral_of_product(square, u, projected))
+    x, weights, first_order = beyond_panels(mesh, gap[:1], op.model.solid.far_gap)
+    u = reciprocal(np.concatenate([first_order, beyond_panels(mesh, gap[1:], np.zeros_like)[2]]))
+    squared, own, projected = product(u, u), mesh.weights[inner], 3 * x**2 * weights
+    first = integral_of_product(gap[:, inner], square[:, inner], own) + u @ weights
+    second = product(3 * flux, square[:, inner] @ own + squared @ weights)
+    moment = gradient[:, inner] @ (3 * mesh.nodes[inner] ** 2 * own) + squared @ projected
+    moment -= product(flux, integral_of_product(squared, u, projected))
     return second - 2 * first + moment, 4 * first - second, second - 2 * first
 
 
