@@ -16,7 +16,7 @@ from typing import Any
 
 from stribeck.cases.case import Case, check_case
 from stribeck.cases.law import LAWS, self_contained
-from stribeck.cases.model_parts import FLUID_LAWS, KEYS, take_parts
+from stribeck.cases.model_parts import FLUID_LAWS, KEYS, preset_facts, take_parts
 from stribeck.contact_laws.law import AsperityLaw
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.geometries import CONTACTS, check_geometry
@@ -141,6 +141,9 @@ def contact_of(model: str, numbers: Mapping[str, Any]) -> Contact:
 def rest_of_case(case: Case) -> str:
     """Return as JSON what the page does not show of a case; empty if there is nothing."""
     found = {key: case.tables[key] for key in REST if case.tables.get(key)}
+    known = preset_facts(case.tables)  # the page keeps the viscosity of a preset, not its name
+    if known:
+        found["check"] = {**known, **found.get("check", {})}
     return json_text(found | ({"errors": case.errors} if case.errors else {}))
 
 
