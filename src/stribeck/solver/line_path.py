@@ -417,7 +417,8 @@ def _minimum_on(left: Expansion, right: Expansion, of: LinePoint, parts: Array) 
     low, high = np.searchsorted(mesh.edges, [min(places), max(places)])
     for panels in (range(max(0, int(low) - 2), min(everywhere.stop, int(high) + 1)), everywhere):
         a, b = (gaps_on(end.point, each, of, panels) for end, each in zip(ends, scaled, strict=True))
-        place, lowest, error, panel = minimum_gaps(mesh, weights[0] @ a + weights[1] @ b, panels.start)
+        with np.errstate(over="ignore"):  # a gap beyond all numbers is no minimum: its interval is halved
+            place, lowest, error, panel = minimum_gaps(mesh, weights[0] @ a + weights[1] @ b, panels.start)
         if panels == everywhere or (panel.min() > panels.start and panel.max() < panels.stop - 1):
             break
     on_panels = missed_by(order, np.vstack([a, b]), rate(left, right)).reshape(-1, mesh.order).max(axis=1)
