@@ -15,7 +15,7 @@ from stribeck.equations.line import LOAD, Operators
 from stribeck.equations.state import mesh_for, solve_state
 from stribeck.numerics.panels import Mesh
 from stribeck.solids.half_plane import HalfPlane
-from stribeck.solids.layer import Layer
+from stribeck.solids.layer import REACH, Layer, smooth_kernel
 from stribeck.solids.two_bodies import TwoBodies
 from stribeck.solids.viscoelastic import Prony, StandardLinearSolid, creep_of_relaxation, hysteresis_friction, memory
 from stribeck.solver.cold_start import cold_start
@@ -204,6 +204,25 @@ def test_pressures_on_panels_wider_than_a_layer_is_thick_deflect_it_as_on_narrow
     exact = fine.interpolate(layer.deflection(fine) @ pressure(fine.nodes), coarse.nodes[: -coarse.order])
     inner = np.abs(coarse.nodes[: -coarse.order]) < 4
     np.testing.assert_allclose(found[: -coarse.order][inner], exact[inner], rtol=0, atol=1e-7)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("d", [0.5, 1.3, 3.0])
+def test_a_wide_panel_acts_on_near_and_far_nodes_as_by_a_finer_rule(d):
+    mesh, layer = Mesh(np.array([-12.0, -6.0, -1.0, -0.5, 0.0, 0.5, 1.0, 6.0, 12.0]), 12), Layer(d, 0.4)
+    x, pressed = mesh.nodes, (mesh.nodes > 1) & (mesh.nodes < 6)
+    near = np.abs(x) < 12
+
+    def pressure(y):
+        return 0.01 * (y - 1) * (6 - y) ** 3
+
+    beside = (layer.deflection(mesh) - HalfPlane().deflection(mesh))[np.ix_(near, pressed)] @ pressure(x[pressed])
+    t, weights = np.polynomial.legendre.leggauss(120)
+    y, weights = 3.5 + 2.5 * t, 2.5 * weights
+    distance = np.abs(x[near][:, None] - y) / d
+    beyond = np.log(np.maximum(distance, REACH)) / math.pi  # where the whole kernel is zero
+    smooth = np.where(distance < REACH, smooth_kernel(np.minimum(distance, REACH), 0.4), beyond) + math.log(d) / math.pi
+    np.testing.assert_allclose(beside, smooth @ (weights * pressure(y)), rtol=0, atol=1e-9)
 
 
 def test_a_smooth_film_on_a_body_that_remembers_is_found_however_thin_it_is():

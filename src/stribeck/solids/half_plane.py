@@ -165,8 +165,11 @@ def nodes_at_infinity(centre: Array, half_width: Array, nodes: Array) -> Array:
     return np.asarray((1 / nodes - centre) / half_width)
 
 
-def nodal_deflection(mesh: Mesh) -> Array:
-    """Return :func:`deflection_operator` at the nodes of the mesh, shape (size, size), in Fortran order."""
+def nodal_deflection(mesh: Mesh, beyond: bool = True) -> Array:
+    """Return :func:`deflection_operator` at the nodes of the mesh, shape (size, size), in Fortran order.
+
+    The columns of the panel through infinity are zero unless pressures ``beyond`` the panels in ``x`` count.
+    """
     order, panels = mesh.order, mesh.panels
     rule, inner = reference(order), mesh.nodes[:-order]
     # By columns, so that the operator comes in Fortran order: what panel k does at the nodes of panel l is [k, :, l, :].
@@ -187,13 +190,19 @@ def nodal_deflection(mesh: Mesh) -> Array:
     half = mesh.half_widths[outermost]
     near = blocks(nodes_at_infinity, _beside_panel, places[outermost], order).transpose(0, 2, 1)
     kernel[outermost, :, -1, :] = half[:, None, None] * (near + (np.log(half)[:, None] * rule.weights)[:, :, None])
-    tail = blocks(nodes_on_panel, _beside_infinity, places, order).reshape(-1, order)
+    columns[-order:] = _columns_of_infinity(mesh) if beyond else 0.0
+    columns *= -1 / np.pi
+    return columns.T
+
+
+def _columns_of_infinity(mesh: Mesh) -> Array:
+    """Return -pi times what pressures at the nodes of the panel through infinity deflect, shape (order, size)."""
+    order, rule = mesh.order, reference(mesh.order)
+    tail = blocks(nodes_on_panel, _beside_infinity, panels_from_infinity(mesh), order).reshape(-1, order)
     own = _beside_infinity(mesh.nodes[-order:] * mesh.half_widths[-1], order)
     at_infinity = log_moments(np.zeros(1), order) @ _from_moments(order) + np.log(mesh.half_widths[-1]) * rule.weights
     factor = mesh.half_widths[-1] * mesh.stretch[-order:]
-    columns[-order:] = (factor * (np.concatenate([tail, own]) - at_infinity)).T
-    columns *= -1 / np.pi
-    return columns.T
+    return np.asarray((factor * (np.concatenate([tail, own]) - at_infinity)).T)
 
 
 def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:

@@ -27,7 +27,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from stribeck._types import Array
+from stribeck._types import Array, Flags
 from stribeck.numerics.cells import Cells
 from stribeck.numerics.panels import Mesh, reference
 from stribeck.quantities.units import InputError, show, to_si
@@ -45,11 +45,14 @@ TABLE = 160
 LARGEST_WAVE, WAVE_PANELS = 40.0, 60
 """Wave number times thickness beyond which S is one to rounding, and panels of waves up to there."""
 
-CELLS, DEGREES = 384, 8
+CELLS, DEGREES = 1024, 6
 """Cells over :data:`REACH` on which the smooth part is a polynomial, and its coefficients there: to 1e-14 the same."""
 
 FINEST_PANEL = 0.75
-"""Half-width of a panel in thicknesses up to which its own nodes integrate the smooth part; wider ones are cut for that."""
+"""Half-width of a panel in thicknesses up to which its own nodes integrate the smooth part; wider ones need more near them."""
+
+EXACT = 1e-13
+"""Error of those: by the ellipse of Gauss' rule through the nearest singularity, the image two thicknesses below a place."""
 
 WIDEST_PANEL = 6.0
 """Half-width of a panel in thicknesses from which its pressure acts only at its own nodes."""
@@ -109,40 +112,73 @@ class Layer:
         Panels on which pressure acts must not be much wider than the layer is thick: on panels wider than twelve thicknesses
         the layer acts as springs side by side, ``d (1 - 2 nu)/(2 (1 - nu)^2)`` [u_Hz per p_Hz].
         """
-        d, nu, x = self.thickness, self.poisson_ratio, mesh.nodes
-        distance = np.abs(x[:, None] - x) / d
-        near = distance < REACH
-        kernel = nodal_deflection(mesh)
-        smooth = smooth_kernel(np.minimum(distance, REACH), nu)
-        smooth += math.log(d) / math.pi
+        d, nu = self.thickness, self.poisson_ratio
+        x = mesh.nodes.reshape(mesh.panels, mesh.order)
+        kernel = nodal_deflection(mesh, beyond=False)
+        # Each pair of panels once: the smooth part is symmetric but for the weights, and the kernel is in Fortran order.
+        first, second = np.triu_indices(mesh.panels)
+        found = self._between(x[first][:, :, None], x[second][:, None, :])
+        smooth = np.empty((mesh.size, mesh.size))
+        by_panels = smooth.reshape(mesh.panels, mesh.order, mesh.panels, mesh.order)
+        by_panels[second, :, first] = found.transpose(0, 2, 1)
+        by_panels[first, :, second] = found
         smooth *= mesh.weights[:, None]
         width = mesh.half_widths[:-1] / d
         for k in np.flatnonzero((width > FINEST_PANEL) & (width <= WIDEST_PANEL)).tolist():
-            smooth[k * mesh.order : (k + 1) * mesh.order] = self._of_wide_panel(mesh, k)
-        kernel += smooth.T  # symmetric but for the weights, and the kernel is in Fortran order
-        kernel *= near.T
+            near = _sees_images(mesh, k, d)
+            smooth[k * mesh.order : (k + 1) * mesh.order, near] = self._of_wide_panel(mesh, k, mesh.nodes[near])
+        kernel += smooth.T
+        kernel[np.abs(mesh.nodes[:, None] - mesh.nodes) >= REACH * d] = 0.0
         wide = np.append(width > WIDEST_PANEL, True)
         columns = np.flatnonzero(np.repeat(wide, mesh.order))
         kernel[:, columns] = 0.0
         kernel[columns, columns] = d * (1 - 2 * nu) / (2 * (1 - nu) ** 2)
-        return np.asfortranarray(kernel)
+        return np.asarray(kernel, order="F")
 
-    def _of_wide_panel(self, mesh: Mesh, k: int) -> Array:
-        """Return what pressures at the nodes of a panel deflect at all nodes by the smooth part, shape (order, size)."""
-        rule, half = reference(mesh.order), float(mesh.half_widths[k])
-        parts = math.ceil(half / (FINEST_PANEL * self.thickness))
-        t = ((2 * np.arange(parts)[:, None] + 1 - parts + rule.nodes) / parts).ravel()
-        distance = np.abs(mesh.nodes - (float(mesh.centres[k]) + half * t)[:, None]) / self.thickness
-        smooth = smooth_kernel(np.minimum(distance, REACH), self.poisson_ratio)
-        beyond = distance > REACH
-        smooth[beyond] = np.log(distance[beyond]) / math.pi  # where the whole kernel is zero
-        smooth += math.log(self.thickness) / math.pi
-        weights = np.tile(rule.weights, parts) * (half / parts)
-        return np.asarray((weights[:, None] * rule.interpolation(t)).T @ smooth)
+    def _between(self, x: Array, y: Array) -> Array:
+        """Return the smooth part of the kernel between places, the logarithm of the thickness included."""
+        distance = np.abs(x - y)
+        distance *= 1 / self.thickness
+        np.minimum(distance, REACH, out=distance)
+        found = smooth_kernel(distance, self.poisson_ratio)
+        found += math.log(self.thickness) / math.pi
+        return found
+
+    def _of_wide_panel(self, mesh: Mesh, k: int, x: Array) -> Array:
+        """Return what pressures at the nodes of a panel deflect at places ``x`` by the smooth part, shape (order, len(x))."""
+        half, d = float(mesh.half_widths[k]), self.thickness
+        nodes, weights = _finer_rule(mesh.order, _nodes_for(half / d, mesh.order))
+        y = (float(mesh.centres[k]) + half * nodes)[:, None]
+        smooth = self._between(x, y)
+        beyond = np.abs(x - y) > REACH * d
+        smooth[beyond] = np.log(np.abs(x - y)[beyond]) / math.pi  # where the whole kernel is zero
+        return np.asarray((half * weights) @ smooth)
 
     def far_gap(self, x: Array) -> Array:
         """Return ``x**2/2``."""
         return 0.5 * x**2
+
+
+def _sees_images(mesh: Mesh, k: int, thickness: float) -> Flags:
+    """Return at which nodes the smooth part under a panel is less smooth than in the middle of the widest whose nodes do.
+
+    Polynomials on the panel converge by the ellipse through the image.
+    """
+    image = (mesh.nodes - mesh.centres[k] + 2j * thickness) / mesh.half_widths[k]
+    return np.asarray(np.abs(image - 1) + np.abs(image + 1) < 2 * math.hypot(1.0, 2 / FINEST_PANEL))
+
+
+def _nodes_for(half_width: float, order: int) -> int:
+    """Return how many nodes integrate the smooth part times the polynomials of a panel, with its half-width in thicknesses."""
+    rho = 2 / half_width + math.hypot(1.0, 2 / half_width)
+    return 4 * math.ceil((order - 1 - math.log(EXACT) / math.log(rho)) / 8)
+
+
+@lru_cache(maxsize=64)
+def _finer_rule(order: int, count: int) -> tuple[Array, Array]:
+    """Return ``count`` nodes on [-1, 1] and the weights there of what is known at ``order`` nodes, shape (order, count)."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return nodes, reference(order).interpolation(nodes).T * weights
 
 
 def transfer(x: Array, poisson_ratio: float) -> Array:
