@@ -43,7 +43,7 @@ BELOW, BEYOND = 10.0, 30.0
 LONGEST_EXTENSION = 2
 """Most extensions of a curve whose fast end is not hydrodynamic yet."""
 
-COARSE = 1e-3
+COARSE = 2e-4
 """Tolerance of a curve that is followed for its ends alone."""
 
 LOCATED, STEP = 1e-6, 1e-20
