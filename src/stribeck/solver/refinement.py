@@ -132,7 +132,8 @@ def converge(
         halvings += halvings_for(estimate.of_ends / rtol)
         tail *= shrink(math.sqrt(rtol / (estimate.at_nodes + 1e-300)))
         between = shrink(rtol / (estimate.between_nodes + 1e-300))
-        if gap_tail * between >= MIN_GAP_TAIL * rtol:
+        seen = abs(values.minimum_gap) / float(state.gap.min())  # at rest it may be a small difference of two gaps
+        if gap_tail * between >= MIN_GAP_TAIL * rtol * min(1.0, seen):
             gap_tail *= between
         else:
             tail *= between
