@@ -16,7 +16,7 @@ from stribeck.quantities.outputs import NAMES
 from stribeck.solver import corrector
 from stribeck.solver.cold_start import first_path
 from stribeck.solver.line_path import LineProblem
-from stribeck.solver.refinement import converge
+from stribeck.solver.refinement import converge, verify
 
 SEED = 61_441
 CONTACT = sb.LineContact(
@@ -55,6 +55,15 @@ def test_a_curve_is_within_its_stated_errors_between_the_solved_states(load, rou
     assert curve.outcome.ok
     ratios = [worst(curve, v, sb.Groups(v, load, roughness)) for v in np.exp(rng.uniform(*np.log([1e-6, 1e-1]), 6)).tolist()]
     assert max(ratios) < 2 and np.median(ratios) < 1
+
+
+def test_errors_of_states_on_a_kept_mesh_are_those_by_their_own_jacobians():
+    # With those of its neighbour a rough contact nearly at rest stated half the error of its offset, less than the true one.
+    law = sb.surfaces.persson_law(sb.surfaces.SelfAffine(h_rms=1e-6, q0=1e4, q1=1e9, hurst=0.8))
+    curve = sb.stribeck_curve(sb.Groups(1.0, 1.16e-3, 1.62e-4, law=law), speed=(1e-3, 145.0), points=2)
+    for point in (one.point for one in curve._function.expansions):
+        own = verify(point.state.corrected(), point.refined.groups, point.fine, 1e-6)
+        assert own.estimate.total < 1.2 * point.refined.estimate.total
 
 
 @pytest.mark.parametrize(("over", "ends"), [("load", (0.01, 0.8)), ("roughness", (1e-5, 1e-2))])

@@ -200,6 +200,12 @@ class State:
         """Outcome of the Newton iteration; one stopped by rounding counts as converged, its error is estimated."""
         return Outcome.CONVERGED if self.root.outcome is Outcome.ROUNDING else self.root.outcome
 
+    def corrected(self) -> State:
+        """Return the state after one more Newton step, with the inverse of the Jacobian where that began."""
+        inverse = self.equations.inverse(self.y)
+        y = self.y + self.equations.units(self.y) * inverse(self.equations.residual(self.y))
+        return replace(self, y=y, root=replace(self.root, x=y, inverse=inverse))
+
     def without_inverse(self) -> State:
         """Return the state without Newton's last inverse, which is as large as an operator and serves only its neighbour."""
         return replace(self, root=replace(self.root, inverse=None))

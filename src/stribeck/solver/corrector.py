@@ -51,12 +51,18 @@ class Corrector:
 
     It keeps the operators of the current mesh, which cost as much as several states.  Its meshes resolve the gap to
     ``gap_part`` of the usual tolerance where the gap is read off.
+
+    With ``own_inverse`` states on a kept mesh are verified with the inverse of their own Jacobian, and hold it; all others
+    hold none.  That of a neighbour, with which the iteration ends, may be wrong by half in what a defect does.
     """
 
-    def __init__(self, groups_at: Callable[[float], Groups], rtol: float, gap_part: float = 1.0) -> None:
+    def __init__(
+        self, groups_at: Callable[[float], Groups], rtol: float, gap_part: float = 1.0, own_inverse: bool = False
+    ) -> None:
         self.groups_at = groups_at
         self.rtol = rtol
         self.gap_part = gap_part
+        self.own_inverse = own_inverse
         self.operators: Operators | None = None
         self.fine: FineOperators | None = None
         self.inverse: Inverse | None = None
@@ -73,7 +79,7 @@ class Corrector:
     def cold(self, groups: Groups) -> RefinedState | None:
         """Return the state of ``groups`` from cold; None if no path leads there."""
         if _cavity_may_vanish(groups):
-            return from_cold(groups, self.rtol)
+            return self._kept(from_cold(groups, self.rtol))
         path = first_path(with_positive_gap(groups)[0])
         if path.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
@@ -89,7 +95,7 @@ class Corrector:
             point = self._solve(guess, replace(groups, model=model), spread)
             if point.outcome.ok and keeps_cavity(point, groups):
                 return replace(point, groups=groups)
-        return from_cold(groups, self.rtol)
+        return self._kept(from_cold(groups, self.rtol))
 
     def _solve(self, guess: Guess, groups: Groups, spread: float) -> RefinedState:
         base = with_positive_gap(groups)[0]
@@ -99,10 +105,12 @@ class Corrector:
             state = self._on_kept_mesh(guess, base, spread)
             if state.outcome.ok:
                 if self._is_resolved(state, spread):
-                    point = verify(state, groups, self.fine, self.rtol)
+                    own = state.corrected() if self.own_inverse else state
+                    point = verify(own, groups, self.fine, self.rtol)
                     if point.outcome.ok:
                         self._look_for_coarser(state)
-                        return self._kept(point)
+                        kept = self._kept(point)
+                        return point if self.own_inverse else kept
                 guess = state
         part = 1.0 if base.model.cavitation is Cavitation.NONE else MOVING
         tail, gap_tail = self.tolerances

@@ -42,7 +42,6 @@ __all__ = [
     "Direction",
     "Expanded",
     "around_state",
-    "corrected",
     "expand_any_film",
     "expand_article",
     "from_logs",
@@ -77,12 +76,6 @@ class Expanded(NamedTuple):
     unknowns: Array
     observables: Array
     logs: Array
-
-
-def corrected(equations: Equations, y: Array) -> tuple[Array, Inverse]:
-    """Return the unknowns of a converged state after one more Newton step, and the inverse of the Jacobian there."""
-    inverse = equations.inverse(y)
-    return y + equations.units(y) * inverse(equations.residual(y)), inverse
 
 
 def from_logs(equations: Equations, w: Array) -> Array:

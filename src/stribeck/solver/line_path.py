@@ -30,7 +30,6 @@ from stribeck.solver.expansion import (
     Direction,
     Expanded,
     around_state,
-    corrected,
     expand_any_film,
     expand_article,
     from_logs,
@@ -140,7 +139,7 @@ class LineProblem:
         self.exact = self.analytic and is_exponential(start.law)
         orders = EXACT_ORDER if self.exact else ORDER
         self.order = orders[rtol < 1e-7] if self.analytic else ORDER_OF_ANY_FILM
-        self.corrector = Corrector(groups_at, self.rtol, GAP_PART)
+        self.corrector = Corrector(groups_at, self.rtol, GAP_PART, own_inverse=True)
         self.failure: RefinedState | None = None
         self._inverses: list[tuple[State, Inverse]] = []
         kind = start.model.cavitation
@@ -224,8 +223,10 @@ class LineProblem:
     def _expanded(self, s: float, refined: RefinedState, near: float) -> Expansion:
         state, values, estimate = refined.state, refined.values, refined.estimate
         assert state is not None and values is not None and estimate is not None and refined.fine is not None
-        y, inverse = corrected(state.equations, state.y)
-        state = replace(state, y=y, root=replace(state.root, x=y, inverse=None))
+        if state.root.inverse is None:
+            state = state.corrected()
+        y, inverse, state = state.y, state.root.inverse, state.without_inverse()
+        assert inverse is not None
         with np.errstate(all="ignore"):  # values that are not finite are cut off below
             if self.analytic:
                 direction, shifts = shift_along(self.groups_at(s), state.groups, self.direction, self.order)
