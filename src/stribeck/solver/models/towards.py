@@ -318,12 +318,13 @@ def ruptured(groups: Groups, full: State) -> State | None:
     """
     pressure = groups.model.cavity_pressure
     x = np.sort(full.mesh.nodes)
-    below = np.flatnonzero(full.fields(x)[1] < pressure)
-    if not len(below):
-        return None
+    nodal = full.fields(x)[1]
+    below = np.flatnonzero(nodal <= max(pressure, nodal.min()))
     x = np.linspace(x[max(below[0] - 1, 0)], x[min(below[-1] + 1, len(x) - 1)], LOOKED_AT)
     suction = full.fields(x)[1]
     between = x[suction < pressure]
+    if not len(between):
+        return None
     lowest, stretch = float(x[np.argmin(suction)]), float(between[-1] - between[0])
     for part in CAVITY_PARTS:
         length = part * stretch
