@@ -299,6 +299,7 @@ def mesh_for(
     profile_tolerance: float = np.inf,
     halvings: int = 0,
     spread: float = 0.0,
+    anew: bool = True,
 ) -> Mesh:
     """Return the coarsest mesh that resolves a guess; where a film begins anew its panels halve towards that place.
 
@@ -324,6 +325,8 @@ def mesh_for(
         How often the panels beside the ends of a film are halved, beyond the demand of the tolerance.
     spread : float
         Distance from the minimum of the gap up to which it may be read off.
+    anew : bool
+        As for :func:`stribeck.numerics.panels.adapt`.
 
     Raises
     ------
@@ -432,14 +435,14 @@ def mesh_for(
     if memories:  # where the panel through infinity begins, all is forgotten
         reach = max(reach, FORGOTTEN * max(memories))
     if not ends:
-        return adapt(fields, scale, reach, order, tolerance, guess.mesh if isinstance(guess, State) else None)
+        return adapt(fields, scale, reach, order, tolerance, guess.mesh if isinstance(guess, State) else None, anew)
     places = [0.0] if restart == math.inf else [0.0, restart]
     if restart < math.inf:
         reach = max(reach, restart)
     start = None
     if isinstance(guess, State):
         start = replace(guess.mesh, edges=ungraded(guess.mesh.edges, [x * to_guess for x in places]) / to_guess)
-    mesh = adapt(fields, scale, 2 * reach, order, tolerance, start)
+    mesh = adapt(fields, scale, 2 * reach, order, tolerance, start, anew)
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))
     return replace(graded(mesh, places, levels), restart=restart)
 

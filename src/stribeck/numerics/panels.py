@@ -286,10 +286,11 @@ def adapt(
     order: int,
     tolerance: float,
     start: Mesh | None = None,
+    anew: bool = True,
 ) -> Mesh:
     """Return a mesh of few panels that resolves the given fields.
 
-    Panels are halved until each resolves them; then they are laid anew, as long as the tails that halving left allow.  The
+    Panels are halved until each resolves them; then they may be laid anew, as long as the tails that halving left allow.  The
     fields are not looked at again: they are often known by polynomials on other panels, with kinks where these end.
 
     Parameters
@@ -307,6 +308,8 @@ def adapt(
         Legendre tail of the fields that halved panels have at most, and panels laid anew about.
     start : Mesh, optional
         Panels to begin with, instead of the coarsest.
+    anew : bool
+        Whether the panels are laid anew.
 
     Returns
     -------
@@ -355,7 +358,7 @@ def adapt(
     panels, size = np.concatenate(done), np.concatenate(sizes)
     ascending = np.argsort(panels[:, 0])
     edges = np.append(panels[ascending, 0], panels[:, 1].max())
-    return Mesh(_evened(edges, size[ascending], order), order, scale)
+    return Mesh(_evened(edges, size[ascending], order) if anew else edges, order, scale)
 
 
 def _evened(edges: Array, tails: Array, order: int) -> Array:

@@ -50,6 +50,9 @@ PROFILE_TAIL = 10.0
 COARSER = (1e-2, 1e-3, 1e-4, 1e-5)
 """Tolerances on the way to one that cannot be reached at once."""
 
+NEWTON_FAILED = (Outcome.STEP_LIMIT, Outcome.SINGULAR, Outcome.NOT_FINITE, Outcome.STALLED)
+"""How Newton's iteration may end but by a solution."""
+
 MIN_ESTIMATE = 0.03
 """Smallest stated error over the tolerance, as smaller estimates are not reliable."""
 
@@ -224,18 +227,23 @@ def _refined(base: Groups, groups: Groups, rtol: float, far: str) -> RefinedStat
             outcome = path.outcome
             continue
         point = _converged(path.states[-1], groups, rtol)
-        if point.state is not None:
+        if not _not_reached(point):
             return point
     if point is None:
         raise SolveError(outcome, None, f"{describe(groups)}: {outcome.value}{spiked(groups)}{far}")
     return point
 
 
+def _not_reached(point: RefinedState) -> bool:
+    """Return whether Newton's iteration failed on a mesh that the state asked for; a coarser one may have a solution."""
+    return point.state is None or point.outcome in NEWTON_FAILED
+
+
 def _converged(start: State, groups: Groups, rtol: float) -> RefinedState:
     """Return the refined state of ``groups`` from a coarse one, by larger tolerances if need be."""
     guess = start
     point = converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)
-    for coarse in COARSER if point.state is None else ():
+    for coarse in COARSER if _not_reached(point) else ():
         if coarse > rtol and (found := converge(guess, groups, coarse).state) is not None:
             guess = found
     return point if guess is start else converge(guess, groups, rtol, profile_tolerance=PROFILE_TAIL * rtol)

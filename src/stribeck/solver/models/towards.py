@@ -370,7 +370,7 @@ def _extended(path: Path[State], state: State) -> Path[State]:
 def _coarse(groups: Groups, guess: Guess, order: int = ORDER, tolerance: float = MESH_TOLERANCE) -> State | None:
     """Return a coarse state from a guess, or None."""
     try:
-        mesh = mesh_for(guess, groups, contact_law(groups), order, tolerance)
+        mesh = mesh_for(guess, groups, contact_law(groups), order, tolerance, anew=False)
     except MeshTooLargeError:
         return None
     return solve_state(groups, Operators(mesh, groups.model), guess, NEWTON_TOLERANCE, MOST_STEPS)
