@@ -125,7 +125,10 @@ class _Contact:
             self.place[k] = self.by_gap[k::-1] @ gap / self.near.reach
         elif k == 1:
             self.place[k] = -self.rate / self.near.reach
-        self.powers[:-1, k] = np.einsum("mjn,jn->mn", self.powers[1:, :k], self.place[k:0:-1])
+        if len(self.powers) > 2:
+            self.powers[:-1, k] = np.einsum("mjn,jn->mn", self.powers[1:, :k], self.place[k:0:-1])
+        else:
+            self.powers[0, k] = self.powers[1, 0] * self.place[k]
         self.of_pressure[k] = k * self.powers[0, k] + (self.by_load if k == 1 else 0.0)
         self.pressure[k] = exponential_term(self.of_pressure, self.pressure, k)
 
@@ -183,14 +186,15 @@ def expand_article(
     w[0] = start
     speed = float(equations.speed) * along(direction[0], order)
     contact = _Contact(groups, y[at.gap], direction, order)
-    slopes, gradient, flow = np.zeros((3, order + 1, op.mesh.size))
-    gap, square, cube = powers = np.zeros((len(GAP_POWERS), order + 1, op.mesh.size))
-    powers[:, 0] = np.exp(GAP_POWERS * start[at.gap])
+    slopes, powers = np.zeros((2, order + 1, len(GAP_POWERS), op.mesh.size))
+    powers[0] = np.exp(GAP_POWERS * start[at.gap])
+    gap, square, cube = powers.transpose(1, 0, 2)
+    gradient, flow = np.zeros((2, order + 1, op.mesh.size))
     gradient[0] = square[0] - cube[0] * start[at.flux_gap]
     flow[0] = speed[0] * gradient[0]
     flux, top, weights = w[:, at.flux_gap.start], np.exp(contact.top), op.mesh.weights
     for k in range(1, order + 1):
-        powers[:, k] = GAP_POWERS * np.einsum("jn,mjn->mn", slopes[1 : k + 1], powers[:, k - 1 :: -1]) / k
+        powers[k] = exponential_term(slopes, powers, k)
         contact.extend(k, gap[: k + 1])
         gradient[k] = square[k] - flux[k::-1] @ cube[: k + 1]
         if equations.is_sliding:
@@ -205,9 +209,10 @@ def expand_article(
             step = units * inverse(r)
             w[k] += step
             change = step[at.gap]
-            slopes[k] += k * change
-            of_powers = GAP_POWERS * change * powers[:, 0]
-            powers[:, k] += of_powers
+            of_logs = GAP_POWERS * change
+            slopes[k] += k * of_logs
+            of_powers = of_logs * powers[0]
+            powers[k] += of_powers
             contact.add(k, change, of_powers[0])
             of_gradient = of_powers[1] - of_powers[2] * flux[0] - cube[0] * step[at.flux_gap]
             gradient[k] += of_gradient

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -145,12 +146,12 @@ class LineProblem:
         kind = start.model.cavitation
         self.like = [one for one in like if one.point.state.groups.model.cavitation is kind is not Cavitation.REFORM]
 
-    @property
+    @cached_property
     def held(self) -> Flags:
         """All but positions, which have errors of their own."""
         return ~np.isin(np.arange(POSITION + 1), UNLIMITED)
 
-    @property
+    @cached_property
     def signed(self) -> Flags:
         """The offset and positions; at rest the gaps too."""
         return np.isin(np.arange(POSITION + 1), [ROW["offset"], *UNLIMITED, *([] if self.moves else GAPS)])
