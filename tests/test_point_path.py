@@ -5,7 +5,7 @@ import math
 import pytest
 
 from stribeck.contacts.groups import Groups, contact_law
-from stribeck.solver.point import refinement
+from stribeck.solver.point import refinement, start
 from stribeck.solver.point.path import NeighbourSolver
 from stribeck.solver.point.refinement import PATH_SLACK, follow, meshes_for, next_meshes
 from stribeck.solver.point.solve import solve_cold, solve_from
@@ -94,3 +94,14 @@ def test_where_an_edge_in_the_contact_moves_panels_are_halved_and_meshes_do_not_
         assert found.outcome.ok
     assert (found.mesh.degree, found.mesh.modes) == (first.mesh.degree, first.mesh.modes)
     agree(found, solve_cold(lens(0.108), rtol))
+
+
+def test_a_cold_start_of_a_sharp_rim_tries_few_angles_first(monkeypatch):
+    law = persson_law(SelfAffine(h_rms=21e-9, q0=6.3e5, q1=6.3e7, hurst=0.8), 0.45)
+    solve_level, tried = start.solve_level, []
+    monkeypatch.setattr(start, "solve_level", lambda on, *rest, **more: tried.append(on) or solve_level(on, *rest, **more))
+    groups = Groups(1.126e-6, 1531.0, 0.0118027, law=law, geometry="point")
+    speed, law = float(groups.speed), contact_law(groups)
+    assert start.first_modes(speed, law, groups.model) > start.FEW_MODES
+    assert start.first_state(speed, law, groups.model).outcome.ok
+    assert [each.modes for each in tried] == [start.FEW_MODES]

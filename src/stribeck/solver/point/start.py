@@ -40,6 +40,9 @@ DEGREE = 8
 TOLERANCE = 1e-4
 """Relative error of the gap that its iteration may leave."""
 
+FEW_MODES = 16
+"""Angular modes of the first trial: the steps cost as their square, and a state on few shows how many more it needs."""
+
 MAX_STEPS = 25
 """Newton steps after which a first guess is given up."""
 
@@ -152,8 +155,10 @@ def first_state(speed: float, law: ContactLaw, model: Model = ARTICLE) -> Level 
 
 
 def _direct(speed: float, law: ContactLaw, model: Model) -> Iterator[Level]:
-    for lift in (1.0, 1.5, 0.7):
-        guess = first_guess(resolution(speed, law, DEGREE, first_modes(speed, law, model), model), speed, law, lift)
+    modes = first_modes(speed, law, model)
+    few = [(FEW_MODES, 1.0)] if modes > FEW_MODES else []
+    for count, lift in (*few, (modes, 1.0), (modes, 1.5), (modes, 0.7)):
+        guess = first_guess(resolution(speed, law, DEGREE, count, model), speed, law, lift)
         if guess is not None:
             found, y = guess
             yield solve_level(found, speed, law, y, operators_of(found).mesh, TOLERANCE, max_steps=MAX_STEPS)
