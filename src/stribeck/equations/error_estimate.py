@@ -30,12 +30,12 @@ from stribeck.numerics.panels import Mesh, between_orders, interpolation_error, 
 from stribeck.numerics.running_integral import RunningIntegral
 from stribeck.quantities.outputs import ABSOLUTE, ENDS, NAMES
 from stribeck.solids.half_plane import (
-    blocks,
     log_moments,
     near_distance,
     near_infinity,
     near_panels,
     nodes_at_infinity,
+    nodes_of,
     nodes_on_panel,
     panels_from_infinity,
 )
@@ -123,12 +123,16 @@ class FineOperators:
         """Highest Legendre coefficients on all panels -> the deflection by them, shape (size, panels * EXTRA_NODES)."""
         mesh, m = self.coarse, self.coarse.order
         found = np.zeros((mesh.panels, m, mesh.panels, EXTRA_NODES))
-        target, source, places = near_panels(mesh)
-        found[target, :, source] = blocks(nodes_on_panel, _by_highest, places, m)
-        outermost, places = np.flatnonzero(near_infinity(mesh)), panels_from_infinity(mesh)
-        found[-1, :, outermost] = blocks(nodes_at_infinity, _by_highest, places[outermost], m)
-        found[:-1, :, -1] = blocks(_seen_from_infinity, _by_highest, places, m)
-        found[-1, :, -1] = _by_highest(reference(m).nodes, m)
+        target, source, near = near_panels(mesh)
+        outermost, places, nodes = np.flatnonzero(near_infinity(mesh)), panels_from_infinity(mesh), reference(m).nodes
+        targets = [
+            nodes_of(nodes_on_panel, near, m),
+            nodes_of(nodes_at_infinity, places[outermost], m),
+            nodes_of(_seen_from_infinity, places, m),
+        ]
+        highest = _by_highest(np.concatenate([*targets, nodes[None]]).ravel(), m).reshape(-1, m, EXTRA_NODES)
+        parts = np.split(highest, np.cumsum([len(each) for each in targets]))
+        found[target, :, source], found[-1, :, outermost], found[:-1, :, -1], found[-1:, :, -1] = parts
         found *= mesh.half_widths[:, None] / -np.pi
         return found.reshape(mesh.size, -1)
 

@@ -80,6 +80,12 @@ def _from_moments(order: int) -> Array:
     return np.asarray((degrees[:, None] + 0.5) * legendre.legvander(rule.nodes, order - 1).T * rule.weights)
 
 
+@lru_cache(maxsize=32)
+def _at_centre(order: int) -> Array:
+    """Log integrals of the nodal basis at the middle of the panel."""
+    return _log_integrals(np.zeros(1), order)
+
+
 def _log_integrals(s: Array, order: int) -> Array:
     """Log integrals of the nodal basis at ``s``."""
     return np.asarray(log_moments(s, order) @ _from_moments(order))
@@ -89,6 +95,12 @@ def near_distance(order: int) -> float:
     """Return the distance from its centre, in half-widths, within which a panel is integrated exactly."""
     rho = float(FAR_ACCURACY ** (-0.5 / order))
     return 0.5 * (rho + 1 / rho)
+
+
+def nodes_of(targets: Callable[[Array, Array, Array], Array], places: Array, order: int) -> Array:
+    """Return where the nodes of panels are, seen from others, shape (pairs, order), see :func:`blocks`."""
+    centres, half_widths = places.T[:, :, None]
+    return targets(centres, half_widths, reference(order).nodes)
 
 
 def blocks(
@@ -107,8 +119,7 @@ def blocks(
     order : int
         Nodes of a panel.
     """
-    centres, half_widths = places.T[:, :, None]
-    found = compute(targets(centres, half_widths, reference(order).nodes).ravel(), order)
+    found = compute(nodes_of(targets, places, order).ravel(), order)
     return found.reshape(len(places), order, -1)
 
 
@@ -198,11 +209,10 @@ def nodal_deflection(mesh: Mesh, beyond: bool = True) -> Array:
 def _columns_of_infinity(mesh: Mesh) -> Array:
     """Return -pi times what pressures at the nodes of the panel through infinity deflect, shape (order, size)."""
     order, rule = mesh.order, reference(mesh.order)
-    tail = blocks(nodes_on_panel, _beside_infinity, panels_from_infinity(mesh), order).reshape(-1, order)
-    own = _beside_infinity(mesh.nodes[-order:] * mesh.half_widths[-1], order)
-    at_infinity = log_moments(np.zeros(1), order) @ _from_moments(order) + np.log(mesh.half_widths[-1]) * rule.weights
+    tail = _beside_infinity(mesh.nodes * mesh.half_widths[-1], order)
+    at_infinity = _at_centre(order) + np.log(mesh.half_widths[-1]) * rule.weights
     factor = mesh.half_widths[-1] * mesh.stretch[-order:]
-    return np.asarray((factor * (np.concatenate([tail, own]) - at_infinity)).T)
+    return np.asarray((factor * (tail - at_infinity)).T)
 
 
 def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:
@@ -252,7 +262,7 @@ def deflection_operator(mesh: Mesh, points: Array | None = None) -> Array:
     t_target = 1.0 / x[close] if len(close) else np.empty(0)
     moments = log_moments(t_target / half_tail, order) @ _from_moments(order)
     tail[close] = moments + np.log(half_tail / np.abs(t_target))[:, None] * rule.weights
-    at_infinity = log_moments(np.zeros(1), order) @ _from_moments(order) + np.log(half_tail) * rule.weights
+    at_infinity = _at_centre(order) + np.log(half_tail) * rule.weights
     kernel[:, -1, :] = half_tail * (tail - at_infinity) * mesh.stretch[-order:]
     return np.asarray(kernel.reshape(len(x), mesh.size) / -np.pi)
 
