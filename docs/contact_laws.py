@@ -38,8 +38,8 @@ SPEEDS = (1e-11, 1.0)
 POINTS = 111
 
 MARKS = {
-    "fluid carries 5% of the load": "boundary",
-    "asperities cause 10% of the friction": "hydrodynamic",
+    "fluid carries 5 % of the load": "boundary",
+    "asperities cause 10 % of the friction": "hydrodynamic",
 }
 """The two transitions, by the names that curves give them."""
 

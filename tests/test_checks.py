@@ -116,6 +116,14 @@ def test_an_input_far_from_all_contacts_is_named_with_its_usual_range():
 
 
 @pytest.mark.quick
+def test_the_doubt_about_a_wide_contact_names_the_thickness_of_a_layer_until_it_is_given():
+    lens = sb.load_case(EXAMPLES / "contact_lens.toml").contact
+    assert "layer_thickness in [solid]" in checks_of(Subject(lens), "contact")["contact width a/R"].sentence
+    layered = checks_of(Subject(lens.replace(solid=sb.solids.Layer("0.1 mm"))), "contact")["contact width a/R"].sentence
+    assert layered.startswith("The contact is wide") and "layer_thickness" not in layered
+
+
+@pytest.mark.quick
 def test_the_rms_slope_is_that_of_the_spectrum_behind_the_law():
     spectrum = SelfAffine(h_rms=1e-6, q0=1e5, q1=1e7, hurst=0.8)
     law = persson_law(spectrum)

@@ -285,7 +285,7 @@ def test_the_json_of_a_curve_holds_its_points_and_landmarks(capsys, tmp_path):
     }
     assert {len(values) for values in found["points"].values()} == {6}
     assert found["minimum"]["value"] == pytest.approx(0.0276042, rel=1e-5)
-    assert [mark["name"] for mark in found["transitions"]][0] == "fluid carries 5% of the load"
+    assert [mark["name"] for mark in found["transitions"]][0] == "fluid carries 5 % of the load"
     assert [part["regime"] for part in found["regimes"]] == ["boundary", "mixed", "hydrodynamic"]
     assert found["complete"] is True
     assert found["files"] == [str(tmp_path / "curve.csv")]
@@ -372,8 +372,8 @@ def test_regimes_tells_the_regime_the_transitions_and_what_moves_friction(capsys
         "Mixed lubrication at 1 mm/s: friction 0.5607 (99.5 % from asperities); the fluid carries 20.3 % of the load."
         in answer.out
     )
-    assert re.search(r"fluid carries 5% of the load +367\.9 µm/s +2\.72x slower", answer.out)
-    assert re.search(r"fluid carries 50% of the load +2\.795 mm/s +2\.79x faster", answer.out)
+    assert re.search(r"fluid carries 5 % of the load +367\.9 µm/s +2\.72x slower", answer.out)
+    assert re.search(r"fluid carries 50 % of the load +2\.795 mm/s +2\.79x faster", answer.out)
     assert re.search(r"minimum of friction +27\.6 mm/s +27\.6x faster +0\.03469", answer.out)
     assert re.search(r"roughness +1 µm +\+0\.529 +\+5\.2 % friction", answer.out)
     assert "Friction is most sensitive to dry friction coefficient: 10 % less lowers friction by 9.95 %" in answer.out

@@ -224,22 +224,22 @@ def test_a_range_without_minimum_has_none():
 def test_transitions_lie_where_cold_solves_have_these_shares(curve):
     marks = {mark.name: mark for mark in curve.transitions}
     assert list(marks) == [
-        "fluid carries 5% of the load",
-        "fluid carries 50% of the load",
+        "fluid carries 5 % of the load",
+        "fluid carries 50 % of the load",
         "minimum of friction",
-        "asperities cause 10% of the friction",
+        "asperities cause 10 % of the friction",
     ]
     assert [mark.value for mark in curve.transitions] == sorted(mark.value for mark in curve.transitions)
-    for name, share in (("fluid carries 5% of the load", 0.05), ("fluid carries 50% of the load", 0.5)):
+    for name, share in (("fluid carries 5 % of the load", 0.05), ("fluid carries 50 % of the load", 0.5)):
         alone = sb.solve(CONTACT.replace(speed=marks[name].value), rtol=1e-9)
         assert alone.fluid_load_share == pytest.approx(share, abs=1e-7)
         assert marks[name].friction == pytest.approx(alone.friction().total, rel=1e-7)
-    alone = sb.solve(CONTACT.replace(speed=marks["asperities cause 10% of the friction"].value), rtol=1e-9).friction()
+    alone = sb.solve(CONTACT.replace(speed=marks["asperities cause 10 % of the friction"].value), rtol=1e-9).friction()
     assert alone.contact / alone.total == pytest.approx(0.1, abs=1e-7)
 
 
 def test_a_transition_agrees_with_the_root_that_cold_solves_have(curve):
-    mark = next(mark for mark in curve.transitions if "50%" in mark.name)
+    mark = next(mark for mark in curve.transitions if "50 %" in mark.name)
     root = brentq(
         lambda s: sb.solve(CONTACT.replace(speed=math.exp(s)), rtol=1e-8).fluid_load_share - 0.5,
         math.log(2e-3),
@@ -256,8 +256,8 @@ def test_regimes_follow_one_another_and_meet_at_the_transitions(curve):
     assert (ranges[0][1], ranges[-1][2]) == (curve.values[0], curve.values[-1])
     assert [low for _, low, _ in ranges[1:]] == [high for _, _, high in ranges[:-1]]
     marks = {mark.name: mark.value for mark in curve.transitions}
-    assert ranges[0][2] == marks["fluid carries 5% of the load"]
-    assert ranges[1][2] == marks["asperities cause 10% of the friction"]
+    assert ranges[0][2] == marks["fluid carries 5 % of the load"]
+    assert ranges[1][2] == marks["asperities cause 10 % of the friction"]
     for value, regime in zip(curve.values, curve.regimes, strict=True):
         assert [name for name, low, high in ranges if low <= value <= high] == [regime]
 

@@ -296,7 +296,7 @@ def test_a_landmark_is_asked_for_by_a_short_name_and_another_is_refused(geometry
     curve = sb.stribeck_curve(groups, speed=(1e-3, 10.0), points=3, rtol=1e-3)
     mark = curve.landmark("equal_shares")
     assert mark is not None
-    assert mark == curve.landmark("fluid carries 50% of the load")
+    assert mark == curve.landmark("fluid carries 50 % of the load")
     with pytest.raises(sb.InputError, match="boundary_end"):
         curve.landmark("half")
 

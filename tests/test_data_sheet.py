@@ -177,7 +177,7 @@ def test_small_errors_propagate_by_the_exact_derivatives():
 def test_the_probability_of_a_regime_is_that_of_its_speed():
     """Only the viscosity is uncertain, so that the regime ends where speed times viscosity does."""
     curve = sb.stribeck_curve(TRUE, points=21, rtol=1e-4)
-    [end] = [mark.value for mark in curve.transitions if "10%" in mark.name]
+    [end] = [mark.value for mark in curve.transitions if "10 %" in mark.name]
     found = sb.propagate(TRUE.replace(speed=end / math.exp(0.1)), {"viscosity": 0.2}, transitions=False)
     sigma = math.sqrt(math.log1p(0.04))
     assert found.regimes["hydrodynamic"] == pytest.approx(0.5 * math.erfc(0.1 / sigma / math.sqrt(2)), abs=0.01)

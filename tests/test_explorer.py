@@ -601,8 +601,8 @@ def test_the_curve_and_its_transitions_are_those_of_the_solver(answer):
         assert np.allclose(found, solved, rtol=2e-3)
     marks = {mark.name: mark.value for mark in curve.transitions}
     for name, words in (
-        ("boundary", "fluid carries 5% of the load"),
-        ("hydrodynamic", "asperities cause 10% of the friction"),
+        ("boundary", "fluid carries 5 % of the load"),
+        ("hydrodynamic", "asperities cause 10 % of the friction"),
     ):
         mark = answer.curve.transition(name)
         assert abs(math.log(mark.speed / marks[words])) < mark.error

@@ -7,8 +7,8 @@ import stribeck as sb
 from stribeck.regimes.phase_from_atlas import transition_speeds
 
 NAMES = {
-    "boundary": "fluid carries 5% of the load",
-    "hydrodynamic": "asperities cause 10% of the friction",
+    "boundary": "fluid carries 5 % of the load",
+    "hydrodynamic": "asperities cause 10 % of the friction",
     "minimum": "minimum of friction",
 }
 

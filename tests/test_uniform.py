@@ -81,7 +81,7 @@ def test_the_speeds_of_half_and_of_five_percent_on_the_fluid_are_those_of_the_so
     groups = sb.Groups(1.0, load, kappa * load)
     curve = sb.stribeck_curve(load=load, roughness=kappa * load, points=31)
     marks = {mark.name: mark.value for mark in curve.transitions}
-    for share, name, worst in ((0.5, "50%", 0.075), (0.05, "5%", 0.05)):
+    for share, name, worst in ((0.5, "50 %", 0.075), (0.05, "5 %", 0.05)):
         found = load_sharing.speed_at_fluid_share(groups, share)
         assert abs(found / marks[f"fluid carries {name} of the load"] - 1) < worst
         # The paper's extrapolation to all of the load misses half of it by far more.

@@ -145,7 +145,7 @@ def test_a_formula_that_options_turn_to_another_quantity_is_judged_by_that():
     law = load_sharing.speed_at_fluid_share
     data = error_map(law, load=0.01, relative_roughness=1e-3, share=0.05, predicts="speed_at_5_percent_fluid")
     curve = sb.stribeck_curve(load=0.01, roughness=1e-5)
-    [speed] = [mark.value for mark in curve.transitions if mark.name == "fluid carries 5% of the load"]
+    [speed] = [mark.value for mark in curve.transitions if mark.name == "fluid carries 5 % of the load"]
     found = law(sb.Groups(1.0, 0.01, 1e-5), share=0.05)
     assert math.isclose(data["error"].values[0, 0], found / speed - 1, rel_tol=1e-3)
     assert abs(float(error_map(law, load=0.01, relative_roughness=1e-3, share=0.05)["error"].values[0, 0])) > 0.5

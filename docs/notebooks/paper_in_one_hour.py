@@ -112,7 +112,7 @@ for speed_group in (1e-3, 1e-5, 1e-7):
 # The speed at which the fluid carries half of the load, solved and by a formula that is explicit:
 
 # %%
-half = next(mark.value for mark in curve.transitions if "50%" in mark.name)
+half = next(mark.value for mark in curve.transitions if "50 %" in mark.name)
 formula = load_sharing.speed_at_fluid_share(sb.Groups(1.0, 0.1, 1e-4), 0.5)
 print(f"solved {half:.4e}, formula {formula:.4e}: within {100 * abs(formula / half - 1):.0f} %, of 10 % that are stated")
 assert abs(formula / half - 1) < 0.1

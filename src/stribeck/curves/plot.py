@@ -177,7 +177,7 @@ def _draw_friction(axes: Axes, curve: StribeckCurve, x: Array, *, parts: bool = 
         if mark is curve.minimum:
             label = rf"minimum, $\mu$ = {mark.friction:.3g} at {_place(curve, mark.value)}"
             axes.plot(at, mark.friction, "o", ms=8, color=MARK, mec="white", mew=1.2, zorder=6, label=label)
-        elif "50%" in mark.name:
+        elif "50 %" in mark.name:
             label = f"fluid carries half the load, at {_place(curve, mark.value)}"
             axes.plot(at, mark.friction, "D", ms=6, color=FLUID, mec="white", mew=1.0, zorder=5, label=label)
     _strip(axes, curve, x)

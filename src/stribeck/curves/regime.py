@@ -33,15 +33,17 @@ METHODS: tuple[Method, ...] = ("solver", "atlas")
 class Transition(StrEnum):
     """The named places of a curve; the values are their names in outputs."""
 
-    BOUNDARY_END = f"fluid carries {BOUNDARY_FLUID_SHARE:.0%} of the load"
-    EQUAL_SHARES = "fluid carries 50% of the load"
-    HYDRODYNAMIC_START = f"asperities cause {HYDRODYNAMIC_CONTACT_SHARE:.0%} of the friction"
+    BOUNDARY_END = f"fluid carries {100 * BOUNDARY_FLUID_SHARE:.0f} % of the load"
+    EQUAL_SHARES = "fluid carries 50 % of the load"
+    HYDRODYNAMIC_START = f"asperities cause {100 * HYDRODYNAMIC_CONTACT_SHARE:.0f} % of the friction"
     MINIMUM = "minimum of friction"
 
     @classmethod
     def _missing_(cls, value: object) -> Transition | None:
-        """Return the place whose short name this is, as ``"minimum"``."""
-        return next((one for one in cls if isinstance(value, str) and value.lower() == one.name.lower()), None)
+        """Return the place whose short name this is, as ``"minimum"``, or whose name before percents had a space."""
+        if not isinstance(value, str):
+            return None
+        return next((one for one in cls if value.lower() in (one.name.lower(), one.value.replace(" %", "%"))), None)
 
 
 def check_transition(name: str) -> Transition:
