@@ -117,8 +117,8 @@ def width_notes(contact: Contact) -> tuple[str, ...]:
     layered = getattr(getattr(contact, "solid", None), "thickness", None) is not None
     advice = "" if layered else " If the soft body is a thin layer on a stiff base, give its layer_thickness in [solid]."
     return (
-        f"The contact is wide: the {contact.WIDTH} is {slope:.2g} of the radius. The parabola on a half-space is accurate up to "
-        f"about 0.1 and coarse at {WIDEST_CONTACT}; check modulus, load and radius.{advice}",
+        f"The contact is wide: the {contact.WIDTH} is {slope:.2g} of the radius. The parabola on a half-space is accurate up "
+        f"to about 0.1 and coarse at {WIDEST_CONTACT}; check modulus, load and radius.{advice}",
     )
 
 
