@@ -40,9 +40,13 @@ from stribeck.solver.expansion import (
 from stribeck.solver.path import KNOT_PART, Expansion, rate
 from stribeck.solver.refinement import RefinedState, converge, newton_tolerance, verify
 
-EXACT_ORDER, ORDER, ORDER_OF_ANY_FILM = (16, 18), (10, 12), 6
+EXACT_ORDER, ORDER = (16, 18), (10, 12)
 """Highest orders of series for tolerances of 1e-7 and below: for films of the article if the contact law has an exact series,
-and if it is a polynomial near each separation; and for films that are sampled."""
+and if it is a polynomial near each separation."""
+
+ORDER_OF_ANY_FILM, ORDER_OF_CUSPS = 9, 6
+"""Those for films that are sampled, and for such as have a cusp where the rate is zero: its place moves through the nodes, and
+the higher the order the more it counts."""
 
 REACH, NEAREST, FARTHEST = 0.2, 0.1, 0.27
 """Distance at which the equations are evaluated for the series, over the radius of convergence, and its limits."""
@@ -139,7 +143,8 @@ class LineProblem:
         self.analytic = uniform and Operators(ANY_MESH, start.model).is_article
         self.exact = self.analytic and is_exponential(start.law)
         orders = EXACT_ORDER if self.exact else ORDER
-        self.order = orders[rtol < 1e-7] if self.analytic else ORDER_OF_ANY_FILM
+        self.order_if_sampled = ORDER_OF_CUSPS if fall_of(film, 1.0).broken else ORDER_OF_ANY_FILM
+        self.order = orders[rtol < 1e-7] if self.analytic else self.order_if_sampled
         self.corrector = Corrector(groups_at, self.rtol, GAP_PART, own_inverse=True)
         self.failure: RefinedState | None = None
         self._inverses: list[tuple[State, Inverse]] = []

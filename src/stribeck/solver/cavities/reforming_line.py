@@ -29,7 +29,6 @@ from stribeck.solver.expansion import Direction, Expanded, expand_any_film
 from stribeck.solver.line_path import (
     FARTHEST,
     MOST_TRIALS,
-    ORDER_OF_ANY_FILM,
     POSITION,
     REACH,
     READ,
@@ -87,7 +86,7 @@ class ReformingLine(LineProblem):
         if refined.state is None or refined.estimate is None or not refined.estimate.total <= self.tolerance:
             self.failure = refined
             return refined.outcome
-        self.order = ORDERS[0][1] if has_cavity(refined.state) else ORDER_OF_ANY_FILM
+        self.order = ORDERS[0][1] if has_cavity(refined.state) else self.order_if_sampled
         found = replace(refined, outcome=Outcome.CONVERGED)
         return self._expanded(s, found, min((one.radius for one in near), default=2.0))
 
