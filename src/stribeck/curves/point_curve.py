@@ -72,6 +72,13 @@ class PointCurve(StribeckCurve):
     solutions: tuple[PointSolution, ...] = field(kw_only=True)  # type: ignore[assignment]
     _solver: NeighbourSolver = field(kw_only=True, repr=False, compare=False)
 
+    @property
+    def _known_states(self) -> tuple[PointState, ...]:
+        """The states that were solved for it."""
+        if self._function is None:
+            return tuple(self._solver.states.values())
+        return tuple(one.point.state for one in self._function.expansions)
+
     def observable(self, name: str) -> Array:
         """Return an attribute of every solution as an array."""
         return np.array([getattr(s, name) for s in self.solutions])
@@ -295,6 +302,7 @@ def point_curve(
     values: Array,
     rtol: float,
     on_point: Callable[[int, int], object] | None,
+    like: StribeckCurve | None = None,
     **settings: Any,
 ) -> PointCurve:
     """Return the curve of a ball.
@@ -309,6 +317,8 @@ def point_curve(
         Relative tolerance of each state, at least 1e-8.
     on_point : callable, optional
         ``on_point(done, points)`` is called as points are known.
+    like : StribeckCurve, optional
+        A curve through states near the fastest one, which then does not start from cold.
     **settings : object
         ``boundary_friction``, ``beta`` and ``definition``.
 
@@ -330,7 +340,8 @@ def point_curve(
         and coordinate.is_uniform(values)
     )
     trace = _followed if is_function else _point_by_point
-    solver = NeighbourSolver(coordinate.groups_at, max(rtol, RTOL_RANGE[0]))
+    known = like._known_states if isinstance(like, PointCurve) else ()
+    solver = NeighbourSolver(coordinate.groups_at, max(rtol, RTOL_RANGE[0]), known)
     solutions, where, path, outcome, failed = trace(coordinate, values, solver, on_point)
     contact = coordinate.base if isinstance(coordinate.base, Contact) else None
     if not solutions:
@@ -359,9 +370,10 @@ def _followed(
     coordinate: Coordinate, values: Array, solver: NeighbourSolver, on_point: Callable[[int, int], object] | None
 ) -> _Traced:
     """Return the points of a curve, read off its function, from fast to slow, as the film is smooth at high speed."""
-    problem, places = PointProblem(coordinate.groups_at, solver.rtol), np.log(values)
+    problem, places = PointProblem(coordinate.groups_at, solver.rtol, solver.like), np.log(values)
     path = follow(problem, float(places[-1]), float(places[0]), solver.rtol, Progress(places, on_point))
     problem.release()
+    solver.like = ()
     known = values[places >= path.coordinates[0]] if path.intervals else values[:0]
     return tuple(_solutions(path, coordinate, np.log(known))), known, path, path.outcome, problem.failure
 

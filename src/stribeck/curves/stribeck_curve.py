@@ -121,7 +121,8 @@ def stribeck_curve(
         fields; ``rtol`` and ``on_point`` then have no effect.
     like : StribeckCurve, optional
         The curve of a similar contact, as of one that changes little by little: its states and meshes serve as first guesses,
-        in a third to a half of the time.  The curve is the same within its errors; that of a ball begins anew.
+        in a third to a half of the time.  The curve is the same within its errors; a ball takes over
+        the nearest state alone.
     **parts
         ``fluid``, ``cavitation``, ``cavity_pressure``, ``flow_factors``, ``solid`` and ``slide_to_roll`` as in
         :func:`stribeck.solve`.  What depends on the speed moves along the curve; of groups, numbers of the fluid are in the
@@ -173,7 +174,7 @@ def stribeck_curve(
     if coordinate.geometry in CURVES:
         trace, _ = CURVES[coordinate.geometry]()
         settings = {"boundary_friction": boundary_friction, "beta": beta, "definition": definition}
-        found_curve: StribeckCurve = trace(coordinate, values, rtol, on_point, **settings)
+        found_curve: StribeckCurve = trace(coordinate, values, rtol, on_point, like=like, **settings)
         return found_curve
     places = np.log(values)
     progress = Progress(places, on_point)

@@ -179,6 +179,7 @@ def regime_margins(
     rtol: float = 1e-6,
     definition: Definition = "balanced",
     on_point: Callable[[int, int], object] | None = None,
+    curve: StribeckCurve | None = None,
 ) -> RegimeMargins:
     """Return by which factors of speed, load, roughness and viscosity the lubrication regime of a contact changes.
 
@@ -192,6 +193,8 @@ def regime_margins(
         Definition of the viscous friction.
     on_point : callable, optional
         ``on_point(done, scans)`` is called after each state, for progress.
+    curve : StribeckCurve, optional
+        Curve of the contact over the speed, as of :func:`stribeck_curve`, whose states spare starts from cold.
 
     Returns
     -------
@@ -220,8 +223,10 @@ def regime_margins(
     if not isinstance(contact, Contact):
         raise InputError(f"contact = {show(contact)}; it must be a LineContact or PointContact, as margins are in SI units.")
     rtol = scanned_rtol(contact, rtol)
-    present = _regime(solve(contact, rtol=rtol), definition)
-    scan = _Scan(contact, present, rtol, definition, on_point)
+    is_known = curve is not None and curve.is_function and curve.values[0] <= contact.speed <= curve.values[-1]
+    there = curve.solve_at(contact.speed) if curve is not None and is_known else solve(contact, rtol=rtol)
+    present = _regime(there, definition)
+    scan = _Scan(contact, present, rtol, definition, on_point, curve)
     notes = []
     if contact.speed == 0 and contact.roughness > 0:
         notes.append("At zero speed, load, roughness and viscosity do not change the regime.")
@@ -349,6 +354,7 @@ class _Scan:
     rtol: float
     definition: Definition
     on_point: Callable[[int, int], object] | None
+    like: StribeckCurve | None = None
     done: int = 0
     known: dict[float, StribeckCurve] = field(default_factory=dict)
 
@@ -410,8 +416,9 @@ class _Scan:
                 curve = continued(self.known[near], far, points, self._report, near)
             else:
                 ends: Any = {name: (min(near, far), max(near, far))}
-                settings: Any = {"rtol": self.rtol, "definition": self.definition, "on_point": self._report}
+                settings: Any = {"rtol": self.rtol, "definition": self.definition, "on_point": self._report, "like": self.like}
                 curve = stribeck_curve(start, **ends, points=points, **settings)
+                self.like = curve if self.like is None else self.like
         except SolveError:
             return None
         if curve.outcome is Outcome.INTERRUPTED:

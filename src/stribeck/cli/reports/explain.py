@@ -103,7 +103,7 @@ def regimes_of(case: sb.Case, on_point: Callable[[int, int], object] | None = No
     _ = curve.transitions
     if curve.outcome is sb.Outcome.INTERRUPTED:
         raise KeyboardInterrupt
-    margins = regime_margins(contact, rtol=rtol, definition=definition, on_point=on_point)
+    margins = regime_margins(contact, rtol=rtol, definition=definition, on_point=on_point, curve=curve)
     margins = with_intervals(contact, margins, case.errors, definition)
     errors = sb.propagate(contact, case.errors, definition=definition) if case.errors else None
     checks = checks_of_curve(curve, case.facts, solution)

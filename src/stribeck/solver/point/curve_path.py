@@ -24,7 +24,7 @@ from stribeck.quantities.outcome import Outcome
 from stribeck.quantities.results import ByValue, same
 from stribeck.solver.path import Expansion, SolvedPath
 from stribeck.solver.point.level import Level, band_for
-from stribeck.solver.point.path import next_state, without_factors
+from stribeck.solver.point.path import next_state, similar, without_factors
 from stribeck.solver.point.refinement import Pair
 from stribeck.solver.point.state import PointState
 
@@ -86,9 +86,13 @@ class PointPoint(NamedTuple):
 
 
 class PointProblem:
-    """The states of a ball whose film does not break: ``groups_at(s)`` gives the groups at coordinate s."""
+    """The states of a ball whose film does not break: ``groups_at(s)`` gives the groups at coordinate s.
 
-    def __init__(self, groups_at: Callable[[float], Groups], rtol: float) -> None:
+    The first is sought from the nearest of the states in ``like``.
+    """
+
+    def __init__(self, groups_at: Callable[[float], Groups], rtol: float, like: Sequence[PointState] = ()) -> None:
+        self.like = like
         self.groups_at, self.allowed, self.rtol = groups_at, rtol, KNOT_PART * rtol
         self.exact = is_exponential(groups_at(0.0).law)
         self.order = next(order for least, order in ORDERS if rtol >= least)
@@ -128,7 +132,7 @@ class PointProblem:
     def solve(self, s: float, near: Sequence[Expansion]) -> Expansion | Outcome:
         """Return the expanded state at ``s``, see :class:`stribeck.solver.path.Problem`."""
         groups = self.groups_at(s)
-        start = predicted = None
+        start, predicted = similar(self.like, groups), None
         if near:
             nearest = min(near, key=lambda one: abs(one.coordinate - s))
             start, predicted = nearest.point.state, self.guess(nearest, s)
@@ -259,7 +263,7 @@ class PointProblem:
 
     def release(self) -> None:
         """Forget the factors of the last state, which fill the memory."""
-        self._last = None
+        self._last, self.like = None, ()
 
     def solved_at(self, path: SolvedPath, s: float) -> PointState:
         """Return the state at a coordinate of a path, solved to the given tolerance."""
