@@ -46,7 +46,7 @@ def solved(model, speed, load, kappa, guess=None):
             guess = SeenFrom(guess, where_pressure_ends(guess))
     for step in towards(model):
         for tolerance in (1e-3, 1e-4, 1e-6, 1e-8) if step is model else (1e-3,):
-            mesh = mesh_for(guess, groups, contact_law(groups), 12, tolerance, 0.01 * tolerance)
+            mesh = mesh_for(guess, groups, contact_law(groups), 12, tolerance, 0.01 * tolerance, anew=False)
             if model.cavitation is Cavitation.EXIT:
                 mesh = graded(mesh)
             guess = solve_state(groups, Operators(mesh, step), guess, 1e-10, max_steps=100)
