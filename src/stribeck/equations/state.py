@@ -326,7 +326,8 @@ def mesh_for(
     spread : float
         Distance from the minimum of the gap up to which it may be read off.
     anew : bool
-        As for :func:`stribeck.numerics.panels.adapt`.
+        Whether panels begin with those of the guess and are laid anew, see :func:`stribeck.numerics.panels.adapt`; coarse
+        states far from their guesses are found more surely on halves of the coarsest panels.
 
     Raises
     ------
@@ -435,12 +436,12 @@ def mesh_for(
     if memories:  # where the panel through infinity begins, all is forgotten
         reach = max(reach, FORGOTTEN * max(memories))
     if not ends:
-        return adapt(fields, scale, reach, order, tolerance, guess.mesh if isinstance(guess, State) else None, anew)
+        return adapt(fields, scale, reach, order, tolerance, guess.mesh if anew and isinstance(guess, State) else None, anew)
     places = [0.0] if restart == math.inf else [0.0, restart]
     if restart < math.inf:
         reach = max(reach, restart)
     start = None
-    if isinstance(guess, State):
+    if anew and isinstance(guess, State):
         start = replace(guess.mesh, edges=ungraded(guess.mesh.edges, [x * to_guess for x in places]) / to_guess)
     mesh = adapt(fields, scale, 2 * reach, order, tolerance, start, anew)
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))
