@@ -436,12 +436,12 @@ def mesh_for(
     if memories:  # where the panel through infinity begins, all is forgotten
         reach = max(reach, FORGOTTEN * max(memories))
     if not ends:
-        return adapt(fields, scale, reach, order, tolerance, guess.mesh if anew and isinstance(guess, State) else None, anew)
+        return adapt(fields, scale, reach, order, tolerance, guess.mesh if isinstance(guess, State) else None, anew)
     places = [0.0] if restart == math.inf else [0.0, restart]
     if restart < math.inf:
         reach = max(reach, restart)
     start = None
-    if anew and isinstance(guess, State):
+    if isinstance(guess, State):
         start = replace(guess.mesh, edges=ungraded(guess.mesh.edges, [x * to_guess for x in places]) / to_guess)
     mesh = adapt(fields, scale, 2 * reach, order, tolerance, start, anew)
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))
