@@ -173,7 +173,9 @@ def filled(text: str, blocks: dict[str, str]) -> str:
         block = f"<!-- begin {name} -->\n{body}\n<!-- end {name} -->"
         text, found = re.subn(rf"<!-- begin {name} -->\n.*?<!-- end {name} -->", lambda _: block, text, flags=re.DOTALL)  # noqa: B023
         if not found:
-            text = f"{text.rstrip()}\n\n## `{name}`\n\n![Errors of {name}](images/validity_{name}.png)\n\n{block}\n"
+            picture = f"![Errors of {name}](images/validity_{name}.png)"
+            folded = f"<details><summary>Map of the errors</summary>\n\n{picture}\n\n</details>"
+            text = f"{text.rstrip()}\n\n## `{name}`\n\n{block}\n\n{folded}\n"
     return text
 
 
