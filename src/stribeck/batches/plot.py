@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stribeck.files.pictures import INK, figure_of, finish_figure, make_logarithmic, new_figure
+from stribeck.files.pictures import INK, finish_figure, make_logarithmic, new_figure
 from stribeck.files.writing import PathLike
 from stribeck.quantities.units import InputError
 
@@ -56,10 +56,7 @@ def plot_batch(batch: BatchSolution, path: PathLike | None = None, *, ax: Axes |
     friction = np.moveaxis(np.asarray(batch.friction), axis, -1).reshape(-1, shape[axis])
     places = np.broadcast_to(np.arange(shape[axis]), shape) if name is None else batch.input(name)
     x = np.moveaxis(np.asarray(places, dtype=float), axis, -1).reshape(-1, shape[axis])
-    if ax is None:
-        figure, (ax,) = new_figure((7.0, 4.6), [], title="Friction")
-    else:
-        figure = figure_of(ax)
+    figure, (ax,) = new_figure((7.0, 4.6), [], title="Friction", ax=ax)
     for line, (at, values) in enumerate(zip(x, friction, strict=True)):
         ax.plot(at, values, color=INK, alpha=1.0 if line == 0 else 0.6, lw=1.5)
     if name is not None and (x > 0).all():

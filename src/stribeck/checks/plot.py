@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, figure_of, finish_figure, new_figure, picture
+from stribeck.files.pictures import CONTACT, FLUID, GREY, INK, MARK, finish_figure, new_figure, picture
 from stribeck.files.writing import PathLike
 from stribeck.quantities.units import InputError
 
@@ -41,12 +41,8 @@ def plot_checks(
     """
     if not len(checks):
         raise InputError("no check could be made, so that there is nothing to draw.")
-    if ax is None:
-        size = 9.5, 1.2 + 0.28 * len(checks)
-        headline = [(checks.headline, GREY)]
-        figure, (ax,) = new_figure(size, headline, title=title or "Whether the model applies", left=2.2, right=2.3)
-    else:
-        figure = figure_of(ax)
+    size, headline = (9.5, 1.2 + 0.28 * len(checks)), [(checks.headline, GREY)]
+    figure, (ax,) = new_figure(size, headline, title=title or "Whether the model applies", ax=ax, left=2.2, right=2.3)
     ax.set_xscale("log")
     for verdict, colour in COLOURS.items():
         mine = [(row, used_part(each)) for row, each in enumerate(checks) if each.verdict == verdict]

@@ -18,7 +18,6 @@ from stribeck.files.pictures import (
     INK,
     MARK,
     add_legend,
-    figure_of,
     finish_figure,
     footer_lines,
     make_logarithmic,
@@ -47,11 +46,9 @@ def plot_comparison(
         The fitted laws or models.
     """
     laws = comparison.candidates
-    if ax is None:
-        footer = footer_lines([[comparison.sentence]], [f"{name}: {why}" for name, why in comparison.failed.items()], 112)
-        figure, (ax,) = new_figure((8.0, 1.4 + 0.35 * len(laws)), footer, title=title or "Which the data prefer", left=2.3)
-    else:
-        figure = figure_of(ax)
+    size = 8.0, 1.4 + 0.35 * len(laws)
+    footer = footer_lines([[comparison.sentence]], [f"{name}: {why}" for name, why in comparison.failed.items()], 112)
+    figure, (ax,) = new_figure(size, footer, title=title or "Which the data prefer", ax=ax, left=2.3)
     rows = np.arange(len(laws))
     ax.barh(rows, [each.difference for each in laws], height=0.6, color=[INK, *[GREY] * (len(laws) - 1)])
     for row, each in enumerate(laws):
@@ -79,10 +76,7 @@ def plot_plan(
         The runs worth measuring.
     """
     given = ax is not None
-    if ax is None:
-        figure, (ax,) = new_figure((7.0, 4.4), [], title=title or "What to measure next")
-    else:
-        figure = figure_of(ax)
+    figure, (ax,) = new_figure((7.0, 4.4), [], title=title or "What to measure next", ax=ax)
     colours = (INK, CONTACT, FLUID, "#009e73", "#e69f00")
     keys = list(dict.fromkeys((each.load, each.viscosity) for each in plan.scanned))
     for i, (load, viscosity) in enumerate(keys):

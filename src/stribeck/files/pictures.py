@@ -68,13 +68,19 @@ def new_figure(
     footer: Sequence[tuple[str, str]],
     *,
     title: str,
+    ax: Axes | None = None,
     columns: int = 1,
     rows: int = 1,
     top: float = 0.6,
     left: float = 0.8,
     right: float = 0.25,
 ) -> tuple[Figure, list[Axes]]:
-    """Return an empty figure in house style, with title and footer, and its axes, between margins in inches."""
+    """Return an empty figure in house style, with title and footer, and its axes, between margins in inches.
+
+    Of axes that a caller gave it returns their figure, and them alone.
+    """
+    if ax is not None:
+        return figure_of(ax), [ax]
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure

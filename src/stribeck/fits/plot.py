@@ -17,7 +17,6 @@ from stribeck.files.pictures import (
     INK,
     MARK,
     add_legend,
-    figure_of,
     finish_figure,
     footer_lines,
     make_logarithmic,
@@ -63,11 +62,7 @@ def plot_fit(
         Axes to draw friction into, in place of a new figure.
     """
     data = fit.data
-    below: Axes | None
-    if ax is None:
-        figure, (above, below) = new_figure((8.5, 6.2), _footer(fit), rows=2, title=title or "Fit to measured friction")
-    else:
-        figure, above, below = figure_of(ax), ax, None
+    figure, (above, *others) = new_figure((8.5, 6.2), _footer(fit), rows=2, title=title or "Fit to measured friction", ax=ax)
     bars: Any = fit._minimum.objective.sigma
     bars = None if bars is None else bars * (data.friction if fit.logarithmic else 1.0)
     styles = _draw_measured(above, data, bars)
@@ -80,12 +75,13 @@ def plot_fit(
         above.fill_between(
             x, low, high, color=colour, alpha=0.18, lw=0, zorder=2, label="95 % band of the curve" if k == 0 else None
         )
-        if below is not None:
+        for below in others:
             below.plot(data.values[rows], fit.residuals[rows], zorder=3, **style)
-    if below is None:
+    if not others:
         above.set_xlabel(LABELS[data.abscissa])
         above.legend(frameon=False, fontsize=8.5)
         return finish_figure(figure, path, force)
+    (below,) = others
     make_logarithmic(below, "x", data.values)
     for level, dashes in ((0.0, "-"), (-2.0, (0, (5, 3))), (2.0, (0, (5, 3)))):
         below.axhline(level, color=GREY, lw=0.9, ls=dashes, zorder=1)
@@ -112,10 +108,7 @@ def plot_measurements(
     """
     if not len(data):
         raise InputError("there are no rows, so that there is nothing to draw.")
-    if ax is None:
-        figure, (ax,) = new_figure((7.5, 4.6), [], title=title or "Measured friction")
-    else:
-        figure = figure_of(ax)
+    figure, (ax,) = new_figure((7.5, 4.6), [], title=title or "Measured friction", ax=ax)
     _draw_measured(ax, data, data.error)
     ax.set_xlabel(LABELS[data.abscissa])
     ax.legend(frameon=False, fontsize=8.5)

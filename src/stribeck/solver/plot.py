@@ -20,7 +20,6 @@ from stribeck.files.pictures import (
     INK,
     MARK,
     add_legend,
-    figure_of,
     finish_figure,
     footer_lines,
     make_logarithmic,
@@ -74,11 +73,7 @@ def plot_profile(
         from stribeck.solver.point.plot import plot_point_solution
 
         return plot_point_solution(solution, path, force=force, title=title)
-    above: Axes | None
-    if ax is None:
-        figure, (above, below) = new_figure((7.5, 6.0), footer_of(solution), rows=2, title=title or "Gap and pressure")
-    else:
-        figure, above, below = figure_of(ax), None, ax
+    figure, (*above, below) = new_figure((7.5, 6.0), footer_of(solution), rows=2, title=title or "Gap and pressure", ax=ax)
     x = _positions(solution)
     fields = solution.profile(x)
     if solution.contact is None:
@@ -92,17 +87,12 @@ def plot_profile(
         to_x = axis_in_si(scales.half_width, "length", "position $x$")
         to_gap = axis_in_si(scales.indentation, "length", "gap $h$", float(np.abs(fields.gap).max()))
         to_pressure = axis_in_si(scales.pressure, "pressure", "pressure")
-    if above is not None:
-        draw_gap(above, solution, x * to_x[0], fields.gap, to_gap)
+    for axes in above:
+        draw_gap(axes, solution, x * to_x[0], fields.gap, to_gap)
     draw_pressures(below, fields, x * to_x[0], to_pressure, np.sqrt(np.clip(1 - x**2, 0, None)))
-    below.set_xlabel(f"{to_x[1]}; fluid enters from the left")
     below.set_xlim(x[0] * to_x[0], x[-1] * to_x[0])
-    if above is None:
-        below.legend(frameon=False, fontsize=8.5)
-    else:
-        above.set_xlim(below.get_xlim())
-        add_legend(figure, (above, below), columns=3)
-    mark_failure(solution, below, above)
+    _name(figure, above, below, to_x[1])
+    mark_failure(solution, below, *above)
     return finish_figure(figure, path, force)
 
 
@@ -121,26 +111,27 @@ def plot_fields(
     """
     if len(fields.x) < 2:
         raise InputError(f"the profile has {len(fields.x)} positions; a picture needs two at least.")
-    above: Axes | None
-    if ax is None:
-        figure, (above, below) = new_figure((7.5, 6.0), [], rows=2, title=title or "Gap and pressure")
-    else:
-        figure, above, below = figure_of(ax), None, ax
+    figure, (*above, below) = new_figure((7.5, 6.0), [], rows=2, title=title or "Gap and pressure", ax=ax)
     size = np.abs(fields.contact_pressure) + np.abs(fields.fluid_pressure)
     reach = 1.6 * float(np.abs(fields.x[size > 0.02 * size.max()]).max(initial=0.0)) or math.inf
     near = np.abs(fields.x) <= reach
     drawn = Profile(fields.x[near], fields.gap[near], fields.contact_pressure[near], fields.fluid_pressure[near], fields.unit)
     to_x, to_gap, to_pressure = scales_of(drawn, drawn.x, "position $x$")
-    if above is not None:
-        draw_gap(above, None, drawn.x * to_x[0], drawn.gap, to_gap)
+    for axes in above:
+        draw_gap(axes, None, drawn.x * to_x[0], drawn.gap, to_gap)
     draw_pressures(below, drawn, drawn.x * to_x[0], to_pressure)
-    below.set_xlabel(f"{to_x[1]}; fluid enters from the left")
-    if above is None:
-        below.legend(frameon=False, fontsize=8.5)
-    else:
-        above.set_xlim(below.get_xlim())
-        add_legend(figure, (above, below), columns=3)
+    _name(figure, above, below, to_x[1])
     return finish_figure(figure, path, force)
+
+
+def _name(figure: Figure, above: list[Axes], below: Axes, position: str) -> None:
+    """Name the positions and the curves, in a legend within the axes of the pressures if these are alone."""
+    below.set_xlabel(f"{position}; fluid enters from the left")
+    if not above:
+        below.legend(frameon=False, fontsize=8.5)
+        return
+    above[0].set_xlim(below.get_xlim())
+    add_legend(figure, (*above, below), columns=3)
 
 
 def scales_of(fields: Any, x: Array, name: str) -> tuple[tuple[float, str], ...]:
@@ -170,14 +161,13 @@ def draw_pressures(axes: Axes, fields: Profile, x: Array, to_pressure: tuple[flo
     axes.set_ylabel(to_pressure[1])
 
 
-def mark_failure(solution: BaseSolution, *drawn: Axes | None) -> None:
+def mark_failure(solution: BaseSolution, *drawn: Axes) -> None:
     """Write across the drawing of a state that failed that it is not a result."""
     if solution.outcome.ok:
         return
     for axes in drawn:
-        if axes is not None:
-            style: dict[str, Any] = {"ha": "center", "va": "center", "rotation": 20, "zorder": 10, "size": 22, "color": MARK}
-            axes.text(0.5, 0.5, "not converged", transform=axes.transAxes, **style)
+        style: dict[str, Any] = {"ha": "center", "va": "center", "rotation": 20, "zorder": 10, "size": 22, "color": MARK}
+        axes.text(0.5, 0.5, "not converged", transform=axes.transAxes, **style)
 
 
 def draw_gap(axes: Axes, solution: BaseSolution | None, x: Array, gap: Array, to_gap: tuple[float, str]) -> None:

@@ -133,10 +133,7 @@ class Sweep(Exported, Shown, ByValue):
         data, name = self.to_dataset(), self.about["varied"][0]
         name = name if name in data else f"{name}_group"
         x, y = np.asarray(data[name].values, dtype=float), data.friction_balanced.values
-        if ax is None:
-            figure, (ax,) = pictures.new_figure((7.0, 4.6), [], title=self.about["title"] or "Sweep")
-        else:
-            figure = pictures.figure_of(ax)
+        figure, (ax,) = pictures.new_figure((7.0, 4.6), [], title=self.about["title"] or "Sweep", ax=ax)
         ax.plot(x, y, ".", color=pictures.INK, ms=4)
         for which, values in (("x", x), ("y", y)):
             if np.nanmin(values, initial=np.inf) > 0:

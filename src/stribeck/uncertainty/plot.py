@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stribeck.files.pictures import GREY, INK, figure_of, finish_figure, make_logarithmic, new_figure, picture
+from stribeck.files.pictures import GREY, INK, finish_figure, make_logarithmic, new_figure, picture
 from stribeck.files.writing import PathLike
 from stribeck.quantities.units import InputError
 
@@ -41,11 +41,9 @@ def plot_uncertainty(
     shown = [each for each in found.spreads if each.value > 0 and np.isfinite(each.value)]
     if not shown:
         raise InputError("no value of this state is positive, so that there is no interval to draw.")
-    if ax is None:
-        footer = [(line, GREY) for line in (f"Regime: {found.probabilities}.", *found.sources)]
-        figure, (ax,) = new_figure((8.5, 1.2 + 0.28 * len(shown)), footer, title=title or "Uncertainty of a state", left=3.4)
-    else:
-        figure = figure_of(ax)
+    size = 8.5, 1.2 + 0.28 * len(shown)
+    footer = [(line, GREY) for line in (f"Regime: {found.probabilities}.", *found.sources)]
+    figure, (ax,) = new_figure(size, footer, title=title or "Uncertainty of a state", ax=ax, left=3.4)
     ends = np.clip([[*each.interval_95, *each.interval_68, each.median] for each in shown], 0.0, None)
     ends = np.clip(ends / np.array([[each.value] for each in shown]), LEAST, 1 / LEAST)
     rows = np.arange(len(shown))

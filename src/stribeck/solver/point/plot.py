@@ -21,7 +21,6 @@ from stribeck.files.pictures import (
     INK,
     MARK,
     add_legend,
-    figure_of,
     finish_figure,
     new_figure,
     picture,
@@ -104,14 +103,11 @@ def plot_point_solution(
         raise InputError(f"colours = {show(colours)}; it must be 'film' or 'interference'.")
     if colours == "interference" and solution.contact is None:
         raise InputError("colours = 'interference' needs a film thickness in metres; solve a PointContact instead of Groups.")
-    others: list[Axes] = []
-    if ax is None:
-        figure, (film, *others) = new_figure(
-            SIZE, footer_of(solution), rows=2, columns=2, title=title or "Film and pressure of a ball"
-        )
+    figure, (film, *others) = new_figure(
+        SIZE, footer_of(solution), rows=2, columns=2, title=title or "Film and pressure of a ball", ax=ax
+    )
+    if others:
         film.get_gridspec().update(right=0.91, wspace=0.42, hspace=0.18)  # type: ignore[union-attr]
-    else:
-        figure, film = figure_of(ax), ax
     along = np.linspace(-REACH, REACH, POINTS)
     field = solution.field(along, along[:, None])
     to_x, to_gap, to_pressure = _scales(solution, 3 * abs(solution.central_gap))
@@ -155,11 +151,7 @@ def plot_field(
     """
     if field.grid is None or not all(len(each) > 1 and np.ptp(np.diff(each)) < 1e-6 * np.ptp(each) for each in field.grid):
         raise InputError("this field is not on an evenly spaced grid; a picture needs one, as of field(x, x[:, None]).")
-    others: list[Axes] = []
-    if ax is None:
-        figure, (film, *others) = new_figure((10.5, 4.6), [], columns=2, title=title or "Film and pressure")
-    else:
-        figure, film = figure_of(ax), ax
+    figure, (film, *others) = new_figure((10.5, 4.6), [], columns=2, title=title or "Film and pressure", ax=ax)
     to_x, to_gap, to_pressure = scales_of(field, np.stack([np.abs(each).max() for each in field.grid]), "$x$")
     half = [0.5 * to_x[0] * (each[1] - each[0]) for each in field.grid]
     x, y = (each * to_x[0] for each in field.grid)
