@@ -114,8 +114,9 @@ def test_films_of_the_effective_medium_are_those_of_an_independent_solver_with_i
     [
         ((6.834312304194911e-10, 0.13531570505883228, 1.121902568602313), 3.5075, 3.0, 1.0, "none"),
         ((1.5616362323239672e-9, 0.1919816599071153, 23.679257664635262), 2.2885, 1.0, 1.0, "exit"),
+        ((1.2626860284668381e-6, 2.838951018988636, 0.19617378129447713), 3.743, 3.0, 1.0, "exit"),
     ],
-    ids=("where the fit of phi_x ends", "where the liquid behind the exit fills the gap"),
+    ids=("where the fit of phi_x ends", "where the liquid behind the exit fills the gap", "where phi_s begins"),
 )
 def test_meshes_resolve_kinks_of_the_flow_between_asperities(groups, alpha, gamma, share, cavitation):
     """Where no mesh saw the kinks the error stayed at 2e-5, at up to a thousand nodes."""

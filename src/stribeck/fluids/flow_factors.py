@@ -185,7 +185,7 @@ class PatirCheng(FlowFactors):
         """Return by how much h + s sigma phi_s, over phi_x, jumps between each node and the next one: two fits do not meet.
 
         Nor do their slopes, nor that of phi_x where the fits end: a kink k between nodes w apart puts a quadrature wrong by
-        k w^2/12 at most, as a jump k w/6 does.
+        k w^2/12 at most, as a jump k w/6 does.  Where phi_s begins, as a power of H, it turns by its value at the next node.
         """
         v = abs(slide * (2 * self.substrate_share - 1))
         if v == 0 and self.gamma <= 1:
@@ -198,6 +198,9 @@ class PatirCheng(FlowFactors):
         height = v * (self.sigma or 0.0) * (abs(far - near) + kink * apart)
         found = np.zeros_like(gap)
         found[..., :-1] = np.where((H[..., 1:] > LINKED) != (H[..., :-1] > LINKED), height, 0.0)
+        begins = (H[..., 1:] > 0) != (H[..., :-1] > 0)
+        first = self._near(np.clip(np.maximum(H[..., 1:], H[..., :-1]), 0.0, LINKED))
+        found[..., :-1] += np.where(begins, v * (self.sigma or 0.0) / 6 * first, 0.0)
         if self.gamma > 1:
             ends = (H[..., 1:] > LEAST) != (H[..., :-1] > LEAST)
             found[..., :-1] += np.where(ends, gap[..., :-1] * r / LEAST / (1 + LEAST**r / C) * apart, 0.0)
