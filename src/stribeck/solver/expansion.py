@@ -8,6 +8,7 @@ back-substitution; the contact law is a polynomial around each separation.  For 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -95,62 +96,41 @@ def _started(equations: Equations, y: Array) -> tuple[Array, Array]:
 
 
 class _Contact:
-    """The series of the contact pressure over its largest value, order by order with that of the gap."""
+    """The series of the logarithm of the contact pressure over its largest value, order by order with that of the gap."""
 
     def __init__(self, groups: Groups, gap: Array, direction: Direction, order: int) -> None:
         law, kappa, scaling = contact_law(groups), float(groups.relative_roughness), groups.scaling
-        self.rate = direction[2] - scaling.roughness_exponent * direction[1]  # of ln(kappa)
-        self.exists = not isinstance(law, NoContact)
-        self.pressure = np.zeros((order + 1, gap.size))
-        self.top = -np.inf
-        if not self.exists:
-            return
         assert isinstance(law, ExponentialLaw | ScaledLaw)
+        rate = direction[2] - scaling.roughness_exponent * direction[1]  # of ln(kappa)
         of = ContinuedLaw.exponential if isinstance(law, ExponentialLaw) else lambda s: ContinuedLaw.of(law.shape, s)
-        self.near = of(gap / kappa)
-        self.by_gap = along(-self.rate, order) / kappa
-        self.by_load = -law.pressure_exponent * direction[1]
+        near = of(gap / kappa)
         log_pressure = law.log_pressure(gap)
         self.top = float(log_pressure.max())
-        self.pressure[0] = np.exp(log_pressure - self.top)
-        self.place, self.of_pressure = np.zeros((2, order + 1, gap.size))
-        self.powers = np.zeros((len(self.near.coefficients), order + 1, gap.size))
-        self.powers[:, 0] = self.near.coefficients
+        self.start = log_pressure - self.top
+        self.by_gap = None if near.logarithmic else (along(-rate, order) / kappa)[::-1].copy()
+        self.reach, self.first = near.reach, (-rate if near.logarithmic else 0.0, -law.pressure_exponent * direction[1])
+        self.place_by_log_gap = (1.0 if near.logarithmic else gap / kappa) / near.reach
+        self.place = np.zeros((order + 1, gap.size))
+        self.powers = np.zeros((len(near.coefficients), order + 1, gap.size))
+        self.powers[:, 0] = near.coefficients
+        self.by_log_gap = near.coefficients[1] * self.place_by_log_gap
 
-    def extend(self, k: int, gap: Array) -> None:
-        """Find order k from the series of the gap up to k, as if its logarithm had no coefficient of this order."""
-        if not self.exists:
-            return
-        if not self.near.logarithmic:
-            self.place[k] = self.by_gap[k::-1] @ gap / self.near.reach
-        elif k == 1:
-            self.place[k] = -self.rate / self.near.reach
+    def term(self, k: int, gap: Array) -> Array:
+        """Return order k from the series of the gap up to k, as if its logarithm had no coefficient of this order."""
+        place = self.first[0] if k == 1 else 0.0
+        self.place[k] = (place if self.by_gap is None else self.by_gap[-1 - k :] @ gap) / self.reach
         if len(self.powers) > 2:
             self.powers[:-1, k] = np.einsum("mjn,jn->mn", self.powers[1:, :k], self.place[k:0:-1])
         else:
             self.powers[0, k] = self.powers[1, 0] * self.place[k]
-        self.of_pressure[k] = k * self.powers[0, k] + (self.by_load if k == 1 else 0.0)
-        self.pressure[k] = exponential_term(self.of_pressure, self.pressure, k)
+        return np.asarray(self.powers[0, k] + self.first[1] if k == 1 else self.powers[0, k])
 
-    def add(self, k: int, change: Array, of_gap: Array) -> None:
-        """Add the effect of that coefficient, by itself and through the gap."""
-        if not self.exists:
-            return
-        of_place = (change if self.near.logarithmic else self.by_gap[0] * of_gap) / self.near.reach
-        self.place[k] += of_place
-        self.powers[:-1, k] += self.powers[1:, 0] * of_place
-        of_log = self.powers[1, 0] * of_place
-        self.of_pressure[k] += k * of_log
-        self.pressure[k] += self.pressure[0] * of_log
-
-    def share(self, weights: Array) -> tuple[Array, Array]:
-        """Return the series of the integral of the pressure over the load, and of its logarithm."""
-        if not self.exists:
-            return np.zeros(len(self.pressure)), np.full(len(self.pressure), np.nan)
-        relative = self.pressure @ weights / LOAD
-        logs = logarithm(relative)
-        logs[0] += self.top
-        return np.exp(self.top) * relative, logs
+    def add(self, k: int, change: Array) -> None:
+        """Add to the powers of the separation what that coefficient changes; the logarithm itself is with the caller."""
+        if len(self.powers) > 2:
+            of_place = self.place_by_log_gap * change
+            self.place[k] += of_place
+            self.powers[:-1, k] += self.powers[1:, 0] * of_place
 
 
 def expand_article(
@@ -185,22 +165,33 @@ def expand_article(
     w = np.zeros((order + 1, at.size))
     w[0] = start
     speed = float(equations.speed) * along(direction[0], order)
-    contact = _Contact(groups, y[at.gap], direction, order)
-    slopes, powers = np.zeros((2, order + 1, len(GAP_POWERS), op.mesh.size))
-    powers[0] = np.exp(GAP_POWERS * start[at.gap])
-    gap, square, cube = powers.transpose(1, 0, 2)
+    contact = None if isinstance(equations.law, NoContact) else _Contact(groups, y[at.gap], direction, order)
+    rates = np.repeat(GAP_POWERS, op.mesh.size, axis=1)
+    logs = rates * start[at.gap]
+    if contact is not None:
+        rates, logs = np.vstack([rates, contact.by_log_gap]), np.vstack([logs, contact.start])
+    slopes, powers = np.zeros((2, order + 1, *rates.shape))
+    powers[0] = np.exp(logs)
+    gap, square, cube = (powers[:, row] for row in range(len(GAP_POWERS)))
     gradient, flow = np.zeros((2, order + 1, op.mesh.size))
     gradient[0] = square[0] - cube[0] * start[at.flux_gap]
     flow[0] = speed[0] * gradient[0]
-    flux, top, weights = w[:, at.flux_gap.start], np.exp(contact.top), op.mesh.weights
+    at_flux, weights, r = at.flux_gap.start, op.mesh.weights, np.empty(at.size)
+    top = 0.0 if contact is None else math.exp(contact.top)
+    # Convolutions take rows side by side in memory.
+    speed_backwards, flux_backwards = speed[::-1].copy(), np.zeros(order + 1)
+    flux_backwards[-1] = start[at_flux]
     for k in range(1, order + 1):
         powers[k] = exponential_term(slopes, powers, k)
-        contact.extend(k, gap[: k + 1])
-        gradient[k] = square[k] - flux[k::-1] @ cube[: k + 1]
+        if contact is not None:
+            of_log = contact.term(k, gap[: k + 1])
+            slopes[k, -1] = k * of_log
+            powers[k, -1] += of_log * powers[0, -1]
+        gradient[k] = square[k] - flux_backwards[-1 - k :] @ cube[: k + 1]
         if equations.is_sliding:
-            flow[k] = speed[k::-1][: k + 1] @ gradient[: k + 1]
+            flow[k] = speed_backwards[-1 - k :] @ gradient[: k + 1]
         for _ in range(2 if k <= REFINED else 1):
-            r, pressure = np.zeros(at.size), top * contact.pressure[k]
+            pressure = top * powers[k, -1]
             if equations.is_sliding:
                 pressure += op.integral(flow[k])
             r[at.gap] = gap[k] - w[k, at.offset] - op.deflection @ pressure
@@ -208,20 +199,26 @@ def expand_article(
             r[at.flux_gap] = equations.flux_scale * (weights @ gradient[k])
             step = units * inverse(r)
             w[k] += step
-            change = step[at.gap]
-            of_logs = GAP_POWERS * change
-            slopes[k] += k * of_logs
+            flux_backwards[-1 - k] = w[k, at_flux]
+            of_logs = rates * step[at.gap]
             of_powers = of_logs * powers[0]
             powers[k] += of_powers
-            contact.add(k, change, of_powers[0])
-            of_gradient = of_powers[1] - of_powers[2] * flux[0] - cube[0] * step[at.flux_gap]
+            of_logs *= k
+            slopes[k] += of_logs
+            if contact is not None:
+                contact.add(k, step[at.gap])
+            of_gradient = of_powers[1] - start[at_flux] * of_powers[2] - step[at_flux] * cube[0]
             gradient[k] += of_gradient
             flow[k] += speed[0] * of_gradient
+    flux = w[:, at_flux]
     found, found_logs = np.zeros((2, order + 1, len(ALL_NAMES)))
     found[:, len(NAMES) + 1 :] = np.nan
     found_logs[:] = np.nan
-    share, found_logs[:, ROW["contact_load_share"]] = contact.share(weights)
-    found[:, ROW["contact_load_share"]] = share
+    if contact is not None:
+        relative, share = powers[:, -1] @ weights / LOAD, ROW["contact_load_share"]
+        found[:, share] = top * relative
+        found_logs[:, share] = logarithm(relative)
+        found_logs[0, share] += contact.top
     found[:, ROW["fluid_load_share"]] = flow @ op.load_of_gradient / LOAD
     found[:, ROW["central_gap"]] = _central_gap(equations, y, w[:, at.gap])
     found[:, ROW["flux_gap"]] = flux
