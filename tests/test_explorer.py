@@ -480,6 +480,20 @@ def test_what_is_outside_the_model_stands_above_every_number():
     assert Answerer()(START).outside == ""
 
 
+def test_a_change_ends_the_checks_that_need_curves():
+    class ChangedError(Exception):
+        pass
+
+    def changed(part):
+        raise ChangedError
+
+    model = Answerer()
+    model(START)
+    with pytest.raises(ChangedError):
+        model.settle_checks(START, changed)
+    assert model.settle_checks(START, lambda part: None) is False  # they were not taken for made, and say nothing new
+
+
 def test_pinned_contacts_stand_beside_the_present_one(answer):
     assert table.comparison_html(answer, ()) == ""
     html = table.comparison_html(answer, [("half", sb.solve(START.contact.replace(load=15)), "balanced")])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -71,6 +71,8 @@ class Subject:
         Its state, if that is known already.
     traced : StribeckCurve, optional
         Its curve over the speed, likewise.
+    on_point : callable, optional
+        Is called after each state of a curve with their number and that of all; an exception that it raises ends the checks.
     """
 
     contact: Contact
@@ -78,6 +80,7 @@ class Subject:
     definition: Definition = "balanced"
     solved: Solution | None = None
     traced: StribeckCurve | None = None
+    on_point: Callable[[int, int], object] | None = None
 
     @cached_property
     def solution(self) -> Solution:
@@ -100,7 +103,14 @@ class Subject:
 
         tracing = TRACES[contact.groups.geometry]
         speeds = None if tracing.films is None else tuple(speed_of_film(contact, film) for film in tracing.films)
-        return stribeck_curve(contact, speed=speeds, points=tracing.points, rtol=tracing.rtol, definition=self.definition)
+        return stribeck_curve(
+            contact,
+            speed=speeds,
+            points=tracing.points,
+            rtol=tracing.rtol,
+            definition=self.definition,
+            on_point=self.on_point,
+        )
 
     @property
     def passing_gap(self) -> float:

@@ -234,7 +234,7 @@ class Answerer:
             self._kept[key] = self._last_diagrams[contact.INPUTS.geometry] = found
             yield
 
-    def settle_checks(self, inputs: Inputs) -> bool:
+    def settle_checks(self, inputs: Inputs, report: Report) -> bool:
         """Make the checks that need the curve, or another one; return whether they change the line above the numbers."""
         contact = inputs.contact
         key = ("checks", contact, inputs.rest)
@@ -243,7 +243,8 @@ class Answerer:
         before = self._kept.get(key)
         facts = facts_of(inputs.rest)
         solution: Any = self._last[1] if self._last is not None and self._last[0] == contact else None
-        self._kept[key] = checks_of(Subject(contact, facts, inputs.definition, solved=solution)).first_line
+        subject = Subject(contact, facts, inputs.definition, solution, on_point=lambda done, of: report(done / of))
+        self._kept[key] = checks_of(subject).first_line
         self._kept["all checks", *key] = True
         return bool(self._kept[key] != before)
 

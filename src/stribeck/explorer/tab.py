@@ -50,10 +50,8 @@ REST = 0.4
 
 LIVE = ThreadPoolExecutor(2, "explorer")
 SLOW = ThreadPoolExecutor(1, "explorer-slow")
-CHECKS = ThreadPoolExecutor(1, "explorer-checks")
 FILES = ThreadPoolExecutor(2, "explorer-files")
-"""Threads of what follows the slider, of what comes when it rests, of checks that need curves of their own and cannot be given
-up, and of files that are read."""
+"""Threads of what follows the slider, of what comes when it rests, and of files that are read."""
 
 MOST_OPENED = 4
 OPENED: dict[str, Answer] = {}
@@ -444,7 +442,12 @@ class Tab:
     async def settle(self) -> None:
         """Solve the curve outside the atlas at once; at rest put the state into the address and do what takes longer."""
         now = self.inputs
-        report = self.reporter(now)
+        go_on = self.watcher(now)
+
+        def report(part: float) -> None:
+            go_on()
+            self.page.progress = f"{UPDATING} {100 * part:.0f} %"
+
         self.page.progress = ""
         with self.page.client:
             try:
@@ -468,12 +471,12 @@ class Tab:
                 self.page.progress = self.model.why_no_curve(now)
                 if self.page.progress:
                     self.page.show_progress()
-                found = await self.run(SLOW, self.ways, now)
-                if found is not None and self.inputs is now:
+                found = await self.run(SLOW, self.ways, now, go_on)
+                if self.inputs is now:
                     self.page.show_margins(found if isinstance(found, str) else table.margins_html(found), now)
-                if await self.run(CHECKS, self.checks, now):
+                if await self.run(SLOW, self.model.settle_checks, now, go_on):
                     await self.refresh(now)
-                rows = self.model.diagrams(now, report)
+                rows = self.model.diagrams(now, go_on)
                 while await self.run(SLOW, next, rows, False) is not False:
                     await self.refresh(now)
             except Superseded:
@@ -481,38 +484,27 @@ class Tab:
             except Exception as problem:  # else what is being updated would say so for ever
                 self.page.say(f"Internal error ({problem!r}).", bad=True)
 
-    def checks(self, now: Inputs) -> bool:
-        """Make the slow checks, unless the contact is no longer shown; return whether they say something new."""
-        return self.inputs is now and self.is_seen and self.model.settle_checks(now)
-
     @property
     def is_seen(self) -> bool:
         """Whether a browser shows the page; what it left is given up at once, and done anew if it comes back."""
         return not self.closed and self.page.client.has_socket_connection
 
-    def reporter(self, now: Inputs) -> Callable[[float], None]:
-        """Return what slow work reports to: it ends where the inputs have changed."""
+    def watcher(self, now: Inputs) -> Callable[..., None]:
+        """Return what slow work calls again and again: it ends where the inputs have changed."""
 
-        def report(part: float) -> None:
-            if self.inputs is not now or not self.is_seen:
-                raise Superseded
-            self.page.progress = f"{UPDATING} {100 * part:.0f} %"
-
-        return report
-
-    def ways(self, now: Inputs) -> RegimeMargins | str | None:
-        """Return the margins of a contact, the reason why there are none, or None where it is no longer shown."""
-
-        def go_on(done: int, scans: int) -> None:
+        def go_on(*_: Any) -> None:
             if self.inputs is not now or not self.is_seen:
                 raise Superseded
 
+        return go_on
+
+    @staticmethod
+    def ways(now: Inputs, go_on: Callable[..., None]) -> RegimeMargins | str:
+        """Return the margins of a contact, or the reason why there are none."""
         try:
             if now.table.geometry == "point":
                 return '<p class="note">Margins of a ball take ten seconds to a minute; run stribeck regimes.</p>'
             return regime_margins(now.contact, definition=now.definition, on_point=go_on)
-        except Superseded:
-            return None
         except (InputError, SolveError) as problem:
             return f'<p class="note">{escape(without_rtol(str(problem)))}</p>'
 

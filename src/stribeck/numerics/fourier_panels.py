@@ -224,11 +224,17 @@ class PolarMesh:
         """Return nodal fields, shape (..., modes, rings), at points x, y of one shape within the rim."""
         r, angle = np.hypot(x, y).ravel(), np.arctan2(np.abs(y), x).ravel()
         coefficients = self.to_modes @ field
-        panel, matrix = self.radial_interpolation(r)
-        local = coefficients[..., self.of_panel[panel]]
-        radial = (local * matrix).sum(axis=-1)
         waves = np.cos(np.outer(np.arange(self.modes), angle))
-        return np.asarray((radial * waves).sum(axis=-2).reshape(*field.shape[:-2], *np.shape(x)))
+        return np.asarray((self.at_radii(coefficients, r) * waves).sum(axis=-2).reshape(*field.shape[:-2], *np.shape(x)))
+
+    def at_radii(self, field: Array, r: Array) -> Array:
+        """Return fields of shape (..., rings) at radii, shape (..., n)."""
+        panel, matrix = self.radial_interpolation(r)
+        found = np.empty((*field.shape[:-1], len(r)))
+        for number in np.unique(panel):
+            here = np.nonzero(panel == number)[0]
+            found[..., here] = field[..., self.of_panel[number]] @ matrix[here].T
+        return found
 
     def radial_interpolation(self, r: Array) -> tuple[Indices, Array]:
         """Return the panel of each radius, and the row from its nodal values to the value there, shape (n, degree + 1)."""
@@ -243,9 +249,7 @@ class PolarMesh:
 
     def transfer(self, other: PolarMesh, field: Array) -> Array:
         """Return nodal fields, shape (..., modes, rings), at the nodes of another mesh; beyond the rim those at the rim."""
-        panel, matrix = self.radial_interpolation(np.minimum(other.radii, self.rim))
-        radial = (field[..., self.of_panel[panel]] * matrix).sum(axis=-1)
-        coefficients = self.to_modes @ radial
+        coefficients = self.to_modes @ self.at_radii(field, np.minimum(other.radii, self.rim))
         waves = np.cos(np.outer(other.angles, np.arange(self.modes)))
         return np.asarray(waves @ coefficients)
 
