@@ -39,6 +39,7 @@ from stribeck.quantities.units import format_si
 from stribeck.solids.viscoelastic import Prony
 
 START = server.example()
+PROFILE = (EXAMPLES / "cylinder_profile.csv").read_bytes()
 
 
 @pytest.fixture(scope="module")
@@ -371,6 +372,19 @@ def test_what_a_ball_may_do_without_is_an_empty_field():
     assert reopened(url.encode(dry), wet).inputs == dry
 
 
+def check_link_and_saved_case(shown):
+    """Check that link, reload and saved case bring everything back."""
+    opened = reopened(url.encode(shown))
+    assert opened.problems == {} and opened.inputs == shown
+    assert url.encode(opened.inputs) == url.encode(shown)
+    saved = files.read_case("saved.toml", files.content("toml", files.View(SimpleNamespace(inputs=shown, curve=None))))
+    same_contact(saved.contact, shown.contact)
+    again = inputs.from_case(saved)
+    assert (again.definition, again.rtol, again.title) == (shown.definition, shown.rtol, shown.title)
+    for name in ("fluid", "cavitation", "motion", "flow_factors", "solid"):
+        assert getattr(again.contact, name, None) == getattr(shown.contact, name, None), name
+
+
 @pytest.mark.parametrize("name", choices.CHOICES)
 def test_every_choice_makes_a_contact_that_link_and_saved_case_keep(name):
     for value in choices.CHOICES[name].options:
@@ -378,10 +392,36 @@ def test_every_choice_makes_a_contact_that_link_and_saved_case_keep(name):
             continue
         shown = choices.choose(START, name, value)
         assert choices.state_of(shown, name)["value"] == ("" if name == "preset" else value)
-        assert reopened(url.encode(shown)).inputs == shown
-        saved = files.read_case("saved.toml", files.content("toml", files.View(SimpleNamespace(inputs=shown, curve=None))))
-        same_contact(saved.contact, shown.contact)
+        check_link_and_saved_case(shown)
         assert choices.choose(shown, name, choices.CHOICES[name].first).model in ("", shown.model)
+
+
+@pytest.mark.parametrize("start", ["cylinder", "ball", "surface", "ball on a surface"])
+def test_what_many_changes_lead_to_goes_through_link_and_saved_case(start):
+    random = np.random.default_rng([16, *map(ord, start)])
+    first = BALL if "ball" in start else START
+    first = with_scan(first, read_scan("profile.csv", PROFILE)) if "surface" in start else first
+    for _ in range(2 if "surface" in start else 12):  # the law of a surface takes half a second
+        shown = replace(
+            first,
+            abscissa=random.choice(["speed", "hersey"]).item(),
+            definition=random.choice(sorted(charts.DEFINITIONS)).item(),
+        )
+        for _ in range(8):
+            name = random.choice([each for each in choices.CHOICES if each != "geometry"]).item()
+            options = [each for each, _ in choices.state_of(shown, name)["options"] if each]
+            slider = random.choice(list(shown.fields)).item()
+            try:
+                if random.random() < 0.6 and not (name == "law" and "surface" in start):
+                    shown = choices.choose(shown, name, random.choice(options).item())
+                elif details := choices.state_of(shown, name)["details"]:
+                    key = details[random.integers(len(details))][0]
+                    shown = choices.typed_detail(shown, name, key, f"{random.uniform(0.1, 0.9):.2g}")
+                else:
+                    shown = inputs.slid(shown, slider, inputs.position(shown, slider) + random.uniform(-0.5, 0.5))
+            except sb.InputError:  # not with the rest
+                continue
+        check_link_and_saved_case(shown)
 
 
 def test_the_examples_of_the_page_load_and_come_with_the_wheel():
@@ -974,9 +1014,6 @@ def test_the_map_of_a_ball_is_solved_row_by_row(monkeypatch):
     friction = sb.solve(row.replace(speed=found.hydrodynamic[0]), rtol=1e-3).friction()
     assert friction.contact / friction.total == pytest.approx(0.1, rel=0.05)
     assert found.boundary[0] == 0  # the fluid carries more than a twentieth at the slowest speed
-
-
-PROFILE = (EXAMPLES / "cylinder_profile.csv").read_bytes()
 
 
 def test_a_file_of_heights_becomes_the_surface_of_the_contact():
