@@ -195,6 +195,7 @@ def test_several_loads_in_a_file_are_as_many_curves_of_a_ball(read):
     assert found.friction == pytest.approx([*FRICTIONS, *(mu / 2 for mu in FRICTIONS)], rel=0.005)
     assert found.error is not None and len(found.run_in) == 8
     assert "'Ball Load (N)' as load of the curves, 1 N and 2 N" in found.taken
+    assert "'load [N]'" not in found.taken  # made by the reader, nowhere in the file
     mixed = read(loads_and_repeats(loads=(1.0, 1.0), ratios=(20, 180)), geometry="point")
     assert mixed.inputs == ({"load": 1.0, "slide_to_roll": 0.2}, {"load": 1.0, "slide_to_roll": 1.8})
 

@@ -180,6 +180,7 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
     """
     settings = settings or FitSettings()
     table = read_table(Path(path), settings.header_row)
+    written = table.header
     table, made, run = prepared(table, settings, lambda meaning: _has(table, settings, meaning))
     columns = _columns(table, settings)
     abscissa = _abscissa(table, columns)
@@ -222,7 +223,7 @@ def read_measurements(path: str | os.PathLike[str], settings: FitSettings | None
         inputs=differing,
         rows=np.array([rows[i][1] for i in order]),
         notes=(*_notes(table, columns, empty, made, run), *(() if averaged is None else averaged.notes)),
-        taken=_taken(columns, made, run),
+        taken=_taken(columns, written, made, run),
         run_in=() if averaged is None else averaged.run_in,
     )
     _check_spread(found, frictions)
@@ -426,11 +427,13 @@ def _declared_for_rig(name: str, settings: FitSettings) -> bool:
     return any(is_called(name, text) for text in texts)
 
 
-def _taken(columns: dict[str, list[str]], made: tuple[str, ...], run: str) -> str:
-    """Return what each column was taken for."""
-    parts = [f"{' and '.join(map(show, names))} as {meaning.replace('_', ' ')}" for meaning, names in columns.items()]
-    own = {"friction": "'friction' as", "speed [m/s]": "'speed [m/s]' as"}
-    parts = [part for part in parts if not (made and part.startswith(tuple(own.values())))]
+def _taken(columns: dict[str, list[str]], written: tuple[str, ...], made: tuple[str, ...], run: str) -> str:
+    """Return what each column of the file was taken for, after the sentences on those that were made of others."""
+    parts = [
+        f"{' and '.join(map(show, names))} as {meaning.replace('_', ' ')}"
+        for meaning, names in columns.items()
+        if set(names) <= set(written)
+    ]
     parts = [*made, *parts, *([f"{show(run)} as run"] if run else [])]
     return f"Read: {'; '.join(parts)}. To change this, name the columns in [fit.columns] of the case."
 
