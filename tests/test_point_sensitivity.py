@@ -86,6 +86,17 @@ def test_what_moves_the_numbers_of_fluid_and_solid_moves_the_friction_through_th
         assert found[name] == pytest.approx(slope_of_solved(contact, name), abs=3e-4), name
 
 
+def test_at_fixed_groups_beta_moves_the_viscous_friction_by_its_closed_form():
+    groups, step = sb.Groups(1e-2, 1e-2, 5e-4, geometry="point"), STEP
+    given = {"radius": 0.01, "modulus": 1e6, "viscosity": 0.1, "alpha": 2.0, "boundary_friction": 0.8, "slide_to_roll": 0.6}
+    here, more, less = (sb.PointContact.from_groups(groups, beta=0.1 * math.exp(sign * step), **given) for sign in (0, 1, -1))
+    _, found = friction_sensitivities(here, rtol=1e-3)
+    along = found["beta"] + 3 * found["load"] + 4 * found["speed"] + 2 * found["roughness"]  # as from_groups moves them
+    ends = [sb.solve(each, rtol=1e-3).friction().total for each in (more, less)]
+    slope = math.log(ends[0] / ends[1]) / (2 * step)
+    assert slope > 1e-3 and along == pytest.approx(slope, rel=1e-2)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS)
 def test_sensitivities_of_balls_with_other_fluids_and_solids_are_those_of_solved_states(model):

@@ -150,6 +150,11 @@ def test_a_curve_without_minimum_says_so_by_nan():
     assert np.isnan(curve.to_dataset().attrs["minimum_speed"])
 
 
+def test_a_group_that_varies_is_no_attribute_however_small_it_is():
+    attributes = sb.stribeck_curve(load=0.1, roughness=1e-3, speed=(1e-9, 1e-8), points=2).to_dataset().attrs
+    assert "speed_group" not in attributes and attributes["load_group"] == 0.1
+
+
 def test_an_interrupted_curve_is_marked_incomplete(tmp_path):
     def stop(done, total):
         if done == 3:
