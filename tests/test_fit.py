@@ -22,10 +22,11 @@ from stribeck.cli.reports.fit import print_fit
 from stribeck.contact_laws.persson import persson_law
 from stribeck.contact_laws.spectrum import SelfAffine
 from stribeck.fits.case_file import write_fitted_case
-from stribeck.fits.friction_parts import atlas_parts, solved_parts
 from stribeck.fits.model import FrictionModel, free_inputs
 from stribeck.fits.objective import minimise, objective
 from stribeck.fits.posterior import draw_posterior
+from stribeck.fits.states.cylinders import solved_parts
+from stribeck.fits.states.ways import atlas_parts
 
 START = TRUE.replace(boundary_friction=0.3, roughness="2 um", modulus="1.5 MPa")
 NEAR = START.replace(modulus=TRUE.modulus)

@@ -7,8 +7,9 @@ from fit_data import TRUE, measured
 import stribeck as sb
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.fits.case_file import write_fitted_case
-from stribeck.fits.friction_parts import in_atlas, kept_parts, solved_parts
 from stribeck.fits.model import FrictionModel, free_inputs
+from stribeck.fits.states.cylinders import kept_parts, solved_parts
+from stribeck.fits.states.ways import in_atlas
 
 SPEEDS = np.geomspace(1e-3, 0.3, 6)
 EXIT_AND_BARUS = {"fluid": sb.fluids.Barus("500 1/GPa"), "cavitation": "exit"}

@@ -10,9 +10,11 @@ from command_line import call
 import stribeck as sb
 from stribeck.batches.lattice import Lattice
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.fits import friction_parts
-from stribeck.fits.friction_parts import FrictionParts, Ways, curve_parts
 from stribeck.fits.model import FrictionModel, free_inputs
+from stribeck.fits.states import ways
+from stribeck.fits.states.balls import curve_parts, lattice_parts
+from stribeck.fits.states.parts import FrictionParts
+from stribeck.fits.states.ways import Ways
 
 SPEEDS = TRUE.speed * np.geomspace(0.3, 6.0, 5)
 FREE = ("boundary_friction", "roughness", "modulus", "load", "beta", "radius", "viscosity", "alpha")
@@ -123,8 +125,8 @@ def test_intervals_of_a_ball_cover_in_40_experiments(monkeypatch):
 
     data = measured(np.ones(5))
     model = FrictionModel(TRUE, data, free_inputs(TRUE, data, ("boundary_friction", "roughness"), FitSettings()))
-    parts = friction_parts.lattice_parts(*model.start(), "balanced")  # kept for all experiments
-    monkeypatch.setitem(friction_parts.WAYS, "point", lambda *_: Ways(parts, parts))
+    parts = lattice_parts(*model.start(), "balanced")  # kept for all experiments
+    monkeypatch.setitem(ways.WAYS, "point", lambda *_: Ways(parts, parts))
     exact = model.predict(np.zeros(2), parts).friction
     held, experiments = np.zeros((2, 2), dtype=int), 40
     for seed in range(experiments):
@@ -178,7 +180,7 @@ def test_units_of_a_fit_are_those_of_the_geometry(tmp_path):
 
 def test_the_command_fits_a_ball_and_writes_its_case(tmp_path, capsys, monkeypatch):
     parts = made_up("balanced")
-    monkeypatch.setitem(friction_parts.WAYS, "point", lambda *_: Ways(parts, parts))
+    monkeypatch.setitem(ways.WAYS, "point", lambda *_: Ways(parts, parts))
     case = tmp_path / "ball.toml"
     case.write_text(CASE.format(load="10 mN", roughness="0.1 um", fit=""))
     contact = sb.load_case(case).contact.replace(boundary_friction=0.7, roughness=0.12e-6)

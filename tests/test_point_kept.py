@@ -12,9 +12,11 @@ import stribeck as sb
 from stribeck.batches.kept import KeptStates, between
 from stribeck.cases.fit_settings import FitSettings
 from stribeck.contacts.model import Model
-from stribeck.fits import friction_parts
-from stribeck.fits.friction_parts import Between, Ways, kept_balls
 from stribeck.fits.model import FrictionModel, free_inputs
+from stribeck.fits.states import ways
+from stribeck.fits.states.balls import kept_balls
+from stribeck.fits.states.between import Between
+from stribeck.fits.states.ways import Ways
 from stribeck.fluids.rheology.rate_laws import Carreau
 from stribeck.fluids.shear_thinning import ShearThinning
 
@@ -80,13 +82,13 @@ def test_curves_are_read_between_the_inputs_at_which_they_were_solved_and_fits_s
     assert (found.error > exact.error).all()
 
     solved.clear()
-    monkeypatch.setitem(friction_parts.WAYS, "point", lambda *_: friction_parts.between(counted))
+    monkeypatch.setitem(ways.WAYS, "point", lambda *_: ways.between(counted))
     noise = np.exp(0.02 * np.random.default_rng(1).standard_normal(8))
     rows = measured(exact.friction * noise, SPEEDS, inputs=inputs)
     fit = sb.fit(rows, BALL, free=["boundary_friction", "viscosity"])
     drawn = fit.band(1, np.geomspace(SPEEDS[0], SPEEDS[-1], 30))  # between the measured speeds, without a state more
     assert len(solved) <= 2 * 12
-    monkeypatch.setitem(friction_parts.WAYS, "point", lambda *_: Ways(solve, solve))
+    monkeypatch.setitem(ways.WAYS, "point", lambda *_: Ways(solve, solve))
     alone = sb.fit(rows, BALL, free=["boundary_friction", "viscosity"])
     assert fit.converged
     for one, other in zip(fit.inputs, alone.inputs, strict=True):

@@ -24,7 +24,6 @@ from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.fits.case_file import load_fit_case
-from stribeck.fits.friction_parts import Between, PartsOf, in_atlas, ways_of
 from stribeck.fits.identifiability import Unidentifiable, undetermined
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.model import FreeInput, FrictionModel, free_inputs
@@ -32,6 +31,9 @@ from stribeck.fits.objective import Minimum, Objective, effective_parameters, mi
 from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_ends
 from stribeck.fits.residuals import judge_residuals
 from stribeck.fits.result import Fit, FitOutcome, FittedInput, unit_of
+from stribeck.fits.states.between import Between
+from stribeck.fits.states.parts import PartsOf
+from stribeck.fits.states.ways import in_atlas, ways_of
 from stribeck.numerics.threads import one_blas_thread
 from stribeck.quantities.inputs import LINE
 from stribeck.quantities.part_inputs import fitted_rows

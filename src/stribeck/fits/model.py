@@ -33,8 +33,9 @@ from stribeck.contacts.friction import Definition
 from stribeck.contacts.friction_rules import IMAGINARY, RULES
 from stribeck.contacts.groups import Groups, Physics
 from stribeck.contacts.with_parts import STEP, check_solid, models_beside
-from stribeck.fits.friction_parts import Between, FrictionParts, ModelChange, PartsOf
 from stribeck.fits.measurements import Measurements
+from stribeck.fits.states.between import Between
+from stribeck.fits.states.parts import FrictionParts, ModelChange, PartsOf
 from stribeck.quantities.part_inputs import PART_INPUTS, fitted_rows
 from stribeck.quantities.units import InputError, format_si
 
@@ -394,7 +395,7 @@ class FrictionModel:
         theta : ndarray, shape (p,)
             Logarithms of the factors on the free inputs.
         parts_of : callable
-            What gives the states, one of :mod:`stribeck.fits.friction_parts`.
+            What gives the states, one of :mod:`stribeck.fits.states`.
         at : tuple of ndarray, optional
             Curve and abscissa of other places than the measured rows.
 

@@ -19,8 +19,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.cases.fit_settings import FitSettings
-from stribeck.fits.friction_parts import Between, PartsOf
 from stribeck.fits.model import FrictionModel, Prediction
+from stribeck.fits.states.between import Between
+from stribeck.fits.states.parts import PartsOf
 from stribeck.quantities.units import InputError
 from stribeck.solver.solve import SolveError
 

@@ -13,9 +13,9 @@ import numpy as np
 
 from stribeck._types import Array
 from stribeck.files.writing import MissingExtraError
-from stribeck.fits.friction_parts import in_atlas
 from stribeck.fits.objective import Minimum
 from stribeck.fits.result import Fit
+from stribeck.fits.states.ways import in_atlas
 from stribeck.quantities.units import InputError
 
 __all__ = ["Posterior", "draw_posterior"]

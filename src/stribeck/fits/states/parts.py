@@ -1,0 +1,63 @@
+"""The contributions to the friction of many states, with derivatives: what fits ask states for.
+
+The load share and the observables of the viscous friction come without boundary_friction and beta, which may differ from
+state to state: :mod:`stribeck.contacts.friction_rules` puts them together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from stribeck._types import Array
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import Model
+
+__all__ = ["FrictionParts", "ModelChange", "PartsOf"]
+
+
+@dataclass(frozen=True)
+class FrictionParts:
+    """The contributions to the friction of n states, and their derivatives.
+
+    Parameters
+    ----------
+    values : ndarray, shape (1 + parts, n)
+        Contact load share, and the observables that the rule of the geometry names [-].
+    slopes : ndarray, shape (1 + parts, 3 + changes, n)
+        Derivatives of each by the logarithms of the groups of speed, load and roughness, and along changes of the model [-].
+    errors : ndarray, shape (1 + parts, n)
+        Estimated absolute error of the contact load share, and errors of the others as a solution states them.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+    """
+
+    values: Array
+    slopes: Array
+    errors: Array
+    definition: Definition
+
+
+class ModelChange(NamedTuple):
+    """What a free input changes of the model, in Hertz units.
+
+    Attributes
+    ----------
+    input : int
+        Number of the input.
+    below, above : Model
+        The model at two values of its logarithm.
+    width : float
+        Their distance.
+    """
+
+    input: int
+    below: Model
+    above: Model
+    width: float
+
+
+PartsOf = Callable[[Groups, Sequence[ModelChange]], FrictionParts]
+"""What gives the parts of the friction of states in a row, with their derivatives along changes of the model."""

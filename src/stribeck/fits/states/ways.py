@@ -1,0 +1,126 @@
+"""How the states of a fit are obtained: off the atlas, solved, or read between solved ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from stribeck import atlas
+from stribeck.atlas.tables import table_for
+from stribeck.contacts.friction import Definition
+from stribeck.contacts.groups import Groups
+from stribeck.contacts.model import ARTICLE
+from stribeck.fits.states.balls import OnState, curve_parts, kept_balls, lattice_parts
+from stribeck.fits.states.between import Between
+from stribeck.fits.states.cylinders import kept_parts, solved_parts
+from stribeck.fits.states.parts import FrictionParts, ModelChange, PartsOf
+from stribeck.quantities.units import InputError
+
+if TYPE_CHECKING:
+    from stribeck.fits.model import FrictionModel
+
+__all__ = ["Ways", "atlas_or", "atlas_parts", "between", "in_atlas", "ways_of"]
+
+
+FAR_DOUBT = 1e-2
+"""Doubt up to which curves are read between solved ones, see :mod:`stribeck.numerics.scattered`."""
+
+
+BALL_RTOL = 1e-4
+"""Smallest tolerance of solved balls in the values that a fit returns: far below what rigs resolve."""
+
+
+class Ways(NamedTuple):
+    """How the states of a fit are obtained.
+
+    Attributes
+    ----------
+    quick, solved : callable or Between
+        For the search, and for the values that the fit returns.
+    """
+
+    quick: PartsOf | Between
+    solved: PartsOf | Between
+
+
+def ways_of(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
+    """Return how the states of a fit are obtained: from atlas and solver, or for a ball from a lattice of solved states.
+
+    Parameters
+    ----------
+    model : FrictionModel
+        What is fitted.
+    definition : {"balanced", "published"}
+        Definition of the viscous friction.
+    rtol : float
+        Relative tolerance of solved states.
+    on_state : callable
+        Called with the number of states so far after each one that takes long to solve.
+
+    Returns
+    -------
+    Ways
+        The functions.
+    """
+    return WAYS[model.contact.groups.geometry](model, definition, rtol, on_state)
+
+
+def in_atlas(model: FrictionModel) -> bool:
+    """Return whether a table holds for all contacts of a fit, wherever in its box their states lie."""
+    kinds = {each.groups.model for each in model.contacts}
+    return len(kinds) == 1 and not any(model.moving) and atlas.for_groups(model.contact.groups) is not None
+
+
+def atlas_parts(definition: Definition) -> PartsOf:
+    """Return the function that reads states off the atlas; it raises InputError outside."""
+
+    def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
+        values, slopes = atlas.friction_parts(groups, definition)
+        error = np.full(values.shape, table_for(groups).error)
+        return FrictionParts(values, slopes, error, definition)
+
+    return parts
+
+
+def atlas_or(slow: PartsOf, definition: Definition) -> PartsOf:
+    """Return the function that reads the states off the atlas where it holds all of them, and else takes the ``slow`` way."""
+    quick = atlas_parts(definition)
+
+    def parts(groups: Groups, changes: Sequence[ModelChange]) -> FrictionParts:
+        try:
+            return quick(groups, changes)
+        except InputError:
+            return slow(groups, changes)
+
+    return parts
+
+
+def between(solve: PartsOf) -> Ways:
+    """Return how to search on curves that are read between solved ones, and end on solved ones."""
+    quick = Between(solve, FAR_DOUBT)
+    return Ways(quick, replace(quick, doubt=0.0))
+
+
+def _of_cylinder(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
+    if in_atlas(model):
+        solved = solved_parts(definition, rtol)
+        return Ways(atlas_or(solved, definition), solved)
+    return between(kept_parts(definition, rtol))
+
+
+def _of_ball(model: FrictionModel, definition: Definition, rtol: float, on_state: OnState) -> Ways:
+    if any(each.groups.model != ARTICLE for each in model.contacts):  # lattices know one model
+        kept = kept_balls(model, definition, max(rtol, BALL_RTOL), on_state)
+        if in_atlas(model):
+            return Ways(atlas_or(kept, definition), kept)
+        return between(kept)
+    logs, varies = model.start()
+    lattice, solved = lattice_parts(logs, varies, definition), curve_parts(definition, max(rtol, BALL_RTOL))
+    return Ways(atlas_or(lattice, definition) if in_atlas(model) else lattice, solved)
+
+
+WAYS: dict[str, Callable[[FrictionModel, Definition, float, OnState], Ways]] = {"line": _of_cylinder, "point": _of_ball}
+"""The ways by geometry."""
