@@ -20,24 +20,23 @@ from stribeck.cases.case import Case
 from stribeck.cases.fit_settings import DEFAULT_FREE, FitSettings, free_names
 from stribeck.checks.subject import Subject
 from stribeck.checks.table import checks_of
-from stribeck.contact_laws.law import largest_load
 from stribeck.contacts.contact import Contact
 from stribeck.contacts.friction import Definition
 from stribeck.fits.case_file import load_fit_case
-from stribeck.fits.identifiability import Unidentifiable, undetermined
+from stribeck.fits.identifiability import undetermined
 from stribeck.fits.measurements import Measurements, read_measurements
 from stribeck.fits.model import FreeInput, FrictionModel, free_inputs
+from stribeck.fits.notes import notes_of, outcome_of
 from stribeck.fits.objective import Minimum, Objective, effective_parameters, minimise, objective, settle
 from stribeck.fits.profile_likelihood import BetterMinimumError, Ends, profile_ends
 from stribeck.fits.residuals import judge_residuals
-from stribeck.fits.result import Fit, FitOutcome, FittedInput, unit_of
+from stribeck.fits.result import Fit, FittedInput, unit_of
 from stribeck.fits.states.between import Between
 from stribeck.fits.states.parts import PartsOf
 from stribeck.fits.states.ways import in_atlas, ways_of
 from stribeck.numerics.threads import one_blas_thread
-from stribeck.quantities.inputs import LINE
 from stribeck.quantities.part_inputs import fitted_rows
-from stribeck.quantities.units import InputError, format_si, show
+from stribeck.quantities.units import InputError, show
 
 __all__ = ["fit"]
 
@@ -67,9 +66,6 @@ SAME = 1e-3
 
 WIDEST = 600.0
 """Half-width of an interval of a logarithm from which it is open."""
-
-TIED = 0.95
-"""Correlation from which a pair of inputs is named."""
 
 Step = Callable[[str, int], object]
 
@@ -345,7 +341,7 @@ def _result(
         )
         for i, free in enumerate(model.free)
     )
-    outcome = _outcome(at, inputs)
+    outcome = outcome_of(at, inputs)
     freedom = max(len(data) - effective_parameters(at), 1.0)
     labels = [each.label for each in inputs]
     weak = undetermined(model.free, labels, at.jacobian, at.prediction)
@@ -381,7 +377,7 @@ def _result(
         checks=checks_of(
             Subject(max(contacts, key=lambda each: each.hertz.pressure), problem.facts, problem.definition), "contact"
         ),
-        notes=(*data.notes, *_notes(at, inputs, correlation, covariance, weak, contacts)),
+        notes=(*data.notes, *notes_of(at, inputs, correlation, covariance, weak, contacts)),
         solver_shift=float(np.nanmax(moved)) if np.isfinite(moved).any() else math.nan,
         model_error=float(errors.max()),
         evaluations=at.evaluations,
@@ -390,74 +386,6 @@ def _result(
     )
 
 
-def _outcome(at: Minimum, inputs: Sequence[FittedInput]) -> FitOutcome:
-    if not at.converged:
-        return FitOutcome.NOT_AT_OPTIMUM if at.ended else FitOutcome.STEP_LIMIT
-    if any(_implausible(each) for each in inputs):
-        return FitOutcome.IMPLAUSIBLE
-    return FitOutcome.AT_BOUND if any(each.at_bound for each in inputs) else FitOutcome.CONVERGED
-
-
-def _implausible(each: FittedInput) -> bool:
-    return not each.is_factor and each.name in LINE.quantities and each.value > LINE.quantities[each.name].implausible
-
-
 def _interval(free: FreeInput, ends: Ends) -> tuple[float, float]:
     low = 0.0 if math.isinf(ends.low) else free.value(ends.low)
     return low, math.inf if math.isinf(ends.high) else free.value(ends.high)
-
-
-def _notes(
-    at: Minimum,
-    inputs: Sequence[FittedInput],
-    correlation: Array,
-    covariance: Array,
-    weak: Sequence[Unidentifiable],
-    contacts: Sequence[Contact],
-) -> list[str]:
-    notes = []
-    for each in inputs:
-        if each.at_bound:
-            value = f"{each.value:.4g}" if each.is_factor else format_si(each.value, each.dimension, 4)
-            notes.append(
-                f"{each.label} ended at its bound {value}: the data would move it further, and it has no standard error. "
-                "Widen the bound, or free fewer inputs."
-            )
-        if _implausible(each):
-            notes.append(
-                f"{each.label} {each.value:.2g} is larger than that of any known contact: the data do not reach the boundary "
-                "plateau, or other inputs are wrong. Give it a bound or a prior in [fit], or do not free it."
-            )
-    named = {name for each in weak for name in each.names}
-    for i in range(len(inputs)):
-        for j in range(i):
-            pair = inputs[j].label, inputs[i].label
-            if abs(correlation[i, j]) > TIED and not named & set(pair):
-                notes.append(_combination(pair, correlation[i, j], covariance[np.ix_([j, i], [j, i])]))
-    for name, contact in zip(at.objective.model.data.curves, contacts, strict=True):
-        load = float(contact.groups.load)
-        if load >= largest_load(contact.law):
-            where = f" of curve {name}" if len(contacts) > 1 else ""
-            notes.append(
-                f"The fitted load group{where} is {load:.3g}, not below 1: the exponential contact law is outside its range."
-            )
-    if at.objective.robust:
-        far = np.abs(at.residuals) > 4
-        if far.any():
-            rows = ", ".join(map(str, sorted(at.objective.model.data.rows[far].tolist())[:10]))
-            notes.append(f"Rows beyond four standard errors, which have little weight in the fit: {rows}.")
-    return notes
-
-
-def _combination(pair: tuple[str, str], correlation: float, covariance: Array) -> str:
-    """Return the sentence that names the combination of two inputs that the data determine best."""
-    values, vectors = np.linalg.eigh(covariance)
-    a, b = vectors[:, 0]
-    first, second = pair if abs(a) >= abs(b) else pair[::-1]
-    power = float(min(a, b, key=abs) / max(a, b, key=abs))
-    size = float(math.sqrt(max(values[0], 0.0)) / max(abs(a), abs(b)))
-    shown = "" if abs(abs(power) - 1) < 0.02 else f"^{abs(power):.2g}"
-    return (
-        f"{pair[0]} and {pair[1]} have correlation {correlation:.3f}: the data determine "
-        f"{first} {'x' if power > 0 else '/'} {second}{shown} best, within {100 * size:.2g} %."
-    )

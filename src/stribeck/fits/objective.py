@@ -413,10 +413,7 @@ def settle(goal: Objective, start: Array, on_step: Callable[[int], object] | Non
         return _scaled(found)  # a common factor on all residuals moves nothing
     for _ in range(MOST_ROUNDS):
         noise = _noise(found)
-        if noise == 0 or not math.isfinite(noise):
-            break
-        settled = abs(math.log(noise)) < SETTLED
-        if settled:
+        if noise == 0 or not math.isfinite(noise) or abs(math.log(noise)) < SETTLED:
             break
         goal = replace(goal, scale=goal.scale * noise)
         found = minimise(goal, found.theta, on_step=on_step)
