@@ -202,7 +202,7 @@ class ErrorEstimate:
         """
         return np.asarray((self.discretisation + np.maximum(self.interpolation, self.rounding)) / self.scales)
 
-    @property
+    @cached_property
     def total(self) -> float:
         """The largest relative error."""
         return float(np.nanmax(self.relative))

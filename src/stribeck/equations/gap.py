@@ -132,17 +132,24 @@ def minimum_gaps(mesh: Mesh, log_gap: Array, first: int = 0) -> tuple[Array, Arr
     slopes, bends = polynomial[:, 1:] * powers[1:], polynomial[:, 2:] * powers[2:] * powers[1:-1]
     c, d, s, origin = mesh.centres[first + k], mesh.half_widths[first + k], start, rule.nodes[about]
     for _ in range(NEWTON_STEPS):
-        basis, x = (s - origin)[:, None] ** powers, c + d * s
+        basis, x = _powers(s - origin, order), c + d * s
         far = mesh.scale**2 + x * x
         slope = np.einsum("rn,rn->r", basis[:, :-1], slopes) + 2 * d * x / far
         bend = np.einsum("rn,rn->r", basis[:, :-2], bends) + 2 * d * d * (mesh.scale**2 - x * x) / far**2
         step = -slope / np.maximum(np.maximum(bend, np.abs(slope) / LARGEST_STEP), 1e-300)
         s = np.minimum(np.maximum(s + step, -1.0), 1.0)
     x = c + d * s
-    value = np.einsum("rn,rn->r", (s - origin)[:, None] ** powers, polynomial) + np.log(mesh.scale**2 + x * x)
+    value = np.einsum("rn,rn->r", _powers(s - origin, order), polynomial) + np.log(mesh.scale**2 + x * x)
     rows = np.arange(count)
     rows += np.where(value[-count:] < value[:count], len(k) - count, 0)
     return x[rows], np.exp(value[rows]), 2 * interpolation_error(own[rows]), first + k[rows]
+
+
+def _powers(t: Array, count: int) -> Array:
+    """Return the first powers of numbers, shape (len(t), count)."""
+    found = np.ones((len(t), count))
+    np.cumprod(np.broadcast_to(t[:, None], (len(t), count - 1)), axis=1, out=found[:, 1:])
+    return found
 
 
 @lru_cache(maxsize=32)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -354,13 +354,12 @@ def mesh_for(
     lift = 1.0
     if turns_sharply and isinstance(guess, State):  # where no load feels it flux and drag do
         lift = 1 / min(1.0, max(float(np.abs(guess.fluid_pressure).max()), 1e-100))
-    highest = legendre.legval(reference(order).nodes, np.eye(order)[-1])
     thickness, memories = getattr(groups.model.solid, "lengths", Lengths())
 
     def asked(lengths: Array) -> Array:
         """Return a field that panels resolve if they are not longer than allowed: ``lengths`` over that."""
         size = tolerance * np.minimum(lengths, 2.0) ** (order - 1)
-        return np.asarray((size[:, None] * highest)[None])
+        return np.asarray((size[:, None] * _highest_degree(order))[None])
 
     def fields(x: Array, half_widths: Array, stretch: Array) -> Array:
         flat = x.ravel()
@@ -446,6 +445,12 @@ def mesh_for(
     mesh = adapt(fields, scale, 2 * reach, order, tolerance, start, anew)
     levels = halvings + max(0, math.ceil(2 * math.log(END_TAIL / tolerance) / math.log(END_GAIN)))
     return replace(graded(mesh, places, levels), restart=restart)
+
+
+@lru_cache(maxsize=8)
+def _highest_degree(order: int) -> Array:
+    """Return the Legendre polynomial of the highest degree that panels hold, at their nodes."""
+    return np.asarray(legendre.legval(reference(order).nodes, np.eye(order)[-1]))
 
 
 def _cavity_on_mesh(guess: Guess) -> float:

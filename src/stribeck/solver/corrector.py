@@ -124,6 +124,8 @@ class Corrector:
             return rough
         if rough.prediction_error > FAR_OFF and not self._is_resolved(rough, spread):
             return rough
+        if self.own_inverse and rough.root.last_step * rough.root.contraction <= self.rtol:  # Newton's step squares it
+            return rough
         state = solve_state(base, self.operators, rough, newton_tolerance(self.rtol), MOST_STEPS, rough.root.inverse)
         return replace(state, prediction_error=max(state.prediction_error, rough.prediction_error))
 

@@ -240,13 +240,14 @@ class LineProblem:
                 known = self._radius(s, state, found, 1.0)
             else:
                 found, known = self._sampled(s, state, inverse, near)
-        exists = [column for column in (SMOOTH if self.moves else []) if np.isfinite(values.array(in_article=False)[column])]
+        numbers = values.array(in_article=False)
+        exists = [column for column in (SMOOTH if self.moves else []) if np.isfinite(numbers[column])]
         finite = np.isfinite(np.hstack([found.unknowns, found.observables[:, exists]])).all(axis=1)
         order = self.order if finite.all() else max(1, int(np.argmin(finite)) - 1)
         unknowns, observed, logs = (part[: order + 1] for part in found)
         nothing = np.full((order + 1, 1), np.nan)
         series, logs = np.hstack([observed, nothing]), np.hstack([logs, nothing])
-        series[0] = *values.array(in_article=False), values.minimum_position
+        series[0] = *numbers, values.minimum_position
         positive = np.isfinite(logs[0]) & (series[0] > 0)
         logs[0, positive] = np.log(series[0, positive])
         errors = np.full(POSITION + 1, np.nan)
