@@ -492,6 +492,30 @@ def test_changes_are_undone_and_redone(open_page):
     assert contact_of(page) == third and field(page, "load").input_value() == "40"
 
 
+def test_charts_are_tables_and_sentences_too(open_page):
+    page = open_page()
+    settled(page)
+    contact = contact_of(page).contact
+    friction = sb.solve(contact).friction().total
+    label = page.locator(".chart-friction canvas")
+    page.wait_for_function("document.querySelector('.chart-friction canvas').ariaLabel.includes('present point')")
+    said = re.search(r"present point (\S+) at (\S+) m/s", label.get_attribute("aria-label"))
+    assert [float(each) for each in said.groups()] == pytest.approx([friction, contact.speed], rel=5e-3)
+    page.get_by_role("button", name="As a table: Friction over speed").press("Enter")
+    head, *rows = page.eval_on_selector_all(
+        ".chart-friction tr", "rows => rows.map(row => [...row.children].map(cell => cell.innerText))"
+    )
+    assert head[:2] == ["sliding speed U (m/s)", "balanced"] and len(rows) >= 5 and not label.is_visible()
+    for speed, shown, *_ in rows:
+        found = sb.solve(contact.replace(speed=float(speed))).friction().total
+        assert float(shown) == pytest.approx(found, rel=6e-3), speed
+    pick(page, "geometry", "point")
+    page.wait_for_function("document.querySelector('.chart-plane canvas').ariaLabel.includes('film from')")
+    page.get_by_role("button", name=re.compile("^As a table: Film")).click()
+    cells = page.locator(".chart-plane td").all_inner_texts()
+    assert len(cells) >= 9 and all(re.fullmatch(r"[0-9.]+ (nm|µm|mm)", each) for each in cells)
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_core_finds_no_fault(open_page, scheme):
     from axe_playwright_python.sync_playwright import Axe
@@ -499,6 +523,7 @@ def test_axe_core_finds_no_fault(open_page, scheme):
     page = open_page(color_scheme=scheme)
     page.wait_for_selector(".more tr[data-key=roughness]")
     page.wait_for_selector(".more .ways:not(.old)")
+    page.locator(".chart-pressure .as-table").click()
     found = Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"]
     assert [(each["id"], [node["html"][:200] for node in each["nodes"]]) for each in found] == []
 

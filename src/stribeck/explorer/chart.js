@@ -147,6 +147,66 @@ const PAINT = {
 
 const BEHIND = ["bands", "area", "film"]; // the grid
 
+const isThere = ([across, up]) => Number.isFinite(across) && Number.isFinite(up);
+
+// What a line has at a place along the axis, between its two points there as it is drawn.
+function valueAt(data, at, x, y) {
+  const i = data.findIndex((each, i) => i > 0 && isThere(each) && isThere(data[i - 1]) && (data[i - 1][0] - at) * (each[0] - at) <= 0);
+  if (i < 1) return NaN;
+  const [[from, low], [to, high]] = [data[i - 1], data[i]];
+  const part = x.log ? Math.log(at / from) / Math.log(to / from) : (at - from) / (to - from);
+  return y.log ? low * (high / low) ** part : low + part * (high - low);
+}
+
+// A place in a film, from the logarithms of one side of it.
+function filmAt({ data, columns }, across, up) {
+  const last = columns - 1, place = (part) => Math.min(last, Math.max(0, Math.round(part * last)));
+  return lengthOf(10 ** data[Math.abs(place(up) - last / 2) * columns + place(across)]);
+}
+
+const isMark = ({ type, data }) => type === "line" && data.length === 2 && data[0][0] === data[1][0];
+const linesOf = ({ series, legend }) =>
+  legend.map((name) => series.find((each) => each.name === name)).filter((each) => each?.type === "line" && !isMark(each));
+const inWords = (value) => (value === 0 || Math.abs(value) >= 1e-3 ? short(value, 3) : String(Number(value.toPrecision(3)).toExponential()));
+
+// The chart as a table: its lines at the labels of the axis, and of a film at those of both.
+function tableOf(options) {
+  const { x, y, series } = options;
+  const labels = (axis) => ticksOf(axis, 480).major.map(([value]) => value);
+  const film = series.find(({ type }) => type === "film");
+  if (film) {
+    const part = (axis, value) => (value - axis.low) / (axis.high - axis.low);
+    const rows = labels(y).reverse().map((up) => [up, ...labels(x).map((at) => filmAt(film, part(x, at), part(y, up)))]);
+    return { head: [`y below, x across (${x.unit})`, ...labels(x)], rows };
+  }
+  const lines = linesOf(options);
+  const least = y.log ? 0 : 1e-4 * (y.high - y.low); // what lies between the nodes of a state is no truer
+  const number = (value) => (Number.isFinite(value) ? inWords(Math.abs(value) < least ? 0 : value) : "–");
+  const rows = labels(x).map((at) => [inWords(at), ...lines.map(({ data }) => number(valueAt(data, at, x, y)))]);
+  return { head: [x.name, ...lines.map(({ name }) => name)], rows };
+}
+
+// The chart in a sentence.
+function wordsOf(options) {
+  const { x, y, scale, series } = options;
+  const there = (value) => `${inWords(value)} ${x.unit}`.trim();
+  const found = [`${y.name} over ${x.name}`];
+  if (scale) found.push(`film from ${scale.words.join(" to ")}`);
+  const [main] = linesOf(options).sort((one, two) => two.width - one.width);
+  const points = main?.data.filter(isThere).sort(([, one], [, two]) => one - two) ?? [];
+  if (points.length) {
+    const [low, high] = [points[0], points.at(-1)].map(([at, value]) => `${inWords(value)} at ${there(at)}`);
+    found.push(`${main.name} from ${low} to ${high}`);
+  }
+  for (const { type, name, data } of series) {
+    if (type === "bands") found.push(...data.map(([low, high, , regime]) => `${regime} from ${there(low)} to ${there(high)}`));
+    else if (isMark({ type, data })) found.push(`${name} at ${there(data[0][0])}`);
+    else if (type === "points" && data.length > 1) found.push(`${name}: ${data.length} points`);
+    else if (type === "points") found.push(`${name} ${inWords(data[0][1])} at ${there(data[0][0])}`);
+  }
+  return found.join("; ");
+}
+
 export default {
   props: { label: String },
   template: `
@@ -159,13 +219,22 @@ export default {
             <polygon v-else-if="each.symbol" :points="corners(each.symbol)" fill="none" :stroke="each.edge" stroke-width="1.6"/>
             <path v-else d="M 0 5 H 22" :stroke="each.color" :stroke-width="each.width" :stroke-dasharray="each.dash.join(' ')"/>
           </svg>{{ each.name }}</button>
+        <button type="button" class="as-table" :aria-pressed="String(asTable)" :aria-label="'As a table: ' + label"
+          title="Picture or table" @click="asTable = !asTable; list()">table</button>
       </div>
-      <canvas ref="canvas" role="img" :aria-label="label + '; arrow keys read its values'" tabindex="0"
-        @pointermove="move" @pointerdown="move" @pointerleave="leave" @keydown="walk" @blur="leave"></canvas>
+      <div v-if="asTable" class="scrolled" role="region" :aria-label="label" tabindex="0">
+        <table>
+          <caption>{{ words }}</caption>
+          <tr><th v-for="each in table.head" scope="col">{{ each }}</th></tr>
+          <tr v-for="row in table.rows"><th scope="row">{{ row[0] }}</th><td v-for="each in row.slice(1)">{{ each }}</td></tr>
+        </table>
+      </div>
+      <canvas ref="canvas" role="img" :aria-label="label + ': ' + words + '; arrow keys read its values'" tabindex="0"
+        v-show="!asTable" @pointermove="move" @pointerdown="move" @pointerleave="leave" @keydown="walk" @blur="leave"></canvas>
       <div class="tip" ref="tip" role="status" hidden></div>
     </div>`,
   data() {
-    return { legend: [], hidden: [] };
+    return { legend: [], hidden: [], asTable: false, words: "", table: { head: [], rows: [] } };
   },
   created() {
     this.options = { series: [], legend: [] };
@@ -184,6 +253,7 @@ export default {
   },
   beforeUnmount() {
     this.observer.disconnect();
+    clearTimeout(this.resting);
     this.unfollow();
   },
   methods: {
@@ -209,10 +279,21 @@ export default {
       const look = ({ name, color, width, dash, edge, symbol }) => ({ name, color, width, dash, edge, symbol });
       if (JSON.stringify(legend.map(look)) !== JSON.stringify(this.legend)) this.legend = legend.map(look);
       this.paint();
+      // A screen reader is told at rest.
+      clearTimeout(this.resting);
+      this.resting = setTimeout(this.list, 400);
+      if (this.asTable) this.list();
+    },
+    list() {
+      if (!this.options.x) return;
+      const shown = { ...this.options, series: this.shown() };
+      this.words = wordsOf(shown);
+      if (this.asTable) this.table = tableOf(shown);
     },
     toggle(name) {
       this.hidden = this.hidden.includes(name) ? this.hidden.filter((each) => each !== name) : [...this.hidden, name];
       this.paint();
+      this.list();
     },
     shown() {
       return this.options.series.filter((each) => !this.hidden.includes(each.name));
@@ -358,10 +439,7 @@ export default {
     under(box, x, across, up) {
       const film = this.options.series.find((each) => each.type === "film");
       if (film) {
-        const last = film.columns - 1;
-        const place = (part) => Math.min(last, Math.max(0, Math.round(part * last)));
-        const [column, row] = [place((across - box.left) / box.width), Math.abs(place((up - box.top) / box.height) - last / 2)];
-        return [[`film ${lengthOf(10 ** film.data[row * film.columns + column])}`]];
+        return [[`film ${filmAt(film, (across - box.left) / box.width, (up - box.top) / box.height)}`]];
       }
       const found = [];
       for (const { type, name, data, color, edge } of this.shown()) {

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from html import escape
 from typing import Any
 
+import numpy as np
 from nicegui import ui
 from nicegui.json import dumps
 
@@ -24,6 +25,7 @@ from stribeck.explorer.charts import charts
 from stribeck.explorer.charts.drawing import drawing
 from stribeck.explorer.charts.palette import DARK, LIGHT
 from stribeck.explorer.charts.parts import Options, difference
+from stribeck.explorer.curves import in_atlas
 from stribeck.explorer.downloads import View, examples
 from stribeck.explorer.measured import Measured
 from stribeck.explorer.scans import ENDINGS
@@ -391,7 +393,11 @@ def _rows_words(answer: Answer) -> str:
     diagram = answer.diagram
     if diagram is None or diagram.stale:
         return f": {UPDATING}"
-    return "" if diagram.part == 1 else f": {100 * diagram.part:.0f} % solved"
+    if diagram.part < 1:
+        return f": {100 * diagram.part:.0f} % solved"
+    if not np.isnan(diagram.boundary).any():
+        return ""
+    return f"; blank where it {'lies outside the lookup table' if in_atlas(answer.inputs.contact) else 'could not be solved'}"
 
 
 def button(label: str, icon: str, title: str) -> ui.button:

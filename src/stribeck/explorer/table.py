@@ -135,6 +135,8 @@ def _row(key: str, label: str, value: float, error: float, dimension: str = "num
         return Row(key, label, value, 0.0, "∞ (smooth)", "")
     number, _, unit = format_si(value, dimension, _count(value, error)).replace("*", "·").partition(" ")
     scale = float(number) / value if unit and value else 1.0
+    mantissa, power, exponent = number.partition("e")
+    number = f"{mantissa}e{int(exponent)}" if power else number
     if math.isnan(error):
         return Row(key, label, value, error, f"{number} {unit}".rstrip(), "")
     shown = f"± {_small(error * abs(scale))} {unit}".rstrip() if error > 0 else "from the inputs"

@@ -130,7 +130,7 @@ def gap_chart(answer: Answer, palette: Palette) -> Options:
         shown.append(rms)
         series.append(line("rms", "roughness", np.array([-x_end, x_end]), np.full(2, rms * scale), palette.grey, 1.2, [6, 4]))
     series += _thin_series(answer, ("gap",), x_scale, scale, palette)
-    low, high = round_down(min(shown) * scale), round_up(max(shown) * scale)
+    low, high = round_down(0.95 * min(shown) * scale), round_up(max(shown) * scale)
     x = linear_axis(f"position x ({x_unit})", -x_end, x_end)
     return chart(palette, x, log_axis(f"gap ({u_unit})", low, high), series, [each["name"] for each in series])
 
