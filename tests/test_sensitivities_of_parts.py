@@ -16,6 +16,7 @@ STEP = 1e-3
     ("parts", "names"),
     [
         ({"fluid": sb.fluids.Barus("500 1/GPa"), "cavitation": "exit"}, ("pressure_coefficient", "modulus", "beta")),
+        ({"cavitation": "reform", "cavity_pressure": "-2 kPa"}, ("viscosity", "load")),
         ({"flow_factors": "effective-medium"}, ("roughness", "alpha")),
         ({"slide_to_roll": -1.0}, ("boundary_friction", "load")),
         ({"solid": sb.solids.Layer("1 mm")}, ("layer_thickness", "radius")),

@@ -156,7 +156,8 @@ def drag_gradients(equations: Equations, y: Array, load: Numbers, slopes: Slopes
         whole = (fluid @ op.weights)[..., None]
         published[..., at.exit] += of_moment * stretch * whole
         if d is not None:
-            values = viscous_friction(equations, y, load, Nodal(op.integral, h, fluid, op.weights))[..., None]
+            nodal = Nodal(op.integral, np.atleast_2d(h), np.atleast_2d(fluid), op.weights)
+            values = viscous_friction(equations, np.atleast_2d(y), load, nodal).reshape(3, *y.shape[:-1], 1)
             published[..., at.dilation] = values[2] / d + of_moment * (2 * d * (fluid @ op.moment)[..., None] + x_c * whole)
             lower[..., at.dilation], upper[..., at.dilation] = values[1] / d, values[2] / d
             if p is None:
