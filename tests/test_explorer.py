@@ -489,11 +489,9 @@ def test_an_impossible_detail_is_refused_with_the_sentence_of_a_case(name, key, 
         choices.typed_detail(start, name, key, text)
 
 
-def test_a_fluid_that_balls_do_not_have_is_refused_at_the_geometry():
-    shown = choices.choose(START, "cavitation", "reform")
-    if choices.state_of(BALL, "cavitation")["hidden"]:
-        with pytest.raises(sb.InputError, match="cavitation"):
-            choices.choose(shown, "geometry", "point")
+def test_the_cavity_of_a_cylinder_stays_when_it_becomes_a_ball():
+    shown = choices.choose(choices.choose(START, "cavitation", "reform"), "geometry", "point")
+    assert choices.state_of(shown, "cavitation")["value"] == "reform"
 
 
 def test_the_drawing_follows_layer_motion_and_roughness():

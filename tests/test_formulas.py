@@ -171,6 +171,21 @@ def test_the_table_holds_every_formula_of_the_package_once():
     assert sorted(found) == sorted(id(formula) for formula in FORMULAS), sorted(found.values())
 
 
+def test_the_laws_of_a_layer_are_judged_over_five_widths_of_it_to_both_sides():
+    dry, thin = sb.Groups(0.0, 0.1, 1e-4), sb.Groups(1e-5, 0.1, 0.0)
+    ball = sb.Groups(0.0, 1e-3, 4e-5 / math.pi, geometry="point")
+    edge, film, rest = asymptotics.edge_layer, asymptotics.film_layers, asymptotics.point.rest
+    for law, groups, place in (
+        (edge.gap, dry, 1),
+        (edge.contact_pressure, dry, 1),
+        (film.gap_inlet, thin, -1),
+        (film.fluid_pressure_outlet, thin, 1),
+        (rest.edge_gap, ball, 1),
+        (rest.edge_contact_pressure, ball, 1),
+    ):
+        assert law.interval(groups) == pytest.approx((place - 0.05, place + 0.05), rel=1e-12), law.name
+
+
 def test_names_of_formulas_are_unique_and_lead_to_them():
     names = [formula.name for formula in FORMULAS]
     assert len(set(names)) == len(names)
