@@ -1,6 +1,7 @@
 """The errors of a table of the atlas, on states solved from cold that were not used to make it.
 
-``make certificate`` (``python -m stribeck.evidence.atlas_certificate``) prints the errors that docs/atlas.md sums up, and draws its map.
+``make certificate`` (``python -m stribeck.evidence.atlas_certificate``) prints the errors that docs/atlas.md
+sums up, and draws its map.
 """
 
 from __future__ import annotations
